@@ -1,0 +1,97 @@
+"""What a solver hands over: one row a converged step, a few field snapshots, and how the run ended.
+
+Every method, own or foreign, is reduced to these shapes before anything is compared.
+All forces are for the whole specimen (width included); lengths, forces and energies are in the scene's own units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+#: Columns of ``curve.csv``, in order: the contract with other people's scripts.
+CURVE_COLUMNS = (
+    "opening",  # total separation of the loaded end faces (mean over each face)
+    "load",  # work-conjugate to the opening
+    "crack_length",  # from the loaded end to the foremost fully open point, g >= g_u; at least the precrack
+    "stored_energy",  # bulk + cohesive + contact
+    "dissipated_energy",
+    "external_work",  # integral of load over opening along the path
+    "newton_iterations",
+)
+
+#: What the checks need besides; a method leaves out what it cannot know.
+EVIDENCE_COLUMNS = (
+    "load_slope",  # d load / d opening of the path at this point, exact (bordered system)
+    "tip_opening",  # normal gap at the end of the precrack
+    "face_slope_top",  # mean of du_y/dX over the loaded face, signed
+    "face_slope_bottom",
+    "face_energy",  # sum over the loaded faces of the integral of W dY, per unit width
+    "interface_force",  # vertical resultant of the interface tractions on the upper arm
+    "reaction_x",  # sums of the support reactions
+    "reaction_y",
+    "load_moment",  # moment about the origin, current configuration, of the load on the upper arm
+    "interface_moment",  # and of the interface tractions on the upper arm
+    "bulk_energy",
+    "cohesive_energy",
+    "contact_energy",
+)
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Fields at one converged step.
+
+    The interface part is ordered by ``s_q``, the distance along the specimen from the loaded end; the field part is
+    one grid of (k+1) x (k+1) sample points for every element, so that a jump of the stress between elements is seen.
+    """
+
+    opening: float
+    load: float
+    s_q: np.ndarray  # (n_q,) position of the interface quadrature points
+    gap_q: np.ndarray  # (n_q,) normal opening, negative where closed
+    traction_q: np.ndarray  # (n_q,) normal traction, positive in tension
+    damage_q: np.ndarray  # (n_q,) 0 intact .. 1 open
+    X_euvi: np.ndarray  # (n_e, k+1, k+1, 2) reference positions
+    u_euvi: np.ndarray  # (n_e, k+1, k+1, 2) displacements
+    stress_euv: np.ndarray  # (n_e, k+1, k+1) Cauchy stress sigma_xx
+
+
+@dataclass(frozen=True)
+class Result:
+    """A run, as far as it came.
+
+    ``steps`` maps a column name to an array (n_steps,); it holds CURVE_COLUMNS and those EVIDENCE_COLUMNS the method knows.
+    ``status`` is ``complete`` or ``stopped: <cause and what to do>``.
+    """
+
+    method: str
+    steps: Mapping[str, np.ndarray]
+    status: str = "complete"
+    dofs: int = 0
+    elements: int = 0
+    rejected_steps: int = 0
+    snapshots: tuple[Snapshot, ...] = ()
+    seconds: Mapping[str, float] | None = None
+    peak_memory_mb: float = 0.0
+
+    @property
+    def opening(self) -> np.ndarray:
+        return self.steps["opening"]
+
+    @property
+    def load(self) -> np.ndarray:
+        return self.steps["load"]
+
+    @property
+    def complete(self) -> bool:
+        return self.status == "complete"
+
+
+def steps_from_rows(rows: list[Mapping[str, float]]) -> dict[str, np.ndarray]:
+    """Columns from the rows of a run; every row must have the same keys."""
+    if not rows:
+        return {name: np.zeros(0) for name in CURVE_COLUMNS}
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}

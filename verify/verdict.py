@@ -1,0 +1,57 @@
+"""The shapes that a verification is made of: runs, checks, and both together for one scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from verify.result import Result
+    from verify.scene import Scene
+
+Kind = Literal["exact", "analytical", "cross-code", "regression"]
+
+
+@dataclass(frozen=True)
+class Check:
+    """One number held against one tolerance.
+
+    ``kind`` says what stands behind it: ``exact`` (an identity), ``analytical`` (a closed form or beam solution),
+    ``cross-code`` (another code or a published value), ``regression`` (this code, earlier).
+    """
+
+    name: str  # short and stable, e.g. "j-integral"
+    subject: str  # the run it judges, e.g. "nurbs" or "nurbs / dolfinx"
+    value: float
+    tolerance: float
+    kind: Kind
+    meaning: str  # one sentence for the reader of the report
+
+    @property
+    def passed(self) -> bool:
+        return bool(abs(self.value) <= self.tolerance)  # NaN fails
+
+
+@dataclass(frozen=True)
+class Run:
+    """One method on one scene: a result, or the reason why there is none."""
+
+    label: str  # "NURBS p=3, 1952 dofs"
+    method: str
+    result: Result | None
+    left_out: str = ""  # "not run: DOLFINx is not installed"
+    folder: str = ""  # relative to the report
+    command: str = ""  # repeats this run
+
+
+@dataclass(frozen=True)
+class SceneReport:
+    """Everything known about one scene."""
+
+    scene: Scene
+    runs: tuple[Run, ...]
+    checks: tuple[Check, ...]
+
+    @property
+    def passed(self) -> bool:
+        return all(check.passed for check in self.checks)
