@@ -1,0 +1,1 @@
+"""DOLFINx model of a debonding interface; the only place that imports DOLFINx."""

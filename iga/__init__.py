@@ -1,0 +1,1 @@
+"""Isogeometric solver for debonding interfaces; needs NumPy and SciPy only."""

@@ -1,0 +1,1 @@
+"""Scenes, methods, checks and reports: one problem solved by independent codes and compared."""
