@@ -1,0 +1,125 @@
+"""What is wrong with a scene, as sentences: key path, allowed range, value."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from verify.schema import Isotropic, Orthotropic, Scene, Section
+
+_TAGS: Mapping[str, type[Section]] = {"isotropic": Isotropic, "orthotropic": Orthotropic}
+_BOUNDS = (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))
+_KINDS = {float: "a number", int: "an integer", bool: "true or false", str: "a text"}
+
+
+def complaints(error: ValidationError, raw: Mapping[str, Any]) -> list[str]:
+    """One sentence for every error, in the order of the schema."""
+    details = [e for e in error.errors() if e["type"] != "default_factory_not_called"]
+    if any(e["loc"] == ("specimen", "kind") and e["type"] != "missing" for e in details):
+        # another specimen has other keys, so nothing can be said about those that belong to it
+        of_the_specimen = {"specimen", "material", "strip", "substrate"}
+        details = [e for e in details if e["loc"] == ("specimen", "kind") or e["loc"][0] not in of_the_specimen]
+    return [sentence for e in details for sentence in _sentences(e, raw)]
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """``did you mean "x" or "y"?`` or nothing."""
+    near = difflib.get_close_matches(word, list(known), n=3, cutoff=0.6)
+    return f"did you mean {one_of(near)}?" if near else ""
+
+
+def one_of(options: Iterable[str]) -> str:
+    """Readable alternatives: ``"a"``, ``"a" or "b"``, ``"a", "b" or "c"``."""
+    *head, last = (f'"{option}"' for option in options)
+    return f"{', '.join(head)} or {last}" if head else last
+
+
+def _sentences(e: ErrorDetails, raw: Mapping[str, Any]) -> list[str]:
+    if e["type"] != "rule":
+        return [_sentence(e, raw)]
+    text, found = e["ctx"]["text"], e["ctx"]["found"]
+    return [f"{_dotted(_place((*e['loc'], *rest))[2], raw)}: must be {text}, got {_shown(_plain(v))}" for rest, v in found]
+
+
+def _sentence(e: ErrorDetails, raw: Mapping[str, Any]) -> str:
+    model, field, path = _place(e["loc"])
+    key = _dotted(path, raw)
+    if e["type"] == "extra_forbidden":
+        known = list(model.model_fields)
+        hint = suggestion(str(path[-1]), known) or f"the keys here are {', '.join(known)}"
+        return f"{key}: is not a key of a scene, got {_shown(e['input'])}; {hint}"
+    if e["type"] == "missing":
+        return f"{key}: is missing, must be {_expected(field, path, full=True)}"
+    outside = e["type"].startswith(("greater_than", "less_than"))
+    return f"{key}: must be {_expected(field, path, full=not outside)}, got {_shown(e['input'])}"
+
+
+def _place(loc: tuple[str | int, ...]) -> tuple[type[Section], FieldInfo | None, tuple[str | int, ...]]:
+    """The table that an error is in, the key's definition, and its path without the names of alternatives."""
+    model: type[Section] = Scene
+    here: type[Section] | None = Scene
+    field: FieldInfo | None = None
+    path: list[str | int] = []
+    for part in loc:
+        if part in _TAGS and path == ["material"]:
+            here = _TAGS[str(part)]
+            continue
+        path.append(part)
+        if here is not None and isinstance(part, str):
+            model, field = here, here.model_fields.get(part)
+            annotation = field.annotation if field else None
+            here = annotation if isinstance(annotation, type) and issubclass(annotation, Section) else None
+    return model, field, tuple(path)
+
+
+def _dotted(path: tuple[str | int, ...], raw: Mapping[str, Any]) -> str:
+    """``load.opening[1]``; without the index where the file has a single value."""
+    text, value = "", raw
+    for part in path:
+        if isinstance(part, str):
+            text += f".{part}" if text else part
+            value = value.get(part) if isinstance(value, Mapping) else None
+        elif isinstance(value, list):
+            text += f"[{part}]"
+    return text
+
+
+def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) -> str:
+    """The range of a key; with its type in front where ``full``."""
+    annotation = field.annotation if field else None
+    if get_origin(annotation) is Literal:
+        return one_of(get_args(annotation))
+    if get_origin(annotation) is tuple:
+        return "a number" if isinstance(path[-1], int) else "a number, or a list of at least one number"
+    if annotation not in _KINDS:
+        tables = [annotation] if isinstance(annotation, type) else list(_TAGS.values())
+        return "a table of " + ", or of ".join(", ".join(table.model_fields) for table in tables)
+    if annotation is str and field.metadata:
+        return "1 to 80 letters, digits, dots, dashes and underscores, a letter or digit first"
+    bounds = [f"{sign} {limit:g}" for limit, sign in _bounds(field)]
+    return " ".join([_KINDS[annotation]] * (full or not bounds) + [" and ".join(bounds)] * bool(bounds))
+
+
+def _bounds(field: FieldInfo) -> list[tuple[float, str]]:
+    return [(getattr(m, name), sign) for m in field.metadata for name, sign in _BOUNDS if hasattr(m, name)]
+
+
+def _plain(value: object) -> object:
+    """An integer that a valid number key turned into a float is shown as it was written."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+def _shown(value: object) -> str:
+    """A value as the user would write it, shortened."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of more digits than Python prints
+        return "an integer of thousands of digits"
+    return text if len(text) <= 60 else text[:57] + "..."

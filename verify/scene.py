@@ -1,0 +1,142 @@
+"""From a TOML file, or the name of a packaged one, to a valid ``Scene``; every reason why not, at once."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from verify.complaints import complaints, suggestion
+from verify.schema import Dcb, Discretization, Dolfinx, Effects, Interface, Isotropic, Load, Orthotropic, Scene
+
+__all__ = [
+    "Dcb",
+    "Discretization",
+    "Dolfinx",
+    "Effects",
+    "Interface",
+    "Isotropic",
+    "Load",
+    "Orthotropic",
+    "Scene",
+    "SceneError",
+    "load_scene",
+    "packaged_scenes",
+    "parse_scene",
+]
+
+_FOLDER = Path(__file__).with_name("scenes")
+_KEY = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*(\.[A-Za-z_][A-Za-z0-9_-]*)*")
+_BARE_WORD = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+
+
+class SceneError(ValueError):
+    """A scene that cannot be used.
+
+    Attributes
+    ----------
+    sentences : one for each thing that is wrong
+    """
+
+    def __init__(self, source: str, sentences: Sequence[str]) -> None:
+        super().__init__("\n".join([f"{source}:", *(f"  {s}" for s in sentences)]))
+        self.sentences = tuple(sentences)
+
+
+def packaged_scenes() -> tuple[str, ...]:
+    """Names of the scenes that come with the project."""
+    return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
+
+
+def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene:
+    """Read, override and validate a scene.
+
+    Parameters
+    ----------
+    name_or_path : a packaged name, or the path of a TOML file
+    overrides : ``dotted.key=value`` with a TOML value; a bare word is taken as text
+
+    Raises
+    ------
+    SceneError
+        With one sentence for every thing that is wrong.
+    """
+    source = str(name_or_path)
+    path = _FOLDER / f"{source}.toml" if source in packaged_scenes() else Path(name_or_path)
+    return parse_scene({"name": _as_name(path.stem), **_read(path, source)}, overrides, source)
+
+
+def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: str = "scene") -> Scene:
+    """Validate a scene that is already a dictionary (see ``load_scene``)."""
+    wrong: list[str] = []
+    for override in overrides:
+        try:
+            raw = _override(raw, override)
+        except ValueError as error:
+            wrong.append(str(error))
+    try:
+        scene = Scene.model_validate(raw)
+    except ValidationError as error:
+        wrong += complaints(error, raw)
+    if wrong:
+        raise SceneError(source, wrong)
+    return scene
+
+
+def _read(path: Path, source: str) -> dict[str, Any]:
+    try:
+        text = path.read_bytes().decode()
+    except FileNotFoundError:
+        known = packaged_scenes()
+        hint = suggestion(source, known) or f"the packaged scenes are {', '.join(known)}"
+        raise SceneError(source, [f"is neither a packaged scene nor a file; {hint}"]) from None
+    except UnicodeDecodeError as error:
+        raise SceneError(source, [f"is not a text in UTF-8 (byte {error.start})"]) from None
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        raise SceneError(source, [f"cannot be read: {getattr(error, 'strerror', None) or error}"]) from None
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(_file_and_line(source, text, str(error)), [f"is not TOML: {error}"]) from None
+    except (ValueError, RecursionError) as error:  # an integer of thousands of digits, arrays nested without end
+        raise SceneError(source, [f"is not a usable TOML file: {str(error)[:100]}"]) from None
+
+
+def _file_and_line(source: str, text: str, message: str) -> str:
+    line = re.search(r"at line (\d+)", message)
+    return f"{source}:{line[1] if line else text.count(chr(10)) + 1}"
+
+
+def _as_name(stem: str) -> str:
+    """A usable default for ``name``: it becomes part of folder names."""
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", stem).lstrip("._-")[:80] or "scene"
+
+
+def _override(raw: Mapping[str, Any], override: str) -> dict[str, Any]:
+    """``raw`` with one key replaced; tables on the way are made."""
+    key, equals, text = (part.strip() for part in override.partition("="))
+    if not equals or not _KEY.fullmatch(key):
+        raise ValueError(f'--set {override}: must be KEY=VALUE with a dotted key, like "interface.strength=6"')
+    return _replaced(raw, key.split("."), _toml_value(text, override))
+
+
+def _replaced(table: object, path: list[str], value: object) -> dict[str, Any]:
+    old = dict(table) if isinstance(table, Mapping) else {}
+    head, *rest = path
+    return {**old, head: _replaced(old.get(head), rest, value) if rest else value}
+
+
+def _toml_value(text: str, override: str) -> object:
+    if _BARE_WORD.fullmatch(text) and text not in ("true", "false", "inf", "nan"):
+        return text
+    try:
+        table = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        table = {}
+    if set(table) != {"value"}:
+        raise ValueError(f"--set {override}: the value must be TOML, like 6, true or [1.0, 0.2], got {text!r}")
+    return table["value"]

@@ -1,0 +1,50 @@
+"""Where the time of a run goes, and how much memory it took."""
+
+from __future__ import annotations
+
+import resource
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from time import perf_counter
+
+#: Phases in the order of a run. What DOLFINx compiles at run time is part of its "mesh": it is paid before the first step.
+PHASES = ("mesh", "basis", "assembly", "factor", "solve")
+
+
+class Stopwatch:
+    """Seconds by phase. A phase inside another takes its time away from the outer one, so that nothing counts twice."""
+
+    def __init__(self) -> None:
+        self._start = self._mark = perf_counter()
+        self._open: list[str] = []
+        self._seconds = dict.fromkeys(PHASES, 0.0)
+
+    @contextmanager
+    def phase(self, name: str) -> Iterator[None]:
+        """Time the body as ``name``; what is none of ``PHASES`` counts as "other"."""
+        self._book()
+        self._open.append(name)
+        try:
+            yield
+        finally:
+            self._book()
+            self._open.pop()
+
+    def seconds(self) -> dict[str, float]:
+        """Seconds of every phase so far, of everything else ("other"), and their sum ("total")."""
+        self._book()
+        total = self._mark - self._start
+        return {**self._seconds, "other": max(total - sum(self._seconds.values()), 0.0), "total": total}
+
+    def _book(self) -> None:
+        now = perf_counter()
+        if self._open and self._open[-1] in self._seconds:
+            self._seconds[self._open[-1]] += now - self._mark
+        self._mark = now
+
+
+def peak_memory_mb() -> float:
+    """Largest resident size of this process so far, in megabytes (1e6 bytes)."""
+    unit = 1 if sys.platform == "darwin" else 1024  # getrusage(2): bytes there, kilobytes elsewhere
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6
