@@ -1,0 +1,116 @@
+"""A private Debian root with DOLFINx, built once by mmdebstrap."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+from building import Trouble, digest, need_space, only_one, remove_tree, run_logged, say
+
+#: NumPy, SciPy and PETSc come from Debian; a C compiler for the forms comes with DOLFINx; OpenBLAS replaces the slow reference BLAS.
+PACKAGES = (
+    "python3-dolfinx-real",
+    "python3-scipy",
+    "python3-venv",
+    "libopenblas0-pthread",
+    "openmpi-bin",
+    "gcc",
+    "libc6-dev",
+    "ca-certificates",
+)
+TOOLS = ("mmdebstrap", "bwrap")
+RETRY_AFTER = 3600.0  # seconds before a failed build is tried again by itself
+
+
+def suite() -> str:
+    """The Debian suite of the root."""
+    return os.environ.get("DEBOND_SUITE") or "trixie"
+
+
+def root_folder(cache: Path) -> Path:
+    """Where the root of the present suite is or will be; another recipe is another folder."""
+    return cache / f"root-{suite()}-{digest(*PACKAGES)}"
+
+
+def provide(cache: Path) -> Path:
+    """The whole root, built first if it is not there. Raises Trouble when that cannot be done."""
+    root = root_folder(cache)
+    if root.is_dir():
+        if shutil.which("bwrap") is None:
+            raise Trouble("bubblewrap is missing; as root: apt-get install bubblewrap")
+        return root
+    failed = root.with_name(root.name + ".failed")
+    if failed.exists() and time.time() - failed.stat().st_mtime < RETRY_AFTER:
+        raise Trouble(f"{failed.read_text().strip()} [tried less than an hour ago; to try again now: rm {shlex.quote(str(failed))}]")
+    with only_one(cache):
+        if not root.is_dir():
+            try:
+                failed.unlink(missing_ok=True)
+                build(root)
+            except Trouble as trouble:
+                failed.write_text(f"{trouble}\n")
+                raise
+    return root
+
+
+def build(root: Path) -> None:
+    """Build the root beside its place and rename it when it is whole."""
+    get_tools()
+    can_enter()
+    need_space(root.parent, 3.0)
+    log = root.with_name(root.name + ".log")
+    log.unlink(missing_ok=True)
+    part = root.with_name(root.name + ".part")
+    if part.exists():
+        say(f"removing a half-built root, {part}")
+        remove_tree(part)
+    say(f"building a private Debian {suite()} with DOLFINx in {root}: once, about 3 minutes and 2 GB")
+    start = time.monotonic()
+    run_logged(recipe(part), log, "building the private Debian root")
+    part.rename(root)
+    say(f"the root is ready after {time.monotonic() - start:.0f} s")
+
+
+def recipe(part: Path) -> list[str]:
+    """The mmdebstrap command; an ordinary user unpacks a tar file so that all files are his own and he can remove them."""
+    words = ["mmdebstrap", "--variant=apt", "--include=" + ",".join(PACKAGES), '--aptopt=APT::Install-Recommends "false"']
+    if suite() in ("sid", "unstable"):
+        words.append('--aptopt=Acquire::Check-Valid-Until "false"')  # a mirror's copy may be older than its validity
+    mirror = [os.environ["DEBOND_MIRROR"]] if os.environ.get("DEBOND_MIRROR") else []
+    if os.geteuid() == 0:
+        return [*words, suite(), str(part), *mirror]
+    part.mkdir()
+    make = shlex.join([*words, "--mode=unshare", "--format=tar", suite(), "-", *mirror])
+    unpack = f"tar --extract --no-same-owner --no-same-permissions --exclude='./dev/*' --directory={shlex.quote(str(part))}"
+    return ["bash", "-c", f"set -o pipefail; {make} | {unpack}"]
+
+
+def get_tools() -> None:
+    """Install what is missing of mmdebstrap and bubblewrap, if this is root on Debian or Ubuntu."""
+    missing = [tool for tool in TOOLS if shutil.which(tool) is None]
+    if not missing:
+        return
+    if shutil.which("apt-get") is None:
+        raise Trouble(f"{' and '.join(missing)} are needed for a private Debian root, and this is neither Debian nor Ubuntu")
+    packages = ["mmdebstrap", "bubblewrap", "debian-archive-keyring", "ca-certificates"]
+    if os.geteuid() != 0:
+        raise Trouble(f"{' and '.join(missing)} are missing; as root: apt-get install {' '.join(packages)} uidmap")
+    say("installing mmdebstrap and bubblewrap with apt-get")
+    env = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
+    quiet = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True, "env": env}
+    subprocess.run(["apt-get", "update"], check=False, **quiet)
+    done = subprocess.run(["apt-get", "install", "-y", "--no-install-recommends", *packages], check=False, **quiet)
+    if done.returncode != 0:
+        raise Trouble(f"apt-get install {' '.join(packages)} failed: {done.stdout.strip().splitlines()[-1]}")
+
+
+def can_enter() -> None:
+    """Raise Trouble unless bubblewrap works here; a container often forbids it."""
+    probe = ["bwrap", "--ro-bind", "/", "/", "--dev-bind", "/dev", "/dev", "--proc", "/proc", "true"]
+    done = subprocess.run(probe, check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise Trouble(f"bubblewrap is not allowed here ({done.stderr.strip()}); in a container, start it with --privileged")
