@@ -1,0 +1,84 @@
+"""The bilinear traction law, written once more on purpose: checks and the cohesive beam share no code with a solver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+@dataclass(frozen=True)
+class Bilinear:
+    """Mode I bilinear law with damage on opening and a penalty on closing.
+
+    Parameters
+    ----------
+    strength : largest traction, p_max (stress)
+    toughness : area under the envelope, G_Ic (energy per area)
+    ductility : g_u / g_max, > 1
+    penalty : stiffness against closing (stress per length)
+    contact : where false, the secant of the opening side continues into closing
+
+    Source: Alfano and Crisfield (2001), Int. J. Numer. Methods Eng. 50, eqs. 1-5, in mode I.
+    """
+
+    strength: float
+    toughness: float
+    ductility: float
+    penalty: float
+    contact: bool = True
+
+    @property
+    def g_open(self) -> float:
+        """Opening g_u from which no traction is left."""
+        return 2.0 * self.toughness / self.strength
+
+    @property
+    def g_peak(self) -> float:
+        """Opening g_max at which damage begins."""
+        return self.g_open / self.ductility
+
+    @property
+    def stiffness(self) -> float:
+        """Initial slope K0."""
+        return self.strength / self.g_peak
+
+    @property
+    def softening(self) -> float:
+        """Slope of the falling branch, negative."""
+        return -self.strength / (self.g_open - self.g_peak)
+
+    def damage(self, history: ArrayLike) -> np.ndarray:
+        """Damage d of a point whose largest opening so far is ``history``: 0 intact, 1 open."""
+        k = np.clip(history, self.g_peak, self.g_open)
+        return self.g_open * (k - self.g_peak) / (k * (self.g_open - self.g_peak))
+
+    def secant(self, history: ArrayLike) -> np.ndarray:
+        """Stiffness (1 - d) K0 along which a point unloads and reloads."""
+        return (1.0 - self.damage(history)) * self.stiffness
+
+    def traction(self, gap: ArrayLike, history: ArrayLike | None = None) -> np.ndarray:
+        """Traction at ``gap``; without ``history`` the point is on the envelope (``gap`` the largest so far)."""
+        gap = np.asarray(gap, dtype=float)
+        largest = np.maximum(gap, 0.0 if history is None else history)
+        on_opening_side = self.secant(largest) * gap
+        return np.where(gap < 0.0, self.penalty * gap, on_opening_side) if self.contact else on_opening_side
+
+    def area(self, gap: ArrayLike) -> np.ndarray:
+        """Integral of the envelope from 0 to ``gap``; for a closed gap the energy of the contact (or of the secant)."""
+        gap = np.asarray(gap, dtype=float)
+        closed = np.minimum(gap, 0.0)
+        rising = np.clip(gap, 0.0, self.g_peak)
+        beyond = np.clip(gap, self.g_peak, self.g_open) - self.g_peak
+        below_zero = self.penalty if self.contact else self.stiffness
+        return (
+            0.5 * below_zero * closed**2
+            + 0.5 * self.stiffness * rising**2
+            + beyond * (self.strength + 0.5 * self.softening * beyond)
+        )
+
+    def dissipated(self, history: ArrayLike) -> np.ndarray:
+        """Energy per area that a point has lost: the area up to ``history`` minus what unloading gives back."""
+        k = np.maximum(history, 0.0)
+        return self.area(k) - 0.5 * self.secant(k) * k * k

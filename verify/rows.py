@@ -1,0 +1,127 @@
+"""Rows and snapshots of the cohesive beam, in the units of the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from verify.arm import FORCE, V
+from verify.law import Bilinear
+from verify.zones import CONTACT, ELASTIC, FREE, OPEN, SOFTENING
+
+if TYPE_CHECKING:
+    from verify.beam import BeamProblem, Model, State
+
+
+@dataclass(frozen=True)
+class Units:
+    """Length h, force EI / h^2, energy EI / h, and what of the problem a row needs."""
+
+    h: float
+    force: float
+    width: float
+    law: Bilinear
+    irreversible: bool
+    reference_load: float  # LEFM, in units of the force
+
+    @staticmethod
+    def of(problem: BeamProblem) -> Units:
+        h, bending = problem.arm_thickness, problem.bending
+        griffith = np.sqrt(problem.width * problem.toughness * bending) / problem.precrack
+        return Units(h, bending / h**2, problem.width, problem.law, problem.irreversible, griffith * h**2 / bending)
+
+    def deflection(self, opening: float) -> float:
+        return opening / (2.0 * self.h)
+
+
+def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None) -> dict[str, float]:
+    """Curve and evidence columns of a state; without the row ``before``, of the unloaded specimen.
+
+    Work: Hermite rule with the exact slopes of the path. Interface energies: exact integrals of piecewise polynomials.
+    J identity of this beam: J w = 2 P |v'(0)| - 2 W(0), with v' the slope of the deflection (shear included, what
+    du_y/dX of a face is) and W the strain energy per length at the loaded section, both arms.
+    """
+    slope = float(-state.tangent.node[0, FORCE] / (2.0 * units.h * state.tangent.node[0, V])) * units.force
+    if before is None:
+        return _unloaded(m, units, slope)
+    field, kind, h = state.field, state.kind, units.h
+    first = field.node[:1]
+    rate = m.arm.rates(first, np.zeros(1), np.zeros(1))[0][0, V]
+    opening, load = 2.0 * h * first[0, V], -first[0, FORCE] * units.force
+    step = opening - before["opening"]
+    energies = _energies(units, m, state)
+    return {
+        "opening": opening,
+        "load": load,
+        "crack_length": h * max([m.precrack, *field.x[1:][kind == OPEN]]),
+        "stored_energy": energies["bulk"] + energies["cohesive"] + energies["contact"],
+        "dissipated_energy": energies["dissipated"],
+        "external_work": before["external_work"] + step / 2.0 * (before["load"] + load)
+        + step**2 / 12.0 * (before["load_slope"] - slope),
+        "newton_iterations": float(state.iterations),
+        "load_slope": slope,
+        "tip_opening": 2.0 * h * float(field.at(np.array([m.precrack]))[0, V]),
+        "face_slope_top": rate,
+        "face_slope_bottom": -rate,
+        "face_energy": 2.0 * float(m.arm.energy(first)[0]) * units.force / units.width,
+        "interface_force": energies["resultant"],
+        "bulk_energy": energies["bulk"],
+        "cohesive_energy": energies["cohesive"],
+        "contact_energy": energies["contact"],
+    }
+
+
+def _unloaded(m: Model, units: Units, slope: float) -> dict[str, float]:
+    names = ("opening", "load", "crack_length", "stored_energy", "dissipated_energy", "external_work",
+             "newton_iterations", "load_slope", "tip_opening", "face_slope_top", "face_slope_bottom", "face_energy",
+             "interface_force", "bulk_energy", "cohesive_energy", "contact_energy")
+    return {**dict.fromkeys(names, 0.0), "crack_length": m.precrack * units.h, "load_slope": slope}
+
+
+def _law(units: Units, kind: np.ndarray, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Traction and area under the envelope, by the zone that was solved (not by the sign of a gap of no size)."""
+    law = units.law
+    below = law.penalty if law.contact else law.stiffness
+    k = np.array([0.0, 0.0, law.softening, law.stiffness, below])[kind]
+    traction = k * gap - np.where(kind == SOFTENING, law.softening * law.g_open, 0.0)
+    return traction, np.where(kind >= ELASTIC, 0.5 * k * gap**2, law.area(gap))
+
+
+def _energies(units: Units, m: Model, state: State) -> dict[str, float]:
+    field, kind = state.field, state.kind[:, None]
+    dx, gap = field.stage_dx, 2.0 * units.h * field.stage[..., V]
+    traction, area = _law(units, np.broadcast_to(kind, gap.shape), gap)
+    w_dx = units.width * units.h * dx
+    back = 0.5 * traction * gap if units.irreversible else area
+    sealed = CONTACT if units.law.contact else -1
+    bonded = kind != FREE
+    lost = np.where(np.isin(kind, (OPEN, SOFTENING)), area - back, 0.0)
+    return {
+        "bulk": 2.0 * units.force * units.h * float(np.sum(m.arm.energy(field.stage) * dx)),
+        "cohesive": float(np.sum(np.where(bonded & (kind != sealed), back, 0.0) * w_dx)),
+        "contact": float(np.sum(np.where(kind == sealed, back, 0.0) * w_dx)),
+        "dissipated": float(np.sum(lost * w_dx)),
+        "resultant": float(np.sum(traction * w_dx)),
+    }
+
+
+def snapshot(units: Units, m: Model, state: State, values: Mapping[str, float]) -> dict[str, object]:
+    """The interface of a state at the Gauss points of its mesh; a beam has no field to show."""
+    bonded = state.kind != FREE
+    kind = np.repeat(state.kind[bonded], state.field.stage.shape[1])
+    gap = 2.0 * units.h * state.field.stage[bonded][..., V].ravel()
+    history = np.where(kind == ELASTIC, 0.0, np.maximum(gap, 0.0))
+    return {
+        "opening": values["opening"],
+        "load": values["load"],
+        "s_q": units.h * state.field.stage_x[bonded].ravel(),
+        "gap_q": gap,
+        "traction_q": _law(units, kind, gap)[0],
+        "damage_q": units.law.damage(history),
+        "X_euvi": np.zeros((0, 1, 1, 2)),
+        "u_euvi": np.zeros((0, 1, 1, 2)),
+        "stress_euv": np.zeros((0, 1, 1)),
+    }

@@ -1,0 +1,136 @@
+"""Where the arm stands: free, fully open, softening, elastic or in contact, and the mesh that has its nodes there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from verify.arm import FORCE, Arm, V
+from verify.collocation import Field
+from verify.law import Bilinear
+
+FREE, OPEN, SOFTENING, ELASTIC, CONTACT = range(5)
+
+#: Beyond the last sign change whose wave still reaches this part of g_max the law is taken as elastic. The wave
+#: acts back on the front by the square of it. One that is followed already is kept down to the second number, lest
+#: it comes and goes between Newton's iterations.
+SMALLEST_WAVE = 1e-6, 1e-8
+
+
+@dataclass(frozen=True)
+class Foundation:
+    """The law in the units of the arm: force c + k v in each of the five zones, and v at damage onset and at opening."""
+
+    k: np.ndarray  # (5,)
+    c: np.ndarray  # (5,)
+    v_peak: float
+    v_open: float
+    contact: bool
+
+    @staticmethod
+    def of(law: Bilinear, width: float, h: float, bending: float) -> Foundation:
+        scale = width * h**3 / bending
+        below = law.penalty if law.contact else law.stiffness
+        k = 2.0 * h * scale * np.array([0.0, 0.0, law.softening, law.stiffness, below])
+        c = scale * np.array([0.0, 0.0, -law.softening * law.g_open, 0.0, 0.0])
+        return Foundation(k, c, law.g_peak / (2.0 * h), law.g_open / (2.0 * h), law.contact)
+
+
+@dataclass(frozen=True)
+class Zones:
+    """``bound`` (n + 1,) ends of the zones along the arm, ``kind`` (n,) what each is. Zones may be empty."""
+
+    bound: np.ndarray
+    kind: np.ndarray
+
+
+def start(precrack: float, length: float) -> Zones:
+    """Nothing damaged, nothing in contact."""
+    return Zones(np.array([0.0, precrack, length]), np.array([FREE, ELASTIC]))
+
+
+def find(arm: Arm, base: Foundation, field: Field, kind_e: np.ndarray, precrack: float, front: float | None) -> Zones:
+    """Zones of a field. ``front`` is where damage begins; None looks for it too (at least the end of the precrack)."""
+    x, y = field.samples()
+    kind = np.append(np.repeat(kind_e, field.stage.shape[1] + 1), kind_e[-1])
+    slope = arm.rates(y, base.k[kind], base.c[kind])[0][:, V]
+    v = y[:, V]
+    if front is None:
+        front = _last_above(x, v, slope, base.v_peak, precrack, x[-1])
+    tip = _last_above(x, v, slope, base.v_open, precrack, front)
+    followed = np.count_nonzero(np.diff(kind_e[kind_e >= ELASTIC]))
+    crossings = _waves(x, v, slope, front, followed, base.v_peak) if base.contact else []
+    beyond = [ELASTIC if i % 2 == 0 else CONTACT for i in range(len(crossings) + 1)]
+    bound = [0.0, precrack, tip, front, *crossings, x[-1]]
+    kinds = [FREE, OPEN, SOFTENING, *beyond]
+    full = np.diff(bound) > 0.0
+    full[0] = True
+    return Zones(np.append(0.0, np.array(bound)[1:][full]), np.array(kinds)[full])
+
+
+def _last_above(x, v, slope, level, low, high) -> float:
+    """Last place in [low, high] where v falls through ``level``; ``low`` if it is never above."""
+    inside = np.flatnonzero((x >= low) & (x <= high) & (v >= level))
+    if len(inside) == 0:
+        return low
+    i = inside[-1]
+    if i + 1 == len(x):
+        return high
+    return min(_root(x[i : i + 2], v[i : i + 2] - level, slope[i : i + 2]), high)
+
+
+def _waves(x, v, slope, front, followed, v_peak) -> list[float]:
+    """Sign changes of v beyond ``front``, as long as the wave behind them is worth it; ``followed`` of them were."""
+    beyond = np.flatnonzero(x > front)
+    if len(beyond) < 2:
+        return []
+    sign = np.where(v[beyond] >= 0.0, 1, -1)
+    changes = beyond[:-1][sign[1:] != sign[:-1]]
+    largest_after = np.maximum.accumulate(np.abs(v)[::-1])[::-1]
+    least = v_peak * np.where(np.arange(len(changes)) < followed, SMALLEST_WAVE[1], SMALLEST_WAVE[0])
+    kept = changes[largest_after[changes + 1] > least]
+    return [_root(x[i : i + 2], v[i : i + 2], slope[i : i + 2]) for i in kept]
+
+
+def _root(x, v, slope) -> float:
+    """Root of the cubic through two points and slopes that bracket it, safeguarded Newton."""
+    h = x[1] - x[0]
+    low, high, t = 0.0, 1.0, v[0] / (v[0] - v[1]) if v[0] != v[1] else 0.0
+    a, b = h * slope[0], h * slope[1]
+    cubic = np.array([2 * (v[0] - v[1]) + a + b, 3 * (v[1] - v[0]) - 2 * a - b, a, v[0]])
+    for _ in range(30):
+        value = np.polyval(cubic, t)
+        low, high = (t, high) if value * v[0] > 0.0 else (low, t)
+        rate = np.polyval(cubic[:3] * [3.0, 2.0, 1.0], t)
+        step = -value / rate if rate != 0.0 else np.inf
+        new = t + step if low <= t + step <= high else 0.5 * (low + high)
+        if abs(new - t) < 1e-15:
+            break
+        t = new
+    return float(x[0] + h * t)
+
+
+def mesh(arm: Arm, base: Foundation, zones: Zones, force: float) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (n + 1,) and the kind (n,) of every element: graded to both ends of each zone, where the layers are."""
+    nodes, kinds = [0.0], []
+    for low, high, kind in zip(zones.bound[:-1], zones.bound[1:], zones.kind, strict=True):
+        inner = low + (high - low) * _graded(2.0 / max(arm.decay(base.k[kind], force), 1e-300), high - low)
+        inner[-1] = high
+        nodes.extend(inner)
+        kinds.extend([kind] * len(inner))
+    return np.array(nodes), np.array(kinds)
+
+
+def _graded(first: float, length: float) -> np.ndarray:
+    """Right ends, on (0, 1], of elements that grow twofold from ``first`` at both ends of a zone of ``length``."""
+    if length <= 4.0 * first:
+        n = max(1, int(np.ceil(length / first)))
+        return np.linspace(0.0, 1.0, n + 1)[1:]
+    half = int(np.ceil(np.log2(length / (2.0 * first) + 1.0)))
+    sizes = 2.0 ** np.arange(half)
+    return np.cumsum(np.concatenate((sizes, sizes[::-1]))) / (2.0 * sizes.sum())
+
+
+def peak_force(field: Field) -> float:
+    return float(np.abs(field.node[:, FORCE]).max())
