@@ -1,4 +1,4 @@
-"""Run a program in the private root as if it were the host: same paths, same folder, signals and exit code pass through."""
+"""Run a program in the private root as if it were the host: same paths, exit code and signals pass."""
 
 from __future__ import annotations
 
@@ -42,15 +42,16 @@ def run_in_root(root: Path, program: Sequence[str], env: Mapping[str, str], fold
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
     restore = ["env", "--default-signal=" + ",".join(number.name[3:] for number in PASSED_ON)]
-    words = ["bwrap", "--die-with-parent", "--info-fd", str(writer), *mounts(root, folder, extra), "--chdir", str(folder)]
-    bwrap = subprocess.Popen([*words, *restore, *program], env=env, pass_fds=[writer], preexec_fn=prepare)
+    words = ["bwrap", "--die-with-parent", "--info-fd", str(writer), *mounts(root, folder, extra)]
+    words += ["--chdir", str(folder), *restore, *program]
+    bwrap = subprocess.Popen(words, env=env, pass_fds=[writer], preexec_fn=prepare)
     os.close(writer)
     with os.fdopen(reader) as file:
         info = file.read()
     inner = json.loads(info)["child-pid"] if info.strip() else bwrap.pid
     while bwrap.poll() is None:
         got = signal.sigwaitinfo(watched)
-        # What the terminal sends (code > 0) reaches the program by itself; only what `kill` sends to the launcher is handed on.
+        # What the terminal sends (code > 0) reaches the program by itself; what `kill` sends is handed on.
         if got.si_signo != signal.SIGCHLD and got.si_code <= 0 and bwrap.poll() is None:
             os.kill(inner, got.si_signo)
     signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -12,18 +12,22 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+ANOTHER_CACHE = "set DEBOND_CACHE to a folder"
 #: What a log says, and the sentence a user can act on.
 CAUSES = (
-    (r"No space left on device|Disk quota exceeded", "the disk is full; free some space or set DEBOND_CACHE to a folder on another disk"),
     (
-        r"resolving|[Cc]ould not (resolve|connect|handshake)|Connection (refused|timed out|failed)|Network is unreachable"
-        r"|NewConnectionError|Failed to establish|Temporary failure|No matching distribution",
+        r"No space left on device|Disk quota exceeded",
+        f"the disk is full; free some space or {ANOTHER_CACHE} on another disk",
+    ),
+    (
+        r"resolving|[Cc]ould not (resolve|connect|handshake)|Connection (refused|timed out|failed)"
+        r"|Network is unreachable|NewConnectionError|Failed to establish|Temporary failure|No matching distribution",
         "the package server cannot be reached; check the network, http_proxy, DEBOND_MIRROR or pip's settings",
     ),
-    (r"NO_PUBKEY|is not signed|Missing key", "the keys of the Debian archive are missing; install debian-archive-keyring"),
+    (r"NO_PUBKEY|is not signed|Missing key", "the Debian archive keys are missing; install debian-archive-keyring"),
     (r"ensurepip|No module named (venv|pip)", "this Python cannot make virtual environments; install python3-venv"),
     (r"newuidmap|subuid|unshare", "this account may not use user namespaces; as root: apt-get install uidmap"),
-    (r"Read-only file system|Permission denied", "the cache folder cannot be written; set DEBOND_CACHE to a folder of your own"),
+    (r"Read-only file system|Permission denied", f"the cache folder cannot be written; {ANOTHER_CACHE} of your own"),
 )
 
 
@@ -53,9 +57,8 @@ def run_logged(command: Sequence[str], log: Path, what: str, env: Mapping[str, s
     """
     lines = []
     with open(log, "a", encoding="utf-8") as file:
-        process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=env, text=True, errors="replace"
-        )
+        streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+        process = subprocess.Popen(command, env=env, text=True, errors="replace", **streams)
         for line in process.stdout:
             file.write(line)
             file.flush()
@@ -64,7 +67,8 @@ def run_logged(command: Sequence[str], log: Path, what: str, env: Mapping[str, s
                 say("  " + line[3:].strip())
     if process.wait() != 0:
         known = cause("".join(lines))
-        raise Trouble(f"{what} failed: {known} (log: {log})" if known else f"{what} failed; the reason is at the end of {log}")
+        reason = f"failed: {known} (log: {log})" if known else f"failed; the reason is at the end of {log}"
+        raise Trouble(f"{what} {reason}")
 
 
 @contextmanager
@@ -78,7 +82,7 @@ def only_one(cache: Path) -> Iterator[None]:
         file = open(cache / "lock", "a")  # noqa: SIM115
     except OSError as error:
         raise Trouble(
-            f"the cache folder {cache} cannot be written ({error.strerror}); set DEBOND_CACHE to a folder of your own"
+            f"the cache folder {cache} cannot be written ({error.strerror}); {ANOTHER_CACHE} of your own"
         ) from None
     with file:
         try:
@@ -102,5 +106,6 @@ def need_space(folder: Path, gigabytes: float) -> None:
     free = shutil.disk_usage(folder).free / 1e9
     if free < gigabytes:
         raise Trouble(
-            f"{folder} has {free:.1f} GB free and {gigabytes:g} GB are needed; free some space or set DEBOND_CACHE to a folder on another disk"
+            f"{folder} has {free:.1f} GB free and {gigabytes:g} GB are needed; "
+            f"free some space or {ANOTHER_CACHE} on another disk"
         )

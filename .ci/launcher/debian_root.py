@@ -11,7 +11,7 @@ from pathlib import Path
 
 from building import Trouble, digest, need_space, only_one, remove_tree, run_logged, say
 
-#: NumPy, SciPy and PETSc come from Debian; a C compiler for the forms comes with DOLFINx; OpenBLAS replaces the slow reference BLAS.
+#: DOLFINx compiles forms with gcc; OpenBLAS takes the place of the slow reference BLAS.
 PACKAGES = (
     "python3-dolfinx-real",
     "python3-scipy",
@@ -45,7 +45,8 @@ def provide(cache: Path) -> Path:
         return root
     failed = root.with_name(root.name + ".failed")
     if failed.exists() and time.time() - failed.stat().st_mtime < RETRY_AFTER:
-        raise Trouble(f"{failed.read_text().strip()} [tried less than an hour ago; to try again now: rm {shlex.quote(str(failed))}]")
+        again = f"tried less than an hour ago; to try again now: rm {shlex.quote(str(failed))}"
+        raise Trouble(f"{failed.read_text().strip()} [{again}]")
     with only_one(cache):
         if not root.is_dir():
             try:
@@ -76,8 +77,9 @@ def build(root: Path) -> None:
 
 
 def recipe(part: Path) -> list[str]:
-    """The mmdebstrap command; an ordinary user unpacks a tar file so that all files are his own and he can remove them."""
-    words = ["mmdebstrap", "--variant=apt", "--include=" + ",".join(PACKAGES), '--aptopt=APT::Install-Recommends "false"']
+    """The mmdebstrap command; an ordinary user unpacks a tar file, so that all files are his own to remove."""
+    words = ["mmdebstrap", "--variant=apt", "--include=" + ",".join(PACKAGES)]
+    words.append('--aptopt=APT::Install-Recommends "false"')
     if suite() in ("sid", "unstable"):
         words.append('--aptopt=Acquire::Check-Valid-Until "false"')  # a mirror's copy may be older than its validity
     mirror = [os.environ["DEBOND_MIRROR"]] if os.environ.get("DEBOND_MIRROR") else []
@@ -85,7 +87,7 @@ def recipe(part: Path) -> list[str]:
         return [*words, suite(), str(part), *mirror]
     part.mkdir()
     make = shlex.join([*words, "--mode=unshare", "--format=tar", suite(), "-", *mirror])
-    unpack = f"tar --extract --no-same-owner --no-same-permissions --exclude='./dev/*' --directory={shlex.quote(str(part))}"
+    unpack = shlex.join(["tar", "--extract", "--no-same-owner", "--exclude=./dev/*", f"--directory={part}"])
     return ["bash", "-c", f"set -o pipefail; {make} | {unpack}"]
 
 
@@ -95,15 +97,16 @@ def get_tools() -> None:
     if not missing:
         return
     if shutil.which("apt-get") is None:
-        raise Trouble(f"{' and '.join(missing)} are needed for a private Debian root, and this is neither Debian nor Ubuntu")
+        raise Trouble(f"a private Debian root needs {' and '.join(missing)}, and this is neither Debian nor Ubuntu")
     packages = ["mmdebstrap", "bubblewrap", "debian-archive-keyring", "ca-certificates"]
     if os.geteuid() != 0:
         raise Trouble(f"{' and '.join(missing)} are missing; as root: apt-get install {' '.join(packages)} uidmap")
     say("installing mmdebstrap and bubblewrap with apt-get")
     env = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
-    quiet = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True, "env": env}
-    subprocess.run(["apt-get", "update"], check=False, **quiet)
-    done = subprocess.run(["apt-get", "install", "-y", "--no-install-recommends", *packages], check=False, **quiet)
+    quiet = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    subprocess.run(["apt-get", "update"], check=False, env=env, **quiet)
+    install = ["apt-get", "install", "-y", "--no-install-recommends", *packages]
+    done = subprocess.run(install, check=False, env=env, **quiet)
     if done.returncode != 0:
         raise Trouble(f"apt-get install {' '.join(packages)} failed: {done.stdout.strip().splitlines()[-1]}")
 
@@ -113,4 +116,6 @@ def can_enter() -> None:
     probe = ["bwrap", "--ro-bind", "/", "/", "--dev-bind", "/dev", "/dev", "--proc", "/proc", "true"]
     done = subprocess.run(probe, check=False, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if done.returncode != 0:
-        raise Trouble(f"bubblewrap is not allowed here ({done.stderr.strip()}); in a container, start it with --privileged")
+        raise Trouble(
+            f"bubblewrap may not run here ({done.stderr.strip()}); in a container, start it with --privileged"
+        )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -11,16 +12,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import debian_root
-from building import Trouble, digest, need_space, only_one, remove_tree, run_logged, say
 from bubblewrap import mounts
+from building import Trouble, digest, need_space, only_one, remove_tree, run_logged, say
 
 LAUNCHER = Path(__file__).resolve().parent
 PROJECT = LAUNCHER.parent.parent
 #: Set inside an environment, so that a launcher started there does not set up another.
 MARK = "DEBOND_INSIDE"
 PATH_IN_ROOT = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
-#: One thread a process, and Open MPI as root, with more ranks than cores and none of them tied to one core.
+#: One thread a process, and Open MPI as root, without TCP, with more ranks than cores and none of them tied to one.
 DEFAULTS = {
+    "OMPI_MCA_btl": "^tcp",
     "OMP_NUM_THREADS": "1",
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
@@ -116,11 +118,11 @@ def private_root(cache: Path) -> Place:
 def plain(cache: Path) -> Place:
     """A virtual environment from PyPI alone."""
     base = sys.executable
-    if sys.version_info < (3, 11):
+    if sys.version_info < (3, 11):  # noqa: UP036
         names = ("python3.14", "python3.13", "python3.12", "python3.11")
         base = next(filter(None, map(shutil.which, names)), None)
         if base is None:
-            raise Trouble(f"Python 3.11 or newer is needed, and this is {sys.version.split()[0]}; install python3.11 and python3.11-venv")
+            raise Trouble(f"Python 3.11 or newer is needed and this is {sys.version.split()[0]}; install a newer one")
     place = Place(cache, cache / f"venv-plain-{digest(*recipe(), base)}")
     if not is_whole(place.venv):
         make_venv(place, base, [])
@@ -128,8 +130,9 @@ def plain(cache: Path) -> Place:
 
 
 def recipe() -> tuple[str, ...]:
-    """What the packages of a virtual environment depend on."""
-    return tuple(path.read_text() for path in (PROJECT / "pyproject.toml", LAUNCHER / "pins.txt"))
+    """What the packages of a virtual environment depend on: the requirements of the project and the pins."""
+    wanted = re.findall(r'"[a-z][\w-]* *[<>=~!]=?[^"]*"', (PROJECT / "pyproject.toml").read_text())
+    return (*wanted, (LAUNCHER / "pins.txt").read_text())
 
 
 def is_whole(venv: Path) -> bool:
@@ -146,7 +149,8 @@ def make_venv(place: Place, base: str, options: list[str]) -> None:
         remove_tree(place.venv)
         log = place.venv.with_name(place.venv.name + ".log")
         log.unlink(missing_ok=True)
-        enter = [] if place.root is None else ["bwrap", "--die-with-parent", *mounts(place.root, PROJECT, (PROJECT, place.cache))]
+        seen = (PROJECT, place.cache)
+        enter = ["bwrap", "--die-with-parent", *mounts(place.root, PROJECT, seen)] if place.root else []
         env = variables(place)
         say(f"installing the Python packages in {place.venv}: once, about half a minute")
         run_logged([*enter, base, "-m", "venv", *options, str(place.venv)], log, "making the virtual environment", env)
@@ -161,7 +165,7 @@ def make_venv(place: Place, base: str, options: list[str]) -> None:
 
 
 def follow_parent(base: str, venv: Path) -> None:
-    """Let ``venv`` see the packages of ``base`` where that is itself a virtual environment, as in the DOLFINx images."""
+    """Let ``venv`` see the packages of ``base`` where that is a virtual environment too, as in the DOLFINx images."""
     code = "import sys, site; print('\\n'.join(site.getsitepackages() if sys.prefix != sys.base_prefix else []))"
     folders = subprocess.run([base, "-c", code], check=True, capture_output=True, text=True).stdout
     for site in venv.glob("lib/python3*/site-packages"):
@@ -176,11 +180,11 @@ def variables(place: Place) -> dict[str, str]:
     env = {"OPENBLAS_NUM_THREADS": threads, "MKL_NUM_THREADS": threads, **env}
     paths = [str(PROJECT), *(env["PYTHONPATH"].split(os.pathsep) if env.get("PYTHONPATH") else [])]
     env["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(paths))
-    programs = [str(place.venv / "bin"), *(PATH_IN_ROOT if place.root else env.get("PATH", os.defpath)).split(os.pathsep)]
-    env["PATH"] = os.pathsep.join(dict.fromkeys(programs))
+    programs = PATH_IN_ROOT if place.root else env.get("PATH", os.defpath)
+    env["PATH"] = os.pathsep.join(dict.fromkeys([str(place.venv / "bin"), *programs.split(os.pathsep)]))
     if place.root:
         env = {name: text for name, text in env.items() if not name.startswith("LC_")} | {"LC_ALL": "C.UTF-8"}
     if not place.sees_host:
         env["PYTHONNOUSERSITE"] = "1"
-    # Compiled forms and font lists are kept with the environment that they belong to.
-    return {**env, MARK: str(place.venv), "DEBOND_CACHE": str(place.cache), "XDG_CACHE_HOME": str(place.cache / "compiled")}
+    env |= {MARK: str(place.venv), "DEBOND_CACHE": str(place.cache)}
+    return {**env, "XDG_CACHE_HOME": str(place.cache / "compiled")}  # where DOLFINx keeps compiled forms
