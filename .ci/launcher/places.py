@@ -123,10 +123,15 @@ def plain(cache: Path) -> Place:
         base = next(filter(None, map(shutil.which, names)), None)
         if base is None:
             raise Trouble(f"Python 3.11 or newer is needed and this is {sys.version.split()[0]}; install a newer one")
-    place = Place(cache, cache / f"venv-plain-{digest(*recipe(), base)}")
+    place = Place(cache, plain_venv(cache, base))
     if not is_whole(place.venv):
         make_venv(place, base, [])
     return place
+
+
+def plain_venv(cache: Path, base: str) -> Path:
+    """Where the virtual environment without DOLFINx is or will be."""
+    return cache / f"venv-plain-{digest(*recipe(), base)}"
 
 
 def recipe() -> tuple[str, ...]:

@@ -1,0 +1,295 @@
+"""The launcher, without building a root: made-up environments and builders take the place of the slow ones."""
+
+import importlib.util
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from importlib.machinery import SourceFileLoader
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+PROJECT = Path(__file__).resolve().parent.parent
+LAUNCHER = PROJECT / ".ci" / "launcher"
+sys.path.insert(0, str(LAUNCHER))
+
+import bubblewrap  # noqa: E402
+import building  # noqa: E402
+import debian_root  # noqa: E402
+import places  # noqa: E402
+
+OWN = ("DEBOND_", "OMP_", "OPENBLAS_", "MKL_", "OMPI_", "PRTE_", "PYTHONPATH")
+
+
+@pytest.fixture(autouse=True)
+def outside(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The tests themselves run in an environment of the launcher; its variables would shadow what is tested."""
+    for name in list(os.environ):
+        if name.startswith(OWN):
+            monkeypatch.delenv(name)
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A cache folder with a finished environment without DOLFINx: this very Python."""
+    folder = tmp_path / "cache"
+    venv = places.plain_venv(folder, sys.executable)
+    (venv / "bin").mkdir(parents=True)
+    (venv / "bin" / "python").symlink_to(sys.executable)
+    (venv / "whole").touch()
+    monkeypatch.setenv("DEBOND_CACHE", str(folder))
+    monkeypatch.setenv("DEBOND_NO_DOLFINX", "1")
+    return folder
+
+
+def start(*arguments: str, cwd: Path = PROJECT) -> subprocess.CompletedProcess:
+    """Run the launcher to its end."""
+    command = [sys.executable, str(PROJECT / "debond"), *arguments]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=60)
+
+
+def variable(name: str) -> str:
+    """What a program in the environment sees as ``name``."""
+    return start("exec", sys.executable, "-c", f"import os; print(os.environ.get({name!r}, ''))").stdout.strip()
+
+
+@pytest.mark.usefixtures("cache")
+def test_exit_code_passes_through() -> None:
+    assert start("exec", "sh", "-c", "exit 7").returncode == 7
+
+
+@pytest.mark.usefixtures("cache")
+def test_arguments_pass_unchanged(tmp_path: Path) -> None:
+    words = ["two words", "--slow", "", "*", "load.opening=[1.0, 0.2]"]
+    done = start("exec", sys.executable, "-c", "import os, sys; print(os.getcwd(), sys.argv[1:])", *words, cwd=tmp_path)
+    assert done.stdout.strip() == f"{tmp_path.resolve()} {words}"
+
+
+@pytest.mark.usefixtures("cache")
+def test_unknown_program_is_named() -> None:
+    done = start("exec", "no-such-program")
+    assert done.returncode == 127
+    assert "no-such-program" in done.stderr and "Traceback" not in done.stderr
+
+
+@pytest.mark.usefixtures("cache")
+def test_project_is_importable_from_anywhere(tmp_path: Path) -> None:
+    (tmp_path / "verify").mkdir()
+    done = start("exec", "python", "-P", "-c", "import iga, verify.result; print(verify.result.__file__)", cwd=tmp_path)
+    assert done.stdout.strip() == str(PROJECT / "verify" / "result.py")
+
+
+def test_environment_of_a_program(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert variable("OMP_NUM_THREADS") == variable("OPENBLAS_NUM_THREADS") == variable("MKL_NUM_THREADS") == "1"
+    assert variable("OMPI_ALLOW_RUN_AS_ROOT") == variable("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM") == "1"
+    assert variable("PATH").startswith(str(places.plain_venv(cache, sys.executable) / "bin"))
+    assert Path(variable("XDG_CACHE_HOME")).is_relative_to(cache)
+    monkeypatch.setenv("OMP_NUM_THREADS", "2")
+    assert variable("OMP_NUM_THREADS") == variable("OPENBLAS_NUM_THREADS") == "2"
+
+
+def test_a_launcher_inside_sets_nothing_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DEBOND_INSIDE", sys.prefix)
+    monkeypatch.setenv("DEBOND_CACHE", str(tmp_path / "cache"))
+    assert start("exec", "true").returncode == 0
+    assert not (tmp_path / "cache").exists()
+
+
+def test_second_start_is_fast(cache: Path) -> None:
+    seconds = []
+    for _ in range(3):
+        before = time.perf_counter()
+        assert start("exec", "true").returncode == 0
+        seconds.append(time.perf_counter() - before)
+    assert min(seconds) < 0.5
+
+
+def test_test_verb() -> None:
+    loader = SourceFileLoader("debond_launcher", str(PROJECT / "debond"))
+    launcher = importlib.util.module_from_spec(importlib.util.spec_from_loader("debond_launcher", loader))
+    loader.exec_module(launcher)
+    pytest_command = ["python", "-P", "-m", "pytest"]
+    assert launcher.command(["test", "-k", "x"], "python") == [*pytest_command, "-k", "x"]
+    assert launcher.command(["test", "--slow", "-q"], "python") == [*pytest_command, "-m", "", "-q"]
+    assert launcher.command(["solve", "--slow"], "python") == ["python", "-P", "-m", "verify.cli", "solve", "--slow"]
+
+
+def test_cache_that_cannot_be_written_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("DEBOND_CACHE", str(tmp_path / "file" / "cache"))
+    monkeypatch.setenv("DEBOND_NO_DOLFINX", "1")
+    done = start("exec", "true")
+    assert done.returncode == 3
+    assert "cannot be written" in done.stderr and "set DEBOND_CACHE" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.fixture
+def builds(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+    """The roots that a made-up builder has built."""
+    made = []
+
+    def build(command: list[str], log: Path, what: str, env: object = None) -> None:
+        part = next(Path(word) for word in command if word.endswith(".part"))
+        assert not part.exists()
+        time.sleep(0.2)
+        part.mkdir()
+        (part / "etc").mkdir()
+        made.append(part)
+
+    monkeypatch.setattr(debian_root, "run_logged", build)
+    monkeypatch.setattr(debian_root, "get_tools", lambda: None)
+    monkeypatch.setattr(debian_root, "can_enter", lambda: None)
+    monkeypatch.setattr(debian_root.os, "geteuid", lambda: 0)
+    monkeypatch.setattr(debian_root.shutil, "which", lambda name: name)
+    return made
+
+
+def test_half_built_root_is_never_used(tmp_path: Path, builds: list[Path]) -> None:
+    root = debian_root.root_folder(tmp_path)
+    part = root.with_name(root.name + ".part")
+    (part / "usr").mkdir(parents=True)
+    assert debian_root.provide(tmp_path) == root
+    assert builds == [part] and not part.exists()
+    assert [path.name for path in root.iterdir()] == ["etc"]
+
+
+def test_two_starts_build_once(tmp_path: Path, builds: list[Path]) -> None:
+    starts = [threading.Thread(target=debian_root.provide, args=(tmp_path,)) for _ in range(3)]
+    for thread in starts:
+        thread.start()
+    for thread in starts:
+        thread.join()
+    assert len(builds) == 1
+
+
+def test_failed_build_is_remembered(tmp_path: Path, builds: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        raise building.Trouble("building failed: the disk is full")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(debian_root, "run_logged", fail)
+        with pytest.raises(building.Trouble, match="the disk is full"):
+            debian_root.provide(tmp_path)
+    with pytest.raises(building.Trouble, match="to try again now: rm"):
+        debian_root.provide(tmp_path)
+    assert builds == []
+    next(tmp_path.glob("*.failed")).unlink()
+    assert debian_root.provide(tmp_path).is_dir()
+
+
+def test_suites_have_roots_of_their_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stable = debian_root.root_folder(tmp_path)
+    assert not any("Check-Valid-Until" in word for word in debian_root.recipe(tmp_path / "stable"))
+    monkeypatch.setenv("DEBOND_SUITE", "sid")
+    assert debian_root.root_folder(tmp_path) != stable
+    assert any("Check-Valid-Until" in word for word in debian_root.recipe(tmp_path / "sid"))
+
+
+def test_half_built_venv_is_built_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    venv = places.plain_venv(tmp_path, sys.executable)
+    (venv / "bin").mkdir(parents=True)
+    (venv / "bin" / "leftover").touch()
+    monkeypatch.setattr(places, "run_logged", lambda *_: (venv / "bin").mkdir(parents=True, exist_ok=True))
+    assert places.plain(tmp_path).venv == venv
+    assert places.is_whole(venv) and not (venv / "bin" / "leftover").exists()
+    assert os.access(venv / "bin" / "debond", os.X_OK)
+
+
+def test_without_tools_it_goes_on_without_dolfinx(
+    cache: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("DEBOND_NO_DOLFINX")
+    monkeypatch.setattr(places, "python_with_dolfinx", lambda: None)
+    monkeypatch.setattr(debian_root.shutil, "which", lambda name: None if name in debian_root.TOOLS else name)
+    monkeypatch.setattr(debian_root.os, "geteuid", lambda: 1000)
+    assert places.find().root is None
+    said = capsys.readouterr().err
+    assert "as root: apt-get install mmdebstrap bubblewrap" in said
+    assert "without DOLFINx" in said
+
+
+def test_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(building.shutil, "disk_usage", lambda _: SimpleNamespace(free=1.5e9))
+    with pytest.raises(building.Trouble, match=r"has 1\.5 GB free and 3 GB are needed"):
+        building.need_space(tmp_path, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("line", "word"),
+    [
+        ("Temporary failure resolving 'deb.debian.org'", "network"),
+        ("E: Could not connect to deb.debian.org:80, connection timed out", "network"),
+        ("NewConnectionError('Failed to establish a new connection')", "network"),
+        ("dpkg: error: failed to write: No space left on device", "disk is full"),
+        ("W: GPG error: NO_PUBKEY 6ED0E7B82643E131", "debian-archive-keyring"),
+        ("The virtual environment was not created because ensurepip is not available", "python3-venv"),
+        ("OSError: [Errno 30] Read-only file system", "DEBOND_CACHE"),
+    ],
+)
+def test_cause_of_a_failure(tmp_path: Path, line: str, word: str) -> None:
+    builder = [sys.executable, "-c", f"print({line!r}); raise SystemExit(1)"]
+    with pytest.raises(building.Trouble, match=word):
+        building.run_logged(builder, tmp_path / "log", "building")
+    assert line in (tmp_path / "log").read_text()
+
+
+def test_host_folders_are_seen_and_system_folders_are_not(tmp_path: Path) -> None:
+    words = bubblewrap.mounts(tmp_path, PROJECT, (PROJECT,))
+    bound = {words[i + 1] for i, word in enumerate(words) if word in ("--bind", "--ro-bind")}
+    own = {f"/{name}" for name in os.listdir("/") if Path("/", name).is_dir() and not Path("/", name).is_symlink()}
+    assert {path for path in own if path[1:] not in bubblewrap.SYSTEM and not path.startswith("/.")} <= bound
+    assert bound.isdisjoint({"/usr", "/etc", "/var", "/bin"})
+    assert all((tmp_path / path[1:]).exists() for path in bound if path in own and path != "/sys")
+
+
+FAKE_BWRAP = """#!{python}
+import os, subprocess, sys
+words = sys.argv[1:]
+chdir = words.index("--chdir")
+child = subprocess.Popen(words[chdir + 2 :], cwd=words[chdir + 1])
+info = int(words[words.index("--info-fd") + 1])
+os.write(info, b'{{"child-pid": %d}}' % child.pid)
+os.close(info)
+code = child.wait()
+sys.exit(code if code >= 0 else 128 - code)
+"""
+
+
+@pytest.fixture
+def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A root that a made-up bubblewrap enters by doing nothing."""
+    program = tmp_path / "programs" / "bwrap"
+    program.parent.mkdir()
+    program.write_text(FAKE_BWRAP.format(python=sys.executable))
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{program.parent}{os.pathsep}{os.environ['PATH']}")
+    folder = tmp_path / "root"
+    folder.mkdir()
+    return folder
+
+
+def test_exit_code_of_the_root_passes_through(root: Path, tmp_path: Path) -> None:
+    def code(script: str) -> int:
+        return bubblewrap.run_in_root(root, ["sh", "-c", script], os.environ, tmp_path, ())
+
+    assert code("exit 7") == 7
+    assert code("kill -TERM $$") == 128 + signal.SIGTERM
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signal_reaches_the_program_in_the_root(root: Path, tmp_path: Path, number: signal.Signals) -> None:
+    caught = "import signal, sys, time; signal.signal({0}, lambda *_: sys.exit(5)); print(flush=True); time.sleep(30)"
+    program = [sys.executable, "-c", caught.format(int(number))]
+    script = (
+        f"import os, sys; sys.path.insert(0, {str(LAUNCHER)!r}); import bubblewrap; from pathlib import Path\n"
+        f"sys.exit(bubblewrap.run_in_root(Path({str(root)!r}), {program!r}, os.environ, Path({str(tmp_path)!r}), ()))"
+    )
+    launcher = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE)
+    launcher.stdout.readline()
+    launcher.send_signal(number)
+    assert launcher.wait(timeout=20) == 5
