@@ -43,7 +43,8 @@ def _sentences(e: ErrorDetails, raw: Mapping[str, Any]) -> list[str]:
     if e["type"] != "rule":
         return [_sentence(e, raw)]
     text, found = e["ctx"]["text"], e["ctx"]["found"]
-    return [f"{_dotted(_place((*e['loc'], *rest))[2], raw)}: must be {text}, got {_shown(_plain(v))}" for rest, v in found]
+    keys = [_dotted(_place((*e["loc"], *rest))[2], raw) for rest, _ in found]
+    return [f"{key}: must be {text}, got {_shown(_plain(v))}" for key, (_, v) in zip(keys, found, strict=True)]
 
 
 def _sentence(e: ErrorDetails, raw: Mapping[str, Any]) -> str:

@@ -9,12 +9,19 @@ from verify.schema import Scene
 
 FINITE_ABOVE_DEGREES = 5.0
 
+#: What a method cannot choose: the DOLFINx model has both arms, the beam one; LEFM has no interface.
+_FIXED: dict[str, dict[str, Any]] = {
+    "dolfinx": {"symmetry": False},
+    "beam": {"symmetry": True},
+    "lefm": {"symmetry": True, "contact": False},
+}
+
 
 def end_rotation(scene: Scene) -> float:
     """Largest rotation of a loaded end face over the programme, in radians, by simple beam theory.
 
     With Delta = 2 P a^3 / (3 E I), P_c = sqrt(w G E I) / a and theta = P a^2 / (2 E I), so theta = 3 Delta / (4 a),
-    where the crack is the larger of the precrack and what holds Delta in equilibrium, a^2 = 3/2 Delta sqrt(E I / (w G)).
+    where the crack is the precrack or, if larger, what holds Delta in equilibrium, a^2 = 3/2 Delta sqrt(E I / (w G)).
     """
     specimen, material = scene.specimen, scene.material
     young = getattr(material, "young", None) or material.E1
@@ -25,8 +32,9 @@ def end_rotation(scene: Scene) -> float:
     return 0.75 * opening / crack
 
 
-def simulated(scene: Scene) -> dict[str, Any]:
-    """The effects as they are simulated: ``auto`` replaced by what it stands for."""
+def simulated(scene: Scene, method: str) -> dict[str, Any]:
+    """The effects as a method simulates them: ``auto`` replaced by what it stands for, the rest as far as it has it."""
     asked = scene.effects.model_dump()
-    finite = degrees(end_rotation(scene)) > FINITE_ABOVE_DEGREES
-    return asked | {"kinematics": "finite" if finite else "linear"} if asked["kinematics"] == "auto" else asked
+    if asked["kinematics"] == "auto":
+        asked["kinematics"] = "finite" if degrees(end_rotation(scene)) > FINITE_ABOVE_DEGREES else "linear"
+    return asked | _FIXED.get(method, {})

@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from verify.complaints import complaints, suggestion
+from verify.refusal import Refusal
 from verify.schema import Dcb, Discretization, Dolfinx, Effects, Interface, Isotropic, Load, Orthotropic, Scene
 
 __all__ = [
@@ -34,7 +35,7 @@ _KEY = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*(\.[A-Za-z_][A-Za-z0-9_-]*)*")
 _BARE_WORD = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 
-class SceneError(ValueError):
+class SceneError(Refusal):
     """A scene that cannot be used.
 
     Attributes

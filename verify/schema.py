@@ -16,7 +16,7 @@ Positive: TypeAlias = Annotated[float, Field(gt=0)]
 
 
 def refuse(text: str, *found: tuple[tuple[str | int, ...], object]) -> PydanticCustomError:
-    """A broken rule between several keys: ``text`` completes "must be ..."; ``found`` has the rests of the key paths."""
+    """A broken rule between keys: ``text`` completes "must be ...", ``found`` has rests of key paths and values."""
     return PydanticCustomError("rule", "{text}", {"text": text, "found": found})
 
 
@@ -162,6 +162,19 @@ class Scene(Section):
     effects: Effects = Effects()
     discretization: Discretization = Discretization()
     dolfinx: Dolfinx = Dolfinx()
+
+    @field_validator("material")
+    @classmethod
+    def _positive_definite_in_plane_strain(cls, material: Material, info: ValidationInfo) -> Material:
+        """With the third direction like the second (E3 = E2, nu13 = nu23 = nu12): 1 - nu12 - 2 nu12^2 E2/E1 > 0."""
+        specimen = info.data.get("specimen")
+        if isinstance(material, Isotropic) or specimen is None or specimen.plane == "stress":
+            return material
+        ratio = material.E2 / material.E1
+        low, high = (max((sign * (1 + 8 * ratio) ** 0.5 - 1) / (4 * ratio), -1) for sign in (-1, 1))
+        if not low < material.nu12 < high:
+            raise refuse(f"> {low:.6g} and < {high:.6g} in plane strain", (("nu12",), material.nu12))
+        return material
 
     @field_validator("load")
     @classmethod

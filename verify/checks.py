@@ -1,0 +1,146 @@
+"""What must hold of every single run: identities of mechanics, judged from the columns that the run wrote.
+
+Every value is a relative deviation, the worst over the steps. A column that a method cannot know leaves its check out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from verify.law import Bilinear
+from verify.result import Result
+from verify.schema import Scene
+from verify.verdict import Check
+
+Steps = Mapping[str, np.ndarray]
+
+J_TOLERANCE = 0.005
+ENERGY_TOLERANCE = 0.005
+BALANCE_TOLERANCE = 1e-8
+DISSIPATION_TOLERANCE = 0.02
+
+
+def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, ...]:
+    """The checks of one run, as far as its columns go.
+
+    Parameters
+    ----------
+    subject : the name of the run in the report; the method's where empty
+    """
+    values: list[tuple[str, Callable[[Scene, Steps], float | None], float, str]] = [
+        ("completed", _missing_part, 1e-9, "The run reached the end of the load programme."),
+        ("j-integral", j_deviation, J_TOLERANCE, "The J-integral of the specimen is the area under the law."),
+        ("energy-ledger", energy_gap, ENERGY_TOLERANCE, "External work is stored or dissipated, nothing is lost."),
+        ("interface-force", interface_gap, BALANCE_TOLERANCE, "The interface tractions carry the load."),
+        ("moment-balance", moment_gap, BALANCE_TOLERANCE, "Load and interface tractions have equal moments."),
+        ("reactions", support_forces, BALANCE_TOLERANCE, "The supports carry nothing."),
+        ("dissipation", dissipation_gap, DISSIPATION_TOLERANCE, "A new length of crack costs G_Ic times the width."),
+    ]
+    found = ((name, value(scene, result.steps), *rest) for name, value, *rest in values)
+    return tuple(
+        Check(name, subject or result.method, worst, tolerance, "exact", meaning)
+        for name, worst, tolerance, meaning in found
+        if worst is not None
+    )
+
+
+def law_of(scene: Scene) -> Bilinear:
+    """The scene's traction law, in the copy that only checks and beam use."""
+    i = scene.interface
+    return Bilinear(i.strength, i.toughness, i.ductility, i.penalty, scene.effects.contact)
+
+
+def j_deviation(scene: Scene, steps: Steps) -> float | None:
+    """Worst |J - integral of p dg| / G_Ic over the steps on the way up.
+
+    J w = load (|s_top| + |s_bottom|) - w sum over the faces of the integral of W dY, with s the mean slope du_y/dX of
+    the loaded face; it equals the area under the law up to the opening at the tip of the precrack (Rice 1968, J. Appl.
+    Mech. 35, with dead tractions on the faces). With damage it holds while the interface loads, not while it unloads.
+    """
+    if not _has(steps, "face_slope_top", "face_slope_bottom", "face_energy", "tip_opening"):
+        return None
+    slopes = np.abs(steps["face_slope_top"]) + np.abs(steps["face_slope_bottom"])
+    J = steps["load"] * slopes / scene.specimen.width - steps["face_energy"]
+    area = law_of(scene).area(steps["tip_opening"])
+    valid = loading(steps) if scene.effects.irreversible else np.ones(J.size, dtype=bool)
+    return _worst((J - area)[valid] / scene.interface.toughness)
+
+
+def loading(steps: Steps) -> np.ndarray:
+    """Steps at which damage grows, and those before any: bool (n_steps,)."""
+    dissipated = steps["dissipated_energy"]
+    rounding = 1e-12 * np.max(dissipated, initial=0.0)
+    return (np.diff(dissipated, prepend=0.0) > rounding) | (np.maximum.accumulate(dissipated) <= rounding)
+
+
+def energy_gap(scene: Scene, steps: Steps) -> float | None:
+    """Worst |external - stored - dissipated| over the largest external work so far in the run."""
+    if not _has(steps, "external_work", "stored_energy", "dissipated_energy"):
+        return None
+    gap = steps["external_work"] - steps["stored_energy"] - steps["dissipated_energy"]
+    return _worst(gap / _scale(np.maximum.accumulate(np.abs(steps["external_work"]))))
+
+
+def interface_gap(scene: Scene, steps: Steps) -> float | None:
+    """Worst difference of load and interface force over the peak load; both in size, whichever arm they act on."""
+    if not _has(steps, "interface_force"):
+        return None
+    return _worst((np.abs(steps["load"]) - np.abs(steps["interface_force"])) / _scale(_peak(steps["load"])))
+
+
+def moment_gap(scene: Scene, steps: Steps) -> float | None:
+    """Worst sum of the moments on the upper arm over the largest moment of the load."""
+    if not _has(steps, "load_moment", "interface_moment"):
+        return None
+    return _worst((steps["load_moment"] + steps["interface_moment"]) / _scale(_peak(steps["interface_moment"])))
+
+
+def support_forces(scene: Scene, steps: Steps) -> float | None:
+    """Worst support reaction over the peak load."""
+    if not _has(steps, "reaction_x", "reaction_y"):
+        return None
+    return _worst(np.hypot(steps["reaction_x"], steps["reaction_y"]) / _scale(_peak(steps["load"])))
+
+
+def dissipation_gap(scene: Scene, steps: Steps) -> float | None:
+    """|dissipated / (G_Ic w new crack) - 1| from the first crack growth of five arm thicknesses on.
+
+    Counted from the step at which a whole process zone is already under way, so that the zone, which travels with the
+    crack, drops out of the difference but for its slow change of length.
+    """
+    crack = np.maximum.accumulate(steps["crack_length"])
+    grown = np.flatnonzero(crack > scene.specimen.precrack)
+    if not scene.effects.irreversible or not grown.size:
+        return None
+    first = grown[0]
+    new_crack = crack[-1] - crack[first]
+    if new_crack < 5 * scene.specimen.arm_thickness:
+        return None
+    dissipated = steps["dissipated_energy"][-1] - steps["dissipated_energy"][first]
+    return float(abs(dissipated / (scene.interface.toughness * scene.specimen.width * new_crack) - 1))
+
+
+def _missing_part(scene: Scene, steps: Steps) -> float:
+    """Distance from the end of the programme over its largest opening."""
+    programme = np.array(scene.load.opening)
+    reached = steps["opening"][-1] if steps["opening"].size else 0.0
+    return float(abs(reached - programme[-1]) / np.max(np.abs(programme)))
+
+
+def _has(steps: Steps, *names: str) -> bool:
+    return all(name in steps for name in names)
+
+
+def _peak(values: np.ndarray) -> np.ndarray:
+    return np.max(np.abs(values), initial=0.0, keepdims=True)
+
+
+def _scale(values: np.ndarray) -> np.ndarray:
+    """A divisor: where nothing has happened yet, only nothing may deviate."""
+    return np.where(values > 0, values, np.finfo(float).tiny)
+
+
+def _worst(deviation: np.ndarray) -> float:
+    return float(np.max(np.abs(deviation), initial=0.0))  # NaN stays NaN, and fails

@@ -1,0 +1,254 @@
+"""The command line. Everything that a user can get wrong is refused here, before any work, with exit code 2."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")  # before NumPy is imported; timings would mean little otherwise
+
+import argparse  # noqa: E402
+import subprocess  # noqa: E402
+from collections.abc import Sequence  # noqa: E402
+from pathlib import Path  # noqa: E402
+
+from verify.refusal import Refusal  # noqa: E402
+
+FAILED, REFUSED, INTERRUPTED = 1, 2, 130
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; its exit code: 0 fine, 1 something failed, 2 bad input, 130 interrupted."""
+    options = parser().parse_args(arguments)
+    try:
+        return options.command(options)
+    except Refusal as error:
+        _say(f"debond: {error}")
+        return REFUSED
+    except KeyboardInterrupt:
+        where = f"; what is in {options.out} is valid" if getattr(options, "out", None) else ""
+        _say(f"debond: interrupted{where}")
+        return INTERRUPTED
+    except BrokenPipeError:  # the reader of our output has left: no more of it, and no complaint at exit
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+
+
+def parser() -> argparse.ArgumentParser:
+    """Every command with its options and one example."""
+    text = "Verify codes for interface debonding."
+    top = argparse.ArgumentParser(prog="debond", description=text, epilog="example: debond verify", allow_abbrev=False)
+    commands = top.add_subparsers(title="commands", required=True, metavar="COMMAND")
+
+    def command(name: str, function, text: str, example: str) -> argparse.ArgumentParser:
+        texts = {"help": text, "description": text, "epilog": f"example: debond {example}"}
+        sub = commands.add_parser(name, **texts, allow_abbrev=False)
+        sub.set_defaults(command=function)
+        return sub
+
+    sub = command("verify", _verify, "Every method on every scene, all checks, one report.", "verify dcb-czm1 --jobs 2")
+    sub.add_argument("scenes", nargs="*", metavar="SCENE", help="packaged names or files; all packaged ones by default")
+    sub.add_argument("--out", type=Path, default=Path("debond-report"), metavar="DIR", help="default: debond-report")
+    sub.add_argument("--full", action="store_true", help="finer meshes as well, with observed order and uncertainty")
+    sub.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help="runs at a time")
+
+    sub = command("solve", _solve, "One scene by one method.", "solve dcb-czm1 --set interface.strength=6")
+    sub.add_argument("scene", metavar="SCENE", help="a packaged name or a file")
+    sub.add_argument("--method", default="nurbs", metavar="M", help="nurbs (default), lagrange, dolfinx, beam or lefm")
+    sub.add_argument("--dofs", type=_positive, metavar="N", help="unknowns to aim at, for nurbs and lagrange")
+    sub.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help="replace a key")
+    sub.add_argument("--out", type=Path, metavar="DIR", help="default: debond-out/SCENE-METHOD")
+    sub.add_argument("--fields", action="store_true", help="keep fields of a few steps in fields.npz")
+
+    sub = command("compare", _compare, "Two load-opening curves.", "compare mine.csv debond-out/dcb-czm1-nurbs")
+    sub.add_argument("a", metavar="A", type=Path, help="CSV file or folder of a run")
+    sub.add_argument("b", metavar="B", type=Path, help="what A is held against")
+    sub.add_argument("--tolerance", type=_fraction, metavar="T", help="fail where the curve error is larger, e.g. 0.01")
+
+    command("scenes", _scenes, "List the packaged scenes.", "scenes")
+    command("doctor", _doctor, "What is installed, what works, how to get the rest.", "doctor")
+    sub = command("test", _test, "Run the tests; arguments go to pytest.", "test -k curve")
+    sub.add_argument("rest", nargs=argparse.REMAINDER, metavar="ARG")
+    return top
+
+
+def _solve(options: argparse.Namespace) -> int:
+    from verify.methods import NotRun, require
+    from verify.run import mpi_rank, mpi_size, run
+    from verify.scene import load_scene
+
+    _known_method(options.method, options.dofs)
+    dofs = [f"discretization.dofs={options.dofs}"] if options.dofs else []
+    scene = load_scene(options.scene, [*dofs, *options.overrides])
+    if mpi_size() > 1 and options.method != "dolfinx":
+        raise Refusal(f"--method: must be dolfinx under mpirun, the others run in one process, got {options.method!r}")
+    options.out = options.out or Path("debond-out") / f"{scene.name}-{options.method}"
+    quiet = mpi_rank() > 0
+    try:
+        require(scene, options.method)
+    except NotRun as error:
+        return _not_run(error)
+    _folder(options.out)
+    result, checks = _watched(run, scene, options, quiet)
+    if not quiet:
+        _print_result(result, checks, options.out)
+    return 0 if result.complete else FAILED
+
+
+def _watched(run, scene, options: argparse.Namespace, quiet: bool):
+    """The run with its progress along the programme."""
+    from verify.progress import Progress
+
+    legs = [abs(b - a) for a, b in zip((0.0, *scene.load.opening), scene.load.opening, strict=False)]
+    with Progress(f"{scene.name} {options.method}", sum(legs), quiet) as progress:
+        travelled = _Travelled()
+        return run(
+            scene,
+            options.method,
+            options.out,
+            options.fields,
+            lambda row: progress.advance(travelled(row), f"opening {row['opening']:.4g} load {row['load']:.4g}"),
+        )
+
+
+class _Travelled:
+    """How far the opening has gone, back and forth added up."""
+
+    def __init__(self) -> None:
+        self._opening, self._way = 0.0, 0.0
+
+    def __call__(self, row) -> float:
+        self._way += abs(row["opening"] - self._opening)
+        self._opening = row["opening"]
+        return self._way
+
+
+def _print_result(result, checks, folder: Path) -> None:
+    from verify.table import check_table
+
+    peak = result.load.argmax() if result.load.size else None
+    if peak is not None:
+        print(f"peak load {result.load[peak]:.6g} at opening {result.opening[peak]:.6g}, {result.load.size - 1} steps")
+    if result.seconds:
+        print("seconds: " + ", ".join(f"{name} {value:.2f}" for name, value in result.seconds.items()))
+    print("\n".join(check_table(checks)))
+    if not result.complete:
+        _say(f"debond: {result.method} {result.status}")
+    print(f"{result.status}: {folder}")
+
+
+def _verify(options: argparse.Namespace) -> int:
+    from verify.run import mpi_size
+    from verify.scene import SceneError, load_scene, packaged_scenes
+    from verify.verification import verify
+
+    if mpi_size() > 1:
+        raise Refusal(f"verify: must be started in 1 process, without mpirun, got {mpi_size()}")
+    scenes, wrong = [], []
+    for source in options.scenes or packaged_scenes():
+        try:
+            scenes.append((source, load_scene(source)))
+        except SceneError as error:
+            wrong.append(str(error))
+    names = [scene.name for _, scene in scenes]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]
+    if wrong:
+        raise Refusal("\n".join(wrong))
+    _folder(options.out)
+    return 0 if verify(scenes, options.out, options.jobs, options.full) else FAILED
+
+
+def _compare(options: argparse.Namespace) -> int:
+    from verify.compare import compare
+
+    found = compare(options.a, options.b)
+    error, peak = found["curve_error"], found["peak_difference"]
+    print(f"curve error {error:.4%}, peak {peak:+.4%}, up to opening {found['end']:.6g}")
+    if options.tolerance is not None and not error <= options.tolerance:
+        _say(f"debond: curve error {error:.4%} is larger than {options.tolerance:.4%}")
+        return FAILED
+    return 0
+
+
+def _scenes(options: argparse.Namespace) -> int:
+    from verify.scene import load_scene, packaged_scenes
+
+    for name in packaged_scenes():
+        scene = load_scene(name)
+        law, specimen, opening = scene.interface, scene.specimen, max(scene.load.opening)
+        print(
+            f"{name:18} {specimen.kind}, {scene.effects.kinematics} kinematics, strength {law.strength:g}, "
+            f"toughness {law.toughness:g}, opened to {opening:g} ({scene.units})"
+        )
+    return 0
+
+
+def _doctor(options: argparse.Namespace) -> int:
+    from verify.doctor import examine
+
+    lines, works = examine()
+    print("\n".join(lines))
+    return 0 if works else FAILED
+
+
+def _test(options: argparse.Namespace) -> int:
+    tests = Path(__file__).resolve().parent.parent / "tests"
+    if not tests.is_dir():
+        raise Refusal("test: the tests are not installed; run it in a copy of the repository")
+    return subprocess.call([sys.executable, "-m", "pytest", *options.rest], cwd=tests.parent)
+
+
+def _known_method(method: str, dofs: int | None) -> None:
+    from verify.complaints import one_of, suggestion
+    from verify.methods import METHODS, NOT_YET, WITH_DOFS
+
+    if method not in METHODS:
+        later = " (it is not available yet)" if method in NOT_YET else f"; {suggestion(method, METHODS)}".rstrip("; ")
+        raise Refusal(f"--method: must be {one_of(METHODS)}, got {method!r}{later}")
+    if dofs and method not in WITH_DOFS:
+        other = "; --set dolfinx.elements=N sets its mesh" if method == "dolfinx" else ""
+        raise Refusal(f"--dofs: is only for --method {one_of(WITH_DOFS)}, got {dofs} for {method}{other}")
+
+
+def _folder(path: Path) -> None:
+    """Make the output folder now, so that hours of work do not end at a closed door."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        (path / ".writable").touch()
+        (path / ".writable").unlink(missing_ok=True)
+    except OSError as error:
+        raise Refusal(f"--out: must be a folder that can be written to, got {str(path)!r}: {error.strerror}") from None
+
+
+def _not_run(error: Exception) -> int:
+    from verify.methods import DOLFINX_WAYS
+
+    _say("\n".join([f"debond: {error}. Ways to get it:", *(f"  {way}" for way in DOLFINX_WAYS)]))
+    return FAILED
+
+
+def _positive(text: str) -> int:
+    value = int(text) if text.isascii() and text.isdigit() and len(text) < 10 else 0
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"must be an integer >= 1, got {text!r}")
+    return value
+
+
+def _fraction(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value < float("inf"):
+        raise argparse.ArgumentTypeError(f"must be a number >= 0, got {text!r}")
+    return value
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

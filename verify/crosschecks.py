@@ -1,0 +1,55 @@
+"""What must hold between runs of one scene: every code against the cohesive beam, and the codes against each other.
+
+LEFM appears in no check: it is a limit that a cohesive zone approaches, not a target.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from verify.curve import curve_error
+from verify.effects import simulated
+from verify.result import Result
+from verify.schema import Scene
+from verify.verdict import Check
+
+#: Lagrange bases of equal size are coarser than NURBS: their tolerance is that of their mesh.
+CROSS_CODE = {"nurbs": 0.005, "lagrange": 0.02}
+#: A linear beam leaves out what a slender arm hardly has; the finite one also the St. Venant-Kirchhoff bulk.
+ANALYTICAL = {"linear": 0.002, "finite": 0.005}
+
+
+def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
+    """Checks of every pair that is there.
+
+    Parameters
+    ----------
+    results : method -> run
+    """
+    end = max(scene.load.opening)
+    usable = {method: result for method, result in results.items() if result.load.size > 1 and end > 0}
+    kinematics = simulated(scene, "beam")["kinematics"]
+    fine = ANALYTICAL[kinematics]
+    analytical = {"nurbs": fine, "dolfinx": fine, "lagrange": CROSS_CODE["lagrange"]}
+    checks = []
+    for method, tolerance in analytical.items():
+        if method in usable and "beam" in usable:
+            error = distance(usable[method], usable["beam"], end)
+            meaning = "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening)."
+            checks.append(Check("beam-curve", f"{method} / beam", error, tolerance, "analytical", meaning))
+    for method, tolerance in CROSS_CODE.items():
+        if method in usable and "dolfinx" in usable:
+            pair, other = f"{method} / dolfinx", usable["dolfinx"]
+            error = distance(usable[method], other, end)
+            meaning = "Two codes that share nothing draw the same curve (relative L2 of the load over the opening)."
+            checks.append(Check("curve", pair, error, tolerance, "cross-code", meaning))
+            peak = float(usable[method].load.max() / other.load.max() - 1)
+            meaning = "Two codes that share nothing find the same peak load (relative difference)."
+            checks.append(Check("peak", pair, peak, tolerance, "cross-code", meaning))
+    return tuple(checks)
+
+
+def distance(a: Result, b: Result, end: float) -> float:
+    """Curve error of ``a`` against ``b``, of a run that stopped early up to where both have come."""
+    end = min(end, float(a.opening.max()), float(b.opening.max()))
+    return curve_error((a.opening, a.load), (b.opening, b.load), end)

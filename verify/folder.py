@@ -1,0 +1,123 @@
+"""The folder of a run: curve.csv and evidence.csv as the run goes, result.json and fields.npz when it is over."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+
+from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Result, Snapshot
+
+FILES = ("curve.csv", "evidence.csv", "result.json", "fields.npz", "error.log")
+
+
+class CurveWriter:
+    """Writes every row of a run at once, so that a killed run leaves a valid, shorter file."""
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in FILES:  # nothing of an earlier run may pass for this one
+            (folder / name).unlink(missing_ok=True)
+        self._curve = _opened(folder / "curve.csv", CURVE_COLUMNS)
+        self._evidence: TextIO | None = None
+        self._evidence_path = folder / "evidence.csv"
+        self._columns: tuple[str, ...] = ()
+
+    def __call__(self, row: Mapping[str, float]) -> None:
+        if self._evidence is None:
+            self._columns = tuple(name for name in (*CURVE_COLUMNS, *EVIDENCE_COLUMNS) if name in row)
+            self._evidence = _opened(self._evidence_path, self._columns)
+            _append(self._curve, CURVE_COLUMNS, dict.fromkeys(CURVE_COLUMNS, 0.0))  # by contract, the crack included
+        else:
+            _append(self._curve, CURVE_COLUMNS, row)
+        _append(self._evidence, self._columns, row)
+
+    def close(self) -> None:
+        for stream in (self._curve, self._evidence):
+            if stream is not None:
+                stream.close()
+
+
+def write_json(path: Path, content: Mapping[str, Any]) -> None:
+    """Write beside and rename, so that the file is whole or absent. NaN and infinity, which JSON lacks, become null."""
+    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    beside.write_text(json.dumps(_finite(content), indent=2) + "\n")
+    beside.replace(path)
+
+
+def write_fields(path: Path, snapshots: tuple[Snapshot, ...]) -> None:
+    """All snapshots in one compressed file, keys ``0.gap_q``, ``0.s_q``, ... ``1.gap_q``, ..."""
+    arrays = {f"{i}.{key}": value for i, snapshot in enumerate(snapshots) for key, value in asdict(snapshot).items()}
+    beside = path.with_name(f".{os.getpid()}.{path.name}")  # savez insists on the ending
+    np.savez_compressed(beside, **arrays)
+    beside.replace(path)
+
+
+def read_columns(path: Path) -> dict[str, np.ndarray]:
+    """Columns of a CSV file with a header; an incomplete last row, as a killed run may leave, is dropped."""
+    with path.open(newline="") as stream:
+        header, *rows = csv.reader(stream)
+    rows = [row for row in rows if len(row) == len(header) and all(row)]
+    return {name: np.array([float(row[i]) for row in rows]) for i, name in enumerate(header)}
+
+
+def read_result(folder: Path) -> Result:
+    """The run in a folder. Without result.json it counts as stopped."""
+    steps = read_columns(folder / "evidence.csv")
+    about = folder / "result.json"
+    if not about.exists():
+        return Result(method="", steps=steps, status="stopped: the run was killed")
+    known = json.loads(about.read_text())
+    return Result(
+        method=known["method"],
+        steps=steps,
+        status=known["status"],
+        dofs=known["dofs"],
+        elements=known["elements"],
+        rejected_steps=known["rejected_steps"],
+        snapshots=read_fields(folder / "fields.npz"),
+        seconds=known["seconds"],
+        peak_memory_mb=known["peak_memory_mb"],
+    )
+
+
+def read_fields(path: Path) -> tuple[Snapshot, ...]:
+    """The snapshots of ``write_fields``; none where there is no file."""
+    if not path.exists():
+        return ()
+    names = [field.name for field in fields(Snapshot)]
+    with np.load(path) as arrays:
+        count = len({key.split(".")[0] for key in arrays})
+        tables = [{name: arrays[f"{i}.{name}"] for name in names} for i in range(count)]
+    scalars = ("opening", "load")
+    return tuple(Snapshot(**{k: float(v) if k in scalars else v for k, v in table.items()}) for table in tables)
+
+
+def _opened(path: Path, columns: tuple[str, ...]) -> TextIO:
+    stream = path.open("w", newline="")
+    stream.write(",".join(columns) + "\n")
+    stream.flush()
+    return stream
+
+
+def _append(stream: TextIO, columns: tuple[str, ...], row: Mapping[str, float]) -> None:
+    """One write call a row, line end included: a reader or a kill never sees half of one."""
+    stream.write(",".join(f"{float(row[name]):.17g}" for name in columns) + "\n")
+    stream.flush()
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _finite(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(v) for v in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,223 @@
+"""From a scene to every solver's own input, and back to one kind of result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
+from importlib.util import find_spec
+from typing import Any
+
+from verify.effects import simulated
+from verify.refusal import Refusal
+from verify.result import Result, Snapshot, steps_from_rows
+from verify.schema import Isotropic, Scene
+from verify.timing import Stopwatch, peak_memory_mb
+
+#: name -> what it is, in the words of the report
+METHODS: Mapping[str, str] = {
+    "nurbs": "isogeometric, NURBS",
+    "lagrange": "isogeometric code, Lagrange basis",
+    "dolfinx": "DOLFINx, Lagrange elements",
+    "beam": "beam on a cohesive interface",
+    "lefm": "linear elastic fracture mechanics",
+}
+NOT_YET = ("tspline",)
+WITH_DOFS = ("nurbs", "lagrange")
+
+DOLFINX_MISSING = "not run: DOLFINx is not installed"
+DOLFINX_WAYS = (
+    "conda: conda install -c conda-forge fenics-dolfinx",
+    "Docker: docker run -ti -v $PWD:/work -w /work dolfinx/dolfinx:stable",
+    "Debian 13 or Ubuntu: apt install python3-dolfinx-real; as any user, ./debond builds itself a private Debian",
+)
+
+#: Fractions of the largest opening at which the fields are kept: before and near the peak, under way, at the end.
+SNAPSHOT_FRACTIONS = (0.1, 0.2, 0.5, 1.0)
+
+OnStep = Callable[[Mapping[str, float]], None]
+
+
+class NotRun(Exception):
+    """A method that this machine cannot run; the message says why."""
+
+
+class Unsuitable(Refusal):
+    """A method that cannot solve this scene on any machine."""
+
+
+def dolfinx_installed() -> bool:
+    """Whether DOLFINx can be imported, without importing it."""
+    return find_spec("dolfinx") is not None
+
+
+def solve(scene: Scene, method: str, on_step: OnStep | None = None) -> Result:
+    """Solve a scene by one method.
+
+    Parameters
+    ----------
+    method : one of ``METHODS``
+    on_step : called with every converged row (``verify.result``), the first one zeros, as the run goes
+
+    Raises
+    ------
+    NotRun, Unsuitable
+        Where the method needs what is not installed, or is not made for the scene.
+
+    Notes
+    -----
+    Timed from the first line of work on: importing a solver is paid once a process, not once a solution.
+    """
+    require(scene, method)
+    solvers = {"nurbs": _iga, "lagrange": _iga, "dolfinx": _dolfinx, "beam": _beam, "lefm": _lefm}
+    return solvers[method](scene, method, on_step or _nothing)
+
+
+def require(scene: Scene, method: str) -> None:
+    """Raise ``Unsuitable`` where the method is not made for the scene, ``NotRun`` where this machine lacks it."""
+    if method == "dolfinx" and not dolfinx_installed():
+        raise NotRun(DOLFINX_MISSING)
+    mesh, programme = scene.discretization, scene.load.opening
+    least = 4 * (mesh.degree + 1) * {"nurbs": mesh.degree + 2, "lagrange": 2 * mesh.degree + 1}.get(method, 0)
+    if mesh.dofs < least:  # two elements along, one through each of two arms
+        text = f"must be >= {least} for {method} of degree {mesh.degree}, got {mesh.dofs}"
+        raise Unsuitable(f"discretization.dofs: {text}")
+    if method in ("beam", "lefm") and any(b <= a for a, b in zip((0.0, *programme), programme, strict=False)):
+        raise Unsuitable(f"load.opening: must only increase for the method {method}, got {list(programme)}")
+
+
+def problem_keys(scene: Scene, method: str) -> dict[str, Any]:
+    """What every solver's own ``Problem`` calls by the same names: geometry, material, law, load, effects."""
+    specimen, interface, effects = scene.specimen, scene.interface, simulated(scene, method)
+    return {
+        "length": specimen.length,
+        "arm_thickness": specimen.arm_thickness,
+        "precrack": specimen.precrack,
+        "width": specimen.width,
+        "plane": specimen.plane,
+        **elastic_constants(scene),
+        "strength": interface.strength,
+        "toughness": interface.toughness,
+        "ductility": interface.ductility,
+        "penalty": interface.penalty,
+        "contact": effects["contact"],
+        "irreversible": effects["irreversible"],
+        "opening": scene.load.opening,
+        "kinematics": effects["kinematics"],
+        "symmetry": effects["symmetry"],
+        "steps": scene.discretization.steps,
+        "snapshot_openings": tuple(f * max(0.0, *scene.load.opening) for f in SNAPSHOT_FRACTIONS),
+    }
+
+
+def elastic_constants(scene: Scene) -> dict[str, float]:
+    """E1, E2, G12 and nu12, of an isotropic material as well."""
+    material = scene.material
+    if isinstance(material, Isotropic):
+        young, poisson = material.young, material.poisson
+        return {"E1": young, "E2": young, "G12": young / (2 * (1 + poisson)), "nu12": poisson}
+    return material.model_dump()
+
+
+def _iga(scene: Scene, method: str, on_step: OnStep) -> Result:
+    from iga import dcb
+
+    watch = Stopwatch()
+    mesh = scene.discretization
+    problem = dcb.Problem(
+        basis=method,
+        degree=mesh.degree,
+        dofs=mesh.dofs,
+        interface_rule=mesh.interface_rule,
+        interface_points=mesh.interface_points,
+        **problem_keys(scene, method),
+    )
+    return _result(method, dcb.solve(problem, on_step=on_step, phase=watch.phase), watch)
+
+
+def _dolfinx(scene: Scene, method: str, on_step: OnStep) -> Result:
+    from fem_reference.solve import solve_dcb
+
+    watch = Stopwatch()
+    from fem_reference.problem import Problem
+
+    problem = Problem(degree=scene.dolfinx.degree, elements=scene.dolfinx.elements, **problem_keys(scene, method))
+    return _result(method, solve_dcb(problem, on_step=on_step, phase=watch.phase), watch)
+
+
+def _beam(scene: Scene, method: str, on_step: OnStep) -> Result:
+    from verify.beam import BeamProblem
+    from verify.beam import solve as solve_beam
+
+    watch = Stopwatch()
+    keys, constants = problem_keys(scene, method), elastic_constants(scene)
+    taken = {field.name for field in fields(BeamProblem)} & set(keys)
+    problem = BeamProblem(
+        young=axial_modulus(scene),
+        shear=constants["G12"],
+        points=scene.discretization.steps,
+        **{name: keys[name] for name in taken},
+    )
+    with watch.phase("solve"):
+        solution = solve_beam(problem, on_step)
+    return Result(
+        method=method,
+        steps=steps_from_rows(solution.rows),
+        status=solution.status,
+        rejected_steps=solution.rejected_steps,
+        snapshots=tuple(Snapshot(**snapshot) for snapshot in solution.snapshots),
+        seconds=watch.seconds(),
+        peak_memory_mb=peak_memory_mb(),
+    )
+
+
+def _lefm(scene: Scene, method: str, on_step: OnStep) -> Result:
+    from verify.lefm import LefmProblem
+    from verify.lefm import solve as solve_lefm
+
+    watch = Stopwatch()
+    keys, constants = problem_keys(scene, method), elastic_constants(scene)
+    taken = {field.name for field in fields(LefmProblem)} & set(keys)
+    problem = LefmProblem(
+        young=axial_modulus(scene),
+        transverse=constants["E2"],
+        shear=constants["G12"],
+        points=scene.discretization.steps,
+        **{name: keys[name] for name in taken},
+    )
+    with watch.phase("solve"):
+        try:
+            solution = solve_lefm(problem, on_step)
+        except ValueError:  # the programme leaves the range of the large-displacement factors
+            solution = solve_lefm(replace(problem, theory="elastica"), on_step)
+    return Result(
+        method=method,
+        steps=steps_from_rows(solution.rows),
+        status=solution.status,
+        seconds=watch.seconds(),
+        peak_memory_mb=peak_memory_mb(),
+    )
+
+
+def axial_modulus(scene: Scene) -> float:
+    """Stiffness against stretching along the arm; in plane strain E1 / (1 - nu13 nu31), E3 = E2 and nu13 = nu12."""
+    c = elastic_constants(scene)
+    return c["E1"] if scene.specimen.plane == "stress" else c["E1"] / (1 - c["nu12"] ** 2 * c["E2"] / c["E1"])
+
+
+def _result(method: str, solution: Any, watch: Stopwatch) -> Result:
+    """``solution``: rows, dofs, elements, rejected_steps, status, snapshots, as both field solvers return them."""
+    return Result(
+        method=method,
+        steps=steps_from_rows(solution.rows),
+        status=solution.status,
+        dofs=solution.dofs,
+        elements=solution.elements,
+        rejected_steps=solution.rejected_steps,
+        snapshots=tuple(Snapshot(**snapshot) for snapshot in solution.snapshots),
+        seconds=watch.seconds(),
+        peak_memory_mb=peak_memory_mb(),
+    )
+
+
+def _nothing(row: Mapping[str, float]) -> None:
+    """The callback of a caller that does not listen."""

@@ -1,0 +1,150 @@
+"""One run into one folder."""
+
+from __future__ import annotations
+
+import os
+import platform
+import traceback
+from collections.abc import Callable, Mapping
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from verify.checks import run_checks
+from verify.effects import simulated
+from verify.folder import CurveWriter, write_fields, write_json
+from verify.methods import solve
+from verify.result import CURVE_COLUMNS, Result, steps_from_rows
+from verify.scene import Scene
+from verify.timing import PHASES, peak_memory_mb
+from verify.verdict import Check
+
+Solver = Callable[[Scene, str, Callable[[Mapping[str, float]], None] | None], Result]
+Row = Mapping[str, float]
+
+
+def run(
+    scene: Scene,
+    method: str,
+    folder: Path,
+    keep_fields: bool = False,
+    on_step: Callable[[Row], None] | None = None,
+    solver: Solver = solve,
+) -> tuple[Result, tuple[Check, ...]]:
+    """Solve a scene by one method and write its folder.
+
+    Whatever ends the run, the files are valid: rows are written as they come, and ``result.json`` says in ``status``
+    why a run stopped. An interrupt by the user is recorded and passed on.
+
+    Parameters
+    ----------
+    folder : made where absent; an earlier run in it is replaced
+    on_step : called after every converged step, for progress
+    solver : what to run; ``verify.methods.solve``
+    """
+    if mpi_rank() > 0:  # the same numbers are on every rank: one of them writes
+        result = solver(scene, method, None)
+        return result, ()
+    writer = CurveWriter(folder)
+    rows: list[Row] = []
+
+    def record(row: Row) -> None:
+        rows.append(dict(row))
+        writer(row)
+        if on_step is not None:
+            on_step(row)
+
+    try:
+        result = solver(scene, method, record)
+    except KeyboardInterrupt:
+        _finish(folder, scene, _stopped(method, rows, "interrupted"), keep_fields)
+        raise
+    except Exception as error:
+        (folder / "error.log").write_text(traceback.format_exc())
+        why = f"{type(error).__name__}: {error} (an error in the program: please report it with error.log)"
+        result = _stopped(method, rows, why)
+    finally:
+        writer.close()
+    return result, _finish(folder, scene, result, keep_fields)
+
+
+def mpi_rank() -> int:
+    """Rank of this process by what mpirun puts in the environment: mpi4py is not ours to import."""
+    return _number("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", default=0)
+
+
+def mpi_size() -> int:
+    """Number of processes of this run."""
+    return _number("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", default=1)
+
+
+def versions() -> dict[str, str]:
+    """Python and those of the packages that are installed."""
+    found = {"python": platform.python_version()}
+    for name in ("debond", "numpy", "scipy", "pydantic", "fenics-dolfinx", "petsc4py", "mpi4py"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def machine() -> dict[str, Any]:
+    """What the timings were taken on."""
+    return {"system": platform.platform(), "processor": _processor(), "cores": os.cpu_count()}
+
+
+def _processor() -> str:
+    cpuinfo = Path("/proc/cpuinfo")
+    lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
+    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return models[0] if models else platform.processor() or platform.machine()
+
+
+def _finish(folder: Path, scene: Scene, result: Result, keep_fields: bool) -> tuple[Check, ...]:
+    checks = run_checks(scene, result)
+    if keep_fields and result.snapshots:
+        write_fields(folder / "fields.npz", result.snapshots)
+    write_json(folder / "result.json", summary(scene, result, checks))
+    return checks
+
+
+def summary(scene: Scene, result: Result, checks: tuple[Check, ...]) -> dict[str, Any]:
+    """The content of ``result.json``."""
+    opening, load = result.opening, result.load
+    peak = int(np.argmax(load)) if load.size else 0
+    return {
+        "scene": scene.model_dump(),
+        "method": result.method,
+        "dofs": result.dofs,
+        "elements": result.elements,
+        "steps": max(int(load.size) - 1, 0),
+        "newton_iterations": int(np.sum(result.steps["newton_iterations"])),
+        "rejected_steps": result.rejected_steps,
+        "peak_load": float(load[peak]) if load.size else 0.0,
+        "peak_opening": float(opening[peak]) if load.size else 0.0,
+        "seconds": dict(result.seconds or dict.fromkeys((*PHASES, "other", "total"), 0.0)),
+        "peak_memory_mb": result.peak_memory_mb,
+        "effects": simulated(scene, result.method),
+        "checks": {c.name: _verdict(c) for c in checks},
+        "versions": versions(),
+        "machine": machine(),
+        "threads": _number("OMP_NUM_THREADS", default=os.cpu_count() or 1),
+        "status": result.status,
+    }
+
+
+def _verdict(check: Check) -> dict[str, Any]:
+    return {"value": check.value, "tolerance": check.tolerance, "kind": check.kind, "passed": check.passed}
+
+
+def _stopped(method: str, rows: list[Row], why: str) -> Result:
+    steps = steps_from_rows(rows) if rows else {name: np.zeros(0) for name in CURVE_COLUMNS}
+    return Result(method=method, steps=steps, status=f"stopped: {why}", peak_memory_mb=peak_memory_mb())
+
+
+def _number(*names: str, default: int) -> int:
+    values = [os.environ[name] for name in names if os.environ.get(name, "").isdigit()]
+    return int(values[0]) if values else default

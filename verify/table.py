@@ -1,0 +1,44 @@
+"""Checks as lines of text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from verify.verdict import Check, SceneReport
+
+
+def check_table(checks: Iterable[Check], scene: str = "") -> list[str]:
+    """One line a check: verdict, kind, name, subject, value against tolerance."""
+    return [
+        f"{'ok  ' if c.passed else 'FAIL'} {scene:{18 if scene else 0}} {c.kind:11} {c.name:16} {c.subject:20} "
+        f"{c.value:9.2e} (<= {c.tolerance:.1e})".replace("   (", " (")
+        for c in checks
+    ]
+
+
+def overview(reports: Iterable[SceneReport]) -> list[str]:
+    """A table for every scene: one line a check, one column a run; ! marks what fails."""
+    lines: list[str] = []
+    for report in reports:
+        runs = list(dict.fromkeys(_run(check) for check in report.checks))
+        names = dict.fromkeys((check.name, check.kind) for check in report.checks)
+        lines.append(f"{report.scene.name:29}" + "".join(f"{run:>12}" for run in runs))
+        for name, kind in names:
+            cells = {_run(check): _cell(check) for check in report.checks if check.name == name}
+            lines.append(f"  {name:16} {kind:10}" + "".join(f"{cells.get(run, ''):>12}" for run in runs))
+        lines += [f"  {run.method}: {run.left_out}" for run in report.runs if run.result is None] + [""]
+    return lines
+
+
+def failures(checks: Sequence[tuple[str, Check]]) -> list[str]:
+    """What fails, in full."""
+    return [line for scene, check in checks if not check.passed for line in check_table([check], scene)]
+
+
+def _run(check: Check) -> str:
+    """The run that a check judges; of a pair the first."""
+    return check.subject.split(" / ")[0]
+
+
+def _cell(check: Check) -> str:
+    return f"{abs(check.value):.1e}{' ' if check.passed else '!'}"
