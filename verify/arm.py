@@ -27,7 +27,7 @@ class Arm:
     finite: bool
 
     def rates(self, y: np.ndarray, k: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Rates (..., 4) and their derivative (..., 4, 4) at the states ``y`` (..., 4) on a foundation of force c + k v.
+        """Rates (..., 4) and their derivative (..., 4, 4) at states ``y`` (..., 4) on a foundation of force c + k v.
 
         Linear: Timoshenko, v' = phi + V / (kappa G A). Finite: geometrically exact, r' = (1 + eps) t + gamma n
         (Reissner 1972, eqs. 1-9), with N = V sin(phi) = EA eps and Q = V cos(phi) = kappa G A gamma.

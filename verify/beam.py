@@ -264,7 +264,7 @@ def _follow(m: Model, elastic: State, pace: Pace):
 
 
 def _land_on_tip(m: Model, old: State, new: State, step: float) -> State:
-    """The state in which the end of the precrack just opens fully, where the step passes over it: a kink of the path."""
+    """The state in which the end of the precrack just opens fully, a kink of the path, where a step passes over it."""
     before, after = _tip(m, old), _tip(m, new)
     if not before < m.base.v_open * (1.0 - 1e-9) < after:
         return new

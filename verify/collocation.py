@@ -113,8 +113,8 @@ def change(linear: Linearised, left: tuple[int, float], right: tuple[tuple[int, 
            control: tuple[int, int, float], homogeneous: bool = False) -> Field:
     """Newton change of a field.
 
-    ``left`` = (state, value) at the first node, ``right`` = two of them at the last, ``control`` = (node, state, value);
-    values are those of the change. ``homogeneous`` drops the defects: the tangent of the path.
+    ``left`` = (state, value) at the first node, ``right`` = two of them at the last, ``control`` = (node, state,
+    value); values are those of the change. ``homogeneous`` drops the defects: the tangent of the path.
     """
     n = len(linear.transfer)
     defect = np.zeros_like(linear.defect) if homogeneous else linear.defect

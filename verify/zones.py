@@ -20,7 +20,7 @@ SMALLEST_WAVE = 1e-6, 1e-8
 
 @dataclass(frozen=True)
 class Foundation:
-    """The law in the units of the arm: force c + k v in each of the five zones, and v at damage onset and at opening."""
+    """The law in the units of the arm: force c + k v in each of the five zones, v at damage onset and when open."""
 
     k: np.ndarray  # (5,)
     c: np.ndarray  # (5,)

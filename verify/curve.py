@@ -1,0 +1,130 @@
+"""Load-opening curves: envelope, distance to a reference, oscillation, peak, and resampling.
+
+A curve is a pair (opening (n,), load (n,)) in the order in which the path went.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+Curve = tuple[ArrayLike, ArrayLike]
+
+#: The propagation branch begins at this multiple of the opening at the peak.
+PROPAGATION = 1.3
+
+
+def envelope(opening: ArrayLike, load: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """What a test under displacement control would show: points whose opening exceeds all before.
+
+    At a snap-back, and where a programme unloads, the load jumps vertically to where the path comes back through the
+    largest opening so far.
+
+    Returns
+    -------
+    opening, load : (m,) openings that do not decrease, two equal ones where the load jumps
+    """
+    d, P = np.asarray(opening, dtype=float), np.asarray(load, dtype=float)
+    top = np.maximum.accumulate(d)[:-1]
+    new = np.flatnonzero(d[1:] > top) + 1
+    start, before = d[new - 1], top[new - 1]
+    back = start < before
+    share = np.where(back, (before - start) / np.where(back, d[new] - start, 1.0), 0.0)
+    landing = P[new - 1] + share * (P[new] - P[new - 1])
+    keep = np.stack((back, np.ones_like(back)), axis=1).ravel()
+    x = np.stack((before, d[new]), axis=1).ravel()[keep]
+    y = np.stack((landing, P[new]), axis=1).ravel()[keep]
+    return np.append(d[:1], x), np.append(P[:1], y)
+
+
+def load_at(curve: Curve, opening: ArrayLike) -> np.ndarray:
+    """Load of the envelope at openings; NaN outside it. At a jump the load before it."""
+    d, P = envelope(*curve)
+    at = np.asarray(opening, dtype=float)
+    if len(d) < 2:
+        return np.full(at.shape, np.nan)
+    i = np.clip(np.searchsorted(d, at, side="left"), 1, len(d) - 1)
+    width = d[i] - d[i - 1]
+    load = P[i - 1] + (P[i] - P[i - 1]) * (at - d[i - 1]) / np.where(width > 0.0, width, 1.0)
+    return np.where((at >= d[0]) & (at <= d[-1]), load, np.nan)
+
+
+def curve_error(curve: Curve, reference: Curve, end: float | None = None, n: int = 400) -> float:
+    """Relative L2 distance of two envelopes over ``n`` equal openings in (0, end].
+
+    ``end`` is at most the last opening of the reference. NaN where ``curve`` does not reach it.
+    """
+    last = float(envelope(*reference)[0][-1])
+    end = last if end is None else min(end, last)
+    grid = end * np.arange(1, n + 1) / n
+    wanted = load_at(reference, grid)
+    return float(np.sqrt(np.sum((load_at(curve, grid) - wanted) ** 2) / np.sum(wanted**2)))
+
+
+def peak(curve: Curve, slope: ArrayLike | None = None) -> tuple[float, float]:
+    """Opening and load at the largest load of the path; with the exact ``slope`` the peak of its Hermite cubics."""
+    d, P = (np.asarray(values, dtype=float) for values in curve)
+    i = int(np.argmax(P))
+    best = float(d[i]), float(P[i])
+    if slope is None:
+        return best
+    s = np.asarray(slope, dtype=float)
+    for a, b in ((i - 1, i), (i, i + 1)):
+        if a >= 0 and b < len(d) and d[b] > d[a] and s[a] > 0.0 > s[b]:
+            at = _stationary(d[[a, b]], P[[a, b]], s[[a, b]])
+            top = float(hermite(d, P, s, np.array([at]))[0])
+            best = (at, top) if top > best[1] else best
+    return best
+
+
+def _stationary(d: np.ndarray, P: np.ndarray, s: np.ndarray) -> float:
+    """Where the Hermite cubic of one step, rising at its start and falling at its end, has its maximum."""
+    h = d[1] - d[0]
+    secant = (P[1] - P[0]) / h
+    a, b, c = 3.0 * (s[0] + s[1] - 2.0 * secant), 2.0 * (3.0 * secant - 2.0 * s[0] - s[1]), s[0]
+    t = 2.0 * c / (-b + np.sqrt(b * b - 4.0 * a * c))  # the root at which the slope falls, safe for a -> 0
+    return float(d[0] + h * t)
+
+
+def hermite(opening: ArrayLike, load: ArrayLike, slope: ArrayLike, at: ArrayLike) -> np.ndarray:
+    """Load at openings ``at`` of the cubic through values and exact slopes, along the envelope; NaN outside it.
+
+    Steps that come back through the largest opening so far (snap-back, unloading) are entered where they do.
+    """
+    d, P, s = (np.asarray(values, dtype=float) for values in (opening, load, slope))
+    x = np.asarray(at, dtype=float)
+    top = np.maximum.accumulate(d)
+    inside = (x >= d[0]) & (x <= top[-1])
+    i = np.clip(np.searchsorted(top, x, side="left"), 1, len(d) - 1)
+    h = np.where(d[i] > d[i - 1], d[i] - d[i - 1], 1.0)
+    t = (x - d[i - 1]) / h
+    value = (
+        (1.0 + 2.0 * t) * (1.0 - t) ** 2 * P[i - 1]
+        + t * (1.0 - t) ** 2 * h * s[i - 1]
+        + t**2 * (3.0 - 2.0 * t) * P[i]
+        + t**2 * (t - 1.0) * h * s[i]
+    )
+    return np.where(inside, value, np.nan)
+
+
+def oscillation(curve: Curve, reference: Curve, end: float | None = None, n: int = 400) -> dict[str, float]:
+    """How much a curve wiggles on the propagation branch, opening > 1.3 x the reference's opening at its peak.
+
+    Returns
+    -------
+    rms : root mean square of load / reference - 1 after its mean is removed
+    excess_variation : total variation of the load over that of a monotone curve between the same ends, minus 1
+    """
+    begin = PROPAGATION * peak(envelope(*reference))[0]
+    last = min(float(np.max(curve[0])), float(np.max(reference[0])))
+    end = last if end is None else min(end, last)
+    if not end > begin:
+        return {"rms": np.nan, "excess_variation": np.nan}
+    grid = begin + (end - begin) * np.arange(1, n + 1) / n
+    load = load_at(curve, grid)
+    ratio = load / load_at(reference, grid) - 1.0
+    variation, net = np.sum(np.abs(np.diff(load))), abs(load[-1] - load[0])
+    return {
+        "rms": float(np.sqrt(np.mean((ratio - ratio.mean()) ** 2))),
+        "excess_variation": float(variation / net - 1.0) if net > 0.0 else np.nan,
+    }
