@@ -1,0 +1,98 @@
+"""Banded direct solver: slender specimens, numbered along their length, have narrow bands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg.lapack import dgbtrf, dgbtrs
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+
+@dataclass(frozen=True)
+class Band:
+    """Numbering of the free unknowns and their half bandwidth.
+
+    ``place_d`` (n_dof,) is the equation of each degree of freedom, -1 where it is fixed; ``n`` equations, half bandwidth ``k``.
+    """
+
+    place_d: np.ndarray
+    n: int
+    k: int
+
+    @property
+    def size(self) -> int:
+        """Entries of a band array, one more for all that falls on fixed unknowns."""
+        return (3 * self.k + 1) * self.n + 1
+
+    def positions(self, row: np.ndarray, column: np.ndarray) -> np.ndarray:
+        """Index of each entry (row, column) of degrees of freedom in a band array of this numbering (LAPACK, Fortran order)."""
+        i, j = self.place_d[row], self.place_d[column]
+        return np.where((i < 0) | (j < 0), self.size - 1, 2 * self.k + i + 3 * self.k * j)
+
+    def reach(self, row: np.ndarray, column: np.ndarray) -> int:
+        """Half bandwidth that entries need."""
+        i, j = self.place_d[row], self.place_d[column]
+        return int(np.max(np.abs(i - j)[(i >= 0) & (j >= 0)], initial=0))
+
+    def gather(self, v_d: np.ndarray) -> np.ndarray:
+        """Equations (n, ...) from degrees of freedom (n_dof, ...)."""
+        out = np.empty((self.n, *v_d.shape[1:]))
+        free = self.place_d >= 0
+        out[self.place_d[free]] = v_d[free]
+        return out
+
+    def spread(self, v: np.ndarray) -> np.ndarray:
+        """Degrees of freedom from equations, zero where fixed."""
+        return np.where((self.place_d >= 0).reshape(-1, *[1] * (v.ndim - 1)), v[self.place_d], 0.0)
+
+
+@dataclass(frozen=True)
+class BandLU:
+    """LU factors with partial pivoting."""
+
+    band: Band
+    lu: np.ndarray
+    pivots: np.ndarray
+
+    def solve(self, b_d: np.ndarray) -> np.ndarray:
+        """Solution (n_dof, n_rhs) for right-hand sides (n_dof, n_rhs), zero where fixed."""
+        b = np.asfortranarray(self.band.gather(b_d))
+        x, info = dgbtrs(self.lu, self.band.k, self.band.k, b, self.pivots, overwrite_b=True)
+        if info != 0:
+            raise ValueError(f"dgbtrs refused its argument {-info}")
+        return self.band.spread(x)
+
+
+def number(row: np.ndarray, column: np.ndarray, x_d: np.ndarray, free_d: np.ndarray) -> Band:
+    """Numbering with the narrower band of two: along the coordinate ``x_d``, or reverse Cuthill-McKee.
+
+    Parameters
+    ----------
+    row, column : entries of the matrix pattern, as degrees of freedom.
+    x_d : (n_dof,) coordinate along the specimen.
+    free_d : (n_dof,) True where the degree of freedom is an unknown.
+    """
+    free = np.flatnonzero(free_d)
+    n = free.size
+    compact = np.full(free_d.size, -1)
+    compact[free] = np.arange(n)
+    i, j = compact[row], compact[column]
+    inside = (i >= 0) & (j >= 0)
+    graph = coo_array((np.ones(inside.sum(), dtype=np.int8), (i[inside], j[inside])), shape=(n, n)).tocsr()
+    orders = (np.argsort(x_d[free], kind="stable"), reverse_cuthill_mckee(graph, symmetric_mode=True))
+    bands = []
+    for order in orders:
+        place = np.full(free_d.size, -1)
+        place[free[order]] = np.arange(n)
+        band = Band(place, n, 0)
+        bands.append(Band(place, n, band.reach(row, column)))
+    return min(bands, key=lambda band: band.k)
+
+
+def factor(band: Band, values: np.ndarray) -> BandLU | None:
+    """LU of a band array (``size``,); None where a pivot is exactly zero."""
+    ab = values[:-1].reshape(band.n, 3 * band.k + 1).T
+    lu, pivots, info = dgbtrf(ab, band.k, band.k, overwrite_ab=True)
+    return BandLU(band, lu, pivots) if info == 0 else None

@@ -1,0 +1,64 @@
+"""Bernstein polynomials on [0, 1]: the one basis that every element ends in."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def bernstein(degree: int, xi: np.ndarray) -> np.ndarray:
+    """Bernstein polynomials B_b of one degree.
+
+    Raised one degree at a time, ``B_b^p = (1 - xi) B_b^{p-1} + xi B_{b-1}^{p-1}`` (Farin 2002, eq. 5.2).
+
+    Parameters
+    ----------
+    degree : polynomial degree p >= 0.
+    xi : (...,) points; outside [0, 1] the polynomials are continued.
+
+    Returns
+    -------
+    (..., p + 1) values.
+    """
+    xi = np.asarray(xi)[..., None]
+    B = np.ones_like(xi * 1.0)
+    for _ in range(degree):
+        zero = np.zeros_like(B[..., :1])
+        B = (1.0 - xi) * np.concatenate([B, zero], -1) + xi * np.concatenate([zero, B], -1)
+    return B
+
+
+def bernstein_derivative(degree: int, xi: np.ndarray, order: int = 1) -> np.ndarray:
+    """Derivatives of the Bernstein polynomials, ``dB_b^p = p (B_{b-1}^{p-1} - B_b^{p-1})`` (Farin 2002, eq. 5.26).
+
+    Parameters
+    ----------
+    degree : polynomial degree p >= 0.
+    xi : (...,) points.
+    order : how often to differentiate, >= 0.
+
+    Returns
+    -------
+    (..., p + 1) derivatives with respect to xi.
+    """
+    if order == 0:
+        return bernstein(degree, xi)
+    if degree == 0:
+        return np.zeros(np.shape(xi) + (1,))
+    lower = bernstein_derivative(degree - 1, xi, order - 1)
+    zero = np.zeros_like(lower[..., :1])
+    return degree * (np.concatenate([zero, lower], -1) - np.concatenate([lower, zero], -1))
+
+
+def tensor(B_s: np.ndarray, B_t: np.ndarray) -> np.ndarray:
+    """Products of two sets of 1-D values at the same points, index ``j (p + 1) + i`` with i along s.
+
+    Parameters
+    ----------
+    B_s, B_t : (..., p + 1) and (..., q + 1).
+
+    Returns
+    -------
+    (..., (p + 1)(q + 1)).
+    """
+    product = B_t[..., :, None] * B_s[..., None, :]
+    return product.reshape(product.shape[:-2] + (-1,))

@@ -1,0 +1,127 @@
+"""B-splines: knot vectors, Cox-de Boor, knot insertion, and their Bezier extraction in one direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class KnotVector:
+    """An open knot vector of one degree.
+
+    ``knots`` (n + p + 1,) is non-decreasing with end multiplicity p + 1 and inner multiplicity at most p.
+    """
+
+    degree: int
+    knots: np.ndarray
+
+    def __post_init__(self) -> None:
+        knots = np.asarray(self.knots, dtype=float)
+        p = self.degree
+        if p < 1 or knots.size < 2 * (p + 1) or np.any(np.diff(knots) < 0) or not np.all(np.isfinite(knots)):
+            raise ValueError(f"a knot vector of degree {p} needs at least {2 * (p + 1)} finite, non-decreasing knots")
+        multiplicity = np.unique(knots, return_counts=True)[1]
+        if multiplicity.size < 2 or multiplicity[0] != p + 1 or multiplicity[-1] != p + 1:
+            raise ValueError(f"the end knots must have multiplicity {p + 1}, got {multiplicity[0]} and {multiplicity[-1]}")
+        if np.any(multiplicity[1:-1] > p):
+            raise ValueError(f"inner knots may have multiplicity {p} at most, got {multiplicity[1:-1].max()}")
+        object.__setattr__(self, "knots", knots)
+
+    @property
+    def functions(self) -> int:
+        return self.knots.size - self.degree - 1
+
+    @property
+    def breaks(self) -> np.ndarray:
+        """(n_e + 1,) distinct knots: the element boundaries."""
+        return np.unique(self.knots)
+
+    @property
+    def spans(self) -> np.ndarray:
+        """(n_e,) index of the knot that opens each non-empty span."""
+        return np.flatnonzero(np.diff(self.knots) > 0)
+
+    @property
+    def greville(self) -> np.ndarray:
+        """(n,) Greville abscissae, the control values of the identity map."""
+        return np.lib.stride_tricks.sliding_window_view(self.knots[1:-1], self.degree).mean(-1)
+
+
+def open_knots(breaks: np.ndarray, degree: int) -> KnotVector:
+    """Open knot vector with simple inner knots at ``breaks`` (n_e + 1,): C^{p-1} inside."""
+    breaks = np.asarray(breaks, dtype=float)
+    return KnotVector(degree, np.concatenate([np.repeat(breaks[0], degree), breaks, np.repeat(breaks[-1], degree)]))
+
+
+def cox_de_boor(kv: KnotVector, x: np.ndarray) -> np.ndarray:
+    """All B-spline functions at some points, by the recursion of Cox and de Boor (Piegl and Tiller 1997, eq. 2.5).
+
+    Parameters
+    ----------
+    kv : knot vector with n functions.
+    x : (n_x,) points inside the knot range; the last knot belongs to the last span.
+
+    Returns
+    -------
+    (n_x, n) values.
+    """
+    t, p = kv.knots, kv.degree
+    x = np.asarray(x, dtype=float)[:, None]
+    last = kv.spans[-1]
+    N = ((t[:-1] <= x) & (x < t[1:])).astype(float)
+    N[x[:, 0] == t[-1], last] = 1.0
+    for r in range(1, p + 1):
+        left, right = t[r:-1] - t[: -r - 1], t[r + 1 :] - t[1:-r]
+        rise = np.divide(x - t[: -r - 1], left, out=np.zeros(x.shape[:1] + left.shape), where=left > 0)
+        fall = np.divide(t[r + 1 :] - x, right, out=np.zeros(x.shape[:1] + right.shape), where=right > 0)
+        N = rise * N[:, :-1] + fall * N[:, 1:]
+    return N
+
+
+def insert_knot(kv: KnotVector, x: float) -> tuple[KnotVector, np.ndarray]:
+    """Insert one knot (Boehm 1980; Piegl and Tiller 1997, eq. 5.15).
+
+    Returns
+    -------
+    kv : the finer knot vector, n + 1 functions.
+    T : (n + 1, n), new control points = T @ old control points.
+    """
+    t, p, n = kv.knots, kv.degree, kv.functions
+    if not t[0] < x < t[-1]:
+        raise ValueError(f"a knot can be inserted inside ({t[0]}, {t[-1]}) only, got {x}")
+    k = int(np.searchsorted(t, x, side="right")) - 1
+    i = np.arange(n + 1)
+    alpha = np.where(i <= k - p, 1.0, 0.0)
+    inside = i[k - p + 1 : k + 1]
+    alpha[inside] = (x - t[inside]) / (t[inside + p] - t[inside])
+    T = np.zeros((n + 1, n))
+    T[i[:-1], i[:-1]] = alpha[:-1]
+    T[i[1:], i[1:] - 1] = 1.0 - alpha[1:]
+    return KnotVector(p, np.insert(t, k + 1, x)), T
+
+
+def bezier_extraction(kv: KnotVector) -> np.ndarray:
+    """Extraction operators of all spans at once: N_a = sum_b C_eab B_b on span e.
+
+    The Bernstein coefficient b of a spline on [x0, x1] is its polar form at x0 (p - b times) and x1 (b times), which is what
+    inserting both knots up to multiplicity p gives (Ramshaw 1989; Borden, Scott, Evans, Hughes 2011).
+
+    Returns
+    -------
+    C_eab : (n_e, p + 1, p + 1); function a of span e is number ``spans[e] - p + a``.
+    """
+    t, p, span_e = kv.knots, kv.degree, kv.spans
+    x0_e, x1_e = t[span_e], t[span_e + 1]
+    C_eab = np.empty((span_e.size, p + 1, p + 1))
+    for b in range(p + 1):
+        d_eja = np.broadcast_to(np.eye(p + 1), (span_e.size, p + 1, p + 1))  # control points = unit vectors
+        for r in range(1, p + 1):
+            x_e = (x1_e if r <= b else x0_e)[:, None, None]
+            j = np.arange(r, p + 1)
+            low = t[span_e[:, None] - p + j][..., None]
+            high = t[span_e[:, None] + 1 + j - r][..., None]
+            d_eja = ((high - x_e) * d_eja[:, :-1] + (x_e - low) * d_eja[:, 1:]) / (high - low)
+        C_eab[:, :, b] = d_eja[:, 0]
+    return C_eab

@@ -1,0 +1,233 @@
+"""The double cantilever beam: two arms, one interface, opened at one end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from iga.basis import BlockBasis, block_basis, chain_basis
+from iga.bspline import open_knots
+from iga.cohesive import BilinearLaw
+from iga.extraction import Mesh
+from iga.fields import snapshot
+from iga.interface import Interface
+from iga.lagrange import lagrange_rectangle
+from iga.material import orthotropic
+from iga.nurbs import nurbs_rectangle
+from iga.observe import Arm, Specimen, mean_row, row
+from iga.path import End, follow
+from iga.quadrature import gauss, lobatto, square
+from iga.surface import surface
+from iga.system import Phase, Solid, System, untimed
+
+RULES = {"gauss": gauss, "lobatto": lobatto}
+
+#: Elements before the crack tip only bend; they may be this much longer than those on the crack path.
+COARSENING = 4.0
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A double cantilever beam in plain numbers, any consistent units.
+
+    X runs from 0 (loaded end) to ``length``, the interface lies on Y = 0 and is bonded from ``precrack`` on; each arm is
+    ``arm_thickness`` thick. ``opening`` is the programme of separations of the loaded faces; ``symmetry`` models the upper arm
+    alone against its mirror image. ``slave`` is the arm whose points are projected. ``dofs`` is the number aimed at, never exceeded.
+    """
+
+    length: float
+    arm_thickness: float
+    precrack: float
+    E1: float
+    E2: float
+    G12: float
+    nu12: float
+    strength: float
+    toughness: float
+    ductility: float
+    penalty: float
+    opening: tuple[float, ...]
+    width: float = 1.0
+    plane: str = "stress"
+    contact: bool = True
+    irreversible: bool = True
+    kinematics: str = "finite"
+    symmetry: bool = False
+    slave: str = "top"
+    basis: str = "nurbs"
+    degree: int = 3
+    dofs: int = 1956
+    interface_rule: str = "gauss"
+    interface_points: int = 2
+    steps: int = 150
+    snapshot_openings: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What a run leaves: a row a converged step (see `iga.observe`), snapshots (see `iga.fields`), and how it ended."""
+
+    rows: tuple[Mapping[str, float], ...]
+    dofs: int
+    elements: int
+    rejected_steps: int
+    status: str
+    snapshots: tuple[Mapping[str, object], ...]
+
+
+def arm_mesh(problem: Problem, bottom: float) -> Mesh:
+    """One arm, one element thick, with its ``bottom`` at that Y: equal elements along the bond, longer ones before it.
+
+    An element boundary lies at the end of the precrack. The model of one arm gets half of ``dofs``.
+
+    Raises
+    ------
+    ValueError : ``dofs`` is too small for a mesh, or the basis is unknown.
+    """
+    p, spline = problem.degree, problem.basis == "nurbs"
+    if not spline and problem.basis != "lagrange":
+        raise ValueError(f'basis must be "nurbs" or "lagrange", got {problem.basis!r}')
+    columns = problem.dofs // (4 * (p + 1))
+    elements = columns - p if spline else (columns - 1) // p
+    if elements < 2:
+        least = 4 * (p + 1) * (p + 2 if spline else 2 * p + 1)
+        raise ValueError(f"a {problem.basis} mesh of degree {p} needs at least {least} unknowns, got {problem.dofs}")
+    breaks = graded_breaks(problem.length, problem.precrack, elements)
+    through = bottom + problem.arm_thickness * np.linspace(0.0, 1.0, 2)
+    return nurbs_rectangle(open_knots(breaks, p), open_knots(through, p)) if spline else lagrange_rectangle(breaks, through, p)
+
+
+def graded_breaks(length: float, precrack: float, elements: int) -> np.ndarray:
+    """Element boundaries (elements + 1,): uniform on either side of the precrack's end, `COARSENING` times longer before it."""
+    bond = length - precrack
+    before = round(elements * precrack / (precrack + COARSENING * bond))
+    before = min(max(before, 1), elements - 1)
+    return np.concatenate([np.linspace(0.0, precrack, before + 1)[:-1], np.linspace(precrack, length, elements - before + 1)])
+
+
+def build(problem: Problem, phase: Phase = untimed) -> Specimen:
+    """Discrete system of a problem with all that is needed to read results from its states."""
+    with phase("mesh"):
+        bottoms = (0.0,) if problem.symmetry else (0.0, -problem.arm_thickness)
+        meshes = tuple(arm_mesh(problem, bottom) for bottom in bottoms)
+    with phase("basis"):
+        first = np.cumsum([0] + [len(mesh.P_AI) for mesh in meshes])
+        P_AI = np.concatenate([mesh.P_AI for mesh in meshes])
+        D = orthotropic(problem.E1, problem.E2, problem.G12, problem.nu12, problem.plane)
+        arms = tuple(_arm(mesh, start, D) for mesh, start in zip(meshes, first[:-1], strict=True))
+        copies = 2.0 if problem.symmetry else 1.0
+        n_dof = 2 * len(P_AI)
+        mean = [mean_row(arm.face, 1, n_dof) for arm in arms]
+        load_d = 2.0 * mean[0] if problem.symmetry else mean[0] - mean[1]
+        system = System(
+            solids=tuple(solid for arm in arms for solid in arm.solids),
+            interface=_interface(problem, meshes, first),
+            kinematics=problem.kinematics,
+            width=copies * problem.width,
+            load_d=load_d,
+            free_d=_free(problem, P_AI, first),
+            x_d=np.repeat(P_AI[:, 0], 2),
+            stay_d=None if problem.symmetry else mean_row(arms[0].face, 0, n_dof) - mean_row(arms[1].face, 0, n_dof),
+            stay=problem.E1 * problem.width * problem.arm_thickness / problem.length,
+        )
+        probe = _points(problem, meshes, first, np.zeros(1), np.zeros(1), slice(0, 1))
+    upper_is_slave = problem.symmetry or problem.slave == "top"
+    return Specimen(system, arms, meshes, problem.precrack, upper_is_slave, copies, probe)
+
+
+def solve(problem: Problem, on_step: Callable[[Mapping[str, float]], None] | None = None, phase: Phase = untimed) -> Solution:
+    """Solve a double cantilever beam.
+
+    Parameters
+    ----------
+    problem : the specimen, its law, programme and mesh.
+    on_step : called with the row of every converged step, as it comes.
+    phase : context manager that times "mesh", "basis", "assembly", "factor", "solve".
+
+    Returns
+    -------
+    Solution; its ``status`` says whether the whole programme was run.
+
+    Raises
+    ------
+    ValueError : a problem for which there is no mesh or no material.
+    """
+    specimen = build(problem, phase)
+    rows: list[dict[str, float]] = []
+    snapshots: list[dict[str, object]] = []
+    wanted = sorted(problem.snapshot_openings)
+    end = End("complete", 0)
+    for item in follow(specimen.system, problem.opening, problem.steps, phase=phase):
+        if isinstance(item, End):
+            end = item
+            continue
+        rows.append(row(specimen, item, rows[-1] if rows else None))
+        if on_step is not None:
+            on_step(rows[-1])
+        if wanted and item.opening >= wanted[0]:
+            wanted = [opening for opening in wanted if opening > item.opening]
+            snapshots.append(snapshot(specimen, item))
+    dofs, elements = specimen.system.n_dof, sum(mesh.elements for mesh in specimen.meshes)
+    return Solution(tuple(rows), dofs, elements, end.rejected, end.status, tuple(snapshots))
+
+
+def _arm(mesh: Mesh, first: int, D: np.ndarray) -> Arm:
+    """Basis of one arm, numbered from ``first`` on: (p+1)^2 Gauss points in the bulk and p+1 on the loaded face."""
+    solids = []
+    for block in mesh.blocks:
+        rules = [gauss(degree + 1) for degree in block.degrees]
+        solids.append(Solid(_shifted(block_basis(mesh, block, *square(*rules)), first), D))
+    face = chain_basis(mesh, mesh.chains["left"], *gauss(max(block.degrees[1] for block in mesh.blocks) + 1))
+    return Arm(tuple(solids), tuple(_shifted(basis, first) for basis in face), D)
+
+
+def _shifted(basis: BlockBasis, first: int) -> BlockBasis:
+    return replace(basis, conn_ea=basis.conn_ea + first)
+
+
+def _free(problem: Problem, P_AI: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """Supports: each arm's corner of interface and far end held in x, the lower arm's also in y."""
+    free_d = np.ones(2 * len(P_AI), dtype=bool)
+    for arm, start in enumerate(first[:-1]):
+        corner = start + int(np.argmin(np.linalg.norm(P_AI[start : first[arm + 1]] - [problem.length, 0.0], axis=1)))
+        free_d[2 * corner] = False
+        if arm == 1:
+            free_d[2 * corner + 1] = False
+    return free_d
+
+
+def _interface(problem: Problem, meshes: tuple[Mesh, ...], first: np.ndarray) -> Interface:
+    xi, w = RULES[problem.interface_rule](problem.interface_points)
+    return _points(problem, meshes, first, xi, w, slice(None))
+
+
+def _points(
+    problem: Problem, meshes: tuple[Mesh, ...], first: np.ndarray, xi: np.ndarray, w: np.ndarray, sides: slice
+) -> Interface:
+    """Interface with the rule (xi, w) on each of the bonded ``sides`` of the slave; the whole of the other arm is master."""
+    slave, master = (1, 0) if problem.slave == "bottom" and not problem.symmetry else (0, 1)
+    names, n_A = ("bottom", "top"), int(first[-1])
+    P_AI = np.concatenate([mesh.P_AI for mesh in meshes])
+    whole = surface(meshes[slave], meshes[slave].chains[names[slave]], int(first[slave]), n_A)
+    c_all = np.arange(whole.sides)
+    (middle,) = whole.coefficients(c_all, np.full(whole.sides, 0.5), 0)
+    X_c = np.einsum("cb,cb...->c...", middle, whole.bezier_points(P_AI))[:, 0]
+    c_q = np.repeat(c_all[X_c > problem.precrack][sides], len(xi))
+    xi_q = np.tile(xi, len(c_q) // len(xi))
+    r0, r1 = whole.coefficients(c_q, xi_q, 1)
+    tangent = np.einsum("qb,qbi->qi", r1, whole.bezier_points(P_AI)[c_q])
+    S_qA = whole.rows(c_q, r0)
+    return Interface(
+        S_qA=S_qA,
+        dA_q=np.linalg.norm(tangent, axis=1) * np.tile(w, len(c_q) // len(xi)) * problem.width,
+        X_qi=S_qA @ P_AI,
+        P_AI=P_AI,
+        law=BilinearLaw(
+            problem.strength, problem.toughness, problem.ductility, problem.penalty, problem.contact, problem.irreversible
+        ),
+        master=None if problem.symmetry else surface(meshes[master], meshes[master].chains[names[master]], int(first[master]), n_A),
+        mirror_i=np.array([0.0, 1.0]) if problem.symmetry else None,
+        frozen=problem.kinematics == "linear",
+    )

@@ -1,0 +1,37 @@
+"""Elasticity matrices in the plane, Voigt order (11, 22, 12) with engineering shear."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def orthotropic(E1: float, E2: float, G12: float, nu12: float, plane: str) -> np.ndarray:
+    """Elasticity matrix D (3, 3), axis 1 along X.
+
+    Plane stress inverts the in-plane compliance. Plane strain needs the third direction, taken as transversely like the second
+    (E3 = E2, nu13 = nu23 = nu12), and takes the in-plane block of the inverted 3-D compliance; with E1 = E2 and
+    G12 = E / (2 (1 + nu)) both are the isotropic matrices (Jones 1999, eqs. 2.15 and 2.60).
+
+    Raises
+    ------
+    ValueError : ``plane`` is neither "stress" nor "strain", or the matrix is not positive definite.
+    """
+    S = np.zeros((4, 4))  # 11, 22, 33, 12
+    S[0, 0], S[1, 1], S[2, 2], S[3, 3] = 1 / E1, 1 / E2, 1 / E2, 1 / G12
+    S[0, 1] = S[1, 0] = S[0, 2] = S[2, 0] = -nu12 / E1
+    S[1, 2] = S[2, 1] = -nu12 / E2
+    inside = [0, 1, 3]
+    if plane == "stress":
+        D = np.linalg.inv(S[np.ix_(inside, inside)])
+    elif plane == "strain":
+        D = np.linalg.inv(S)[np.ix_(inside, inside)]
+    else:
+        raise ValueError(f'plane must be "stress" or "strain", got {plane!r}')
+    if not np.all(np.linalg.eigvalsh(D) > 0):
+        raise ValueError(f"the elastic constants E1={E1}, E2={E2}, G12={G12}, nu12={nu12} store negative energy")
+    return 0.5 * (D + D.T)
+
+
+def isotropic(young: float, poisson: float, plane: str) -> np.ndarray:
+    """Elasticity matrix D (3, 3) of an isotropic solid."""
+    return orthotropic(young, young, young / (2.0 * (1.0 + poisson)), poisson, plane)

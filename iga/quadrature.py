@@ -1,0 +1,30 @@
+"""Quadrature rules on [0, 1] and [0, 1]^2."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Legendre points and weights (n,), exact for degree 2n - 1."""
+    x, w = np.polynomial.legendre.leggauss(n)
+    return 0.5 * (x + 1.0), 0.5 * w
+
+
+def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Lobatto points and weights (n,), n >= 2, end points included, exact for degree 2n - 3.
+
+    Inner points are the roots of P'_{n-1}; ``w = 2 / (n (n - 1) P_{n-1}(x)^2)`` on [-1, 1] (Abramowitz and Stegun 1964, 25.4.32).
+    """
+    if n < 2:
+        raise ValueError(f"a Lobatto rule has at least 2 points, got {n}")
+    P = np.polynomial.legendre.Legendre.basis(n - 1)
+    x = np.concatenate([[-1.0], np.sort(P.deriv().roots().real), [1.0]])
+    return 0.5 * (x + 1.0), 1.0 / (n * (n - 1) * P(x) ** 2)
+
+
+def square(rule_s: tuple[np.ndarray, np.ndarray], rule_t: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Product rule: points (n, 2) and weights (n,) on the unit square."""
+    (s, w_s), (t, w_t) = rule_s, rule_t
+    points = np.stack([np.tile(s, len(t)), np.repeat(t, len(s))], -1)
+    return points, np.repeat(w_t, len(s)) * np.tile(w_s, len(t))
