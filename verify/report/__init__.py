@@ -1,0 +1,51 @@
+"""The report: one self-contained HTML file about all scenes of a verification."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from verify.report.section import section
+from verify.report.style import custom_properties
+from verify.report.summary import summarise
+from verify.report.text import number, symbols
+from verify.verdict import SceneReport
+
+__all__ = ["write"]
+
+_HERE = Path(__file__).parent
+
+
+def write(reports: tuple[SceneReport, ...], path: Path, environment: Mapping[str, str]) -> None:
+    """Write the page.
+
+    Parameters
+    ----------
+    reports : one for each scene, in the order of the page
+    path : the HTML file; its folder is made
+    environment : what to print about versions and machine, name to value
+    """
+    sections = tuple(section(report, f"scene-{i + 1}") for i, report in enumerate(reports))
+    jinja = Environment(
+        loader=PackageLoader("verify.report", "."),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    jinja.filters["svg"] = Markup  # drawn by this package, which has escaped its texts
+    jinja.filters |= {"number": number, "symbols": symbols}
+    page = jinja.get_template("page.html.j2").render(
+        sections=sections,
+        summary=summarise(sections),
+        environment=dict(environment),
+        light=Markup(custom_properties(dark=False)),
+        dark=Markup(custom_properties(dark=True)),
+        css=Markup((_HERE / "page.css").read_text(encoding="utf-8")),
+    )
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(page, encoding="utf-8")

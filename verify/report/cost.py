@@ -1,0 +1,98 @@
+"""Figures of cost: where the time went, and what it bought."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
+
+from verify.report.entry import Entry
+from verify.report.style import HALF, PHASES, Panel, colour, drawing, to_svg
+from verify.report.text import seconds
+from verify.result import Result
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+
+
+def total_seconds(result: Result) -> float:
+    """Wall time of the run: the recorded total, or the sum of its phases; NaN where nothing was timed."""
+    if not result.seconds:
+        return float("nan")
+    return float(result.seconds.get("total", sum(result.seconds.values())))
+
+
+def phase_seconds(result: Result) -> dict[str, float]:
+    """The named phases; whatever the total has besides them counts as ``other``."""
+    times = dict(result.seconds or {})
+    named = {name: float(times.get(name, 0.0)) for name in PHASES}
+    if "other" not in times and "total" in times:
+        named["other"] = max(float(times["total"]) - sum(named.values()), 0.0)
+    return named
+
+
+def timing(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
+    """Stacked bars, one a run."""
+    timed = [entry for entry in runs if entry.result.seconds]
+    if not timed:
+        return None
+    with drawing():
+        figure = Figure(figsize=(HALF, 0.42 * len(timed) + 1.25))
+        axes = figure.add_subplot()
+        longest = max(total_seconds(entry.result) for entry in timed)
+        rows = np.arange(len(timed))[::-1]
+        left = np.zeros(len(timed))
+        for phase in PHASES:
+            width = np.array([phase_seconds(entry.result)[phase] for entry in timed])
+            if width.sum() > 0:
+                axes.barh(rows, width, 0.62, left, color=colour(f"phase-{phase}"), linewidth=0, label=phase)
+            left += width
+        for row, entry, end in zip(rows, timed, left, strict=True):
+            axes.text(end + 0.015 * longest, row, seconds(total_seconds(entry.result)), va="center", fontsize=7.5)
+        axes.set_yticks(rows, [_short(entry, timed) for entry in timed])
+        axes.tick_params(axis="y", length=0, labelcolor=colour("ink"))
+        axes.set(xlabel="wall time (s)", xlim=(0, 1.2 * longest or 1.0))
+        axes.grid(False, axis="y")
+        axes.spines["left"].set_visible(False)
+        figure.legend(loc="outside upper center", ncols=6, handlelength=0.9, columnspacing=0.9, handletextpad=0.4)
+        svg = to_svg(figure, key, f"Wall time by phase and method, {scene.name}")
+    return Panel(svg, "Where the time went. Runs made at the same time on one machine slow each other down.")
+
+
+def _short(entry: Entry, among: Sequence[Entry]) -> str:
+    """The method's name, or the full label where the method occurs more than once."""
+    twice = sum(other.method == entry.method for other in among) > 1
+    return entry.label if twice else entry.name
+
+
+def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -> Panel | None:
+    """Curve error against wall time, both logarithmic; ``base`` is the reference run."""
+    points = [
+        (entry, total_seconds(entry.result), entry.agreement.error)
+        for entry in runs
+        if entry.result.seconds and entry.agreement.error > 0
+    ]
+    if not points:
+        return None
+    with drawing():
+        figure = Figure(figsize=(HALF, 2.5))
+        axes = figure.add_subplot()
+        for entry, time, error in points:
+            ink = colour(entry.line.colour)
+            point = max(time, 1e-3), 100 * error
+            axes.plot(*point, "o", color=ink, markersize=6)
+            axes.annotate(_short(entry, runs), point, (7, 4), textcoords="offset points", color=ink)
+        axes.set(xscale="log", yscale="log", xlabel="wall time (s)", ylabel=f"distance to {base.name} (%)")
+        axes.margins(0.3, 0.3)
+        for part in (axes.xaxis, axes.yaxis):
+            part.set_major_formatter(lambda value, _: f"{value:g}")
+            part.set_minor_formatter(NullFormatter())
+        svg = to_svg(figure, key, f"Curve error against time, {scene.name}")
+    return Panel(
+        svg,
+        f"What the time bought: relative L2 distance of the load to {base.label}, against wall time. {base.name} has "
+        "an error of its own; a distance below that says no more.",
+    )

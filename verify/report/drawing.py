@@ -1,0 +1,119 @@
+"""The specimen to scale, with its load, supports and interface."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon, Rectangle
+
+from verify.report.style import WIDE, Panel, colour, drawing, to_svg
+from verify.report.text import Units, number, quantity
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+
+_HEIGHT = 1.9  # of the figure, inches
+_THINNEST = 5.0 / 72.0  # an arm is drawn at least this thick, inches
+
+
+def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = None) -> Panel:
+    """Side view of the double cantilever beam.
+
+    Parameters
+    ----------
+    zone : start and end of the process zone along the specimen and the opening at which it was there
+    """
+    body, units = scene.specimen, Units.of(scene.units)
+    scale = (WIDE - 2.1) / body.length  # inches per unit of length
+    thickness = max(body.arm_thickness * scale, _THINNEST)
+    with drawing():
+        figure = Figure(figsize=(WIDE, _HEIGHT), layout="none")
+        axes = figure.add_axes((0, 0, 1, 1))
+        axes.set_axis_off()
+        axes.set(xlim=(-0.9, WIDE - 0.9), ylim=(-1.1, _HEIGHT - 1.1))  # inches from the middle of the loaded end
+        _bodies(axes, body.length * scale, body.precrack * scale, thickness)
+        _loads(axes, thickness)
+        _supports(axes, body.length * scale)
+        _dimensions(axes, scene, units, scale, thickness)
+        if zone is not None and zone[1] > zone[0]:
+            _process_zone(axes, zone, units, scale, thickness)
+        svg = to_svg(figure, key, f"Side view of the specimen of {scene.name}")
+    exaggeration = thickness / (body.arm_thickness * scale)
+    thick = f"lengths to scale, arms {number(exaggeration, 2)} times too thick" if exaggeration > 1.001 else "to scale"
+    caption = (
+        f"The undeformed specimen, {thick}. The load is a uniform dead traction on each loaded face, its resultant is "
+        "the load P; the opening Δ is the separation of the mean displacements of the two faces. "
+        "The supports carry nothing."
+    )
+    return Panel(svg, caption, "wide")
+
+
+def _bodies(axes: Axes, length: float, precrack: float, thickness: float) -> None:
+    for y in (0.0, -thickness):
+        axes.add_patch(
+            Rectangle((0, y), length, thickness, facecolor=colour("muted"), alpha=0.28, edgecolor="none", zorder=1)
+        )
+        frame = Rectangle((0, y), length, thickness, fill=False, edgecolor=colour("ink"), linewidth=0.6, zorder=2)
+        axes.add_patch(frame)
+    axes.plot([0, precrack], [0, 0], color=colour("paper"), linewidth=2.0, zorder=3, solid_capstyle="butt")
+    axes.plot([precrack, length], [0, 0], color=colour("accent"), linewidth=2.0, zorder=3, solid_capstyle="butt")
+
+
+def _loads(axes: Axes, thickness: float) -> None:
+    for sign, label in ((1, "P, +Δ/2"), (-1, "P, −Δ/2")):
+        foot, tip = sign * thickness / 2, sign * (thickness + 0.36)
+        arrow = {"arrowstyle": "-|>", "color": colour("bad"), "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
+        axes.annotate("", (0, tip), (0, foot), arrowprops=arrow, zorder=5)
+        axes.text(-0.1, sign * (thickness + 0.22), label, ha="right", va="center", color=colour("bad"))
+
+
+def _supports(axes: Axes, length: float) -> None:
+    size = 0.11
+    axes.add_patch(
+        Polygon(
+            [(length, 0), (length + size, size * 0.65), (length + size, -size * 0.65)],
+            facecolor=colour("paper"),
+            edgecolor=colour("ink"),
+            linewidth=0.7,
+            zorder=4,
+        )
+    )
+    axes.plot([length + size] * 2, [-0.13, 0.13], color=colour("ink"), linewidth=0.9)
+    note = "held in x;\nlower arm in y"
+    axes.text(length + size + 0.06, 0, note, ha="left", va="center", fontsize=7, color=colour("muted"))
+
+
+def _dimensions(axes: Axes, scene: Scene, units: Units, scale: float, thickness: float) -> None:
+    body, below = scene.specimen, -thickness - 0.44
+    a, length = body.precrack * scale, body.length * scale
+    length_of, thick, wide = (quantity(v, units.length) for v in (body.length, body.arm_thickness, body.width))
+    _measure(axes, 0, a, below, f"precrack {quantity(body.precrack, units.length)}")
+    _measure(axes, a, length, below, f"interface {quantity(body.length - body.precrack, units.length)}", "accent")
+    whole = f"length {length_of}; two arms of thickness {thick}, width {wide}"
+    _measure(axes, 0, length, below - 0.25, whole)
+
+
+def _measure(axes: Axes, start: float, end: float, y: float, label: str, ink: str = "muted") -> None:
+    arrow = {"arrowstyle": "<->", "color": colour(ink), "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", (end, y), (start, y), arrowprops=arrow)
+    axes.text((start + end) / 2, y - 0.035, label, ha="center", va="top", color=colour(ink), fontsize=7.5)
+
+
+def _process_zone(axes: Axes, zone: tuple[float, float, float], units: Units, scale: float, thickness: float) -> None:
+    start, end, opening = zone
+    ends = (start * scale, end * scale)
+    axes.plot(ends, (0, 0), color=colour("zone"), linewidth=4.0, zorder=6, solid_capstyle="butt")
+    label = (
+        f"process zone at opening {quantity(opening, units.length, 3)}: {quantity(end - start, units.length, 2)} long"
+    )
+    axes.annotate(
+        label,
+        ((start + end) / 2 * scale, 0.03),
+        ((start + end) / 2 * scale, thickness + 0.42),
+        ha="center",
+        va="center",
+        fontsize=7.5,
+        arrowprops={"arrowstyle": "-", "color": colour("muted"), "linewidth": 0.6},
+    )

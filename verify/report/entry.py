@@ -1,0 +1,65 @@
+"""A run together with what the page needs of it everywhere: its line and its distance to the reference."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from verify.report.agreement import Agreement, agreement, reference_run, usable
+from verify.report.style import METHOD_NAMES, METHODS, Line, line
+from verify.result import Result
+from verify.verdict import Run, SceneReport
+
+
+@dataclass(frozen=True, eq=False)
+class Entry:
+    """One run on the page; ``agreement`` is None where there is no curve."""
+
+    run: Run
+    repeat: int  # how many runs of the same method come before
+    line: Line
+    agreement: Agreement | None
+    is_reference: bool
+
+    @property
+    def method(self) -> str:
+        return self.run.method
+
+    @property
+    def label(self) -> str:
+        return self.run.label
+
+    @property
+    def name(self) -> str:
+        """The method's name."""
+        return METHOD_NAMES.get(self.run.method, self.run.method)
+
+    @property
+    def legend(self) -> str:
+        """The label, with a word where the curve is no solution of the scene."""
+        return f"{self.label} (limit)" if self.method == "lefm" else self.label
+
+    @property
+    def result(self) -> Result:
+        return self.run.result
+
+    @property
+    def complete(self) -> bool:
+        return self.run.result is not None and self.run.result.complete
+
+
+def rank(method: str) -> int:
+    """Place of a method in tables and legends."""
+    return METHODS.index(method) if method in METHODS else len(METHODS)
+
+
+def entries(report: SceneReport) -> tuple[Entry, ...]:
+    """All runs of a scene, the reference method first, LEFM last."""
+    reference = reference_run(report)
+    seen: dict[str, int] = {}
+    found = []
+    for run in sorted(report.runs, key=lambda run: rank(run.method)):
+        repeat = seen.get(run.method, 0)
+        seen[run.method] = repeat + 1
+        compared = agreement(run, reference) if usable(run) else None
+        found.append(Entry(run, repeat, line(run.method, repeat), compared, run is reference))
+    return tuple(found)

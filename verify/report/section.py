@@ -1,0 +1,216 @@
+"""One scene of the page: everything that the template prints, computed and drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from operator import itemgetter
+from typing import TYPE_CHECKING
+
+from verify.report import cost, curves, drawing, fields
+from verify.report.entry import Entry, entries
+from verify.report.style import Panel
+from verify.report.summary import KINDS, Tally, headline, tally
+from verify.report.text import NO_VALUE, Units, inputs, modelled, number, percent, quantity, seconds, sentence
+from verify.verdict import Check, SceneReport
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Panels that share a heading."""
+
+    title: str
+    panels: tuple[Panel, ...]
+    legend: tuple[Entry, ...] = ()
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    check: Check
+    value: str
+    tolerance: str
+    used: float  # share of the tolerance, 0 .. 1
+
+
+@dataclass(frozen=True)
+class CheckGroup:
+    """The checks of one name, each for a run."""
+
+    name: str
+    meaning: str
+    rows: tuple[CheckRow, ...]
+
+
+@dataclass(frozen=True)
+class RunRow:
+    """A line of the table of error and time."""
+
+    entry: Entry
+    status: str
+    modelled: str
+    error: str = NO_VALUE
+    oscillation: str = NO_VALUE
+    peak: str = NO_VALUE
+    peak_opening: str = NO_VALUE
+    steps: str = NO_VALUE
+    newton: str = NO_VALUE
+    seconds: str = NO_VALUE
+    memory: str = NO_VALUE
+
+
+@dataclass(frozen=True)
+class Section:
+    """One scene."""
+
+    anchor: str
+    report: SceneReport
+    entries: tuple[Entry, ...]
+    sentence: str
+    headline: str
+    inputs: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]  # group, (name, value) ...
+    specimen: Panel
+    figures: tuple[Figures, ...]
+    checks: tuple[tuple[Tally, tuple[CheckGroup, ...]], ...]
+    rows: tuple[RunRow, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def reference(self) -> Entry | None:
+        return next((entry for entry in self.entries if entry.is_reference), None)
+
+    @property
+    def failed(self) -> int:
+        return sum(not check.passed for check in self.report.checks)
+
+
+def section(report: SceneReport, anchor: str) -> Section:
+    """Compute and draw one scene."""
+    found = entries(report)
+    drawn = tuple(entry for entry in found if entry.agreement is not None)
+    checks = report.checks
+    groups = fields.shared_snapshots(drawn)
+    return Section(
+        anchor=anchor,
+        report=report,
+        entries=found,
+        sentence=sentence(report.scene),
+        headline=headline(len(checks), sum(not check.passed for check in checks), 1).removesuffix(" on 1 scene"),
+        inputs=tuple((k, tuple(row[1:] for row in g)) for k, g in groupby(inputs(report.scene), itemgetter(0))),
+        specimen=drawing.specimen(report.scene, f"{anchor}-specimen", _zone(groups)),
+        figures=_figures(report, drawn, groups, anchor),
+        checks=tuple((tally(kind, checks), _check_groups(kind, checks)) for kind in KINDS),
+        rows=tuple(_run_row(entry, report.scene) for entry in found),
+        notes=tuple(_notes(found)),
+    )
+
+
+def _zone(groups: Sequence[Sequence[tuple[Entry, fields.Snapshot]]]) -> tuple[float, float, float] | None:
+    """The process zone of the leading run at the last opening that has one."""
+    for group in reversed(groups):
+        if group and (zone := fields.process_zone(group[0][1])) is not None:
+            return (*zone, group[0][1].opening)
+    return None
+
+
+def _figures(
+    report: SceneReport,
+    drawn: Sequence[Entry],
+    groups: Sequence[Sequence[tuple[Entry, fields.Snapshot]]],
+    anchor: str,
+) -> tuple[Figures, ...]:
+    if not drawn:
+        return ()
+    scene = report.scene
+    base = next((entry for entry in drawn if entry.is_reference), None)
+    ledger = next((e for e in sorted(drawn, key=lambda e: e.method != "nurbs") if e.method != "lefm"), None)
+    groups = [group for group in groups if group]
+    load = [curves.load_opening(scene, drawn, f"{anchor}-load"), curves.peak(scene, drawn, f"{anchor}-peak")]
+    if base is not None and any(e is not base and e.method != "lefm" for e in drawn):
+        load.append(curves.oscillation(scene, drawn, base, f"{anchor}-oscillation"))
+    load.append(curves.j_figure(scene, drawn, f"{anchor}-j"))
+    small = len(groups) % 3 == 0
+    interface = [fields.traction(scene, group, f"{anchor}-traction-{i}", small) for i, group in enumerate(groups)]
+    meshes = [fields.deformed(scene, groups[-1], f"{anchor}-deformed")] if groups else []
+    ledgers = [curves.energies(scene, ledger, f"{anchor}-energy")] if ledger is not None else []
+    ledgers.append(curves.ledger_gap(scene, drawn, f"{anchor}-ledger"))
+    times = [cost.timing(scene, drawn, f"{anchor}-timing")]
+    if base is not None:
+        times.append(cost.error_and_time(scene, drawn, base, f"{anchor}-cost"))
+    titled = (
+        ("Load and opening", load, drawn),
+        ("Traction along the interface", interface, [entry for entry in drawn if entry.result.snapshots]),
+        ("Deformed meshes and stress", meshes, ()),
+        ("Energy", ledgers, [entry for entry in drawn if entry.method != "lefm"]),
+        ("Cost", times, ()),
+    )
+    kept = [(title, tuple(p for p in panels if p is not None), tuple(legend)) for title, panels, legend in titled]
+    return tuple(Figures(*figures) for figures in kept if figures[1])
+
+
+def _check_groups(kind: str, checks: Sequence[Check]) -> tuple[CheckGroup, ...]:
+    """Checks of one kind by name, in the order of their first appearance."""
+    groups: dict[tuple[str, str], list[CheckRow]] = {}
+    for c in checks:
+        if c.kind == kind:
+            row = CheckRow(c, number(c.value), number(c.tolerance), _used(c))
+            groups.setdefault((c.name, c.meaning), []).append(row)
+    return tuple(CheckGroup(name, meaning, tuple(rows)) for (name, meaning), rows in groups.items())
+
+
+def _used(check: Check) -> float:
+    share = abs(check.value) / check.tolerance if check.tolerance > 0 else float(not check.passed)
+    return min(share, 1.0) if share == share else 1.0
+
+
+def _run_row(entry: Entry, scene: Scene) -> RunRow:
+    units, effects = Units.of(scene.units), modelled(scene, entry.method)
+    if entry.agreement is None:
+        return RunRow(entry, entry.run.left_out or "no converged step", effects)
+    result, found = entry.result, entry.agreement
+    newton = result.steps.get("newton_iterations")
+    iterations = float(newton.sum()) if newton is not None else float("nan")
+    extent = "" if result.complete else f" up to {quantity(found.end, units.length, 3)}"
+    compared = percent(found.error) + extent
+    if entry.is_reference:
+        compared = "reference"
+    elif entry.method == "lefm":
+        compared = "limit, not compared"
+    elif found.error != found.error:
+        compared = "no reference"
+    own = not entry.is_reference and entry.method != "lefm"
+    return RunRow(
+        entry,
+        status=result.status,
+        modelled=effects,
+        error=compared,
+        oscillation=percent(found.oscillation) if own else "–",
+        peak=quantity(found.peak_load, units.force, 4),
+        peak_opening=quantity(found.peak_opening, units.length, 3),
+        steps=_steps(len(result.opening) - 1, result.rejected_steps),
+        newton=number(iterations, 6) if iterations > 0 else "–",
+        seconds=seconds(cost.total_seconds(result)) if result.seconds else "–",
+        memory=f"{number(result.peak_memory_mb, 3)} MB" if result.peak_memory_mb > 0 else "–",
+    )
+
+
+def _steps(accepted: int, rejected: int) -> str:
+    return f"{accepted} + {rejected} rejected" if rejected else str(accepted)
+
+
+def _notes(found: Sequence[Entry]) -> list[str]:
+    """What a reader must know before believing the figures."""
+    notes = []
+    for entry in found:
+        if entry.run.result is None:
+            notes.append(f"{entry.label}: {entry.run.left_out or 'not run'}")
+        elif not entry.complete:
+            notes.append(f"{entry.label} {entry.result.status}")
+        elif entry.agreement is None:
+            notes.append(f"{entry.label}: there is no converged step to show")
+    if not any(entry.is_reference for entry in found):
+        notes.append("No distance between curves: neither the DOLFINx nor the beam curve is complete")
+    return notes

@@ -1,0 +1,173 @@
+"""What the top of the page says: what agrees with what, to how much, at which time, and what fails."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from verify.methods import DOLFINX_MISSING, DOLFINX_WAYS
+from verify.report.cost import total_seconds
+from verify.report.entry import Entry, rank
+from verify.report.text import percent, seconds, span
+
+if TYPE_CHECKING:
+    from verify.report.section import Section
+    from verify.verdict import Check
+
+#: kind: what stands behind a check of that kind
+KINDS = {
+    "exact": "An identity that any solution must meet. Nothing else is needed to judge it.",
+    "analytical": "Against a closed form or the cohesive-beam solution, which rests on beam theory.",
+    "cross-code": "Against another code or a published value: two programs that share nothing but the problem.",
+    "regression": "Against this code, earlier: says that nothing has changed, not that it is right.",
+}
+
+
+@dataclass(frozen=True)
+class Tally:
+    """How many checks of one kind hold."""
+
+    kind: str
+    meaning: str
+    total: int
+    failed: int
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One method on one scene in the overview."""
+
+    head: str = ""
+    tail: str = ""
+    tone: str = ""  # "", "reference", "limit", "absent", "stopped"
+
+
+@dataclass(frozen=True)
+class Column:
+    method: str
+    name: str
+
+
+@dataclass(frozen=True)
+class Summary:
+    headline: str
+    tone: str  # "good", "bad", "none"
+    sentences: tuple[str, ...]
+    missing: tuple[str, ...]
+    ways: tuple[str, ...]  # to DOLFINx, where it is missing
+    tallies: tuple[Tally, ...]
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Section, tuple[Cell, ...]], ...]
+    failures: tuple[tuple[Section, Check], ...]
+
+
+def summarise(sections: Sequence[Section]) -> Summary:
+    """Everything above the first scene."""
+    checks = [(section, check) for section in sections for check in section.report.checks]
+    failures = tuple((section, check) for section, check in checks if not check.passed)
+    columns = _columns(sections)
+    return Summary(
+        headline=headline(len(checks), len(failures), len(sections)),
+        tone="none" if not checks else "bad" if failures else "good",
+        sentences=tuple(_sentences(sections)),
+        missing=tuple(_missing(sections)),
+        ways=_ways(sections),
+        tallies=tuple(tally(kind, [check for _, check in checks]) for kind in KINDS),
+        columns=tuple(Column(method, name) for method, _, name in columns),
+        rows=tuple((section, tuple(_cell(section, *column[:2]) for column in columns)) for section in sections),
+        failures=failures,
+    )
+
+
+def headline(total: int, failed: int, scenes: int) -> str:
+    """The verdict in one line."""
+    where = f"on {scenes} scene{'s' if scenes != 1 else ''}"
+    if not total:
+        return f"No check was made {where}"
+    if failed:
+        return f"{failed} of {total} checks {'fails' if failed == 1 else 'fail'} {where}"
+    return f"All {total} checks hold {where}" if total > 1 else f"The one check holds {where}"
+
+
+def tally(kind: str, checks: Sequence[Check]) -> Tally:
+    of_kind = [check for check in checks if check.kind == kind]
+    return Tally(kind, KINDS[kind], len(of_kind), sum(not check.passed for check in of_kind))
+
+
+def _nth(section: Section, method: str, repeat: int) -> Entry | None:
+    return next((e for e in section.entries if (e.method, e.repeat) == (method, repeat)), None)
+
+
+def _columns(sections: Sequence[Section]) -> list[tuple[str, int, str]]:
+    """Method, how many runs of it came before, and the heading."""
+    places = sorted({(rank(e.method), e.method, e.repeat, e.name) for s in sections for e in s.entries})
+    repeated = {method for _, method, repeat, _ in places if repeat}
+    return [(method, i, f"{name} {i + 1}" if method in repeated else name) for _, method, i, name in places]
+
+
+def _cell(section: Section, method: str, repeat: int) -> Cell:
+    entry = _nth(section, method, repeat)
+    if entry is None:
+        return Cell("–", "", "absent")
+    if entry.agreement is None:
+        return Cell("not run" if entry.result is None else "no curve", "", "absent")
+    time = seconds(total_seconds(entry.result)) if entry.result.seconds else ""
+    unknowns = f"{entry.result.dofs} unknowns" if entry.result.dofs else ""
+    tail = ", ".join(part for part in (time, unknowns) if part)
+    if entry.is_reference:
+        return Cell("reference", tail, "reference")
+    if method == "lefm":
+        return Cell("limit, not compared", tail, "limit")
+    if section.reference is None:
+        return Cell("no reference", tail, "absent")
+    error = percent(entry.agreement.error)
+    return Cell(error, tail) if entry.complete else Cell(f"{error}, stopped", tail, "stopped")
+
+
+def _sentences(sections: Sequence[Section]) -> list[str]:
+    """One sentence a method: its largest distance to the reference and its times."""
+    sentences = []
+    for method, repeat, name in _columns(sections):
+        found = [(s, e) for s in sections if (e := _nth(s, method, repeat)) is not None and e.agreement is not None]
+        times = [t for _, e in found if (t := total_seconds(e.result)) == t]
+        took = f"{span(times, seconds)} a scene" if times else "time unknown"
+        compared = [(e.agreement.error, s, e) for s, e in found if e.agreement.error == e.agreement.error]
+        if compared:
+            error, worst, _ = max(compared, key=lambda row: row[0])
+            bases = sorted({s.reference.name for _, s, _ in compared})
+            base = bases[0] if len(bases) == 1 else f"the reference ({' or '.join(bases)})"
+            extent = "" if all(e.complete for _, _, e in compared) else ", as far as it came"
+            where = f" (most on {worst.report.scene.name})" if len(compared) > 1 else ""
+            agrees = f"load within {percent(error)} of {base} over the whole curve{extent}{where}"
+            sentences.append(f"{_capital(name)}: {agrees}; {took}.")
+        elif any(e.is_reference for _, e in found):
+            sentences.append(f"{_capital(name)}: the reference of this page; {took}.")
+    if any(e.method == "lefm" and e.agreement is not None for s in sections for e in s.entries):
+        sentences.append(
+            "LEFM is the limit of a vanishing process zone. It is drawn for orientation; the distance to it is the "
+            "effect of the interface's finite strength, not an error of any method."
+        )
+    return sentences
+
+
+def _missing(sections: Sequence[Section]) -> list[str]:
+    """What was not run or stopped early, each reason once with the scenes it concerns."""
+    reasons: dict[str, list[str]] = {}
+    for section in sections:
+        for note in section.notes:
+            reasons.setdefault(note, []).append(section.report.scene.name)
+    everywhere = len(sections)
+    return [
+        f"{note} ({'all scenes' if len(names) == everywhere > 1 else ', '.join(names)})"
+        for note, names in reasons.items()
+    ]
+
+
+def _ways(sections: Sequence[Section]) -> tuple[str, ...]:
+    lacking = any(e.run.left_out == DOLFINX_MISSING for s in sections for e in s.entries)
+    return DOLFINX_WAYS if lacking else ()
+
+
+def _capital(name: str) -> str:
+    return name[:1].upper() + name[1:]

@@ -1,0 +1,198 @@
+"""Numbers, units and sentences of the page."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup, escape
+
+from verify.effects import simulated
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+
+_SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+NO_VALUE = "no value"
+
+
+@dataclass(frozen=True)
+class Units:
+    """Unit labels, empty where the scene's label does not tell them apart."""
+
+    force: str = ""
+    length: str = ""
+    stress: str = ""
+
+    @staticmethod
+    def of(label: str) -> Units:
+        """Read ``"N, mm, MPa"``: force, length, stress."""
+        parts = [part.strip() for part in str(label).split(",")]
+        return Units(*parts) if len(parts) == 3 else Units()
+
+    @property
+    def energy(self) -> str:
+        return f"{self.force} {self.length}".strip()
+
+    @property
+    def stiffness(self) -> str:
+        return f"{self.stress}/{self.length}" if self.stress and self.length else ""
+
+    @property
+    def toughness(self) -> str:
+        return f"{self.force}/{self.length}" if self.force and self.length else ""
+
+
+def axis(name: str, unit: str) -> str:
+    """Label of an axis."""
+    return f"{name} ({unit})" if unit else name
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A number in running text: 0.0123, 1200, 1.2 × 10⁻⁹."""
+    if value is None or math.isnan(value):
+        return NO_VALUE
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    if value == 0:
+        return "0"
+    exponent = math.floor(math.log10(abs(value)))
+    if -4 <= exponent < 6:
+        text = f"{value:.{max(digits - 1 - exponent, 0)}f}"
+        text = text.rstrip("0").rstrip(".") if "." in text else text
+    else:
+        mantissa = f"{value / 10.0**exponent:.{digits - 1}f}".rstrip("0").rstrip(".")
+        text = f"{mantissa} × 10{str(exponent).translate(_SUPERSCRIPTS)}"
+    whole, point, rest = text.partition(".")
+    if whole.lstrip("-").isdigit() and len(whole.lstrip("-")) > 4:
+        whole = f"{int(whole):,}".replace(",", "\u202f")
+    return (whole + point + rest).replace("-", "−")
+
+
+def power_of_ten(value: float) -> str:
+    """10⁻⁴ for 1e-4: a label of a logarithmic axis."""
+    return f"10{str(round(math.log10(value))).translate(_SUPERSCRIPTS)}" if value > 0 else ""
+
+
+def symbols(text: str) -> Markup:
+    """``p_max`` as an italic letter with an index."""
+    return Markup(re.sub(r"\b([A-Za-z])_(\w+)", r"<i>\1</i><sub>\2</sub>", str(escape(text))))
+
+
+def quantity(value: float | None, unit: str, digits: int = 6) -> str:
+    """A number with its unit, e.g. 14 mm."""
+    return f"{number(value, digits)} {unit}".strip()
+
+
+def percent(fraction: float | None) -> str:
+    """A relative number in per cent, two digits: 0.12 %."""
+    if fraction is None or math.isnan(fraction):
+        return NO_VALUE
+    if 0 < abs(fraction) < 5e-6:
+        return "< 0.0005 %"
+    return f"{number(100 * fraction, 2)} %"
+
+
+def seconds(value: float | None) -> str:
+    """A duration: 0.03 s, 8.9 s, 2 min 5 s."""
+    if value is None or math.isnan(value):
+        return NO_VALUE
+    if value < 0.005:
+        return "< 0.01 s"
+    if value < 99.5:
+        return f"{number(value, 2)} s"
+    return f"{int(round(value)) // 60} min {int(round(value)) % 60} s"
+
+
+def span(values: list[float], form: object) -> str:
+    """``form`` of the smallest and the largest value, once if they read the same."""
+    low, high = form(min(values)), form(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+def programme(scene: Scene) -> tuple[float, ...]:
+    """The openings of the displacement programme."""
+    return tuple(scene.load.opening)
+
+
+def sentence(scene: Scene) -> str:
+    """What was solved, and with which effects, in words."""
+    units, specimen = Units.of(scene.units), scene.specimen
+    openings = " → ".join(number(v, 4) for v in programme(scene))
+    length, thick, crack = (
+        quantity(value, units.length) for value in (specimen.length, specimen.arm_thickness, specimen.precrack)
+    )
+    body = f"A double cantilever beam with arms of {length} by {thick} and a precrack of {crack}"
+    opened = f"is opened to {openings} {units.length}".rstrip()
+    return (
+        f"{body} {opened}, in plane {specimen.plane}, with a {scene.interface.law} traction law and {_effects(scene)}."
+    )
+
+
+def _effects(scene: Scene) -> str:
+    asked, kinematics = scene.effects, simulated(scene, "nurbs")["kinematics"]
+    words = {"finite": "finite kinematics (large rotations)", "linear": "linear kinematics (small displacements)"}
+    return ", ".join(
+        (
+            words[kinematics] + (", chosen automatically" if asked.kinematics == "auto" else ""),
+            "irreversible damage" if asked.irreversible else "reversible damage (nothing is dissipated)",
+            "contact on closing" if asked.contact else "no contact",
+            "one arm against the symmetry plane" if asked.symmetry else "both arms modelled",
+        )
+    )
+
+
+def modelled(scene: Scene, method: str) -> str:
+    """The effects as a method simulates them, in short."""
+    effects = simulated(scene, method)
+    damage = "irreversible" if effects["irreversible"] else "reversible"
+    return ", ".join(
+        (
+            f"{effects['kinematics']} kinematics",
+            *(() if method == "lefm" else (f"{damage} damage", "contact" if effects["contact"] else "no contact")),
+            "one arm" if effects["symmetry"] else "both arms",
+        )
+    )
+
+
+def inputs(scene: Scene) -> list[tuple[str, str, str]]:
+    """Rows of the table of inputs: group, name, value."""
+    units = Units.of(scene.units)
+    specimen, law, mesh = scene.specimen, scene.interface, scene.discretization
+    g_u = 2 * law.toughness / law.strength
+    rows = [
+        ("specimen", "length", quantity(specimen.length, units.length)),
+        ("specimen", "arm thickness", quantity(specimen.arm_thickness, units.length)),
+        ("specimen", "precrack", quantity(specimen.precrack, units.length)),
+        ("specimen", "width", quantity(specimen.width, units.length)),
+        *(("material", name, quantity(value, unit)) for name, value, unit in _moduli(scene, units)),
+        ("interface", "strength p_max", quantity(law.strength, units.stress)),
+        ("interface", "toughness G_Ic", quantity(law.toughness, units.toughness)),
+        ("interface", "full opening g_u = 2 G_Ic / p_max", quantity(g_u, units.length)),
+        ("interface", "opening at peak g_max", quantity(g_u / law.ductility, units.length)),
+        ("interface", "ductility g_u / g_max", number(law.ductility, 6)),
+        ("interface", "contact penalty", quantity(law.penalty, units.stiffness)),
+        ("isogeometric mesh", "degree", str(mesh.degree)),
+        ("isogeometric mesh", "target unknowns", str(mesh.dofs)),
+        ("isogeometric mesh", "interface points", f"{mesh.interface_points} per element, {mesh.interface_rule}"),
+        ("DOLFINx mesh", "degree", str(scene.dolfinx.degree)),
+        ("DOLFINx mesh", "elements along", str(scene.dolfinx.elements)),
+    ]
+    return rows
+
+
+def _moduli(scene: Scene, units: Units) -> list[tuple[str, float, str]]:
+    """Elastic constants that the scene gives."""
+    material = scene.material
+    names = (
+        ("young", "Young's modulus", units.stress),
+        ("poisson", "Poisson's ratio", ""),
+        ("E1", "E1", units.stress),
+        ("E2", "E2", units.stress),
+        ("G12", "G12", units.stress),
+        ("nu12", "nu12", ""),
+    )
+    values = [(label, getattr(material, key, None), unit) for key, label, unit in names]
+    return [row for row in values if row[1] is not None]
