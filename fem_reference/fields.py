@@ -1,0 +1,78 @@
+"""Fields at a converged point, brought together on the first rank."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import ufl
+from dolfinx import fem
+from petsc4py import PETSc
+
+from fem_reference.dolfinx_api import evaluate, expression
+from fem_reference.forms import cauchy_stress
+from fem_reference.model import Model
+from fem_reference.state import State, ordered_along
+
+Snapshot = dict[str, Any]
+
+
+def field_sampler(model: Model) -> Callable[[State], Snapshot | None]:
+    """A function that takes the fields of a state; it returns None on all ranks but the first.
+
+    Every element is sampled on its own grid of (degree + 1)^2 points, so that jumps between elements are kept.
+    """
+    k = model.problem.degree + 1
+    line_u = np.linspace(0.0, 1.0, k)
+    points_qI = np.stack(np.meshgrid(line_u, line_u, indexing="ij"), axis=-1).reshape(-1, 2)
+    samplers = []
+    for u in model.displacement:
+        domain = u.function_space.mesh
+        D = fem.Constant(domain, model.problem.elasticity_IJ.astype(PETSc.ScalarType))
+        X = ufl.SpatialCoordinate(domain)
+        stress = cauchy_stress(u, D, model.problem.kinematics == "finite")
+        samplers.append((expression(ufl.as_vector([X[0], X[1], u[0], u[1], stress[0, 0]]), points_qI), domain))
+
+    def sample(state: State) -> Snapshot | None:
+        model.displace(state.u_n)
+        values_evc = np.concatenate([_owned_values(e, domain) for e, domain in samplers])
+        gathered = model.comm.gather(values_evc)
+        bond = _bond_fields(model, state)
+        if gathered is None:
+            return None
+        all_euvc = along_first(np.concatenate(gathered).reshape(-1, k, k, 5))
+        return {
+            "opening": state.opening,
+            "load": state.load,
+            **bond,
+            "X_euvi": all_euvc[..., :2],
+            "u_euvi": all_euvc[..., 2:4],
+            "stress_euv": all_euvc[..., 4],
+        }
+
+    return sample
+
+
+def along_first(values_euvc: np.ndarray) -> np.ndarray:
+    """Elements sorted by their place, upper arm first, with X rising along u and Y along v."""
+    X_euv, Y_euv = values_euvc[..., 0], values_euvc[..., 1]
+    turned = np.abs(X_euv[:, -1, 0] - X_euv[:, 0, 0]) < np.abs(X_euv[:, 0, -1] - X_euv[:, 0, 0])
+    straight = np.where(turned[:, None, None, None], values_euvc.swapaxes(1, 2), values_euvc)
+    for axis, c in ((1, 0), (2, 1)):
+        ends = straight[:, [0, -1]] if axis == 1 else straight[:, :, [0, -1]]
+        falling = np.take(ends, 1, axis)[:, 0, c] < np.take(ends, 0, axis)[:, 0, c]
+        straight = np.where(falling[:, None, None, None], np.flip(straight, axis), straight)
+    middle_ei = np.stack([X_euv.mean(axis=(1, 2)), Y_euv.mean(axis=(1, 2))], axis=1)
+    rounded = np.round(middle_ei / np.ptp(middle_ei, axis=0), 9)
+    return straight[np.lexsort((rounded[:, 0], -rounded[:, 1]))]
+
+
+def _owned_values(e: fem.Expression, domain) -> np.ndarray:
+    return evaluate(e, domain, np.arange(domain.topology.index_map(2).size_local, dtype=np.int32))
+
+
+def _bond_fields(model: Model, state: State) -> Snapshot:
+    p_q, _ = model.law.traction(state.g_q, state.k_q)
+    names = ("s_q", "gap_q", "traction_q", "damage_q")
+    return dict(zip(names, ordered_along(model, state.g_q, p_q, model.law.damage(state.k_q)), strict=True))

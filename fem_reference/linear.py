@@ -1,0 +1,58 @@
+"""One sparse LU factorisation, many back-substitutions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from petsc4py import PETSc
+
+
+@dataclass(frozen=True)
+class Factorisation:
+    """LU of a matrix that keeps its pattern: PETSc's own in serial, MUMPS over several ranks.
+
+    The specimen is long and thin, so its nodes in the order of reverse Cuthill-McKee make a narrow band.
+    """
+
+    matrix: PETSc.Mat
+    ksp: PETSc.KSP = field(init=False)
+    x: PETSc.Vec = field(init=False)
+    b: PETSc.Vec = field(init=False)
+
+    def __post_init__(self) -> None:
+        ksp = PETSc.KSP().create(self.matrix.comm)
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        ksp.setErrorIfNotConverged(True)
+        pc = ksp.getPC()
+        pc.setType(PETSc.PC.Type.LU)
+        if self.matrix.comm.size > 1:
+            pc.setFactorSolverType("mumps")
+        else:
+            pc.setFactorSolverType("petsc")
+            pc.setFactorOrdering(PETSc.Mat.OrderingType.RCM)
+        x, b = self.matrix.createVecs()
+        for name, value in (("ksp", ksp), ("x", x), ("b", b)):
+            object.__setattr__(self, name, value)
+
+    def factorise(self, A: PETSc.Mat) -> None:
+        """Factorise ``A``, which has the pattern of ``matrix``."""
+        self.ksp.setOperators(A)
+        self.ksp.setUp()
+
+    def solve(self, force_n: np.ndarray) -> np.ndarray:
+        """Owned entries of the solution for the owned entries of the right-hand side."""
+        self.b.array[:] = force_n
+        self.ksp.solve(self.b, self.x)
+        return self.x.array_r.copy()
+
+
+def without_zeros(A: PETSc.Mat) -> PETSc.Mat:
+    """The same matrix without the entries of its pattern that are zero to rounding.
+
+    The element matrix of a facet spans all nodes of both its cells, of which only those on the facet count.
+    """
+    row_starts, columns, values = A.getValuesCSR()
+    kept = np.abs(values) > 1e-12 * np.max(np.abs(values), initial=0.0)
+    starts = np.concatenate([[0], np.cumsum(kept)])[row_starts].astype(PETSc.IntType)
+    return PETSc.Mat().createAIJ(A.getSizes(), csr=(starts, columns[kept], values[kept]), comm=A.comm)

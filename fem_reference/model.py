@@ -1,0 +1,190 @@
+"""The assembled model: internal forces, load and tangent as plain arrays over the unknowns that this rank owns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+
+import numpy as np
+from dolfinx import fem
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from fem_reference.assembled import BlockVector, owned
+from fem_reference.bond import Bond
+from fem_reference.dolfinx_api import add_block_matrix, compile_forms, create_block_matrix
+from fem_reference.forms import WeakForm, displacements, weak_form
+from fem_reference.law import Law
+from fem_reference.linear import Factorisation, without_zeros
+from fem_reference.mesh import TwoBodies, two_bodies
+from fem_reference.problem import Problem
+from fem_reference.supports import supports
+
+Phase = Callable[[str], AbstractContextManager]
+
+
+@dataclass(frozen=True)
+class Model:
+    """A problem ready to be solved.
+
+    Unknowns ``u_n`` are the displacements owned by this rank: x and y in turn, upper arm first. The load enters as
+    ``load * load_n``, and ``load_n @ u_n``, summed over the ranks, is the opening: the same vector is force and constraint.
+    Points ``q`` of the bond are those that this rank owns.
+    """
+
+    problem: Problem
+    bodies: TwoBodies
+    displacement: tuple[fem.Function, fem.Function]  # upper, lower: what the forms read
+    law: Law
+    bond: Bond
+    internal: BlockVector
+    bulk: list  # compiled blocks of the arms' tangent
+    energy: fem.Form
+    face_energy: fem.Form
+    bcs: tuple[fem.DirichletBC, ...]
+    free_n: np.ndarray  # 1 where free, 0 where supported
+    load_n: np.ndarray
+    slope_n: np.ndarray  # mean du_y/dX of the faces, upper and lower, as functionals
+    X_nI: np.ndarray  # (n, 2) reference position of the node of each unknown
+    X_q: np.ndarray
+    bulk_matrix: PETSc.Mat
+    tangent_matrix: PETSc.Mat
+    factorisation: Factorisation
+    largest_stiffness: float
+    phase: Phase
+
+    @property
+    def comm(self) -> MPI.Intracomm:
+        return self.bodies.parent.comm
+
+    @property
+    def upper_n(self) -> np.ndarray:
+        """True for the unknowns of the upper arm."""
+        return np.arange(self.load_n.size) < owned(self.displacement[0])
+
+    def dot(self, a_n: np.ndarray, b_n: np.ndarray) -> float:
+        """Scalar product over all ranks."""
+        return self.comm.allreduce(float(a_n @ b_n))
+
+    def norm(self, a_n: np.ndarray) -> float:
+        """Euclidean norm over all ranks."""
+        return float(np.sqrt(self.dot(a_n, a_n)))
+
+    def rounding(self, u_n: np.ndarray) -> float:
+        """Size of the forces that come from the last digit of the displacements alone."""
+        largest = self.comm.allreduce(float(np.max(np.abs(u_n), initial=0.0)), MPI.MAX)
+        return np.finfo(float).eps * largest * self.largest_stiffness
+
+    def displace(self, u_n: np.ndarray) -> None:
+        """Put displacements into the functions that the forms read."""
+        size = owned(self.displacement[0])
+        for u, part_n in zip(self.displacement, (u_n[:size], u_n[size:]), strict=True):
+            u.x.array[: part_n.size] = part_n
+            u.x.scatter_forward()
+
+    def bulk_force(self, u_n: np.ndarray) -> np.ndarray:
+        """Internal forces of the arms, at the supports too."""
+        self.displace(u_n)
+        return self.internal.assemble()
+
+    def bond_force(self, u_n: np.ndarray, k_q: np.ndarray) -> np.ndarray:
+        """Internal forces of the bond, at the supports too; ``k_q`` is the committed history."""
+        p_q, _ = self.law.traction(self.bond.gap(u_n), k_q)
+        return self.bond.force(p_q)
+
+    def residual(self, u_n: np.ndarray, load: float, k_q: np.ndarray) -> np.ndarray:
+        """Internal minus external forces; zero where supported."""
+        with self.phase("assembly"):
+            return self.free_n * (self.bond_force(u_n, k_q) + self.bulk_force(u_n) - load * self.load_n)
+
+    def tangent(self, u_n: np.ndarray, k_q: np.ndarray) -> PETSc.Mat:
+        """Derivative of the residual by the displacements, 1 on the diagonal where supported; valid until the next call."""
+        if self.problem.kinematics == "finite":
+            self.assemble_bulk(u_n)
+        _, dp_q = self.law.traction(self.bond.gap(u_n), k_q)
+        subset = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
+        self.tangent_matrix.zeroEntries()
+        self.tangent_matrix.axpy(1.0, self.bulk_matrix, structure=subset)
+        self.tangent_matrix.axpy(1.0, self.bond.tangent(dp_q), structure=subset)
+        return self.tangent_matrix
+
+    def factorise(self, u_n: np.ndarray, k_q: np.ndarray) -> None:
+        """Assemble and factorise the tangent; ``solve`` then answers for it."""
+        with self.phase("assembly"):
+            A = self.tangent(u_n, k_q)
+        with self.phase("factor"):
+            self.factorisation.factorise(A)
+
+    def solve(self, force_n: np.ndarray) -> np.ndarray:
+        """Displacement for a force, with the tangent last factorised."""
+        with self.phase("solve"):
+            return self.factorisation.solve(force_n)
+
+    def assemble_bulk(self, u_n: np.ndarray) -> None:
+        """The arms' part of the tangent; with linear kinematics it never changes."""
+        self.displace(u_n)
+        self.bulk_matrix.zeroEntries()
+        add_block_matrix(self.bulk_matrix, self.bulk, self.bcs)
+
+
+def build_model(problem: Problem, phase: Phase, comm: MPI.Intracomm) -> Model:
+    """Mesh, spaces, compiled forms and matrices of a problem."""
+    with phase("mesh"):
+        bodies = two_bodies(problem, comm)
+    with phase("basis"):
+        displacement = displacements(bodies, problem.degree)
+        weak = weak_form(problem, bodies, displacement)
+        bulk = compile_forms(weak.bulk, weak.maps)
+        internal, load, slope = (_vector(blocks, weak) for blocks in (weak.internal, weak.load, weak.slope))
+        energy, face_energy = compile_forms([weak.energy, weak.face_energy], weak.maps)
+    bcs, free_n = supports(problem, bodies, displacement)
+    with phase("assembly"):
+        bond, X_q = _bond(problem, weak, free_n)
+        bulk_matrix = create_block_matrix(bulk)
+        add_block_matrix(bulk_matrix, bulk, bcs)
+        tangent_matrix = bulk_matrix.copy()
+        tangent_matrix.axpy(1.0, bond.product, structure=PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    return Model(
+        problem=problem,
+        bodies=bodies,
+        displacement=displacement,
+        law=Law(problem.strength, problem.toughness, problem.ductility, problem.penalty, problem.contact, problem.irreversible),
+        bond=bond,
+        internal=internal,
+        bulk=bulk,
+        energy=energy,
+        face_energy=face_energy,
+        bcs=bcs,
+        free_n=free_n,
+        load_n=load.assemble(),
+        slope_n=slope.assemble(),
+        X_nI=np.concatenate([_node_positions(u) for u in displacement]),
+        X_q=X_q,
+        bulk_matrix=bulk_matrix,
+        tangent_matrix=tangent_matrix,
+        factorisation=Factorisation(tangent_matrix),
+        largest_stiffness=bulk_matrix.getDiagonal().max()[1],
+        phase=phase,
+    )
+
+
+def _vector(blocks: list, weak: WeakForm) -> BlockVector:
+    return BlockVector(compile_forms(blocks, weak.maps))
+
+
+def _bond(problem: Problem, weak: WeakForm, free_n: np.ndarray) -> tuple[Bond, np.ndarray]:
+    """The bond's matrices, and the positions of its points: integrals over a point's share, divided by the share."""
+    gap = [compile_forms(weak.gap, weak.maps)]
+    weight_q = _vector([weak.weight], weak).assemble()
+    G = create_block_matrix(gap)
+    add_block_matrix(G, gap, ())
+    share = G.createVecLeft()
+    share.array[:] = 1.0 / weight_q
+    G.diagonalScale(L=share)
+    return Bond(without_zeros(G), problem.width * weight_q, free_n), _vector([weak.position], weak).assemble() / weight_q
+
+
+def _node_positions(u: fem.Function) -> np.ndarray:
+    n_nodes = owned(u) // 2
+    return np.repeat(u.function_space.tabulate_dof_coordinates()[:n_nodes, :2], 2, axis=0)

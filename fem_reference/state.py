@@ -1,0 +1,108 @@
+"""A converged point of the path, and the row of numbers that is reported of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from dolfinx import fem
+
+from fem_reference.assembled import owned
+from fem_reference.model import Model
+from fem_reference.supports import dofs_at
+
+
+@dataclass(frozen=True)
+class State:
+    """Converged displacements and load, with the history that they leave behind.
+
+    ``rate_n`` = du/d(opening) and ``slope`` = d load/d(opening) of the path on arriving here; ``work`` is external.
+    """
+
+    u_n: np.ndarray
+    load: float
+    opening: float
+    k_q: np.ndarray
+    g_q: np.ndarray
+    rate_n: np.ndarray
+    slope: float
+    work: float
+    iterations: int
+
+
+def row_of(model: Model, state: State) -> dict[str, float]:
+    """Numbers of a converged point by name, forces and energies for the whole width; the same on every rank."""
+    bond_force_n = model.bond.force(model.law.traction(state.g_q, state.k_q)[0])
+    residual_n = model.bulk_force(state.u_n) + bond_force_n - state.load * model.load_n
+    bulk, face = (model.comm.allreduce(fem.assemble_scalar(form)) for form in (model.energy, model.face_energy))
+    cohesive, contact, dissipated = (
+        model.dot(model.bond.weight_q, density_q) for density_q in model.law.energies(state.g_q, state.k_q)
+    )
+    on_upper_n = model.upper_n
+    return {
+        "opening": state.opening,
+        "load": state.load,
+        "crack_length": crack_length(model, state),
+        "stored_energy": bulk + cohesive + contact,
+        "dissipated_energy": dissipated,
+        "external_work": state.work,
+        "newton_iterations": state.iterations,
+        "load_slope": state.slope,
+        "tip_opening": tip_opening(model),
+        "face_slope_top": model.dot(model.slope_n * on_upper_n, state.u_n),
+        "face_slope_bottom": model.dot(model.slope_n * ~on_upper_n, state.u_n),
+        "face_energy": face,
+        "interface_force": -resultant(model, bond_force_n * on_upper_n, 1),
+        "reaction_x": resultant(model, residual_n * (1 - model.free_n), 0),
+        "reaction_y": resultant(model, residual_n * (1 - model.free_n), 1),
+        "load_moment": moment(model, state, state.load * model.load_n * on_upper_n),
+        "interface_moment": -moment(model, state, bond_force_n * on_upper_n),
+        "bulk_energy": bulk,
+        "cohesive_energy": cohesive,
+        "contact_energy": contact,
+    }
+
+
+def resultant(model: Model, force_n: np.ndarray, component: int) -> float:
+    """Sum of nodal forces in one direction: their virtual work in a unit translation."""
+    return model.comm.allreduce(float(np.sum(force_n[component::2])))
+
+
+def moment(model: Model, state: State, force_n: np.ndarray) -> float:
+    """Moment of nodal forces about the origin, anticlockwise.
+
+    The levers are those in which the model balances: current positions with finite kinematics, reference ones with linear.
+    """
+    x_nI = model.X_nI.copy()
+    if model.problem.kinematics == "finite":
+        x_nI[::2] += state.u_n.reshape(-1, 2)
+    return model.comm.allreduce(float(x_nI[::2, 0] @ force_n[1::2] - x_nI[::2, 1] @ force_n[::2]))
+
+
+def tip_opening(model: Model) -> float:
+    """Normal gap at the end of the precrack, of the displacements last put into the forms."""
+    jump = 0.0
+    for u, body, sign in zip(model.displacement, (model.bodies.upper, model.bodies.lower), (1.0, -1.0), strict=True):
+        dofs = dofs_at(u, body.mesh, model.problem, model.problem.precrack, 1)
+        jump += sign * float(np.sum(u.x.array[dofs[dofs < owned(u)]]))
+    return model.comm.allreduce(jump)
+
+
+def crack_length(model: Model, state: State) -> float:
+    """Distance from the loaded end to the foremost fully open point, linear between the points of the bond."""
+    X_q, g_q = ordered_along(model, state.g_q)
+    open_q = np.flatnonzero(g_q >= model.law.g_open)
+    if not open_q.size:
+        return model.problem.precrack
+    last = open_q[-1]
+    if last == X_q.size - 1:
+        return model.problem.length
+    share = (g_q[last] - model.law.g_open) / (g_q[last] - g_q[last + 1])
+    return float(X_q[last] + share * (X_q[last + 1] - X_q[last]))
+
+
+def ordered_along(model: Model, *values_q: np.ndarray) -> list[np.ndarray]:
+    """Positions of all points of the bond, over all ranks, in rising order, and values in the same order."""
+    gathered = [np.concatenate(model.comm.allgather(v_q)) for v_q in (model.X_q, *values_q)]
+    order = np.argsort(gathered[0])
+    return [v_q[order] for v_q in gathered]
