@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+HEADLINES = tuple(f"I: {word}" for word in ("running", "downloading", "extracting", "installing"))
 ANOTHER_CACHE = "set DEBOND_CACHE to a folder"
 #: What a log says, and the sentence a user can act on.
 CAUSES = (
@@ -25,6 +26,7 @@ CAUSES = (
         "the package server cannot be reached; check the network, http_proxy, DEBOND_MIRROR or pip's settings",
     ),
     (r"NO_PUBKEY|is not signed|Missing key", "the Debian archive keys are missing; install debian-archive-keyring"),
+    (r"does not have a Release file", "the Debian mirror has no such suite; check DEBOND_SUITE and DEBOND_MIRROR"),
     (r"ensurepip|No module named (venv|pip)", "this Python cannot make virtual environments; install python3-venv"),
     (r"newuidmap|subuid|unshare", "this account may not use user namespaces; as root: apt-get install uidmap"),
     (r"Read-only file system|Permission denied", f"the cache folder cannot be written; {ANOTHER_CACHE} of your own"),
@@ -51,7 +53,7 @@ def cause(log: str) -> str | None:
 
 
 def run_logged(command: Sequence[str], log: Path, what: str, env: Mapping[str, str] | None = None) -> None:
-    """Run a builder with its output in ``log``; its own headlines (``I: ...``) are said aloud.
+    """Run a builder with its output in ``log``; the headlines of mmdebstrap are said aloud.
 
     Raises Trouble with the cause when it fails.
     """
@@ -63,7 +65,7 @@ def run_logged(command: Sequence[str], log: Path, what: str, env: Mapping[str, s
             file.write(line)
             file.flush()
             lines.append(line)
-            if line.startswith("I: "):
+            if line.startswith(HEADLINES):
                 say("  " + line[3:].strip())
     if process.wait() != 0:
         known = cause("".join(lines))

@@ -71,7 +71,11 @@ def build(root: Path) -> None:
         remove_tree(part)
     say(f"building a private Debian {suite()} with DOLFINx in {root}: once, about 3 minutes and 2 GB")
     start = time.monotonic()
-    run_logged(recipe(part), log, "building the private Debian root")
+    try:
+        run_logged(recipe(part), log, "building the private Debian root")
+    except Trouble:
+        remove_tree(part)
+        raise
     part.rename(root)
     say(f"the root is ready after {time.monotonic() - start:.0f} s")
 
