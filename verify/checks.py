@@ -91,10 +91,11 @@ def interface_gap(scene: Scene, steps: Steps) -> float | None:
 
 
 def moment_gap(scene: Scene, steps: Steps) -> float | None:
-    """Worst sum of the moments on the upper arm over the largest moment of the load."""
+    """Worst sum of the moments on the upper arm over the moment of the peak load about the tip of the precrack."""
     if not _has(steps, "load_moment", "interface_moment"):
         return None
-    return _worst((steps["load_moment"] + steps["interface_moment"]) / _scale(_peak(steps["interface_moment"])))
+    lever = scene.specimen.precrack
+    return _worst((steps["load_moment"] + steps["interface_moment"]) / _scale(lever * _peak(steps["load"])))
 
 
 def support_forces(scene: Scene, steps: Steps) -> float | None:
@@ -105,10 +106,10 @@ def support_forces(scene: Scene, steps: Steps) -> float | None:
 
 
 def dissipation_gap(scene: Scene, steps: Steps) -> float | None:
-    """|dissipated / (G_Ic w new crack) - 1| from the first crack growth of five arm thicknesses on.
+    """|dissipated / (G_Ic w new crack) - 1| from the first growth to the end; none for less than five arm thicknesses.
 
-    Counted from the step at which a whole process zone is already under way, so that the zone, which travels with the
-    crack, drops out of the difference but for its slow change of length.
+    Counted from the first open point on, when a whole process zone is already under way: it travels with the crack and
+    drops out of the difference, but for its slow change of length and the distance of the points that see the crack.
     """
     crack = np.maximum.accumulate(steps["crack_length"])
     grown = np.flatnonzero(crack > scene.specimen.precrack)
@@ -139,7 +140,7 @@ def _peak(values: np.ndarray) -> np.ndarray:
 
 def _scale(values: np.ndarray) -> np.ndarray:
     """A divisor: where nothing has happened yet, only nothing may deviate."""
-    return np.where(values > 0, values, np.finfo(float).tiny)
+    return np.where(values == 0, np.finfo(float).tiny, values)
 
 
 def _worst(deviation: np.ndarray) -> float:

@@ -135,11 +135,10 @@ def _iga(scene: Scene, method: str, on_step: OnStep) -> Result:
 
 
 def _dolfinx(scene: Scene, method: str, on_step: OnStep) -> Result:
+    from fem_reference.problem import Problem
     from fem_reference.solve import solve_dcb
 
     watch = Stopwatch()
-    from fem_reference.problem import Problem
-
     problem = Problem(degree=scene.dolfinx.degree, elements=scene.dolfinx.elements, **problem_keys(scene, method))
     return _result(method, solve_dcb(problem, on_step=on_step, phase=watch.phase), watch)
 

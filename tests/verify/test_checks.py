@@ -1,0 +1,120 @@
+"""Checks hold for a good run and fail as soon as one of its columns is wrong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from verify.checks import law_of, loading, run_checks
+from verify.crosschecks import cross_checks
+from verify.methods import solve
+from verify.result import Result, steps_from_rows
+from verify.scene import Scene, load_scene
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return load_scene("dcb-czm1-linear", ["discretization.steps=60"])
+
+
+@pytest.fixture(scope="module")
+def beam(scene: Scene) -> Result:
+    """The cohesive beam satisfies the identities to rounding; it lacks reactions and moments, which are zero here."""
+    result = solve(scene, "beam")
+    zero = np.zeros_like(result.load)
+    moments = {"load_moment": zero, "interface_moment": zero, "reaction_x": zero, "reaction_y": zero}
+    return replace(result, steps={**result.steps, **moments})
+
+
+def failed(scene: Scene, result: Result) -> set[str]:
+    return {check.name for check in run_checks(scene, result) if not check.passed}
+
+
+def changed(result: Result, name: str, factor: float = 1.0, shift: float = 0.0) -> Result:
+    return replace(result, steps={**result.steps, name: factor * result.steps[name] + shift})
+
+
+def test_a_good_run_passes_all_checks(scene: Scene, beam: Result) -> None:
+    checks = run_checks(scene, beam)
+    assert {check.name for check in checks} == {
+        "completed", "j-integral", "energy-ledger", "interface-force", "moment-balance", "reactions", "dissipation"
+    }  # fmt: skip
+    assert all(check.passed for check in checks), [c for c in checks if not c.passed]
+    assert all(check.kind == "exact" for check in checks)
+    assert next(check for check in checks if check.name == "j-integral").value < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("column", "factor", "shift", "broken"),
+    [
+        ("load", 1.01, 0.0, {"j-integral", "interface-force"}),
+        ("face_slope_top", 1.02, 0.0, {"j-integral"}),
+        ("tip_opening", 0.95, 0.0, {"j-integral"}),
+        ("stored_energy", 1.02, 0.0, {"energy-ledger"}),
+        ("external_work", 0.98, 0.0, {"energy-ledger"}),
+        ("dissipated_energy", 1.05, 0.0, {"energy-ledger", "dissipation"}),
+        ("interface_force", 1.0, 1e-7, {"interface-force"}),
+        ("interface_force", 1.0 + 1e-7, 0.0, {"interface-force"}),
+        ("interface_moment", 1.0, 1e-6, {"moment-balance"}),
+        ("reaction_y", 1.0, 1e-7, {"reactions"}),
+        ("opening", 0.99, 0.0, {"completed"}),
+        ("load", np.nan, 0.0, {"j-integral", "interface-force", "moment-balance", "reactions"}),
+    ],
+)
+def test_a_wrong_column_fails_its_checks(
+    scene: Scene, beam: Result, column: str, factor: float, shift: float, broken: set[str]
+) -> None:
+    assert failed(scene, changed(beam, column, factor, shift)) == broken
+
+
+def test_one_wrong_step_is_enough(scene: Scene, beam: Result) -> None:
+    load = beam.load.copy()
+    load[len(load) // 2] *= 1.01
+    assert {"j-integral", "interface-force"} <= failed(scene, replace(beam, steps={**beam.steps, "load": load}))
+
+
+def test_a_check_without_its_columns_is_left_out(scene: Scene, beam: Result) -> None:
+    steps = {name: column for name, column in beam.steps.items() if name not in ("tip_opening", "reaction_x")}
+    names = {check.name for check in run_checks(scene, replace(beam, steps=steps))}
+    assert "j-integral" not in names and "reactions" not in names and "energy-ledger" in names
+
+
+def test_an_empty_run_has_not_completed(scene: Scene) -> None:
+    empty = Result("nurbs", steps_from_rows([]), "stopped: at once")
+    assert failed(scene, empty) == {"completed"}
+
+
+def test_unloading_steps_do_not_count_for_j() -> None:
+    """Up, down and up again: damage grows on the way to a new maximum; before any there is nothing to unload."""
+    steps = {"dissipated_energy": np.array([0.0, 0.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0])}
+    assert loading(steps).tolist() == [True, True, True, True, False, False, False, True]
+
+
+def test_the_law_encloses_its_toughness(scene: Scene) -> None:
+    law = law_of(scene)
+    assert law.area(law.g_open) == pytest.approx(scene.interface.toughness, rel=1e-14)
+
+
+def test_codes_are_held_against_beam_and_each_other(scene: Scene, beam: Result) -> None:
+    results = {name: replace(beam, method=name) for name in ("nurbs", "lagrange", "dolfinx", "beam", "lefm")}
+    checks = cross_checks(scene, results)
+    assert {(c.name, c.subject, c.kind, c.tolerance) for c in checks} == {
+        ("beam-curve", "nurbs / beam", "analytical", 0.002),
+        ("beam-curve", "dolfinx / beam", "analytical", 0.002),
+        ("beam-curve", "lagrange / beam", "analytical", 0.02),
+        ("curve", "nurbs / dolfinx", "cross-code", 0.005),
+        ("peak", "nurbs / dolfinx", "cross-code", 0.005),
+        ("curve", "lagrange / dolfinx", "cross-code", 0.02),
+        ("peak", "lagrange / dolfinx", "cross-code", 0.02),
+    }
+    assert all(check.value == 0.0 for check in checks)
+    results["nurbs"] = changed(results["nurbs"], "load", 1.01)
+    wrong = {(c.name, c.subject) for c in cross_checks(scene, results) if not c.passed}
+    assert wrong == {("beam-curve", "nurbs / beam"), ("curve", "nurbs / dolfinx"), ("peak", "nurbs / dolfinx")}
+
+
+def test_fracture_mechanics_is_no_target(scene: Scene, beam: Result) -> None:
+    lefm = solve(scene, "lefm")
+    assert cross_checks(scene, {"lefm": lefm, "beam": beam}) == ()

@@ -1,0 +1,171 @@
+"""The folder of a run: its contract with other people's scripts, and what survives when a run does not."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from verify.folder import read_columns, read_result, write_json
+from verify.result import CURVE_COLUMNS, Result, Snapshot, steps_from_rows
+from verify.run import run
+from verify.scene import Scene, load_scene
+from verify.timing import Stopwatch
+
+HEADER = "opening,load,crack_length,stored_energy,dissipated_energy,external_work,newton_iterations"
+RESULT_KEYS = {
+    "scene", "method", "dofs", "elements", "steps", "newton_iterations", "rejected_steps", "peak_load", "peak_opening",
+    "seconds", "peak_memory_mb", "effects", "checks", "versions", "machine", "threads", "status",
+}  # fmt: skip
+SECONDS_KEYS = ["mesh", "basis", "assembly", "factor", "solve", "other", "total"]
+PROJECT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def scene() -> Scene:
+    return load_scene("dcb-czm1-linear")
+
+
+def rows_to(opening: float, n: int = 5) -> list[dict[str, float]]:
+    """An elastic run of stiffness 2: load = 2 opening."""
+    return [
+        {
+            **dict.fromkeys(CURVE_COLUMNS, 0.0),
+            "opening": d, "load": 2 * d, "crack_length": 4.0, "stored_energy": d * d, "external_work": d * d,
+            "newton_iterations": 2.0 if d else 0.0, "tip_opening": 0.1 * d,
+        }
+        for d in np.linspace(0.0, opening, n + 1)
+    ]  # fmt: skip
+
+
+def stub(scene: Scene, method: str, on_step) -> Result:
+    """A solver that needs no time."""
+    rows = rows_to(scene.load.opening[-1])
+    for row in rows:
+        on_step(row)
+    fields = {"s_q": np.arange(3.0), "gap_q": np.ones(3), "traction_q": np.ones(3), "damage_q": np.zeros(3)}
+    grids = {"X_euvi": np.zeros((2, 3, 3, 2)), "u_euvi": np.ones((2, 3, 3, 2)), "stress_euv": np.ones((2, 3, 3))}
+    snapshots = (Snapshot(1.0, 2.0, **fields, **grids), Snapshot(3.0, 6.0, **fields, **grids))
+    seconds = Stopwatch().seconds()
+    return Result(method, steps_from_rows(rows), dofs=1956, elements=222, snapshots=snapshots, seconds=seconds)
+
+
+def failing(error: BaseException):
+    """A solver that comes to opening 1 and then raises."""
+
+    def solve(scene: Scene, method: str, on_step) -> Result:
+        for row in rows_to(1.0):
+            on_step(row)
+        raise error
+
+    return solve
+
+
+def test_curve_csv_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
+    run(scene, "nurbs", tmp_path, solver=stub)
+    lines = (tmp_path / "curve.csv").read_text().splitlines()
+    assert lines[0] == HEADER
+    assert [float(cell) for cell in lines[1].split(",")] == [0.0] * 7
+    assert len(lines) == 2 + 5
+    assert float(lines[2].split(",")[0]) == float(np.linspace(0.0, 3.0, 6)[1])  # 17 digits: nothing is lost
+
+
+def test_result_json_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
+    run(scene, "nurbs", tmp_path, solver=stub)
+    about = json.loads((tmp_path / "result.json").read_text())
+    assert set(about) == RESULT_KEYS
+    assert list(about["seconds"]) == SECONDS_KEYS
+    assert all(set(check) == {"value", "tolerance", "kind", "passed"} for check in about["checks"].values())
+    assert about["steps"] == 5 and about["newton_iterations"] == 10
+    assert about["peak_load"] == 6.0 and about["peak_opening"] == 3.0
+    assert about["status"] == "complete" and about["scene"]["interface"]["strength"] == 4.0
+
+
+def test_a_run_is_read_back_as_it_was(scene: Scene, tmp_path: Path) -> None:
+    written, _ = run(scene, "nurbs", tmp_path, keep_fields=True, solver=stub)
+    read = read_result(tmp_path)
+    assert set(read.steps) == set(written.steps)
+    assert all(np.array_equal(read.steps[name], written.steps[name]) for name in read.steps)
+    assert [s.opening for s in read.snapshots] == [1.0, 3.0]
+    assert np.array_equal(read.snapshots[1].u_euvi, written.snapshots[1].u_euvi)
+    assert (read.method, read.dofs, read.elements, read.status) == ("nurbs", 1956, 222, "complete")
+
+
+def test_fields_are_kept_only_when_asked_for(scene: Scene, tmp_path: Path) -> None:
+    run(scene, "nurbs", tmp_path, solver=stub)
+    assert not (tmp_path / "fields.npz").exists()
+
+
+def test_an_error_in_a_solver_leaves_a_valid_partial_run(scene: Scene, tmp_path: Path) -> None:
+    result, checks = run(scene, "nurbs", tmp_path, solver=failing(RuntimeError("no luck")))
+    assert result.status.startswith("stopped: RuntimeError: no luck")
+    assert read_columns(tmp_path / "curve.csv")["opening"][-1] == 1.0
+    assert "Traceback" in (tmp_path / "error.log").read_text()
+    assert not next(check for check in checks if check.name == "completed").passed
+
+
+def test_an_interrupt_is_recorded_and_passed_on(scene: Scene, tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        run(scene, "nurbs", tmp_path, solver=failing(KeyboardInterrupt()))
+    assert json.loads((tmp_path / "result.json").read_text())["status"] == "stopped: interrupted"
+    assert len(read_columns(tmp_path / "curve.csv")["load"]) == 6
+
+
+def test_a_killed_run_leaves_a_valid_shorter_curve_and_no_old_result(scene: Scene, tmp_path: Path) -> None:
+    run(scene, "nurbs", tmp_path, solver=stub)
+    endless = (
+        "import sys, time; from pathlib import Path; from verify.run import run; from verify.scene import load_scene\n"
+        "def solve(scene, method, on_step):\n"
+        "    for i in range(10**9):\n"
+        "        on_step(dict(opening=i / 7, load=i / 3, crack_length=4.0, stored_energy=0.0, dissipated_energy=0.0,\n"
+        "                     external_work=0.0, newton_iterations=3.0))\n"
+        "run(load_scene('dcb-czm1-linear'), 'nurbs', Path(sys.argv[1]), solver=solve)"
+    )
+    environment = os.environ | {"PYTHONPATH": str(PROJECT)}
+    process = subprocess.Popen([sys.executable, "-c", endless, str(tmp_path)], env=environment)
+    curve = tmp_path / "curve.csv"
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline and curve.read_text().count("\n") < 500:
+        time.sleep(0.01)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    with curve.open() as stream:
+        header, *rows = csv.reader(stream)
+    assert ",".join(header) == HEADER
+    assert len(rows) > 400 and all(len(row) == 7 for row in rows)
+    assert np.all(np.diff(read_columns(curve)["opening"]) > 0)
+    assert not (tmp_path / "result.json").exists()
+    assert read_result(tmp_path).status == "stopped: the run was killed"
+
+
+def test_json_has_no_nan_and_is_whole_or_absent(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    write_json(path, {"a": float("nan"), "b": [np.float64(2.5), float("inf")], "c": np.bool_(True)})
+    assert json.loads(path.read_text()) == {"a": None, "b": [2.5, None], "c": True}
+    with pytest.raises(TypeError):
+        write_json(path, {"a": object()})
+    assert json.loads(path.read_text())["c"] is True
+    assert [p.name for p in tmp_path.iterdir()] == ["a.json"]
+
+
+def test_nested_phases_count_once() -> None:
+    watch = Stopwatch()
+    with watch.phase("assembly"):
+        time.sleep(0.02)
+        with watch.phase("factor"):
+            time.sleep(0.03)
+    with watch.phase("strange"):
+        time.sleep(0.01)
+    seconds = watch.seconds()
+    assert list(seconds) == SECONDS_KEYS
+    assert 0.015 < seconds["assembly"] < seconds["total"] - seconds["factor"]
+    assert seconds["factor"] >= 0.03 and seconds["other"] >= 0.01
+    assert sum(seconds.values()) - seconds["total"] == pytest.approx(seconds["total"])

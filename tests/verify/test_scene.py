@@ -1,0 +1,233 @@
+"""Scene files: what is taken, and what is refused with which words."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from verify.effects import end_rotation, simulated
+from verify.scene import Isotropic, Orthotropic, Scene, SceneError, load_scene, packaged_scenes, parse_scene
+
+MINIMAL = """
+[specimen]
+kind = "dcb"
+length = 14
+arm_thickness = 0.2
+precrack = 4
+[material]
+young = 120e3
+poisson = 0.2
+[interface]
+strength = 4
+toughness = 0.1
+[load]
+opening = 3
+"""
+
+#: override -> the sentence that must come
+BROKEN = {
+    "interface.strength=-4": "interface.strength: must be > 0, got -4",
+    'interface.strength="4"': "interface.strength: must be a number > 0, got '4'",
+    "interface.strength=true": "interface.strength: must be a number > 0, got true",
+    "interface.strength=nan": "interface.strength: must be a number > 0, got nan",
+    "interface.toughness=inf": "interface.toughness: must be a number > 0, got inf",
+    "interface.ductility=1": "interface.ductility: must be > 1, got 1",
+    "interface.penalty=0": "interface.penalty: must be > 0, got 0",
+    "interface.law=exponential": "interface.law: must be \"bilinear\", got 'exponential'",
+    "interface.strenght=6": 'interface.strenght: is not a key of a scene, got 6; did you mean "strength"?',
+    "interfce.strength=6": 'interfce: is not a key of a scene, got {\'strength\': 6}; did you mean "interface"?',
+    "specimen.kind=peel": "specimen.kind: must be \"dcb\", got 'peel'",
+    "specimen.precrack=14": "specimen.precrack: must be < specimen.length = 14, got 14",
+    "specimen.plane=flat": 'specimen.plane: must be "stress" or "strain", got \'flat\'',
+    "material.poisson=0.5": "material.poisson: must be > -1 and < 0.5, got 0.5",
+    "material={E1=4.0, E2=1.0, G12=1.0, nu12=2.0}": (
+        "material.nu12: must be > -2 and < 2, that is |nu12| < sqrt(E1/E2), got 2"
+    ),
+    "material={E1=4.0, E2=1.0, G12=1.0}": "material.nu12: is missing, must be a number",
+    "load.opening=0": "load.opening: must be different from the opening before it (the first one: from 0), got 0",
+    "load.opening=[]": "load.opening: must be a number, or a list of at least one number, got []",
+    "load.opening=[1.0, 1.0]": (
+        "load.opening[1]: must be different from the opening before it (the first one: from 0), got 1"
+    ),
+    "load.opening=[1.0, -0.5]": "load.opening[1]: must be >= -0.4 (-2 arm_thickness) and <= 28 (2 length), got -0.5",
+    'load.opening=[1.0, "x"]': "load.opening[1]: must be a number, got 'x'",
+    "effects.kinematics=large": 'effects.kinematics: must be "linear", "finite" or "auto", got \'large\'',
+    "effects.symmetry=1": "effects.symmetry: must be true or false, got 1",
+    "discretization.degree=6": "discretization.degree: must be >= 1 and <= 5, got 6",
+    "discretization.degree=3.0": "discretization.degree: must be an integer >= 1 and <= 5, got 3.0",
+    "discretization.interface_points=13": "discretization.interface_points: must be >= 1 and <= 12, got 13",
+    "discretization.interface_rule=lumped": (
+        'discretization.interface_rule: must be "gauss" or "lobatto" ("lumped" is not available yet), got \'lumped\''
+    ),
+    "discretization.steps=0": "discretization.steps: must be >= 1 and <= 100000, got 0",
+    "dolfinx.degree=5": "dolfinx.degree: must be >= 1 and <= 4, got 5",
+    "dolfinx=3": "dolfinx: must be a table of degree, elements, got 3",
+    "units=3": "units: must be a text, got 3",
+    "name=../up": "--set name=../up: the value must be TOML, like 6, true or [1.0, 0.2], got '../up'",
+    'name="../up"': (
+        "name: must be 1 to 80 letters, digits, dots, dashes and underscores, a letter or digit first, got '../up'"
+    ),
+    "interface.strength": '--set interface.strength: must be KEY=VALUE with a dotted key, like "interface.strength=6"',
+    "a b=3": '--set a b=3: must be KEY=VALUE with a dotted key, like "interface.strength=6"',
+}
+
+
+def sentences(source: str | Path, *overrides: str) -> tuple[str, ...]:
+    with pytest.raises(SceneError) as caught:
+        load_scene(source, overrides)
+    return caught.value.sentences
+
+
+def minimal(folder: Path) -> Path:
+    path = folder / "mine.toml"
+    path.write_text(MINIMAL)
+    return path
+
+
+def test_a_useful_scene_is_short(tmp_path: Path) -> None:
+    scene = load_scene(minimal(tmp_path))
+    assert scene.name == "mine"
+    assert scene.load.opening == (3.0,)
+    assert scene.interface.penalty == pytest.approx(1e5)  # a hundred initial stiffnesses of p_max / g_max = 1000
+    assert scene.discretization.steps == 150
+
+
+def test_packaged_scenes_are_those_of_the_paper() -> None:
+    names = {"dcb-czm1", "dcb-czm2", "dcb-czm1-linear", "dcb-czm2-linear"}
+    assert names <= set(packaged_scenes())
+    for name in names:
+        scene = load_scene(name)
+        assert scene.name == name
+        assert scene.interface.strength == (4.0 if "czm1" in name else 6.0)
+        assert scene.effects.kinematics == ("linear" if "linear" in name else "finite")
+
+
+@pytest.mark.parametrize("override", BROKEN)
+def test_a_broken_scene_is_refused_with_key_range_and_value(override: str) -> None:
+    assert sentences("dcb-czm1", override) == (BROKEN[override],)
+
+
+def test_everything_that_is_wrong_is_said_at_once() -> None:
+    wrong = ["interface.strength=-4", "specimen.precrack=20", "load.opening=[1.0, 99, 99]", "dolfinx.degree=0", "x"]
+    keys = [sentence.split(":")[0] for sentence in sentences("dcb-czm1", *wrong)]
+    assert keys == ["--set x", "specimen.precrack", "interface.strength", "load.opening[2]", "dolfinx.degree"]
+
+
+def test_keys_of_the_other_material_are_refused() -> None:
+    assert sentences("dcb-czm1", "material.E1=4.0")[-2:] == (
+        "material.young: is not a key of a scene, got 120000.0; the keys here are E1, E2, G12, nu12",
+        "material.poisson: is not a key of a scene, got 0.2; the keys here are E1, E2, G12, nu12",
+    )
+
+
+def test_a_missing_key_is_named_with_its_range(tmp_path: Path) -> None:
+    path = minimal(tmp_path)
+    path.write_text(MINIMAL.replace("strength = 4", ""))
+    assert sentences(path) == ("interface.strength: is missing, must be a number > 0",)
+
+
+def test_an_empty_file_is_no_scene() -> None:
+    assert [s.split(":")[0] for s in sentences("/dev/null")] == ["specimen", "material", "interface", "load"]
+
+
+def test_another_specimen_is_refused_by_its_kind_alone(tmp_path: Path) -> None:
+    path = tmp_path / "peel.toml"
+    path.write_text(
+        '[specimen]\nkind = "peel"\nstrip_length = 150\n[strip]\nyoung = 1\n[interface]\nstrength = 6\ntoughness = 1\n'
+    )
+    kind, load = sentences(path)
+    assert kind == "specimen.kind: must be \"dcb\", got 'peel'"
+    assert load.startswith("load: is missing")
+
+
+def test_a_syntax_error_names_file_and_line(tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_text("name = 'x'\n[specimen\nlength = 3\n")
+    with pytest.raises(SceneError, match=r"bad\.toml:2:\n.*is not TOML"):
+        load_scene(path)
+
+
+def test_a_misspelt_scene_gets_a_suggestion() -> None:
+    assert '"dcb-czm1"' in sentences("dcb-cmz1")[0]
+    assert "the packaged scenes are dcb-czm1," in sentences("zzz")[0]
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe\x00", b"a = " + b"9" * 5000, b"a = " + b"[" * 5000])
+def test_files_that_no_parser_likes_are_refused(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "odd.toml"
+    path.write_bytes(content)
+    assert sentences(path)
+
+
+def test_unreadable_places_are_refused(tmp_path: Path) -> None:
+    assert sentences(tmp_path) == ("cannot be read: Is a directory",)
+    assert sentences("a\0b")
+
+
+def test_plane_strain_narrows_the_orthotropic_range() -> None:
+    """In plane strain E3 = E2 and nu23 = nu12: for E1 = E2 the isotropic bounds -1 and 1/2."""
+    override = "material={E1=1.0, E2=1.0, G12=1.0, nu12=0.6}"
+    assert load_scene("dcb-czm1", [override]).material.nu12 == 0.6
+    assert sentences("dcb-czm1", override, "specimen.plane=strain") == (
+        "material.nu12: must be > -1 and < 0.5 in plane strain, got 0.6",
+    )
+
+
+def test_a_scene_cannot_change() -> None:
+    with pytest.raises(Exception, match="frozen"):
+        load_scene("dcb-czm1").interface.strength = 3.0
+
+
+def test_a_scene_survives_being_written_down() -> None:
+    scene = load_scene("dcb-czm1", ["load.opening=[1.0, 0.2, 3.0]"])
+    assert parse_scene(scene.model_dump()) == scene
+
+
+def test_automatic_kinematics_follows_the_rotation() -> None:
+    scene = load_scene("dcb-czm1", ["effects.kinematics=auto"])
+    assert simulated(scene, "nurbs")["kinematics"] == "finite"
+    small = load_scene("dcb-czm1", ["effects.kinematics=auto", "load.opening=0.1"])
+    assert simulated(small, "nurbs")["kinematics"] == "linear"
+    # on the precrack theta = 3 Delta / (4 a); with the crack grown to 11.28 (by a^2 = 3/2 Delta sqrt(EI / wG)) 0.1994
+    assert end_rotation(small) == pytest.approx(0.75 * 0.1 / 4)
+    assert end_rotation(scene) == pytest.approx(0.1994, rel=1e-3)
+
+
+values = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8) | st.just(10**400) | st.just("dcb"),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=6), inner, max_size=3),
+    max_leaves=6,
+)
+tables = {name: getattr(field.annotation, "model_fields", {}) for name, field in Scene.model_fields.items()}
+tables["material"] = Isotropic.model_fields | Orthotropic.model_fields
+places = [*tables, "nonsense", *(f"{table}.{key}" for table, keys in tables.items() for key in [*keys, "nonsense"])]
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.lists(st.tuples(st.sampled_from(places), values), max_size=4))
+def test_no_dictionary_raises_anything_but_a_scene_error(changes: list[tuple[str, object]]) -> None:
+    raw: dict = tomllib.loads(MINIMAL)
+    for place, value in changes:
+        table, _, key = place.rpartition(".")
+        target = raw if not table else raw.setdefault(table, {})
+        if isinstance(target, dict):
+            target[key] = value
+    try:
+        scene = parse_scene(raw)
+    except SceneError as error:
+        assert all(": " in sentence for sentence in error.sentences)
+    else:
+        assert scene == parse_scene(scene.model_dump())
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.text(max_size=40))
+def test_no_override_raises_anything_but_a_scene_error(text: str) -> None:
+    try:
+        load_scene("dcb-czm1", [text])
+    except SceneError:
+        pass
