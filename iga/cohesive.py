@@ -56,9 +56,9 @@ class BilinearLaw:
         """Which points are in contact; one whose gap is below rounding stays on the side where it was.
 
         Far ahead of a crack the gaps alternate in sign while they decay below rounding. Deciding there anew in every Newton
-        iteration sets penalty against cohesion for ever; on either side the traction is the same to 1e-9 of the strength.
+        iteration sets penalty against cohesion for ever; on either side the traction is the same to 1e-8 of the strength.
         """
-        tiny = 1e-9 * self.strength / max(self.penalty, self.stiffness)
+        tiny = 1e-8 * self.strength / max(self.penalty, self.stiffness)
         return np.where(np.abs(g) <= tiny, was_closed, g < 0.0) & self.contact
 
     def traction(self, g: np.ndarray, k: np.ndarray, closed: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

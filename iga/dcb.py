@@ -163,7 +163,7 @@ def solve(problem: Problem, on_step: Callable[[Mapping[str, float]], None] | Non
         if isinstance(item, End):
             end = item
             continue
-        rows.append(row(specimen, item, rows[-1] if rows else None))
+        rows.append(row(specimen, item))
         if on_step is not None:
             on_step(rows[-1])
         if wanted and item.opening >= wanted[0]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,12 +40,8 @@ class Specimen:
     probe: Interface
 
 
-def row(specimen: Specimen, point: Point, before: Mapping[str, float] | None) -> dict[str, float]:
-    """Numbers of one converged point; forces and energies for the whole width, ``face_energy`` per unit width.
-
-    ``external_work`` goes on from the row ``before`` by the cubic Hermite rule with the exact path slopes,
-    ``h/2 (P0 + P1) + h^2/12 (P0' - P1')``, whose error is of fourth order.
-    """
+def row(specimen: Specimen, point: Point) -> dict[str, float]:
+    """Numbers of one converged point; forces and energies for the whole width, ``face_energy`` per unit width."""
     system, state, response = specimen.system, point.state, point.response
     cohesive, contact_energy, dissipated = (
         float(system.interface.dA_q @ e) for e in system.interface.law.energies(response.contact.g_q, state.k_q)
@@ -59,7 +54,7 @@ def row(specimen: Specimen, point: Point, before: Mapping[str, float] | None) ->
         "crack_length": crack_length(specimen, state.k_q),
         "stored_energy": response.bulk_energy + cohesive + contact_energy,
         "dissipated_energy": dissipated,
-        "external_work": _work(point, before),
+        "external_work": point.external_work,
         "newton_iterations": point.iterations,
         "load_slope": point.slope,
         "tip_opening": tip_opening(specimen, point),
@@ -136,11 +131,3 @@ def _balance(specimen: Specimen, point: Point) -> dict[str, float]:
         "load_moment": x_face * state.load,
         "interface_moment": float(np.sum(x_qi[:, 1] * pull_qi[:, 0] - x_qi[:, 0] * pull_qi[:, 1])),
     }
-
-
-def _work(point: Point, before: Mapping[str, float] | None) -> float:
-    if before is None:
-        return 0.0
-    h = point.opening - before["opening"]
-    mean = 0.5 * h * (before["load"] + point.state.load)
-    return before["external_work"] + mean + h * h / 12.0 * (before["load_slope"] - point.slope)

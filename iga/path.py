@@ -2,6 +2,9 @@
 
 Unknowns are the displacements and the load. Equilibrium ``internal(u) = load f`` is bordered by one scalar control equation; one
 factorisation serves both right-hand sides. A further control is one more function like `opening_control`.
+
+While damage grows the opening of the cohesive front is prescribed, so that the path is followed through snap-backs; otherwise
+the opening of the specimen is.
 """
 
 from __future__ import annotations
@@ -12,17 +15,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.banded import BandLU
+from iga.quadrature import gauss
 from iga.system import Phase, Response, State, System, factorise, respond, untimed
 
-#: Value of a control at a state, and its gradient with respect to u (n_dof,) and to the load.
-Control = Callable[[State], tuple[float, np.ndarray, float]]
+#: Value of a control at a state with its response, and its gradient with respect to u (n_dof,).
+Control = Callable[[State, Response], tuple[float, np.ndarray]]
 
 
 @dataclass(frozen=True)
 class Newton:
     """Tolerance on the residual relative to the forces in play, and limits."""
 
-    tolerance: float = 1e-11
+    tolerance: float = 2e-11
     iterations: int = 25
     halvings: int = 5
 
@@ -31,7 +35,8 @@ class Newton:
 class Point:
     """A converged point of the path, its history committed.
 
-    ``slope`` is d load / d opening and ``du_d`` is du / d opening along the path, from the tangent at this very point.
+    ``slope`` is d load / d opening and ``du_d`` is du / d opening along the path, from the tangent at this very point;
+    ``external_work`` is the integral of the load over the opening along the path.
     ``residuals`` are the norms that Newton went through, relative to the scale of the forces.
     """
 
@@ -40,6 +45,7 @@ class Point:
     opening: float
     slope: float
     du_d: np.ndarray
+    external_work: float
     iterations: int
     residuals: tuple[float, ...]
 
@@ -55,10 +61,27 @@ class End:
 def opening_control(system: System) -> Control:
     """Mean opening of the loaded faces."""
 
-    def control(state: State) -> tuple[float, np.ndarray, float]:
-        return float(system.load_d @ state.u_d), system.load_d, 0.0
+    def control(state: State, response: Response) -> tuple[float, np.ndarray]:
+        return float(system.load_d @ state.u_d), system.load_d
 
     return control
+
+
+def gap_control(point: int) -> Control:
+    """Gap at one quadrature point of the interface."""
+
+    def control(state: State, response: Response) -> tuple[float, np.ndarray]:
+        return float(response.contact.g_q[point]), response.contact.G_qd[[point]].toarray()[0]
+
+    return control
+
+
+def front(system: System, point: Point) -> int | None:
+    """The most open quadrature point that still carries traction, once it is damaged: the front of the crack."""
+    law, g_q = system.interface.law, point.response.contact.g_q
+    alive = np.where((point.state.k_q > law.g_max) & (point.state.k_q < law.g_u), g_q, -np.inf)
+    most = int(np.argmax(alive))
+    return most if alive[most] > 0.0 else None
 
 
 def follow(
@@ -69,22 +92,23 @@ def follow(
     Parameters
     ----------
     programme : openings to be reached one after the other, from zero.
-    steps : number of equal increments asked for over the whole programme; a step that fails is halved, down to 1/1024, and
-        grows again afterwards.
+    steps : number of steps asked for over the whole programme; one that fails is halved, down to 1/1024, and grows again
+        afterwards.
     """
     largest = float(np.sum(np.abs(np.diff([0.0, *programme])))) / steps
-    control, step, rejected = opening_control(system), largest, 0
+    step, rejected = largest, 0
     point = _start(system, phase)
     yield point
     for goal in programme:
-        while point.opening != goal:
-            left = goal - point.opening
-            target = goal if abs(left) < 1.001 * step else point.opening + np.copysign(step, left)
-            reached = _advance(system, point, control, target, newton, phase)
+        loading = goal > point.opening
+        while point.opening != goal and not (loading and point.opening > goal):
+            control, change, exact = _choose(system, point, goal, step, step / largest, loading)
+            reached = _advance(system, point, control, change, newton, phase)
             if reached is not None:
-                point = replace(reached, opening=target)
+                moved = abs(reached.opening - point.opening)
+                point = replace(reached, opening=goal) if exact else reached
                 yield point
-                step = min(2.0 * step, largest) if reached.iterations <= 8 else step
+                step = min(step * min(max(largest / (moved or largest), 0.5), 2.0), largest)
                 continue
             rejected, step = rejected + 1, 0.5 * step
             if step < largest / 1024:
@@ -93,24 +117,42 @@ def follow(
     yield End("complete", rejected)
 
 
+def _choose(
+    system: System, point: Point, goal: float, step: float, fraction: float, loading: bool
+) -> tuple[Control, float, bool]:
+    """Control of the next step, the change asked of it, and whether it ends exactly on the goal.
+
+    The front moves on by at most a quarter of g_u, and by no more than changes the opening by ``step``.
+    """
+    left, q = goal - point.opening, front(system, point) if loading else None
+    if q is None or 0.0 < left < step and fraction == 1.0:
+        exact = abs(left) < 1.001 * step
+        return opening_control(system), left if exact else np.copysign(step, left), exact
+    gap_rate = float((point.response.contact.G_qd[[q]] @ point.du_d)[0])
+    change = min(0.25 * fraction * system.interface.law.g_u, abs(gap_rate) * step)
+    return gap_control(q), change, False
+
+
 def _start(system: System, phase: Phase) -> Point:
     state = system.start()
     with phase("assembly"):
         response = respond(system, state)
-    point = _point(system, state, response, 0, (), phase)
+    point = _point(system, state, response, (), phase)
     if point is None:
         raise ValueError("the unloaded system is singular: the supports or the interface do not hold the bodies")
     return point
 
 
-def _advance(system: System, point: Point, control: Control, target: float, newton: Newton, phase: Phase) -> Point | None:
+def _advance(system: System, point: Point, control: Control, change: float, newton: Newton, phase: Phase) -> Point | None:
     """One step by Newton from the tangent predictor; None where it does not converge. Nothing is committed before the end."""
-    d_opening = target - point.opening
+    value, a_d = control(point.state, point.response)
+    target = value + change
+    d_opening = change / float(a_d @ point.du_d)
     old = point.state
     trial = replace(old, u_d=old.u_d + d_opening * point.du_d, load=old.load + d_opening * point.slope)
     trial, response, norm = _evaluate(system, trial, phase)
     residuals = [norm]
-    while norm > newton.tolerance:
+    while norm > newton.tolerance or not _met(control(trial, response)[0], target, change, newton.tolerance):
         if len(residuals) > newton.iterations or not np.isfinite(norm):
             return None
         with phase("factor"):
@@ -121,8 +163,32 @@ def _advance(system: System, point: Point, control: Control, target: float, newt
             du_d, d_load = _correction(system, trial, response, lu, control, target)
         trial, response, norm = _search(system, trial, du_d, d_load, norm, newton.halvings, phase)
         residuals.append(norm)
-    state = replace(trial, k_q=response.k_q)
-    return _point(system, state, response, len(residuals), tuple(residuals), phase)
+    reached = _point(system, replace(trial, k_q=response.k_q), response, tuple(residuals), phase)
+    if reached is None:
+        return None
+    rates = (1.0 / float(a_d @ point.du_d), 1.0 / float(control(trial, response)[1] @ reached.du_d))
+    return replace(reached, external_work=point.external_work + _work(point, reached, change, rates))
+
+
+def _work(start: Point, end: Point, change: float, rates: tuple[float, float]) -> float:
+    """Integral of the load over the opening along one step, both cubic Hermite curves over the controlled quantity.
+
+    ``change`` is the step of that quantity and ``rates`` the derivative of the opening by it at both ends. Unlike a rule over the
+    opening it holds where the path turns back. Its error is of fourth order; three Gauss points integrate it exactly.
+    """
+    s, w = gauss(3)
+    values = np.stack([(1 + 2 * s) * (1 - s) ** 2, s * s * (3 - 2 * s)])
+    slopes = np.stack([s * (1 - s) ** 2, s * s * (s - 1)])
+    d_values = np.stack([6 * s * (s - 1), 6 * s * (1 - s)])
+    d_slopes = np.stack([(1 - s) * (1 - 3 * s), s * (3 * s - 2)])
+    d_opening = change * np.array(rates)
+    load = np.array([start.state.load, end.state.load]) @ values + d_opening * [start.slope, end.slope] @ slopes
+    d_opening_ds = np.array([start.opening, end.opening]) @ d_values + d_opening @ d_slopes
+    return float(np.sum(w * load * d_opening_ds))
+
+
+def _met(value: float, target: float, change: float, tolerance: float) -> bool:
+    return abs(value - target) <= max(1e-6 * abs(change), tolerance * abs(target))
 
 
 def _evaluate(system: System, trial: State, phase: Phase) -> tuple[State, Response, float]:
@@ -145,8 +211,8 @@ def _correction(
     """Bordered step: ``du = v + z d_load`` with K v = -r, K z = f, and d_load from the linearised control."""
     residual_d = response.internal_d - trial.load * system.load_d
     v, z = lu.solve(np.stack([-residual_d, system.load_d], -1)).T
-    value, a_d, b = control(trial)
-    d_load = (target - value - a_d @ v) / (a_d @ z + b)
+    value, a_d = control(trial, response)
+    d_load = (target - value - a_d @ v) / (a_d @ z)
     return v + d_load * z, float(d_load)
 
 
@@ -166,9 +232,7 @@ def _search(
     return best
 
 
-def _point(
-    system: System, state: State, response: Response, iterations: int, residuals: tuple[float, ...], phase: Phase
-) -> Point | None:
+def _point(system: System, state: State, response: Response, residuals: tuple[float, ...], phase: Phase) -> Point | None:
     """The converged point with its exact path tangent ``K du = f d_load``, scaled to a unit change of the opening."""
     with phase("factor"):
         lu = factorise(response)
@@ -178,7 +242,7 @@ def _point(
         z_d = lu.solve(system.load_d[:, None])[:, 0]
     slope = 1.0 / float(system.load_d @ z_d)
     opening = float(system.load_d @ state.u_d)
-    return Point(state, response, opening, slope, slope * z_d, iterations, residuals)
+    return Point(state, response, opening, slope, slope * z_d, 0.0, len(residuals), residuals)
 
 
 def _advice(opening: float) -> str:
