@@ -1,7 +1,9 @@
 """The launcher, without building a root: made-up environments and builders take the place of the slow ones."""
 
+import contextlib
 import importlib.util
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -99,13 +101,12 @@ def test_a_launcher_inside_sets_nothing_up(tmp_path: Path, monkeypatch: pytest.M
     assert not (tmp_path / "cache").exists()
 
 
-def test_second_start_is_fast(cache: Path) -> None:
-    seconds = []
-    for _ in range(3):
-        before = time.perf_counter()
-        assert start("exec", "true").returncode == 0
-        seconds.append(time.perf_counter() - before)
-    assert min(seconds) < 0.5
+@pytest.mark.usefixtures("cache")
+def test_second_start_is_fast() -> None:
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert start("exec", "true").returncode == 0
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 0.5  # whatever else the machine does
 
 
 def test_test_verb() -> None:
@@ -283,13 +284,18 @@ def test_exit_code_of_the_root_passes_through(root: Path, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_signal_reaches_the_program_in_the_root(root: Path, tmp_path: Path, number: signal.Signals) -> None:
-    caught = "import signal, sys, time; signal.signal({0}, lambda *_: sys.exit(5)); print(flush=True); time.sleep(30)"
+    caught = "import signal, sys, time; signal.signal({0}, lambda *_: sys.exit(5)); print(flush=True)\n"
+    caught += "while True: time.sleep(0.05)"
     program = [sys.executable, "-c", caught.format(int(number))]
     script = (
         f"import os, sys; sys.path.insert(0, {str(LAUNCHER)!r}); import bubblewrap; from pathlib import Path\n"
         f"sys.exit(bubblewrap.run_in_root(Path({str(root)!r}), {program!r}, os.environ, Path({str(tmp_path)!r}), ()))"
     )
-    launcher = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE)
-    launcher.stdout.readline()
-    launcher.send_signal(number)
-    assert launcher.wait(timeout=20) == 5
+    launcher = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, start_new_session=True)
+    try:
+        launcher.stdout.readline()
+        launcher.send_signal(number)
+        assert launcher.wait(timeout=20) == 5
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(launcher.pid, signal.SIGKILL)

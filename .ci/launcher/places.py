@@ -28,9 +28,12 @@ DEFAULTS = {
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "OMPI_MCA_hwloc_base_binding_policy": "none",
+}
+OPEN_MPI_5 = {
     "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
     "PRTE_MCA_hwloc_default_binding_policy": "none",
 }
+OPEN_MPI_6 = {"PRTE_MCA_mapby": ":oversubscribe", "PRTE_MCA_bindto": "none"}
 MISLEADING = ("PYTHONHOME", "VIRTUAL_ENV", "PYTHONSTARTUP", "__PYVENV_LAUNCHER__", "PYENV_VERSION")
 MISLEADING_IN_ROOT = ("LD_LIBRARY_PATH", "LD_PRELOAD", "PYTHONPATH", "LANG", "LANGUAGE", "CONDA_PREFIX")
 FIND_DOLFINX = "import sys, importlib.util as u; sys.exit(sys.version_info < (3, 11) or u.find_spec('dolfinx') is None)"
@@ -180,7 +183,9 @@ def follow_parent(base: str, venv: Path) -> None:
 def variables(place: Place) -> dict[str, str]:
     """The environment variables of a program that runs in ``place``; what the user has set stays."""
     drop = {*MISLEADING, *(MISLEADING_IN_ROOT if place.root else ())}
-    env = {**DEFAULTS, **{name: text for name, text in os.environ.items() if name not in drop}}
+    newer = place.root is not None and not any(place.root.glob("usr/lib/*/libprrte.so.3"))
+    defaults = {**DEFAULTS, **(OPEN_MPI_6 if newer else OPEN_MPI_5)}
+    env = {**defaults, **{name: text for name, text in os.environ.items() if name not in drop}}
     threads = env["OMP_NUM_THREADS"]
     env = {"OPENBLAS_NUM_THREADS": threads, "MKL_NUM_THREADS": threads, **env}
     paths = [str(PROJECT), *(env["PYTHONPATH"].split(os.pathsep) if env.get("PYTHONPATH") else [])]
