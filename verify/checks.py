@@ -17,6 +17,9 @@ from verify.verdict import Check
 Steps = Mapping[str, np.ndarray]
 
 J_TOLERANCE = 0.005
+#: Lagrange elements are three times longer at equal unknowns, under three of them in the process zone: there the
+#: deviation measures the mesh and not the solver, and its tolerance is that of the curve.
+J_TOLERANCE_LAGRANGE = 0.02
 ENERGY_TOLERANCE = 0.005
 BALANCE_TOLERANCE = 1e-8
 DISSIPATION_TOLERANCE = 0.02
@@ -29,9 +32,10 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
     ----------
     subject : the name of the run in the report; the method's where empty
     """
+    j_tolerance = J_TOLERANCE_LAGRANGE if result.method == "lagrange" else J_TOLERANCE
     values: list[tuple[str, Callable[[Scene, Steps], float | None], float, str]] = [
         ("completed", _missing_part, 1e-9, "The run reached the end of the load programme."),
-        ("j-integral", j_deviation, J_TOLERANCE, "The J-integral of the specimen is the area under the law."),
+        ("j-integral", j_deviation, j_tolerance, "The J-integral of the specimen is the area under the law."),
         ("energy-ledger", energy_gap, ENERGY_TOLERANCE, "External work is stored or dissipated, nothing is lost."),
         ("interface-force", interface_gap, BALANCE_TOLERANCE, "The interface tractions carry the load."),
         ("moment-balance", moment_gap, BALANCE_TOLERANCE, "Load and interface tractions have equal moments."),

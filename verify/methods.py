@@ -77,12 +77,18 @@ def require(scene: Scene, method: str) -> None:
     if method == "dolfinx" and not dolfinx_installed():
         raise NotRun(DOLFINX_MISSING)
     mesh, programme = scene.discretization, scene.load.opening
-    least = 4 * (mesh.degree + 1) * {"nurbs": mesh.degree + 2, "lagrange": 2 * mesh.degree + 1}.get(method, 0)
-    if mesh.dofs < least:  # two elements along, one through each of two arms
+    least = least_dofs(method, mesh.degree)
+    if mesh.dofs < least:
         text = f"must be >= {least} for {method} of degree {mesh.degree}, got {mesh.dofs}"
         raise Unsuitable(f"discretization.dofs: {text}")
     if method in ("beam", "lefm") and any(b <= a for a, b in zip((0.0, *programme), programme, strict=False)):
         raise Unsuitable(f"load.opening: must only increase for the method {method}, got {list(programme)}")
+
+
+def least_dofs(method: str, degree: int) -> int:
+    """Unknowns of two elements along and one through each of two arms; 0 for a method without a mesh of that kind."""
+    along = {"nurbs": degree + 2, "lagrange": 2 * degree + 1}.get(method, 0)
+    return 4 * (degree + 1) * along
 
 
 def problem_keys(scene: Scene, method: str) -> dict[str, Any]:

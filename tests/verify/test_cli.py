@@ -1,0 +1,213 @@
+"""The command line: exit codes, words for what is wrong, files for what is right."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from verify import methods
+from verify.cli import main
+
+PROJECT = Path(__file__).resolve().parents[2]
+PROGRAM = [sys.executable, "-P", "-m", "verify.cli"]
+ENVIRONMENT = os.environ | {"PYTHONPATH": str(PROJECT)}
+CURVE = "opening,load\n0,0\n1,2\n3,1\n"
+
+#: command line -> what its message must say
+REFUSED = {
+    "": "COMMAND",
+    "nosuch": "nosuch",
+    "solve": "SCENE",
+    "solve dcb-czm3": 'did you mean "dcb-czm2"',
+    "solve /dev/null": "specimen: is missing",
+    "solve missing.toml": "is neither a packaged scene nor a file",
+    "solve broken.toml": "broken.toml:1",
+    "solve dcb-czm1 --method fem": (
+        '--method: must be "nurbs", "lagrange", "dolfinx", "beam" or "lefm", got \'fem\''
+    ),
+    "solve dcb-czm1 --method nubrs": 'did you mean "nurbs"?',
+    "solve dcb-czm1 --method tspline": "(it is not available yet)",
+    "solve dcb-czm1 --dofs 0": "argument --dofs: must be an integer >= 1, got '0'",
+    "solve dcb-czm1 --dofs many": "argument --dofs: must be an integer >= 1, got 'many'",
+    "solve dcb-czm1 --dofs 30": "discretization.dofs: must be >= 40 and <= 1e+06, got 30",
+    "solve dcb-czm1 --dofs 79": "discretization.dofs: must be >= 80 for nurbs of degree 3, got 79",
+    "solve dcb-czm1 --method lagrange --dofs 111": "discretization.dofs: must be >= 112 for lagrange of degree 3, got",
+    "solve dcb-czm1 --method beam --dofs 500": '--dofs: is only for --method "nurbs" or "lagrange", got 500 for beam',
+    "solve dcb-czm1 --set interface.strength=-4": "interface.strength: must be > 0, got -4",
+    "solve dcb-czm1 --set interface.strength": "--set interface.strength: must be KEY=VALUE",
+    "solve dcb-czm1 --method beam --set load.opening=[1.0,0.5]": (
+        "load.opening: must only increase for the method beam, got [1.0, 0.5]"
+    ),
+    "solve dcb-czm1 --method lefm --out a-file": "--out: must be a folder that can be written to, got 'a-file'",
+    "solve dcb-czm1 --colour red": "--colour",
+    "verify dcb-czm1 dcb-czm3": "dcb-czm3:",
+    "verify dcb-czm1 dcb-czm1": "SCENE: must have different names, got 'dcb-czm1' more than once",
+    "verify --jobs 0": "argument --jobs: must be an integer >= 1, got '0'",
+    "verify dcb-czm1 --out a-file/below": "--out: must be a folder",
+    "compare curve.csv": "B",
+    "compare /dev/null /dev/null": "must hold a curve of at least 2 points",
+    "compare curve.csv missing.csv": "missing.csv: must be a file with a curve",
+    "compare curve.csv other.csv": "other.csv:1: the header must name load, got opening, force",
+    "compare curve.csv holes.csv": "holes.csv:3: opening and load must be finite numbers, got 1 and nothing",
+    "compare curve.csv point.csv": "point.csv: must hold at least 2 points of different opening",
+    "compare curve.csv curve.csv --tolerance -1": "argument --tolerance: must be a number >= 0, got '-1'",
+    "scenes all": "all",
+}
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "broken.toml").write_text("[specimen\n")
+    (tmp_path / "a-file").write_text("")
+    (tmp_path / "curve.csv").write_text(CURVE)
+    (tmp_path / "other.csv").write_text("opening,force\n0,0\n1,2\n")
+    (tmp_path / "holes.csv").write_text("opening,load\n0,0\n1\n")
+    (tmp_path / "point.csv").write_text("opening,load\n1,1\n1,2\n")
+    return tmp_path
+
+
+def exit_code(arguments: list[str]) -> int:
+    try:
+        return main(arguments)
+    except SystemExit as end:  # argparse
+        return int(end.code or 0)
+
+
+def as_process(*arguments: str, **environment: str) -> subprocess.CompletedProcess:
+    command = [*PROGRAM, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, env=ENVIRONMENT | environment)
+
+
+@pytest.mark.parametrize("line", REFUSED)
+def test_bad_input_is_refused_before_any_work(line: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    before = sorted(folder.rglob("*"))
+    assert exit_code(line.split()) == 2
+    said = capsys.readouterr()
+    assert REFUSED[line] in said.err
+    assert "Traceback" not in said.err and said.out == ""
+    assert sorted(folder.rglob("*")) == before
+
+
+def test_the_smallest_mesh_is_the_one_that_the_solver_takes() -> None:
+    from iga.dcb import Problem, arm_mesh
+    from verify.scene import load_scene
+
+    for method in methods.WITH_DOFS:
+        for degree in (1, 2, 3, 4, 5):
+            keys = methods.problem_keys(load_scene("dcb-czm1"), method)
+            least = methods.least_dofs(method, degree)
+            arm_mesh(Problem(basis=method, degree=degree, dofs=least, **keys), 0.0)
+            with pytest.raises(ValueError, match="unknowns"):
+                arm_mesh(Problem(basis=method, degree=degree, dofs=least - 1, **keys), 0.0)
+
+
+@pytest.mark.parametrize("command", ["", "verify", "solve", "compare", "scenes", "doctor", "test"])
+def test_help_has_an_example(command: str, capsys: pytest.CaptureFixture) -> None:
+    assert exit_code([*command.split(), "--help"]) == 0
+    assert f"example: debond {command}" in capsys.readouterr().out
+
+
+def test_solve_writes_a_folder(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    assert main(["solve", "dcb-czm1-linear", "--method", "lefm", "--set", "load.opening=1.5"]) == 0
+    out = folder / "debond-out" / "dcb-czm1-linear-lefm"
+    about = json.loads((out / "result.json").read_text())
+    assert about["method"] == "lefm" and about["scene"]["load"]["opening"] == [1.5]
+    assert np.loadtxt(out / "curve.csv", delimiter=",", skiprows=1)[-1, 0] == 1.5
+    assert capsys.readouterr().out.splitlines()[-1] == "complete: debond-out/dcb-czm1-linear-lefm"
+
+
+def test_a_scene_of_ones_own_is_a_path(folder: Path) -> None:
+    text = (PROJECT / "verify" / "scenes" / "dcb-czm1.toml").read_text()
+    (folder / "own.toml").write_text(text.replace("dcb-czm1", "dcb-own"))
+    assert main(["solve", "own.toml", "--method", "lefm", "--out", "here"]) == 0
+    assert json.loads((folder / "here" / "result.json").read_text())["scene"]["name"] == "dcb-own"
+
+
+def test_a_run_that_stops_early_exits_with_one(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    assert main(["solve", "dcb-czm1-linear", "--method", "lefm", "--set", "load.opening=20", "--out", "here"]) == 1
+    assert json.loads((folder / "here" / "result.json").read_text())["status"].startswith("stopped: separated")
+    assert "stopped: separated" in capsys.readouterr().err
+
+
+def test_without_dolfinx_there_is_a_sentence_and_three_ways(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    monkeypatch.setattr(methods, "dolfinx_installed", lambda: False)
+    assert main(["solve", "dcb-czm1", "--method", "dolfinx"]) == 1
+    said = capsys.readouterr().err
+    assert "not run: DOLFINx is not installed" in said
+    assert all(word in said for word in ("conda", "Docker", "Debian"))
+    assert not (folder / "debond-out").exists()
+
+
+def test_compare_judges_by_the_tolerance(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    (folder / "more.csv").write_text("# my code\nforce;load;opening\n9;0;0\n9;2.02;1\n9;1.01;3\n")
+    (folder / "bare.txt").write_text("0 0\n1 2\n3 1\n")
+    assert main(["compare", "more.csv", "curve.csv"]) == 0
+    assert "curve error 1.0000%, peak +1.0000%, up to opening 3" in capsys.readouterr().out
+    assert main(["compare", "more.csv", "curve.csv", "--tolerance", "0.011"]) == 0
+    assert main(["compare", "more.csv", "curve.csv", "--tolerance", "0.009"]) == 1
+    assert main(["compare", "bare.txt", "curve.csv", "--tolerance", "0"]) == 0
+
+
+def test_compare_takes_the_folder_of_a_run(folder: Path) -> None:
+    main(["solve", "dcb-czm1", "--method", "lefm", "--out", "run"])
+    assert main(["compare", "run", "run/curve.csv", "--tolerance", "0"]) == 0
+
+
+def test_scenes_and_doctor_tell_what_there_is(capsys: pytest.CaptureFixture) -> None:
+    assert main(["scenes"]) == 0
+    assert capsys.readouterr().out.count("dcb-czm") == 4
+    assert main(["doctor"]) == 0
+    said = capsys.readouterr().out
+    assert "numpy" in said and "dolfinx" in said
+
+
+def test_an_interrupt_leaves_a_sentence_and_valid_files(tmp_path: Path) -> None:
+    command = [*PROGRAM, "solve", "dcb-czm1", "--method", "beam", "--out", str(tmp_path)]
+    command += ["--set", "discretization.steps=2000"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+    curve, deadline = tmp_path / "curve.csv", time.monotonic() + 120
+    while time.monotonic() < deadline and not (curve.exists() and curve.read_text().count("\n") > 5):
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted" in said and "Traceback" not in said
+    assert json.loads((tmp_path / "result.json").read_text())["status"] == "stopped: interrupted"
+    assert np.loadtxt(curve, delimiter=",", skiprows=1).shape[1] == 7
+
+
+def test_no_traceback_in_a_process_of_its_own(tmp_path: Path) -> None:
+    bad = as_process("solve", "dcb-czm1", "--set", "interface.strength=-4", "--out", str(tmp_path / "o"))
+    assert bad.returncode == 2 and "Traceback" not in bad.stderr
+    assert as_process("solve", "dcb-czm1", "--method", "lefm", "--out", str(tmp_path / "o")).returncode == 0
+
+
+def test_under_mpi_only_the_first_rank_writes(tmp_path: Path) -> None:
+    many = {"OMPI_COMM_WORLD_SIZE": "2", "OMPI_COMM_WORLD_RANK": "1"}
+    refused = as_process("solve", "dcb-czm1", "--method", "nurbs", "--out", str(tmp_path), **many)
+    assert refused.returncode == 2 and "--method: must be dolfinx under mpirun" in refused.stderr
+    assert as_process("verify", **many).returncode == 2
+    one = (
+        "from pathlib import Path; from verify.run import run; from verify.scene import load_scene\n"
+        f"run(load_scene('dcb-czm1'), 'lefm', Path({str(tmp_path / 'rank1')!r}))"
+    )
+    assert subprocess.run([sys.executable, "-c", one], env=ENVIRONMENT | many).returncode == 0
+    assert not (tmp_path / "rank1").exists()
+
+
+def test_a_reader_that_leaves_is_no_error() -> None:
+    line = f"{shlex.join(PROGRAM)} scenes | true"
+    ended = subprocess.run(["bash", "-c", line], capture_output=True, text=True, env=ENVIRONMENT)
+    assert ended.stderr == ""

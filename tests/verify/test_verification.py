@@ -1,0 +1,121 @@
+"""The main job: who runs, what a crash costs, what is printed, which exit code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from verify import methods, verification
+from verify.cli import main
+from verify.scene import Scene, load_scene
+from verify.verdict import SceneReport
+from verify.verification import Job, planned, verify
+
+LINEAR = "dcb-czm1-linear"
+
+
+@pytest.fixture
+def reports(monkeypatch: pytest.MonkeyPatch) -> list[SceneReport]:
+    """What the report would have been written from."""
+    seen: list[SceneReport] = []
+    monkeypatch.setattr(verification, "_write_report", lambda reports, page: seen.extend(reports))
+    return seen
+
+
+def only(monkeypatch: pytest.MonkeyPatch, *jobs: Job) -> None:
+    monkeypatch.setattr(verification, "planned", lambda source, scene, full: [j for j in jobs if j.scene is scene])
+
+
+@pytest.fixture
+def scene() -> Scene:
+    return load_scene(LINEAR)
+
+
+def test_every_method_runs_on_every_scene(scene: Scene) -> None:
+    assert [job.variant for job in planned(LINEAR, scene)] == ["nurbs", "lagrange", "dolfinx", "beam", "lefm"]
+    full = [job.variant for job in planned(LINEAR, scene, full=True)]
+    assert full[5:] == ["dolfinx-p3", "nurbs-978", "nurbs-489"]
+
+
+def test_a_run_is_repeated_by_its_command(scene: Scene, tmp_path: Path) -> None:
+    job = Job(LINEAR, scene, "dolfinx", "dolfinx-p3", ("dolfinx.degree=3",))
+    assert " ".join(job.command(Path("out"))) == (
+        f"solve {LINEAR} --method dolfinx --set dolfinx.degree=3 --fields --out out/{LINEAR}/dolfinx-p3"
+    )
+
+
+def test_good_runs_make_a_report_and_exit_zero(
+    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    only(monkeypatch, Job(LINEAR, scene, "beam", "beam"), Job(LINEAR, scene, "lefm", "lefm"))
+    assert verify([(LINEAR, scene)], tmp_path, jobs=2)
+    (report,) = reports
+    assert [run.method for run in report.runs] == ["beam", "lefm"]
+    assert all(run.result.complete for run in report.runs)
+    assert report.runs[1].folder == f"{LINEAR}/lefm" and report.runs[1].command.startswith("debond solve ")
+    assert (tmp_path / LINEAR / "beam" / "curve.csv").exists()
+    said = capsys.readouterr()
+    assert said.out.splitlines()[-1] == f"8 of 8 checks hold: {tmp_path / 'report.html'}"
+    assert "beam: complete" in said.err
+
+
+def test_a_crash_costs_one_run_and_fails(
+    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    only(monkeypatch, Job("gone.toml", scene, "nurbs", "nurbs"), Job(LINEAR, scene, "lefm", "lefm"))
+    assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
+    (report,) = reports
+    assert report.runs[0].result is None and report.runs[0].left_out.startswith("failed: ")
+    assert report.runs[1].result is not None
+    assert [(check.name, check.subject) for check in report.checks if not check.passed] == [("completed", "nurbs")]
+    assert "FAIL" in capsys.readouterr().out
+
+
+def test_a_killed_process_is_named_by_its_signal(
+    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(verification, "_call", lambda command, log, running: -11)
+    only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
+    assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert reports[0].runs[0].left_out == "failed: signal 11"
+
+
+def test_an_earlier_result_does_not_pass_for_a_crashed_run(
+    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
+    assert verify([(LINEAR, scene)], tmp_path, jobs=1)
+    monkeypatch.setattr(verification, "_call", lambda command, log, running: -9)
+    assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
+
+
+def test_a_failing_check_fails_the_whole(scene: Scene, reports: list, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr("verify.checks.ENERGY_TOLERANCE", -1.0)
+    only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
+    assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
+
+
+def test_without_dolfinx_its_rows_say_so_and_nothing_fails(
+    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    monkeypatch.setattr(methods, "dolfinx_installed", lambda: False)
+    only(monkeypatch, Job(LINEAR, scene, "dolfinx", "dolfinx"), Job(LINEAR, scene, "lefm", "lefm"))
+    assert verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert reports[0].runs[0].left_out == "not run: DOLFINx is not installed"
+    assert "not run: DOLFINx is not installed" in capsys.readouterr().out
+
+
+def test_a_scene_that_a_method_is_not_made_for_is_no_failure(
+    reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = load_scene(LINEAR, ["load.opening=[1.0, 0.5]"])
+    only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
+    assert verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert reports[0].runs[0].left_out.startswith("not run: load.opening: must only increase")
+
+
+@pytest.mark.slow
+def test_the_main_job_on_one_scene(tmp_path: Path) -> None:
+    assert main(["verify", LINEAR, "--out", str(tmp_path)]) == 0
+    assert "<svg" in (tmp_path / "report.html").read_text()
