@@ -12,8 +12,8 @@ from dolfinx import fem, mesh
 from dolfinx.fem import petsc
 from petsc4py import PETSc
 
-#: -O3 lets the compiler vectorise the loops over basis functions in the element kernels.
-JIT_OPTIONS = {"cffi_extra_compile_args": ["-O3", "-march=native"]}
+#: -O3 vectorises the loops over basis functions; -march=native gained nothing more and ties the compiled forms to one CPU.
+JIT_OPTIONS = {"cffi_extra_compile_args": ["-O3"]}
 
 _HAS_ENTITY_MAP = hasattr(mesh, "EntityMap")  # since 0.10
 _HAS_BLOCK_FUNCTIONS = hasattr(petsc, "create_matrix_block")  # until 0.9

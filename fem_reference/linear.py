@@ -56,3 +56,12 @@ def without_zeros(A: PETSc.Mat) -> PETSc.Mat:
     kept = np.abs(values) > 1e-12 * np.max(np.abs(values), initial=0.0)
     starts = np.concatenate([[0], np.cumsum(kept)])[row_starts].astype(PETSc.IntType)
     return PETSc.Mat().createAIJ(A.getSizes(), csr=(starts, columns[kept], values[kept]), comm=A.comm)
+
+
+def widened(A: PETSc.Mat, other: PETSc.Mat) -> PETSc.Mat:
+    """A matrix of zeros with the entries of both patterns and the local numbering of ``A``."""
+    both = A.copy()
+    both.axpy(1.0, other, structure=PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    both.setLGMap(*A.getLGMap())
+    both.zeroEntries()
+    return both

@@ -16,7 +16,7 @@ from fem_reference.bond import Bond
 from fem_reference.dolfinx_api import add_block_matrix, compile_forms, create_block_matrix
 from fem_reference.forms import WeakForm, displacements, weak_form
 from fem_reference.law import Law
-from fem_reference.linear import Factorisation, without_zeros
+from fem_reference.linear import Factorisation, widened, without_zeros
 from fem_reference.mesh import TwoBodies, two_bodies
 from fem_reference.problem import Problem
 from fem_reference.supports import supports
@@ -103,10 +103,8 @@ class Model:
         if self.problem.kinematics == "finite":
             self.assemble_bulk(u_n)
         _, dp_q = self.law.traction(self.bond.gap(u_n), k_q)
-        subset = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
-        self.tangent_matrix.zeroEntries()
-        self.tangent_matrix.axpy(1.0, self.bulk_matrix, structure=subset)
-        self.tangent_matrix.axpy(1.0, self.bond.tangent(dp_q), structure=subset)
+        self.bulk_matrix.copy(self.tangent_matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+        self.tangent_matrix.axpy(1.0, self.bond.tangent(dp_q), PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
         return self.tangent_matrix
 
     def factorise(self, u_n: np.ndarray, k_q: np.ndarray) -> None:
@@ -141,10 +139,11 @@ def build_model(problem: Problem, phase: Phase, comm: MPI.Intracomm) -> Model:
     bcs, free_n = supports(problem, bodies, displacement)
     with phase("assembly"):
         bond, X_q = _bond(problem, weak, free_n)
-        bulk_matrix = create_block_matrix(bulk)
+        narrow = create_block_matrix(bulk)
+        add_block_matrix(narrow, bulk, bcs)
+        bulk_matrix = widened(narrow, bond.product)
         add_block_matrix(bulk_matrix, bulk, bcs)
         tangent_matrix = bulk_matrix.copy()
-        tangent_matrix.axpy(1.0, bond.product, structure=PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     return Model(
         problem=problem,
         bodies=bodies,

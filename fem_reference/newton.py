@@ -15,7 +15,9 @@ TOLERANCE = 1e-10
 #: The residual that rounding leaves, in units of (machine epsilon) x (largest displacement) x (largest stiffness).
 ROUNDING = 16.0
 MAX_ITERATIONS = 25
-SHORTEST_STEP = 1 / 16
+#: A step is long enough when this part of the work along it, or less, is left.
+SLACK = 0.5
+MAX_SEARCHES = 6
 
 
 class Control(Protocol):
@@ -77,12 +79,12 @@ def find_equilibrium(
         model.factorise(u_n, k_q)
         du_n, d_load = bordered_step(model, control, u_n, load, r_n)
 
-        def trial(s: float, u_n=u_n, load=load, du_n=du_n, d_load=d_load) -> tuple[float, np.ndarray, float, np.ndarray]:
-            r_n = model.residual(u_n + s * du_n, load + s * d_load, k_q)
-            return model.norm(r_n) / scale, u_n + s * du_n, load + s * d_load, r_n
+        def residual_at(s: float, u_n=u_n, load=load, du_n=du_n, d_load=d_load) -> np.ndarray:
+            return model.residual(u_n + s * du_n, load + s * d_load, k_q)
 
-        norm, u_n, load, r_n = line_search(trial, norms[-1])
-        norms.append(norm)
+        s, r_n = line_search(model, residual_at, du_n, r_n)
+        u_n, load = u_n + s * du_n, load + s * d_load
+        norms.append(model.norm(r_n) / scale)
     return Attempt(u_n, load, tuple(norms), norms[-1] <= target)
 
 
@@ -97,14 +99,30 @@ def bordered_step(
     return by_residual_n + d_load * by_load_n, d_load
 
 
-def line_search(trial: Callable, norm: float) -> tuple:
-    """The full step if it lowers the residual, else the best of ever shorter ones.
+def line_search(
+    model: Model, residual_at: Callable[[float], np.ndarray], du_n: np.ndarray, r_n: np.ndarray
+) -> tuple[float, np.ndarray]:
+    """Length of a Newton step, and the residual after it.
 
-    A kink of the law can make every step along the direction raise the residual; the best of them then still moves on.
+    The full step is right unless a kink of the law lies in between. It is taken when it lowers the residual, or most of
+    the work G(s) = du . r(s) that remains along it; else s is sought where G vanishes, which is where the energy is
+    lowest along du, by false position (Crisfield 1991, Non-linear FE Analysis of Solids and Structures, sec. 9.2).
     """
+    before, low = model.norm(r_n), (0.0, model.dot(du_n, r_n))
+    slack = SLACK * abs(low[1])
+    full_n = r_n = residual_at(1.0)
+    high = (1.0, model.dot(du_n, full_n))
     s = 1.0
-    best = trial(s)
-    while not best[0] < norm and s > SHORTEST_STEP:
-        s *= 0.5
-        best = min(best, trial(s), key=lambda result: result[0] if np.isfinite(result[0]) else np.inf)
-    return best
+    for _ in range(MAX_SEARCHES):
+        work = model.dot(du_n, r_n)
+        if abs(work) <= slack or model.norm(r_n) < before:
+            return s, r_n
+        if work * low[1] > 0:
+            if s == 1.0:
+                break
+            low = (s, work)
+        else:
+            high = (s, work)
+        s = low[0] + (high[0] - low[0]) * low[1] / (low[1] - high[1])
+        r_n = residual_at(s)
+    return 1.0, full_n
