@@ -43,17 +43,18 @@ def reference_run(report: SceneReport) -> Run | None:
 def path(result: Result, refine: int = 6) -> tuple[np.ndarray, np.ndarray]:
     """Opening and load to draw: cubic Hermite arcs between converged steps where the method knows the slope.
 
-    LEFM stays a polygon: its path has a kink.
+    A straight line where the arc would leave the chord by more than 1 % of the peak: there the step went over a turn
+    of the path, and the arc would invent one. LEFM stays a polygon: its path has a kink.
     """
     x, y = np.asarray(result.opening, float), np.asarray(result.load, float)
     if "load_slope" not in result.steps or result.method == "lefm" or len(x) < 2:
         return x, y
     slope = np.asarray(result.steps["load_slope"], float)
     h, chord = np.diff(x), np.diff(y)
-    steep = 50 * np.max(np.abs(y)) / max(np.max(np.abs(x)), np.finfo(float).tiny)  # next to a turning point
-    tame = np.abs(np.nan_to_num(slope, nan=np.inf)) < steep
-    smooth = tame[:-1] & tame[1:]
-    m0, m1 = np.where(smooth, slope[:-1] * h, chord), np.where(smooth, slope[1:] * h, chord)
+    m0, m1 = slope[:-1] * h, slope[1:] * h
+    bulge = 4 / 27 * (np.abs(m0 - chord) + np.abs(m1 - chord))  # the cubic stays within this of its chord
+    smooth = np.isfinite(bulge) & (bulge <= 0.01 * np.max(np.abs(y)))
+    m0, m1 = np.where(smooth, m0, chord), np.where(smooth, m1, chord)
     t = np.linspace(0, 1, refine, endpoint=False)[None, :]
     load = (
         (1 + 2 * t) * (1 - t) ** 2 * y[:-1, None]

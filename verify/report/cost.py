@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import LogLocator, NullLocator
 
-from verify.report.entry import Entry
-from verify.report.style import HALF, PHASES, Panel, colour, drawing, to_svg
+from verify.report.entry import Entry, short_names
+from verify.report.style import HALF, PHASES, Panel, colour, drawing, panel, to_svg
 from verify.report.text import seconds
 from verify.result import Result
 
@@ -40,8 +39,9 @@ def timing(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
     if not timed:
         return None
     with drawing():
-        figure = Figure(figsize=(HALF, 0.42 * len(timed) + 1.25))
-        axes = figure.add_subplot()
+        names = list(short_names(timed).values())
+        left_margin = 0.15 + 0.068 * max(len(name) for name in names)
+        figure, axes = panel(HALF, 0.42 * len(timed) + 0.85, left=left_margin, top=0.4)
         longest = max(total_seconds(entry.result) for entry in timed)
         rows = np.arange(len(timed))[::-1]
         left = np.zeros(len(timed))
@@ -52,20 +52,14 @@ def timing(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
             left += width
         for row, entry, end in zip(rows, timed, left, strict=True):
             axes.text(end + 0.015 * longest, row, seconds(total_seconds(entry.result)), va="center", fontsize=7.5)
-        axes.set_yticks(rows, [_short(entry, timed) for entry in timed])
+        axes.set_yticks(rows, names)
         axes.tick_params(axis="y", length=0, labelcolor=colour("ink"))
         axes.set(xlabel="wall time (s)", xlim=(0, 1.2 * longest or 1.0))
         axes.grid(False, axis="y")
         axes.spines["left"].set_visible(False)
-        figure.legend(loc="outside upper center", ncols=6, handlelength=0.9, columnspacing=0.9, handletextpad=0.4)
+        figure.legend(loc="upper center", ncols=6, handlelength=0.9, columnspacing=0.9, handletextpad=0.4)
         svg = to_svg(figure, key, f"Wall time by phase and method, {scene.name}")
     return Panel(svg, "Where the time went. Runs made at the same time on one machine slow each other down.")
-
-
-def _short(entry: Entry, among: Sequence[Entry]) -> str:
-    """The method's name, or the full label where the method occurs more than once."""
-    twice = sum(other.method == entry.method for other in among) > 1
-    return entry.label if twice else entry.name
 
 
 def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -> Panel | None:
@@ -77,22 +71,23 @@ def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -
     ]
     if not points:
         return None
+    names = short_names(runs)
     with drawing():
-        figure = Figure(figsize=(HALF, 2.5))
-        axes = figure.add_subplot()
+        figure, axes = panel(HALF, 2.5)
         for entry, time, error in points:
             ink = colour(entry.line.colour)
             point = max(time, 1e-3), 100 * error
             axes.plot(*point, "o", color=ink, markersize=6)
-            axes.annotate(_short(entry, runs), point, (7, 4), textcoords="offset points", color=ink)
+            axes.annotate(names[entry], point, (7, 4), textcoords="offset points", color=ink)
         axes.set(xscale="log", yscale="log", xlabel="wall time (s)", ylabel=f"distance to {base.name} (%)")
         axes.margins(0.3, 0.3)
         for part in (axes.xaxis, axes.yaxis):
+            part.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             part.set_major_formatter(lambda value, _: f"{value:g}")
-            part.set_minor_formatter(NullFormatter())
+            part.set_minor_locator(NullLocator())
         svg = to_svg(figure, key, f"Curve error against time, {scene.name}")
     return Panel(
         svg,
-        f"What the time bought: relative L2 distance of the load to {base.label}, against wall time. {base.name} has "
-        "an error of its own; a distance below that says no more.",
+        f"What the time bought: relative L2 distance of the load to {base.label}, against wall time. The "
+        "reference has an error of its own; a distance below that says no more.",
     )

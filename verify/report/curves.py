@@ -12,14 +12,12 @@ from matplotlib.figure import Figure
 from verify.curve import envelope
 from verify.report.agreement import branch, path
 from verify.report.entry import Entry
-from verify.report.style import HALF, Panel, colour, drawing, to_svg
+from verify.report.style import HALF, Panel, colour, drawing, panel, to_svg
 from verify.report.text import Units, axis, power_of_ten
 from verify.result import Result
 
 if TYPE_CHECKING:
     from verify.scene import Scene
-
-_SIZE = (HALF, 3.15)
 
 
 def load_opening(scene: Scene, runs: Sequence[Entry], key: str) -> Panel:
@@ -33,8 +31,9 @@ def load_opening(scene: Scene, runs: Sequence[Entry], key: str) -> Panel:
             if not entry.result.complete:
                 end = entry.result.opening[-1], entry.result.load[-1]
                 axes.plot(*end, "x", color=colour(entry.line.colour), zorder=6)
-        _name_lefm(axes, runs, 1.2 * top)
-        axes.set(xlim=(0, None), ylim=(min(0.0, _lowest_load(runs)), 1.2 * top))
+        ceiling = min(1.06 * max(float(np.nanmax(entry.result.load)) for entry in runs), 1.4 * top)
+        _name_lefm(axes, runs, ceiling)
+        axes.set(xlim=(0, None), ylim=(min(0.0, _lowest_load(runs)), ceiling))
         svg = to_svg(figure, key, f"Load against opening, all methods, {scene.name}")
     return Panel(svg, "Load against opening. A cross marks the end of a run that stopped early.")
 
@@ -145,20 +144,18 @@ def energies(scene: Scene, entry: Entry, key: str) -> Panel | None:
 
 
 def ledger_gap(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
-    """What the ledger of each run misses, relative to the work done by the end."""
+    """What the ledger of each run misses, relative to the work done so far."""
     gaps = []
     for entry in runs:
         steps = entry.result.steps
         miss = np.abs(steps["external_work"] - steps["stored_energy"] - steps["dissipated_energy"])
         if entry.method != "lefm" and np.isfinite(miss).any():
-            total = np.nanmax(np.abs(steps["external_work"]), initial=0.0)
-            gaps.append((entry, miss / total if total > 0 else miss))
+            done = np.maximum.accumulate(np.abs(steps["external_work"]))
+            gaps.append((entry, np.divide(miss, done, out=np.zeros_like(miss), where=done > 0)))
     if not gaps:
         return None
     with drawing():
-        figure, axes = _figure(
-            axis("opening", Units.of(scene.units).length), "|work − stored − dissipated| / total work"
-        )
+        figure, axes = _figure(axis("opening", Units.of(scene.units).length), "|work − stored − dissipated| / work")
         for entry, gap in gaps:
             seen = gap > 0
             axes.plot(entry.result.opening[seen], gap[seen], **entry.line.options())
@@ -175,8 +172,7 @@ def ledger_gap(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
 
 
 def _figure(x_label: str, y_label: str) -> tuple[Figure, Axes]:
-    figure = Figure(figsize=_SIZE)
-    axes = figure.add_subplot()
+    figure, axes = panel(HALF, 3.0)
     axes.set(xlabel=x_label, ylabel=y_label)
     return figure, axes
 

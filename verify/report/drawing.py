@@ -29,7 +29,7 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
     scale = (WIDE - 2.1) / body.length  # inches per unit of length
     thickness = max(body.arm_thickness * scale, _THINNEST)
     with drawing():
-        figure = Figure(figsize=(WIDE, _HEIGHT), layout="none")
+        figure = Figure(figsize=(WIDE, _HEIGHT))
         axes = figure.add_axes((0, 0, 1, 1))
         axes.set_axis_off()
         axes.set(xlim=(-0.9, WIDE - 0.9), ylim=(-1.1, _HEIGHT - 1.1))  # inches from the middle of the loaded end

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from verify.report.agreement import Agreement, agreement, reference_run, usable
@@ -50,6 +51,12 @@ class Entry:
 def rank(method: str) -> int:
     """Place of a method in tables and legends."""
     return METHODS.index(method) if method in METHODS else len(METHODS)
+
+
+def short_names(among: Sequence[Entry]) -> dict[Entry, str]:
+    """The method's name for each, or the full label where the method occurs more than once."""
+    methods = [entry.method for entry in among]
+    return {entry: entry.label if methods.count(entry.method) > 1 else entry.name for entry in among}
 
 
 def entries(report: SceneReport) -> tuple[Entry, ...]:

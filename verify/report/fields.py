@@ -1,4 +1,4 @@
-"""Figures of fields: traction along the interface, deformed meshes with stress."""
+"""Snapshots of the runs side by side, and the traction along the interface."""
 
 from __future__ import annotations
 
@@ -6,23 +6,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 
-from verify.report.entry import Entry, rank
-from verify.report.style import HALF, STRESS_MAP, THIRD, WIDE, Panel, colour, drawing, to_svg
+from verify.report.entry import Entry, rank, short_names
+from verify.report.style import HALF, THIRD, Panel, colour, drawing, panel, to_svg
 from verify.report.text import Units, axis, quantity
 from verify.result import Snapshot
 
 if TYPE_CHECKING:
     from verify.scene import Scene
-
-_REFINE = 3  # colour cells per sampling interval
-_MANY_ELEMENTS = 900  # from here on outlines become pixels
 
 
 def shared_snapshots(runs: Sequence[Entry]) -> list[list[tuple[Entry, Snapshot]]]:
@@ -59,32 +50,38 @@ def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, sm
     opening = group[0][1].opening
     zone = process_zone(group[0][1])
     with drawing():
-        figure = Figure(figsize=(THIRD if small else HALF, 2.4 if small else 2.75))
-        axes = figure.add_subplot()
+        figure, axes = panel(THIRD, 2.35, left=0.5) if small else panel(HALF, 2.65)
         axes.set(xlabel=axis("position along the specimen", units.length), ylabel=axis("normal traction", units.stress))
         for entry, snapshot in group:
             options = {**entry.line.options(), "marker": ".", "markersize": 2.6 if entry.line.width < 3 else 0}
             axes.plot(snapshot.s_q, snapshot.traction_q, **options)
         window = _window(scene, group)
         low = min(float(np.nanmin(_inside(s.s_q, s.traction_q, window), initial=0.0)) for _, s in group)
-        axes.set(xlim=window, ylim=(1.15 * max(low, -1.2 * strength) - 0.05 * strength, 1.22 * strength))
+        top = 1.22 * strength - 0.08 * max(low, -4 * strength)
+        axes.set(xlim=window, ylim=(1.1 * max(low, -4 * strength) - 0.05 * strength, top))
         axes.axhline(strength, color=colour("muted"), linewidth=0.6, dashes=(2, 2))
         axes.axhline(0, color=colour("ink"), linewidth=0.5)
         axes.text(window[1], strength, "strength ", ha="right", va="bottom", color=colour("muted"), fontsize=7)
         if zone is not None:
             axes.axvspan(*zone, color=colour("zone"), alpha=0.22, linewidth=0, zorder=0)
-            axes.text(sum(zone) / 2, 1.14 * strength, "process zone", ha="center", va="center", fontsize=7)
+            axes.text(sum(zone) / 2, (strength + top) / 2, "process zone", ha="center", va="center", fontsize=7)
         svg = to_svg(figure, key, f"Normal traction along the interface at opening {opening:.3g}, {scene.name}")
     return Panel(svg, _traction_caption(group, units), "third" if small else "half")
 
 
 def _traction_caption(group: Sequence[tuple[Entry, Snapshot]], units: Units) -> str:
-    head = f"Opening {quantity(group[0][1].opening, units.length, 3)}. "
-    lengths = [(entry.label, process_zone(snapshot)) for entry, snapshot in group]
-    known = [f"{label}: {quantity(z[1] - z[0], units.length, 3)}" for label, z in lengths if z is not None]
-    if not known:
+    first = group[0][1].opening
+    names = short_names([entry for entry, _ in group])
+    zones = []
+    for entry, snapshot in group:
+        if (zone := process_zone(snapshot)) is not None:
+            elsewhere = abs(snapshot.opening - first) > 2e-3 * abs(first)
+            where = f" (at {quantity(snapshot.opening, units.length, 3)})" if elsewhere else ""
+            zones.append(f"{names[entry]} {quantity(zone[1] - zone[0], units.length, 3)}{where}")
+    head = f"Opening {quantity(first, units.length, 3)}. "
+    if not zones:
         return head + "The interface is still intact everywhere."
-    return head + f"Process zone (damaged, not yet open; marked for {lengths[0][0]}): " + "; ".join(known) + "."
+    return f"{head}Process zone, damaged and not yet open: {', '.join(zones)}; marked for {names[group[0][0]]}."
 
 
 def _inside(s: np.ndarray, values: np.ndarray, window: tuple[float, float]) -> np.ndarray:
@@ -99,118 +96,3 @@ def _window(scene: Scene, group: Sequence[tuple[Entry, Snapshot]]) -> tuple[floa
     start, end = min(z[0] for z in zones), max(z[1] for z in zones)
     length = max(end - start, 0.02 * bonded)
     return max(start - 0.35 * length, 0.0), min(end + 1.1 * length, scene.specimen.length)
-
-
-def deformed(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str) -> Panel | None:
-    """Deformed meshes at true scale, one row a method, the process zone enlarged beside each."""
-    group = [(entry, snapshot) for entry, snapshot in group if np.size(snapshot.stress_euv)]
-    if not group:
-        return None
-    units = Units.of(scene.units)
-    limit = max(float(np.nanpercentile(np.abs(s.stress_euv), 99.7)) for _, s in group) or 1.0
-    x, frame = _frame(scene, group)
-    zoom = _zoom(scene, group, frame / (x[1] - x[0]))
-    with drawing():
-        figure, rows = _rows(len(group), frame / (x[1] - x[0]))
-        for (whole, close), (entry, snapshot) in zip(rows, group, strict=True):
-            for axes in (whole, close):
-                _draw(axes, snapshot, limit)
-                axes.grid(False)
-            whole.set(xlim=x, ylim=(-frame / 2, frame / 2))
-            close.set(xlim=zoom[0], ylim=zoom[1])
-            close.spines[["top", "right"]].set_visible(True)
-            close.locator_params(nbins=4)
-            _mark(whole, zoom)
-            title = f"{entry.label}, opening {quantity(snapshot.opening, units.length, 3)}"
-            whole.set_title(title, color=colour(entry.line.colour))
-        rows[-1][0].set_xlabel(axis("position", units.length))
-        rows[-1][1].set_xlabel(axis("position, enlarged", units.length))
-        _scale(figure, limit, axis("Cauchy stress along the specimen", units.stress))
-        svg = to_svg(figure, key, f"Deformed meshes with axial stress, {scene.name}", dpi=170)
-    caption = (
-        "Deformed meshes, displacements at true scale, each with its own elements; the framed part is enlarged on the "
-        f"right. One scale of colours for all, to ± {quantity(limit, units.stress, 3)}; no averaging between elements."
-    )
-    return Panel(svg, caption, "wide")
-
-
-def _rows(count: int, ratio: float) -> tuple[Figure, list[tuple[Axes, Axes]]]:
-    """A figure with one row a method: the whole specimen, ``ratio`` as high as wide, and an enlarged part as high."""
-    left, whole, gap, close, below, between = 0.42, 6.3, 0.5, WIDE - 7.32, 0.95, 0.5
-    height = min(max(whole * ratio, 0.8), 2.2)
-    total = below + count * (height + between)
-    figure = Figure(figsize=(WIDE, total), layout="none")
-    rows = []
-    for i in range(count):
-        bottom = (total - (i + 1) * (height + between) + 0.15) / total
-        places = ((left, whole), (left + whole + gap, close))
-        rows.append(tuple(figure.add_axes((x / WIDE, bottom, w / WIDE, height / total)) for x, w in places))
-    for axes in figure.axes:
-        axes.set_aspect("equal", adjustable="datalim")
-    return figure, rows
-
-
-def _scale(figure: Figure, limit: float, label: str) -> None:
-    """The colour scale, along the foot of the figure."""
-    height = figure.get_size_inches()[1]
-    place = figure.add_axes((0.42 / WIDE, 0.42 / height, 6.3 / WIDE, 0.09 / height))
-    bar = figure.colorbar(ScalarMappable(Normalize(-limit, limit), STRESS_MAP), cax=place, orientation="horizontal")
-    bar.set_label(label)
-    bar.outline.set_visible(False)
-
-
-def _draw(axes: Axes, snapshot: Snapshot, limit: float) -> None:
-    x_euvi = np.asarray(snapshot.X_euvi) + np.asarray(snapshot.u_euvi)
-    x_fine, stress = _finer(x_euvi), _finer(np.asarray(snapshot.stress_euv)[..., None])[..., 0]
-    corners = np.stack([x_fine[:, :-1, :-1], x_fine[:, 1:, :-1], x_fine[:, 1:, 1:], x_fine[:, :-1, 1:]], axis=-2)
-    middle = (stress[:, :-1, :-1] + stress[:, 1:, :-1] + stress[:, 1:, 1:] + stress[:, :-1, 1:]) / 4
-    fill = PolyCollection(corners.reshape(-1, 4, 2), array=middle.ravel(), cmap=STRESS_MAP, rasterized=True, zorder=1)
-    fill.set(clim=(-limit, limit), antialiased=False, edgecolor="none")
-    axes.add_collection(fill)
-    many = len(x_euvi) > _MANY_ELEMENTS
-    ink = "#808a96" if many else colour("ink")  # pixels cannot follow the page
-    outline = LineCollection(_perimeter(x_euvi), colors=ink, linewidths=0.25, alpha=0.7, zorder=2, rasterized=many)
-    axes.add_collection(outline)
-
-
-def _finer(values: np.ndarray) -> np.ndarray:
-    """Bilinear refinement of the sampling grids (n_e, m, m, c) -> (n_e, r (m-1) + 1, r (m-1) + 1, c)."""
-    m = values.shape[1]
-    at = np.linspace(0, m - 1, _REFINE * (m - 1) + 1)
-    left = np.minimum(at.astype(int), m - 2)
-    t = at - left
-    weights = np.zeros((len(at), m))
-    weights[np.arange(len(at)), left] = 1 - t
-    weights[np.arange(len(at)), left + 1] += t
-    return np.einsum("Uu,Vv,euvc->eUVc", weights, weights, values)
-
-
-def _perimeter(x_euvi: np.ndarray) -> np.ndarray:
-    """Closed outlines of the elements (n_e, 4 k + 1, 2)."""
-    sides = (x_euvi[:, :-1, 0], x_euvi[:, -1, :-1], x_euvi[:, :0:-1, -1], x_euvi[:, 0, ::-1])
-    return np.concatenate(sides, axis=1)
-
-
-def _frame(scene: Scene, group: Sequence[tuple[Entry, Snapshot]]) -> tuple[tuple[float, float], float]:
-    """Limits along the specimen and total height of the full view."""
-    x = np.concatenate([(np.asarray(s.X_euvi) + np.asarray(s.u_euvi)).reshape(-1, 2) for _, s in group])
-    pad = 0.01 * scene.specimen.length
-    return (float(x[:, 0].min()) - pad, float(x[:, 0].max()) + pad), 2.06 * float(np.abs(x[:, 1]).max()) + pad
-
-
-def _zoom(
-    scene: Scene, group: Sequence[tuple[Entry, Snapshot]], ratio: float
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Limits of the enlarged part, around the process zone; its frame is ``6.3 ratio`` inches high."""
-    body = scene.specimen
-    zone = next((z for _, s in group if (z := process_zone(s)) is not None), (body.precrack, body.precrack))
-    width = min(max(1.7 * (zone[1] - zone[0]), 5 * body.arm_thickness), 0.3 * body.length)
-    middle = min(sum(zone) / 2, body.length - width / 2)
-    height = width * min(max(6.3 * ratio, 0.8), 2.2) / (WIDE - 7.32)
-    return (middle - width / 2, middle + width / 2), (-height / 2, height / 2)
-
-
-def _mark(axes: Axes, zoom: tuple[tuple[float, float], tuple[float, float]]) -> None:
-    (x0, x1), (y0, y1) = zoom
-    frame = Rectangle((x0, y0), x1 - x0, y1 - y0, fill=False, edgecolor=colour("muted"), linewidth=0.6, zorder=5)
-    axes.add_patch(frame)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from html import escape
 
 import matplotlib
+from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
@@ -78,7 +79,7 @@ _RC = {
     "axes.grid": True,
     "axes.axisbelow": True,
     "axes.formatter.useoffset": False,
-    "axes.formatter.limits": (-4, 5),
+    "axes.formatter.limits": (-3, 5),
     "axes.unicode_minus": True,
     "grid.linewidth": 0.5,
     "xtick.labelsize": 7.5,
@@ -95,7 +96,6 @@ _RC = {
     "figure.facecolor": "none",
     "axes.facecolor": "none",
     "savefig.facecolor": "none",
-    "figure.constrained_layout.use": True,
     "mathtext.fontset": "dejavusans",
     "text.parse_math": False,  # units are the user's own text
 }
@@ -167,6 +167,13 @@ def drawing() -> Iterator[None]:
     inks |= {key: colour("ink") for key in ("text.color", "axes.labelcolor", "lines.color", "patch.edgecolor")}
     with matplotlib.rc_context({**_RC, **inks, "grid.color": colour("rule")}):
         yield
+
+
+def panel(width: float, height: float, left: float = 0.57, top: float = 0.17) -> tuple[Figure, Axes]:
+    """A figure of one pair of axes with fixed margins, so that panels line up (lengths in inches)."""
+    figure, bottom = Figure(figsize=(width, height)), 0.43
+    place = (left / width, bottom / height, 1 - (left + 0.1) / width, 1 - (bottom + top) / height)
+    return figure, figure.add_axes(place)
 
 
 def to_svg(figure: Figure, key: str, title: str, dpi: float = 180.0) -> str:

@@ -50,8 +50,8 @@ def axis(name: str, unit: str) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def number(value: float | None, digits: int = 3) -> str:
-    """A number in running text: 0.0123, 1200, 1.2 × 10⁻⁹."""
+def number(value: float | None, digits: int = 3, pad: bool = False) -> str:
+    """A number in running text: 0.0123, 1200, 1.2 × 10⁻⁹; ``pad`` keeps trailing zeros."""
     if value is None or math.isnan(value):
         return NO_VALUE
     if math.isinf(value):
@@ -61,7 +61,7 @@ def number(value: float | None, digits: int = 3) -> str:
     exponent = math.floor(math.log10(abs(value)))
     if -4 <= exponent < 6:
         text = f"{value:.{max(digits - 1 - exponent, 0)}f}"
-        text = text.rstrip("0").rstrip(".") if "." in text else text
+        text = text.rstrip("0").rstrip(".") if "." in text and not pad else text
     else:
         mantissa = f"{value / 10.0**exponent:.{digits - 1}f}".rstrip("0").rstrip(".")
         text = f"{mantissa} × 10{str(exponent).translate(_SUPERSCRIPTS)}"
@@ -92,17 +92,17 @@ def percent(fraction: float | None) -> str:
         return NO_VALUE
     if 0 < abs(fraction) < 5e-6:
         return "< 0.0005 %"
-    return f"{number(100 * fraction, 2)} %"
+    return f"{number(100 * fraction, 2, pad=True)} %"
 
 
 def seconds(value: float | None) -> str:
-    """A duration: 0.03 s, 8.9 s, 2 min 5 s."""
+    """A duration: 0.31 s, 8.9 s, 2 min 5 s."""
     if value is None or math.isnan(value):
         return NO_VALUE
-    if value < 0.005:
-        return "< 0.01 s"
+    if value < 0.095:
+        return "< 0.1 s"
     if value < 99.5:
-        return f"{number(value, 2)} s"
+        return f"{number(value, 2, pad=True)} s"
     return f"{int(round(value)) // 60} min {int(round(value)) % 60} s"
 
 

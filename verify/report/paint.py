@@ -1,0 +1,84 @@
+"""A field on sampling grids as an image: every pixel one colour of the map, however the cells overlap.
+
+Semi-transparent cells drawn one by one would blend where they touch. So the values are painted first, opaque and as
+grey levels; the colours, transparent near zero, come after.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+
+from verify.report.style import STRESS_MAP, colour
+
+_DPI = 230
+_CELLS = 2, 8  # colour cells per sampling interval, along the smaller and along the larger variation
+_MANY_ELEMENTS = 900  # from here on outlines become pixels
+
+Limits = tuple[float, float]
+
+
+def paint(axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, x: Limits, y: Limits) -> None:
+    """Fill the axes with a field and its element outlines, and set their limits.
+
+    Parameters
+    ----------
+    x_euvi : positions (n_e, m, m, 2) of the sampling grids
+    value_euv : (n_e, m, m), coloured from -limit to limit
+    """
+    box = axes.get_position()
+    width, height = axes.figure.get_size_inches() * (box.width, box.height)
+    levels = _grey_levels(x_euvi, value_euv, limit, (x, y), (width, height))
+    pixels = STRESS_MAP(levels[..., 0] / 255.0)
+    pixels[..., 3] *= levels[..., 3] > 0
+    axes.imshow(pixels, extent=(*x, *y), aspect="auto", interpolation="none", zorder=1)
+    many = len(x_euvi) > _MANY_ELEMENTS
+    ink = "#808a96" if many else colour("ink")  # pixels cannot follow the page
+    lines = LineCollection(_perimeter(x_euvi), colors=ink, linewidths=0.25, alpha=0.7, zorder=2, rasterized=many)
+    axes.add_collection(lines)
+    axes.set(xlim=x, ylim=y)
+
+
+def _grey_levels(
+    x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, frame: tuple[Limits, Limits], size: tuple[float, float]
+) -> np.ndarray:
+    """Image (rows, columns, 4): grey from 0 at -limit to 255 at limit, alpha 0 where there is no element."""
+    steep_v = np.abs(np.diff(value_euv, axis=1)).sum() < np.abs(np.diff(value_euv, axis=2)).sum()
+    cells = _CELLS if steep_v else _CELLS[::-1]
+    x_fine, value = _finer(x_euvi, *cells), _finer(value_euv[..., None], *cells)[..., 0]
+    corners = np.stack([x_fine[:, :-1, :-1], x_fine[:, 1:, :-1], x_fine[:, 1:, 1:], x_fine[:, :-1, 1:]], axis=-2)
+    middle = (value[:, :-1, :-1] + value[:, 1:, :-1] + value[:, 1:, 1:] + value[:, :-1, 1:]) / 4
+    corners, middle = corners.reshape(-1, 4, 2), middle.ravel()
+    (left, right), (bottom, top) = frame
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    seen = (high[:, 0] >= left) & (low[:, 0] <= right) & (high[:, 1] >= bottom) & (low[:, 1] <= top)
+    figure = Figure(figsize=size, dpi=_DPI, facecolor="none")
+    axes = figure.add_axes((0, 0, 1, 1), xlim=frame[0], ylim=frame[1])
+    axes.set_axis_off()
+    fill = PolyCollection(corners[seen], array=middle[seen], cmap="gray", clim=(-limit, limit))
+    fill.set(antialiased=False, edgecolor="face", linewidth=0.2)
+    axes.add_collection(fill, autolim=False)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())
+
+
+def _finer(values: np.ndarray, cells_u: int, cells_v: int) -> np.ndarray:
+    """Bilinear refinement of the sampling grids (n_e, m, m, c), so many cells an interval in each direction."""
+    along, across = (_interpolation(values.shape[1], cells) for cells in (cells_u, cells_v))
+    return np.einsum("Uu,Vv,euvc->eUVc", along, across, values, optimize=True)
+
+
+def _interpolation(points: int, cells: int) -> np.ndarray:
+    """Weights (cells (points - 1) + 1, points) of linear interpolation between equally spaced points."""
+    at = np.linspace(0, points - 1, cells * (points - 1) + 1)
+    return np.maximum(1 - np.abs(at[:, None] - np.arange(points)), 0)
+
+
+def _perimeter(x_euvi: np.ndarray) -> np.ndarray:
+    """Closed outlines of the elements (n_e, 4 (m - 1) + 1, 2)."""
+    sides = (x_euvi[:, :-1, 0], x_euvi[:, -1, :-1], x_euvi[:, :0:-1, -1], x_euvi[:, 0, ::-1])
+    return np.concatenate(sides, axis=1)
