@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import platform
+import sys
 import traceback
 from collections.abc import Callable, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -45,8 +46,7 @@ def run(
     solver : what to run; ``verify.methods.solve``
     """
     if mpi_rank() > 0:  # the same numbers are on every rank: one of them writes
-        result = solver(scene, method, None)
-        return result, ()
+        return _silent(scene, method, solver), ()
     writer = CurveWriter(folder)
     rows: list[Row] = []
 
@@ -65,9 +65,26 @@ def run(
         (folder / "error.log").write_text(traceback.format_exc())
         why = f"{type(error).__name__}: {error} (an error in the program: please report it with error.log)"
         result = _stopped(method, rows, why)
+        if mpi_size() > 1:
+            _finish(folder, scene, result, keep_fields)
+            _take_down_all_ranks(why)
     finally:
         writer.close()
     return result, _finish(folder, scene, result, keep_fields)
+
+
+def _silent(scene: Scene, method: str, solver: Solver) -> Result:
+    try:
+        return solver(scene, method, None)
+    except Exception as error:
+        return _take_down_all_ranks(f"{type(error).__name__}: {error}")
+
+
+def _take_down_all_ranks(why: str) -> NoReturn:
+    """End without MPI_Finalize, which would wait for ranks that wait for this one; mpirun then ends those."""
+    print(f"debond: rank {mpi_rank()}: {why}", file=sys.stderr, flush=True)
+    sys.stdout.flush()
+    os._exit(1)
 
 
 def mpi_rank() -> int:
