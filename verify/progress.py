@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from time import monotonic
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 LINES_EVERY_SECONDS = 10.0
 
@@ -47,7 +47,8 @@ class Progress:
             print(text, file=sys.stderr, flush=True)
 
 
-def _bar(title: str, total: float):  # noqa: ANN202  (tqdm is optional)
+def _bar(title: str, total: float) -> Any:
+    """A bar, or None: tqdm is optional."""
     if not sys.stderr.isatty():
         return None
     try:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from verify import methods, verification
 from verify.cli import main
+from verify.result import Result
 from verify.scene import Scene, load_scene
-from verify.verdict import SceneReport
-from verify.verification import Job, planned, verify
+from verify.verdict import Check, Run, SceneReport
+from verify.verification import Job, planned, sequences, verify
 
 LINEAR = "dcb-czm1-linear"
 
@@ -113,6 +116,23 @@ def test_a_scene_that_a_method_is_not_made_for_is_no_failure(
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert verify([(LINEAR, scene)], tmp_path, jobs=1)
     assert reports[0].runs[0].left_out.startswith("not run: load.opening: must only increase")
+
+
+def test_three_meshes_give_an_order_and_an_index(scene: Scene) -> None:
+    """Peak loads 1 + h^2 on h = 1/8, 1/4, 1/2 of order two, whose limit is 1."""
+    steps = {n: {"opening": np.array([0.0, 1.0]), "load": np.array([0.0, 1 + n**-2.0])} for n in (8, 4, 2)}
+    runs = tuple(Run("", "nurbs", Result("nurbs", steps[n], elements=n)) for n in steps)
+    (line,) = sequences([SceneReport(scene, runs, ())])
+    assert line.startswith(f"{LINEAR}: peak load of 3 NURBS meshes: order 2.00, limit 1, GCI")
+    assert sequences([SceneReport(scene, runs[:2], ())]) == []
+
+
+def test_j_is_no_check_on_a_coarse_mesh_of_a_sequence(scene: Scene) -> None:
+    check = Check("j-integral", "nurbs-489", 0.02, 0.005, "exact", "")
+    coarse = Job(LINEAR, scene, "nurbs", "nurbs-489", ("discretization.dofs=489",))
+    assert not coarse.meant_for(check)
+    assert coarse.meant_for(replace(check, name="energy-ledger"))
+    assert Job(LINEAR, scene, "nurbs", "nurbs").meant_for(check)
 
 
 @pytest.mark.slow
