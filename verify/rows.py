@@ -13,7 +13,8 @@ from verify.law import Bilinear
 from verify.zones import CONTACT, ELASTIC, FREE, OPEN, SOFTENING
 
 if TYPE_CHECKING:
-    from verify.beam import BeamProblem, Model, State
+    from verify.beam import BeamProblem
+    from verify.equilibrium import Model, State
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,9 @@ from verify.law import Bilinear
 
 FREE, OPEN, SOFTENING, ELASTIC, CONTACT = range(5)
 
-#: Beyond the last sign change whose wave still reaches this part of g_max the law is taken as elastic. The wave
-#: acts back on the front by the square of it. One that is followed already is kept down to the second number, lest
-#: it comes and goes between Newton's iterations.
+#: Beyond the last sign change whose wave still carries this part of p_max the law is taken as elastic. The wave acts
+#: back on the front by the square of it. One that is followed already is kept down to the second number, lest it
+#: comes and goes between Newton's iterations.
 SMALLEST_WAVE = 1e-6, 1e-8
 
 
@@ -60,7 +60,8 @@ def find(arm: Arm, base: Foundation, field: Field, kind_e: np.ndarray, precrack:
         front = _last_above(x, v, slope, base.v_peak, precrack, x[-1])
     tip = _last_above(x, v, slope, base.v_open, precrack, front)
     followed = np.count_nonzero(np.diff(kind_e[kind_e >= ELASTIC]))
-    crossings = _waves(x, v, slope, front, followed, base.v_peak) if base.contact else []
+    strain = np.abs(v) * np.maximum(base.k[kind] / base.k[ELASTIC], 1.0) / base.v_peak
+    crossings = _waves(x, v, slope, front, followed, strain) if base.contact else []
     beyond = [ELASTIC if i % 2 == 0 else CONTACT for i in range(len(crossings) + 1)]
     bound = [0.0, precrack, tip, front, *crossings, x[-1]]
     kinds = [FREE, OPEN, SOFTENING, *beyond]
@@ -80,15 +81,18 @@ def _last_above(x, v, slope, level, low, high) -> float:
     return min(_root(x[i : i + 2], v[i : i + 2] - level, slope[i : i + 2]), high)
 
 
-def _waves(x, v, slope, front, followed, v_peak) -> list[float]:
-    """Sign changes of v beyond ``front``, as long as the wave behind them is worth it; ``followed`` of them were."""
+def _waves(x, v, slope, front, followed, strain) -> list[float]:
+    """Sign changes of v beyond ``front``, as long as the wave behind them is worth it; ``followed`` of them were.
+
+    ``strain`` is the traction of every sample as a part of p_max.
+    """
     beyond = np.flatnonzero(x > front)
     if len(beyond) < 2:
         return []
     sign = np.where(v[beyond] >= 0.0, 1, -1)
     changes = beyond[:-1][sign[1:] != sign[:-1]]
-    largest_after = np.maximum.accumulate(np.abs(v)[::-1])[::-1]
-    least = v_peak * np.where(np.arange(len(changes)) < followed, SMALLEST_WAVE[1], SMALLEST_WAVE[0])
+    largest_after = np.maximum.accumulate(strain[::-1])[::-1]
+    least = np.where(np.arange(len(changes)) < followed, SMALLEST_WAVE[1], SMALLEST_WAVE[0])
     kept = changes[largest_after[changes + 1] > least]
     return [_root(x[i : i + 2], v[i : i + 2], slope[i : i + 2]) for i in kept]
 

@@ -1,0 +1,155 @@
+"""The path of the cohesive beam: elastic, then behind the damage front, which only advances."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from verify.arm import FORCE, V
+from verify.collocation import Field
+from verify.equilibrium import Control, Model, State, resettle, settle
+from verify.zones import FREE, OPEN, SOFTENING, find
+
+#: A front that must step less than this part of the length does not advance.
+SMALLEST_STEP = 1e-7
+
+#: The arms are separated when they hold together over less than this part of the bond.
+SEPARATED = 1e-3
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How far a step goes: ``stride`` along the curve of opening / end over load / LEFM load, and ``turn`` radians
+    of it at most, since the work is integrated by cubics; steps shorter than stride / 64 may turn more."""
+
+    end: float  # deflection at the end of the programme
+    load: float
+    stride: float
+    turn: float = 0.15
+
+    def rate(self, tangent: Field) -> tuple[float, float]:
+        """Of opening / end and load / LEFM load along a tangent."""
+        return tangent.node[0, V] / self.end, -tangent.node[0, FORCE] / self.load
+
+    def turned(self, old: State, new: State) -> float:
+        """Angle between the directions of the path at two states, both taken as the damage front advances."""
+        a, b = np.array(self.rate(old.tangent)), np.array(self.rate(new.tangent))
+        return float(np.abs(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)))
+
+
+def follow(m: Model, elastic: State, pace: Pace) -> Iterator[State | str | None]:
+    """The converged states in order, None for a step that was halved, and at last how it ended."""
+    state = elastic
+    for state in _undamaged(m, elastic, pace):
+        yield state
+    largest = np.inf
+    while not _reached(state, pace):
+        if m.length - state.front < SEPARATED * (m.length - m.precrack):
+            yield f"stopped: separated, the arms hold together over less than {SEPARATED:.1%} of the bond"
+            return
+        stride = pace.stride / np.hypot(*pace.rate(state.tangent)) / _per_front(m, state)
+        ds = min(stride, largest, 0.2 * (m.length - state.front))
+        new = _step(m, state, ds)
+        if new is None or (ds > stride / 64.0 and pace.turned(state, new) > pace.turn):
+            largest = 0.5 * ds
+            if largest < SMALLEST_STEP * m.length:
+                yield f"stopped: the damage front did not advance beyond {state.front / m.length:.4g} of the length"
+                return
+            if new is None:
+                yield None
+            continue
+        largest = ds * np.clip(0.6 * pace.turn / max(pace.turned(state, new), 1e-12), 0.5, 2.0)
+        new = _land(m, state, new, m.precrack, m.base.v_open)
+        state = _land(m, state, new, 0.0, pace.end)
+        yield state
+    yield "complete"
+
+
+def _reached(state: State, pace: Pace) -> bool:
+    return bool(state.field.node[0, V] >= pace.end * (1.0 - 1e-12))
+
+
+def _undamaged(m: Model, elastic: State, pace: Pace) -> Iterator[State]:
+    """Elastic states up to the onset of damage, or to the end of the programme."""
+    n = int(np.ceil(np.hypot(*pace.rate(elastic.field)) / pace.stride)) + 3
+    state = elastic
+    for share in np.linspace(0.0, 1.0, n + 1)[1:]:
+        scale = share / (share - 1.0 / n) if share > 1.5 / n else share
+        guess = Field(state.field.x, scale * state.field.node, scale * state.field.stage)
+        state = resettle(m, state, guess, Control(m.precrack, share * m.base.v_peak, m.precrack))
+        if state is not None and state.field.node[0, V] > pace.end:
+            state = resettle(m, state, state.field, Control(0.0, pace.end, m.precrack))
+        if state is None:
+            raise ArithmeticError("the undamaged arm was not solved")
+        yield state
+        if _reached(state, pace):
+            return
+
+
+def _per_front(m: Model, state: State) -> float:
+    """How far the tangent's unit goes for a unit advance of the front: -v' there over the tangent's v."""
+    at = np.array([state.front])
+    slope = m.arm.rates(state.field.at(at), np.zeros(1), np.zeros(1))[0][0, V]
+    return float(-slope / state.tangent.at(at)[0, V])
+
+
+def _step(m: Model, state: State, ds: float) -> State | None:
+    """The state whose damage front is ``ds`` further.
+
+    A step that is short beside the process zone is guessed along the tangent, a long one by moving everything along
+    with the front, as a zone that is fully there moves.
+    """
+    front = state.front + ds
+    control = Control(front, m.base.v_peak, front)
+    zone = np.diff(state.field.x)[state.kind == SOFTENING].sum()
+    along = state.ahead(ds * _per_front(m, state)), state.kind
+    guesses = [along, _moved(m, state, ds)]
+    if np.any(state.kind == OPEN) and ds > 0.25 * zone:
+        guesses.reverse()
+    for guess, kind in guesses:
+        new = settle(m, guess, find(m.arm, m.base, guess, kind, m.precrack, front), control)
+        if new is not None:
+            return new
+    return None
+
+
+def _moved(m: Model, state: State, ds: float) -> tuple[Field, np.ndarray]:
+    """The field further along by ``ds``, the arm in front of it going straight on, and the kind of its elements."""
+    inside = state.field.x + ds < m.length
+    x = np.concatenate(([0.0], state.field.x[inside] + ds, [m.length]))
+    kind = np.concatenate(([FREE], state.kind[inside[:-1]]))
+    blank = Field(x, np.zeros((len(x), 4)), np.zeros((len(x) - 1, state.field.stage.shape[1], 4)))
+    first = state.field.node[:1]
+    slope = m.arm.rates(first, np.zeros(1), np.zeros(1))[0][0, V]
+
+    def there(at: np.ndarray) -> np.ndarray:
+        y = state.field.at(np.maximum(at - ds, 0.0))
+        y[..., V] += slope * np.minimum(at - ds, 0.0)
+        return y
+
+    return Field(x, there(x), there(blank.stage_x)), kind
+
+
+def _land(m: Model, old: State, new: State, at: float, target: float) -> State:
+    """The state between two at which the deflection at ``at`` meets ``target``; ``new`` where it does not pass it."""
+    low, high, before, after = 0.0, new.front - old.front, _deflection(old, at), _deflection(new, at)
+    if not before < target * (1.0 - 1e-9) < after:
+        return new
+    for _ in range(40):
+        ds = low + np.clip((target - before) / (after - before), 0.02, 0.98) * (high - low)
+        trial = _step(m, old, ds)
+        if trial is None:
+            return new
+        value = _deflection(trial, at)
+        rate = float(trial.tangent.at(np.array([at]))[0, V])
+        landed = resettle(m, trial, trial.ahead((target - value) / rate), Control(at, target, None))
+        if landed is not None and old.front <= landed.front <= new.front:
+            return landed
+        low, high, before, after = (low, ds, before, value) if value > target else (ds, high, value, after)
+    return new
+
+
+def _deflection(state: State, at: float) -> float:
+    return float(state.field.at(np.array([at]))[0, V])
