@@ -11,6 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from queue import Queue
+from threading import Event
 from typing import TextIO
 
 from verify.checks import run_checks
@@ -108,10 +109,12 @@ def run_all(plan: Sequence[Job], out: Path, jobs: int) -> Iterator[Outcome]:
     lanes = [[job for job in plan if job.method == "dolfinx"], *([job] for job in plan if job.method != "dolfinx")]
     done: Queue[Outcome] = Queue()
     running: set[subprocess.Popen] = set()
+    stopped = Event()
 
     def travel(lane: list[Job]) -> None:
         for job in lane:
-            done.put(run_job(job, out, running))
+            if not stopped.is_set():
+                done.put(run_job(job, out, running))
 
     pool = ThreadPoolExecutor(jobs)
     try:
@@ -125,6 +128,7 @@ def run_all(plan: Sequence[Job], out: Path, jobs: int) -> Iterator[Outcome]:
         for future in futures:
             future.result()
     finally:  # also on an interrupt
+        stopped.set()
         pool.shutdown(wait=False, cancel_futures=True)
         for process in list(running):
             process.terminate()

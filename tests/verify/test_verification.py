@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import subprocess
+import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -133,6 +138,20 @@ def test_j_is_no_check_on_a_coarse_mesh_of_a_sequence(scene: Scene) -> None:
     assert not coarse.meant_for(check)
     assert coarse.meant_for(replace(check, name="energy-ledger"))
     assert Job(LINEAR, scene, "nurbs", "nurbs").meant_for(check)
+
+
+def test_an_interrupt_ends_all_runs(tmp_path: Path) -> None:
+    command = [sys.executable, "-P", "-m", "verify.cli", "verify", LINEAR, "--jobs", "2", "--out", str(tmp_path)]
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).resolve().parents[2])}
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment, start_new_session=True)
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline and not list(tmp_path.rglob("curve.csv")):
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)  # to the parent alone, as a script would
+    _, said = process.communicate(timeout=30)
+    assert process.returncode == 130 and "interrupted" in said and "Traceback" not in said
+    with pytest.raises(ProcessLookupError):
+        os.killpg(process.pid, 0)  # nobody of its session is left
 
 
 @pytest.mark.slow
