@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -23,6 +24,17 @@ class BlockBasis:
     dN_eqaI: np.ndarray
     dV_eq: np.ndarray
     X_eqI: np.ndarray
+
+    @cached_property
+    def dN_ea_qI(self) -> np.ndarray:
+        """Gradients as the left factor (n_e, n_a, 2 n_q) of one matrix product an element."""
+        n_e, n_q, n_a, _ = self.dN_eqaI.shape
+        return np.ascontiguousarray(self.dN_eqaI.transpose(0, 2, 1, 3)).reshape(n_e, n_a, n_q * 2)
+
+    @cached_property
+    def dN_Jeqb(self) -> np.ndarray:
+        """Gradients with their component first, (2, n_e, n_q, n_a)."""
+        return np.ascontiguousarray(self.dN_eqaI.transpose(3, 0, 1, 2))
 
 
 def block_basis(mesh: Mesh, block: ElementBlock, points_q: np.ndarray, weights_q: np.ndarray) -> BlockBasis:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from math import comb
+
 import numpy as np
 
 
 def bernstein(degree: int, xi: np.ndarray) -> np.ndarray:
-    """Bernstein polynomials B_b of one degree.
-
-    Raised one degree at a time, ``B_b^p = (1 - xi) B_b^{p-1} + xi B_{b-1}^{p-1}`` (Farin 2002, eq. 5.2).
+    """Bernstein polynomials ``B_b = binom(p, b) xi^b (1 - xi)^(p - b)`` (Farin 2002, eq. 5.1).
 
     Parameters
     ----------
@@ -19,12 +19,12 @@ def bernstein(degree: int, xi: np.ndarray) -> np.ndarray:
     -------
     (..., p + 1) values.
     """
-    xi = np.asarray(xi)[..., None]
-    B = np.ones_like(xi * 1.0)
-    for _ in range(degree):
-        zero = np.zeros_like(B[..., :1])
-        B = (1.0 - xi) * np.concatenate([B, zero], -1) + xi * np.concatenate([zero, B], -1)
-    return B
+    xi = np.asarray(xi, dtype=float)
+    rising, falling = np.ones(xi.shape + (degree + 1,)), np.ones(xi.shape + (degree + 1,))
+    for b in range(degree):
+        rising[..., b + 1] = rising[..., b] * xi
+        falling[..., degree - b - 1] = falling[..., degree - b] * (1.0 - xi)
+    return np.array([comb(degree, b) for b in range(degree + 1)], dtype=float) * rising * falling
 
 
 def bernstein_derivative(degree: int, xi: np.ndarray, order: int = 1) -> np.ndarray:

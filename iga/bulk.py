@@ -2,49 +2,71 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from iga.basis import BlockBasis
 
-Stress = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
+#: Pairs (i, j) of displacement components whose blocks of the symmetric element matrix are computed.
+PAIRS = ((0, 0), (0, 1), (1, 1))
 
 
 def gradient(basis: BlockBasis, u_Ai: np.ndarray) -> np.ndarray:
-    """Displacement gradient H_eqiI (n_e, n_q, 2, 2)."""
-    n_e, n_q, n_a, _ = basis.dN_eqaI.shape
-    dN_eqIa = basis.dN_eqaI.swapaxes(2, 3).reshape(n_e, n_q * 2, n_a)
-    return (dN_eqIa @ u_Ai[basis.conn_ea]).reshape(n_e, n_q, 2, 2).swapaxes(2, 3)
+    """Displacement gradient H_iIeq (2, 2, n_e, n_q): components first, so that work on one component runs through memory."""
+    H_eqIi = basis.dN_ea_qI.swapaxes(1, 2) @ u_Ai[basis.conn_ea]
+    n_e, n_q = basis.dV_eq.shape
+    return np.ascontiguousarray(H_eqIi.reshape(n_e, n_q, 2, 2).transpose(3, 2, 0, 1))
 
 
-def element_forces(basis: BlockBasis, P_eqiI: np.ndarray, width: float) -> np.ndarray:
+def element_forces(basis: BlockBasis, P_iIeq: np.ndarray, width: float) -> np.ndarray:
     """Internal forces ``f_eai = int P_iI dN_a/dX_I dV`` (n_e, n_a, 2)."""
-    n_e, n_q, n_a, _ = basis.dN_eqaI.shape
-    P = (P_eqiI * (width * basis.dV_eq)[..., None, None]).swapaxes(2, 3).reshape(n_e, n_q * 2, 2)
-    return _dN_ea_qI(basis) @ P
+    n_e, n_q = basis.dV_eq.shape
+    P_eqIi = (P_iIeq * (width * basis.dV_eq)).transpose(2, 3, 1, 0)
+    return basis.dN_ea_qI @ P_eqIi.reshape(n_e, n_q * 2, 2)
 
 
-def element_stiffness(basis: BlockBasis, A_eqiIjJ: np.ndarray, width: float) -> np.ndarray:
-    """Stiffness ``K_eaibj = int dN_a/dX_I A_iIjJ dN_b/dX_J dV`` as (n_e, 2 n_a, 2 n_a), symmetric.
+def element_stiffness(basis: BlockBasis, A_iIjJeq: np.ndarray, width: float) -> np.ndarray:
+    """Stiffness ``K_e(p)ab = int dN_a/dX_I A_iIjJ dN_b/dX_J dV`` (n_e, n_a, 3, n_a) for the three `PAIRS` p = (i, j).
 
-    One batched matrix product for each of the three pairs (i, j) with i <= j.
+    One matrix product an element; the block (1, 0) is the transpose of (0, 1).
     """
-    n_e, n_q, n_a, _ = basis.dN_eqaI.shape
-    dN_a, dN_eqJb = _dN_ea_qI(basis), np.ascontiguousarray(basis.dN_eqaI.swapaxes(2, 3))
-    A = A_eqiIjJ * (width * basis.dV_eq)[..., None, None, None, None]
+    n_e, n_q = basis.dV_eq.shape
+    n_a = basis.conn_ea.shape[1]
+    dV_eq = width * basis.dV_eq
+    AdN = np.empty((n_e, n_q, 2, 3, n_a))
+    term = np.empty((n_e, n_q, n_a))
+    for p, (i, j) in enumerate(PAIRS):
+        for first in range(2):
+            np.multiply((A_iIjJeq[i, first, j, 0] * dV_eq)[..., None], basis.dN_Jeqb[0], out=AdN[:, :, first, p])
+            np.multiply((A_iIjJeq[i, first, j, 1] * dV_eq)[..., None], basis.dN_Jeqb[1], out=term)
+            AdN[:, :, first, p] += term
+    return (basis.dN_ea_qI @ AdN.reshape(n_e, n_q * 2, 3 * n_a)).reshape(n_e, n_a, 3, n_a)
+
+
+def stiffness_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns (n_e, n_a, 4, n_a) of all entries: those of `element_stiffness`, then the transposed block (1, 0)."""
+    i, j = np.array([*PAIRS, (0, 1)]).T
+    row = 2 * conn_ea[:, :, None, None] + i[:, None]
+    column = 2 * conn_ea[:, None, None, :] + j[:, None]
+    row, column = np.broadcast_arrays(row, column)
+    transposed = np.arange(4)[:, None] == 3
+    return np.where(transposed, column, row), np.where(transposed, row, column)
+
+
+def all_entries(K_eapb: np.ndarray) -> np.ndarray:
+    """Values (n_e, n_a, 4, n_a) for `stiffness_entries`."""
+    return np.concatenate([K_eapb, K_eapb[:, :, 1:2]], axis=2)
+
+
+def full_matrices(K_eapb: np.ndarray) -> np.ndarray:
+    """Element matrices (n_e, 2 n_a, 2 n_a) over degrees of freedom 2a + i."""
+    n_e, n_a, _, _ = K_eapb.shape
     K = np.empty((n_e, n_a, 2, n_a, 2))
-    for i, j in ((0, 0), (0, 1), (1, 1)):
-        AdN = A[:, :, i, :, j, 0, None] * dN_eqJb[:, :, None, 0] + A[:, :, i, :, j, 1, None] * dN_eqJb[:, :, None, 1]
-        K[:, :, i, :, j] = dN_a @ AdN.reshape(n_e, n_q * 2, n_a)
-    K[:, :, 1, :, 0] = K[:, :, 0, :, 1].swapaxes(1, 2)
+    for p, (i, j) in enumerate(PAIRS):
+        K[:, :, i, :, j] = K_eapb[:, :, p]
+    K[:, :, 1, :, 0] = K_eapb[:, :, 1].swapaxes(1, 2)
     return K.reshape(n_e, 2 * n_a, 2 * n_a)
 
 
 def energy(basis: BlockBasis, W_eq: np.ndarray, width: float) -> float:
-    return float(np.sum(W_eq * basis.dV_eq) * width)
-
-
-def _dN_ea_qI(basis: BlockBasis) -> np.ndarray:
-    n_e, n_q, n_a, _ = basis.dN_eqaI.shape
-    return basis.dN_eqaI.transpose(0, 2, 1, 3).reshape(n_e, n_a, n_q * 2)
+    """Integral of an energy density (n_e, n_q) over the bulk."""
+    return float(np.sum(W_eq * basis.dV_eq)) * width

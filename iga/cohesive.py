@@ -52,15 +52,6 @@ class BilinearLaw:
         """d = 1 - secant / stiffness: 0 up to g_max, 1 from g_u on."""
         return 1.0 - self.secant(k) / self.stiffness
 
-    def closed(self, g: np.ndarray, was_closed: np.ndarray) -> np.ndarray:
-        """Which points are in contact; one whose gap is below rounding stays on the side where it was.
-
-        Far ahead of a crack the gaps alternate in sign while they decay below rounding. Deciding there anew in every Newton
-        iteration sets penalty against cohesion for ever; on either side the traction is the same to 1e-8 of the strength.
-        """
-        tiny = 1e-8 * self.strength / max(self.penalty, self.stiffness)
-        return np.where(np.abs(g) <= tiny, was_closed, g < 0.0) & self.contact
-
     def traction(self, g: np.ndarray, k: np.ndarray, closed: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Traction, consistent tangent and new history.
 
@@ -68,13 +59,13 @@ class BilinearLaw:
         ----------
         g : (...,) normal gap, positive when open.
         k : (...,) largest gap of all converged states so far, the history.
-        closed : (...,) which points are in contact, see `closed`; by the sign of the gap if left out.
+        closed : (...,) which points are in contact; those with a negative gap if left out.
 
         Returns
         -------
         p, dp_dg, k_new : (...,) each.
         """
-        closed = (g < 0.0) & self.contact if closed is None else closed
+        closed = (g < 0.0 if closed is None else closed) & self.contact
         k_new = np.maximum(k, g) if self.irreversible else np.maximum(g, 0.0)
         secant = self.secant(k_new)
         softening = (g >= k_new) & (g > self.g_max) & (g < self.g_u)

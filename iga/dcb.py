@@ -20,7 +20,7 @@ from iga.observe import Arm, Specimen, mean_row, row
 from iga.path import End, follow
 from iga.quadrature import gauss, lobatto, square
 from iga.surface import surface
-from iga.system import Phase, Solid, System, untimed
+from iga.system import Phase, Solid, System, joined, untimed
 
 RULES = {"gauss": gauss, "lobatto": lobatto}
 
@@ -122,7 +122,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
         mean = [mean_row(arm.face, 1, n_dof) for arm in arms]
         load_d = 2.0 * mean[0] if problem.symmetry else mean[0] - mean[1]
         system = System(
-            solids=tuple(solid for arm in arms for solid in arm.solids),
+            solids=joined([solid for arm in arms for solid in arm.solids]),
             interface=_interface(problem, meshes, first),
             kinematics=problem.kinematics,
             width=copies * problem.width,
@@ -208,26 +208,26 @@ def _points(
 ) -> Interface:
     """Interface with the rule (xi, w) on each of the bonded ``sides`` of the slave; the whole of the other arm is master."""
     slave, master = (1, 0) if problem.slave == "bottom" and not problem.symmetry else (0, 1)
-    names, n_A = ("bottom", "top"), int(first[-1])
+    names = ("bottom", "top")
     P_AI = np.concatenate([mesh.P_AI for mesh in meshes])
-    whole = surface(meshes[slave], meshes[slave].chains[names[slave]], int(first[slave]), n_A)
-    c_all = np.arange(whole.sides)
-    (middle,) = whole.coefficients(c_all, np.full(whole.sides, 0.5), 0)
-    X_c = np.einsum("cb,cb...->c...", middle, whole.bezier_points(P_AI))[:, 0]
-    c_q = np.repeat(c_all[X_c > problem.precrack][sides], len(xi))
-    xi_q = np.tile(xi, len(c_q) // len(xi))
+    whole = surface(meshes[slave], meshes[slave].chains[names[slave]], int(first[slave]))
+    (middle,) = whole.coefficients(np.arange(whole.sides), np.full(whole.sides, 0.5), 0)
+    X_c = np.einsum("cb,cbi->ci", middle, whole.bezier_points(P_AI))[:, 0]
+    c_q = np.repeat(np.flatnonzero(X_c > problem.precrack)[sides], len(xi))
+    xi_q, w_q = (np.tile(v, len(c_q) // len(xi)) for v in (xi, w))
     r0, r1 = whole.coefficients(c_q, xi_q, 1)
-    tangent = np.einsum("qb,qbi->qi", r1, whole.bezier_points(P_AI)[c_q])
-    S_qA = whole.rows(c_q, r0)
+    Q_qbi = whole.bezier_points(P_AI)[c_q]
+    X_qi, tangent_qi = (np.einsum("qb,qbi->qi", r, Q_qbi) for r in (r0, r1))
     return Interface(
-        S_qA=S_qA,
-        dA_q=np.linalg.norm(tangent, axis=1) * np.tile(w, len(c_q) // len(xi)) * problem.width,
-        X_qi=S_qA @ P_AI,
+        N_qa=whole.functions(c_q, r0),
+        conn_qa=whole.conn_ca[c_q],
+        dA_q=np.linalg.norm(tangent_qi, axis=1) * w_q * problem.width,
+        X_qi=X_qi,
         P_AI=P_AI,
         law=BilinearLaw(
             problem.strength, problem.toughness, problem.ductility, problem.penalty, problem.contact, problem.irreversible
         ),
-        master=None if problem.symmetry else surface(meshes[master], meshes[master].chains[names[master]], int(first[master]), n_A),
+        master=None if problem.symmetry else surface(meshes[master], meshes[master].chains[names[master]], int(first[master])),
         mirror_i=np.array([0.0, 1.0]) if problem.symmetry else None,
         frozen=problem.kinematics == "linear",
     )

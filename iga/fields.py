@@ -48,7 +48,7 @@ def _grids(specimen: Specimen, number: int, u_d: np.ndarray) -> tuple[np.ndarray
     for block in mesh.blocks:
         basis = block_basis(mesh, block, points_q, np.ones(len(points_q)))
         u_eqi = np.einsum("eqa,eai->eqi", basis.N_eqa, u_Ai[basis.conn_ea])
-        stress_eq = cauchy_stress(arm.D, gradient(basis, u_Ai), specimen.system.kinematics)[..., 0, 0]
+        stress_eq = cauchy_stress(arm.D, gradient(basis, u_Ai), specimen.system.kinematics)[0, 0]
         parts.append((basis.X_eqI, u_eqi, stress_eq))
     shape = (-1, INTERVALS + 1, INTERVALS + 1)
     X, u, stress = (np.concatenate([part[i] for part in parts]) for i in range(3))

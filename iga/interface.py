@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from iga.cohesive import BilinearLaw
 from iga.projection import Pairing, closest_points, nearest_samples
@@ -20,13 +19,15 @@ from iga.surface import Surface, normal
 class Interface:
     """Slave points, master surface and the law between them.
 
-    ``S_qA`` (n_q, n_A), sparse: slave functions at the points; ``dA_q`` (n_q,) reference area (length x width) of each point;
-    ``X_qi`` (n_q, 2) reference positions. ``master`` is None where the partner is the mirror image of the slave in the line
-    through the origin with normal ``mirror_i``: then the gap is twice the distance to it.
-    ``frozen`` keeps the pairing and normals of the reference configuration (linear kinematics): no search is done.
+    ``N_qa`` (n_q, n_a) slave functions at the points, on the control points ``conn_qa``; ``dA_q`` (n_q,) reference area
+    (length x width) of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the whole model.
+    ``master`` is None where the partner is the mirror image of the slave in the line through the origin with normal
+    ``mirror_i``: then the gap is twice the distance to it. ``frozen`` keeps the pairing and normals of the reference
+    configuration (linear kinematics): no search is done.
     """
 
-    S_qA: csr_array
+    N_qa: np.ndarray
+    conn_qa: np.ndarray
     dA_q: np.ndarray
     X_qi: np.ndarray
     P_AI: np.ndarray
@@ -39,21 +40,33 @@ class Interface:
     def points(self) -> int:
         return len(self.dA_q)
 
+    def at_slave(self, v_Ai: np.ndarray) -> np.ndarray:
+        """A field of the control points (n_A, 2) at the slave points (n_q, 2)."""
+        return np.sum(self.N_qa[..., None] * v_Ai[self.conn_qa], axis=1)
+
 
 @dataclass(frozen=True)
 class Contact:
-    """Gaps and their first variation in one configuration.
+    """Gaps and their variations in one configuration.
 
-    ``g_q`` (n_q,), ``n_qi`` (n_q, 2) master normals, ``G_qd`` (n_q, 2 n_A) sparse, ``dg = G du``; ``T_qd``, ``Nb_qd`` and the
-    three coefficients (n_q,) make the second variation (see `second_variation`), None where it vanishes.
+    ``g_q`` (n_q,), ``n_qi`` (n_q, 2) master normals, ``on_q`` False for points beyond the ends of the master. ``conn_qa``
+    (n_q, n_a) lists the control points of slave and master side that a point touches; ``V_qrd`` (n_q, r, 2 n_a) holds the row
+    of the first variation, ``dg = V_0 du``, and, where the geometry is not frozen, the rows T and Nb of the second (see
+    `stiffness`) with ``m_q`` and ``kappa_q``.
     """
 
     pairing: Pairing | None
     g_q: np.ndarray
     n_qi: np.ndarray
-    G_qd: csr_array
     on_q: np.ndarray
-    curved: tuple | None = None
+    conn_qa: np.ndarray
+    V_qrd: np.ndarray
+    m_q: np.ndarray | None = None
+    kappa_q: np.ndarray | None = None
+
+    def row(self, q: int, n_dof: int) -> np.ndarray:
+        """Gradient (n_dof,) of the gap at one point."""
+        return np.bincount(dofs(self.conn_qa[q]), weights=self.V_qrd[q, 0], minlength=n_dof)
 
 
 def pair(interface: Interface) -> Pairing | None:
@@ -67,25 +80,25 @@ def pair(interface: Interface) -> Pairing | None:
 def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Contact:
     """Gaps in the configuration u_d (2 n_A,), searching from the pairing ``guess``."""
     if interface.master is None:
-        n_qi = np.broadcast_to(interface.mirror_i, interface.X_qi.shape)
-        G_qd = along(interface.S_qA, 2.0 * n_qi)
-        g_q = 2.0 * interface.X_qi @ interface.mirror_i + G_qd @ u_d
-        return Contact(None, g_q, n_qi, G_qd, np.ones(interface.points, dtype=bool))
-    x_AI = interface.P_AI if interface.frozen else interface.P_AI + u_d.reshape(-1, 2)
-    x_qi = interface.S_qA @ x_AI
-    pairing = guess if interface.frozen else closest_points(interface.master, x_qi, x_AI, guess)
-    r0, r1, r2 = interface.master.coefficients(pairing.c_q, pairing.xi_q, 2)
-    Q_qbi = interface.master.bezier_points(x_AI)[pairing.c_q]
-    y_qi, t_qi, t_xi_qi = (np.einsum("qb,qbi->qi", r, Q_qbi) for r in (r0, r1, r2))
-    n_qi = normal(t_qi, interface.master.outward)
-    D_qA = interface.S_qA - interface.master.rows(pairing.c_q, r0)
-    G_qd = along(D_qA, n_qi)
-    g_q = np.sum((x_qi - y_qi) * n_qi, -1)
+        return _mirrored(interface, u_d)
+    master, u_Ai = interface.master, u_d.reshape(-1, 2)
+    x_AI = interface.P_AI if interface.frozen else interface.P_AI + u_Ai
+    x_qi = interface.at_slave(x_AI)
+    pairing = guess if interface.frozen else closest_points(master, x_qi, x_AI, guess)
+    r0, r1, r2 = master.coefficients(pairing.c_q, pairing.xi_q, 2)
+    Q_qbi = master.bezier_points(x_AI)[pairing.c_q]
+    y_qi, t_qi, t_xi_qi = (np.sum(r[..., None] * Q_qbi, axis=1) for r in (r0, r1, r2))
+    n_qi = normal(t_qi, master.outward)
+    conn_qa = np.concatenate([interface.conn_qa, master.conn_ca[pairing.c_q]], axis=1)
+    D_qa = np.concatenate([interface.N_qa, -master.functions(pairing.c_q, r0)], axis=1)
+    G_qd, g_q = _along(D_qa, n_qi), np.sum((x_qi - y_qi) * n_qi, -1)
     if interface.frozen:
-        return Contact(pairing, g_q + G_qd @ u_d, n_qi, G_qd, pairing.on_q)
-    m, kappa = np.sum(t_qi * t_qi, -1), np.sum(n_qi * t_xi_qi, -1)
-    curved = (along(D_qA, t_qi), along(interface.master.rows(pairing.c_q, r1), n_qi), m, kappa)
-    return Contact(pairing, g_q, n_qi, G_qd, pairing.on_q, curved)
+        g_q = g_q + np.sum(G_qd * u_d[dofs(conn_qa)], -1)
+        return Contact(pairing, g_q, n_qi, pairing.on_q, conn_qa, G_qd[:, None])
+    moving_qa = np.concatenate([np.zeros_like(interface.N_qa), master.functions(pairing.c_q, r1)], axis=1)
+    V_qrd = np.stack([G_qd, _along(D_qa, t_qi), _along(moving_qa, n_qi)], axis=1)
+    m_q, kappa_q = np.sum(t_qi * t_qi, -1), np.sum(n_qi * t_xi_qi, -1)
+    return Contact(pairing, g_q, n_qi, pairing.on_q, conn_qa, V_qrd, m_q, kappa_q)
 
 
 def traction(
@@ -96,35 +109,42 @@ def traction(
     return np.where(contact.on_q, p, 0.0), np.where(contact.on_q, dp, 0.0), np.where(contact.on_q, k_new, k_q)
 
 
-def forces(interface: Interface, contact: Contact, p_q: np.ndarray) -> np.ndarray:
-    """Residual ``R = int p dg/du dGamma`` (2 n_A,)."""
-    return contact.G_qd.T @ (p_q * interface.dA_q)
+def forces(interface: Interface, contact: Contact, p_q: np.ndarray, n_dof: int) -> np.ndarray:
+    """Residual ``R = int p dg/du dGamma`` (n_dof,)."""
+    R_qd = contact.V_qrd[:, 0] * (p_q * interface.dA_q)[:, None]
+    return np.bincount(dofs(contact.conn_qa).ravel(), weights=R_qd.ravel(), minlength=n_dof)
 
 
-def stiffness(interface: Interface, contact: Contact, p_q: np.ndarray, dp_q: np.ndarray) -> csr_array:
-    """Complete tangent ``K = int p' G'G dGamma + int p D(dg) dGamma`` (2 n_A, 2 n_A), symmetric.
+def stiffness(interface: Interface, contact: Contact, p_q: np.ndarray, dp_q: np.ndarray) -> np.ndarray:
+    """Complete tangent of each point (n_q, 2 n_a, 2 n_a), ``K = int p' G'G dGamma + int p D(dg) dGamma``, symmetric.
 
     With y' = t, m = t.t, kappa = n.y'', a = m - g kappa, T = t.(dx - dy), Nb = n.dy', the second variation of the gap is
     ``D(dg) = -1/a [T Nb + Nb T + g Nb Nb + (kappa / m) T T]`` (Wriggers 2006, sec. 9.1, in the present notation).
     """
-    G, w = contact.G_qd, interface.dA_q
-    K = G.T @ scaled(G, dp_q * w)
-    if contact.curved is None:
-        return K
-    T, Nb, m, kappa = contact.curved
-    a = m - contact.g_q * kappa
-    f = -p_q * w / np.where(np.abs(a) > 1e-12 * m, a, m)
-    return K + T.T @ (scaled(T, f * kappa / m) + scaled(Nb, f)) + Nb.T @ (scaled(T, f) + scaled(Nb, f * contact.g_q))
+    V = contact.V_qrd
+    c_qrs = np.zeros((len(V), V.shape[1], V.shape[1]))
+    c_qrs[:, 0, 0] = dp_q * interface.dA_q
+    if contact.m_q is not None:
+        a = contact.m_q - contact.g_q * contact.kappa_q
+        f = -p_q * interface.dA_q / np.where(np.abs(a) > 1e-12 * contact.m_q, a, contact.m_q)
+        c_qrs[:, 1, 1] = f * contact.kappa_q / contact.m_q
+        c_qrs[:, 1, 2] = c_qrs[:, 2, 1] = f
+        c_qrs[:, 2, 2] = f * contact.g_q
+    return V.swapaxes(1, 2) @ (c_qrs @ V)
 
 
-def along(N_qA: csr_array, v_qi: np.ndarray) -> csr_array:
-    """Rows over the degrees of freedom 2A + i: ``N_qA v_qi``."""
-    q = np.repeat(np.arange(N_qA.shape[0]), np.diff(N_qA.indptr))
-    data = N_qA.data[:, None] * v_qi[q]
-    columns = 2 * N_qA.indices[:, None] + np.arange(2)
-    return csr_array((data.ravel(), columns.ravel(), 2 * N_qA.indptr), shape=(N_qA.shape[0], 2 * N_qA.shape[1]))
+def dofs(conn_qa: np.ndarray) -> np.ndarray:
+    """Degrees of freedom (..., 2 n_a) of control points (..., n_a), numbered 2A + i."""
+    return (2 * conn_qa[..., None] + np.arange(2)).reshape(*conn_qa.shape[:-1], -1)
 
 
-def scaled(V_qd: csr_array, s_q: np.ndarray) -> csr_array:
-    """Rows of V times s."""
-    return csr_array((V_qd.data * np.repeat(s_q, np.diff(V_qd.indptr)), V_qd.indices, V_qd.indptr), shape=V_qd.shape)
+def _mirrored(interface: Interface, u_d: np.ndarray) -> Contact:
+    n_qi = np.broadcast_to(interface.mirror_i, interface.X_qi.shape)
+    G_qd = _along(2.0 * interface.N_qa, n_qi)
+    g_q = 2.0 * interface.X_qi @ interface.mirror_i + np.sum(G_qd * u_d[dofs(interface.conn_qa)], -1)
+    return Contact(None, g_q, n_qi, np.ones(interface.points, dtype=bool), interface.conn_qa, G_qd[:, None])
+
+
+def _along(N_qa: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
+    """Rows (n_q, 2 n_a) ``N_qa v_qi`` over the degrees of freedom."""
+    return (N_qa[:, :, None] * v_qi[:, None, :]).reshape(len(N_qa), -1)

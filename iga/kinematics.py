@@ -1,12 +1,16 @@
 """From displacement gradient to first Piola-Kirchhoff stress, its tangent, and stored energy, for every point at once.
 
 Both kinematics speak the same language, so that one assembler serves them: ``P_iI = dW/dH_iI`` and ``A_iIjJ = dP_iI/dH_jJ``.
+Components come first in all arrays: each of the few operations then runs over all points in a row.
 """
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
+#: Voigt number of the components (I, J) of a symmetric tensor, order 11, 22, 12.
 VOIGT = ((0, 2), (2, 1))
 
 
@@ -16,53 +20,73 @@ def elasticity_tensor(D: np.ndarray) -> np.ndarray:
     return D[v[:, :, None, None], v[None, None]]
 
 
-def finite_strain(D: np.ndarray, H_qiI: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def finite_strain(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """St. Venant-Kirchhoff, total Lagrangian: ``E = (F'F - 1)/2``, ``S = D:E``, ``P = F S`` (Bonet and Wood 2008, sec. 6.4).
 
     Parameters
     ----------
     D : (3, 3) elasticity matrix [stress].
-    H_qiI : (..., 2, 2) displacement gradient.
+    H : (2, 2, ...) displacement gradient H_iI.
 
     Returns
     -------
-    P_qiI : (..., 2, 2) first Piola-Kirchhoff stress.
-    A_qiIjJ : (..., 2, 2, 2, 2) its derivative, ``A_iIjJ = delta_ij S_IJ + F_iK C_KILJ F_jL``.
-    W_q : (...,) stored energy per reference volume.
+    P : (2, 2, ...) first Piola-Kirchhoff stress P_iI.
+    A : (2, 2, 2, 2, ...) its derivative, ``A_iIjJ = delta_ij S_IJ + L_v,iI D_vw L_w,jJ`` with ``L_v,iI = dE_v/dH_iI``.
+    W : (...,) stored energy per reference volume.
     """
-    F = H_qiI + np.eye(2)
-    S, W = _svk(D, F, H_qiI)
-    P = F @ S
-    A = np.einsum("...iK,KILJ,...jL->...iIjJ", F, elasticity_tensor(D), F, optimize=["einsum_path", (0, 1), (0, 1)])
-    A[..., 0, :, 0, :] += S
-    A[..., 1, :, 1, :] += S
+    F = _deformation(H)
+    S_v, W = _svk(D, H)
+    S = S_v[np.array(VOIGT)]
+    P = np.stack([[F[i, 0] * S[0, I] + F[i, 1] * S[1, I] for I in range(2)] for i in range(2)])
+    DL = _stress_rates(D, F)
+    A = np.empty((2, 2, 2, 2, *H.shape[2:]))
+    for i, I, j, J in product(range(2), repeat=4):
+        if (i, I) <= (j, J):
+            A[i, I, j, J] = F[i, I] * DL[j][J][I] + F[i, 1 - I] * DL[j][J][2]
+            if i == j:
+                A[i, I, j, J] += S[I, J]
+            A[j, J, i, I] = A[i, I, j, J]
     return P, A, W
 
 
-def small_strain(D: np.ndarray, H_qiI: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def small_strain(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Linear kinematics: the same with E replaced by the symmetric gradient and no geometric stiffness."""
     C = elasticity_tensor(D)
-    P = np.einsum("iIjJ,...jJ->...iI", C, H_qiI)
-    A = np.broadcast_to(C, H_qiI.shape[:-2] + C.shape)
-    return P, A, 0.5 * np.sum(P * H_qiI, axis=(-1, -2))
+    P = np.tensordot(C, H, axes=2)
+    A = np.broadcast_to(C.reshape(*C.shape, *[1] * (H.ndim - 2)), C.shape + H.shape[2:])
+    return P, A, 0.5 * np.sum(P * H, axis=(0, 1))
 
 
-def cauchy_stress(D: np.ndarray, H_qiI: np.ndarray, kinematics: str) -> np.ndarray:
-    """Cauchy stress (..., 2, 2): ``F S F' / det F``, or the linear stress."""
+def cauchy_stress(D: np.ndarray, H: np.ndarray, kinematics: str) -> np.ndarray:
+    """Cauchy stress (2, 2, ...): ``F S F' / det F``, or the linear stress."""
     if kinematics == "linear":
-        return small_strain(D, H_qiI)[0]
-    F = H_qiI + np.eye(2)
-    S, _ = _svk(D, F, H_qiI)
-    return F @ S @ F.swapaxes(-1, -2) / np.linalg.det(F)[..., None, None]
+        return small_strain(D, H)[0]
+    F, (S_v, _) = _deformation(H), _svk(D, H)
+    det = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
+    return np.einsum("iI...,IJ...,jJ...->ij...", F, S_v[np.array(VOIGT)], F) / det
 
 
-def _svk(D: np.ndarray, F: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Second Piola-Kirchhoff stress and energy; E is formed from H, which keeps its digits where F is close to one."""
-    E = 0.5 * (H + H.swapaxes(-1, -2) + H.swapaxes(-1, -2) @ H)
-    E_v = np.stack([E[..., 0, 0], E[..., 1, 1], 2.0 * E[..., 0, 1]], -1)
-    S_v = E_v @ D
-    S = S_v[..., np.array(VOIGT)]
-    return S, 0.5 * np.sum(S_v * E_v, -1)
+def _deformation(H: np.ndarray) -> np.ndarray:
+    F = H.copy()
+    F[0, 0] += 1.0
+    F[1, 1] += 1.0
+    return F
+
+
+def _svk(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Second Piola-Kirchhoff stress (3, ...) and energy; E is formed from H, which keeps its digits where F is close to one."""
+    E_v = np.stack([
+        H[0, 0] + 0.5 * (H[0, 0] ** 2 + H[1, 0] ** 2),
+        H[1, 1] + 0.5 * (H[0, 1] ** 2 + H[1, 1] ** 2),
+        H[0, 1] + H[1, 0] + H[0, 0] * H[0, 1] + H[1, 0] * H[1, 1],
+    ])
+    S_v = np.tensordot(D, E_v, axes=1)
+    return S_v, 0.5 * np.sum(S_v * E_v, axis=0)
+
+
+def _stress_rates(D: np.ndarray, F: np.ndarray) -> list[list[list[np.ndarray]]]:
+    """``D_vw L_w,jJ`` as [j][J][v]: with L, only the direct strain J and the shear strain answer to H_jJ."""
+    return [[[D[v, J] * F[j, J] + D[v, 2] * F[j, 1 - J] for v in range(3)] for J in range(2)] for j in range(2)]
 
 
 KINEMATICS = {"finite": finite_strain, "linear": small_strain}

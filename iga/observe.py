@@ -92,7 +92,7 @@ def tip_opening(specimen: Specimen, point: Point) -> float:
 def face_slope(arm: Arm, u_d: np.ndarray) -> float:
     """Mean of du_y/dX over the loaded face."""
     u_Ai = u_d.reshape(-1, 2)
-    total = sum(float(np.sum(gradient(basis, u_Ai)[..., 1, 0] * basis.dV_eq)) for basis in arm.face)
+    total = sum(float(np.sum(gradient(basis, u_Ai)[1, 0] * basis.dV_eq)) for basis in arm.face)
     return total / face_length(arm.face)
 
 
@@ -119,7 +119,7 @@ def _balance(specimen: Specimen, point: Point) -> dict[str, float]:
     system, state, touch = specimen.system, point.state, point.response.contact
     interface = system.interface
     moved = 0.0 if system.kinematics == "linear" else 1.0
-    x_qi = interface.X_qi + moved * (interface.S_qA @ state.u_d.reshape(-1, 2))
+    x_qi = interface.X_qi + moved * (interface.at_slave(state.u_d.reshape(-1, 2)))
     pull_qi = (point.response.p_q * interface.dA_q)[:, None] * touch.n_qi  # on the master
     if not specimen.upper_is_slave:
         x_qi, pull_qi = x_qi - moved * touch.g_q[:, None] * touch.n_qi, -pull_qi

@@ -30,7 +30,7 @@ def nearest_samples(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, sample
 
 
 def closest_points(
-    surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing, tolerance: float = 1e-13, iterations: int = 60
+    surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing, tolerance: float = 1e-9, iterations: int = 60
 ) -> Pairing:
     """Project points on the surface: ``(x - y(xi)) . y'(xi) = 0`` by Newton, from the pairing before.
 
@@ -44,7 +44,7 @@ def closest_points(
     x_qi : (n_q, 2) points.
     y_AI : (n_A, 2) current control points.
     guess : start, usually the pairing of the step before.
-    tolerance : on the change of xi.
+    tolerance : on the last change of xi; Newton doubles the digits, so the result is good to its square.
 
     Returns
     -------

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array
 
 from iga.banded import Band, BandLU, factor, number
 from iga.basis import BlockBasis
-from iga.bulk import element_forces, element_stiffness, energy, gradient
-from iga.interface import Contact, Interface, contact, forces, pair, stiffness, traction
+from iga.bulk import all_entries, element_forces, element_stiffness, energy, full_matrices, gradient, stiffness_entries
+from iga.interface import Contact, Interface, contact, dofs, forces, pair, stiffness, traction
 from iga.kinematics import KINEMATICS
 from iga.projection import Pairing
 
@@ -90,6 +89,7 @@ class System:
     x_d: np.ndarray
     stay_d: np.ndarray | None = None
     stay: float = 0.0
+    _touching: tuple | None = None
 
     @property
     def n_dof(self) -> int:
@@ -101,119 +101,143 @@ class System:
         return State(np.zeros(self.n_dof), 0.0, np.zeros(n_q), np.zeros(n_q, dtype=bool), pair(self.interface))
 
     @cached_property
-    def element_dofs(self) -> tuple[np.ndarray, ...]:
-        """Degrees of freedom (n_e, 2 n_a) of every block."""
-        return tuple(_dofs(solid.basis.conn_ea) for solid in self.solids)
-
-    @cached_property
     def band(self) -> Band:
-        row, column = zip(*(_pairs(dofs) for dofs in self.element_dofs), strict=True)
-        for more in (stiffness_pattern(self), self.stay_pairs):
-            row, column = (*row, more[0]), (*column, more[1])
-        row, column = np.concatenate(row), np.concatenate(column)
+        """Numbering for bulk and interface, with room for every point to move one side on in either direction."""
+        entries = [*self.bulk_entries]
+        entries += [_square(conn_qa) for conn_qa in _reachable(self.interface)]
+        row, column = (np.concatenate([entry[i].ravel() for entry in entries]) for i in range(2))
         return number(row, column, self.x_d, self.free_d)
 
     @cached_property
-    def stay_pairs(self) -> tuple[np.ndarray, np.ndarray]:
-        held = np.flatnonzero(self.stay_d) if self.stay_d is not None else np.zeros(0, dtype=int)
-        return _pairs(held[None, :])
+    def stay_entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rows, columns and values that the spring adds to the tangent."""
+        if self.stay_d is None:
+            return np.zeros(0, dtype=int), np.zeros(0, dtype=int), np.zeros(0)
+        held = np.flatnonzero(self.stay_d)
+        row, column = np.repeat(held, held.size), np.tile(held, held.size)
+        return row, column, self.stay * self.stay_d[row] * self.stay_d[column]
+
+    @property
+    def bulk_entries(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Rows and columns of the element matrices."""
+        return [stiffness_entries(solid.basis.conn_ea) for solid in self.solids]
 
     @cached_property
     def bulk_positions(self) -> np.ndarray:
         """Where each entry of each element matrix goes in the band array."""
-        return np.concatenate([self.band.positions(*_pairs(dofs)) for dofs in self.element_dofs])
+        return _positions(self.band, self.bulk_entries)
 
     @cached_property
     def linear_bulk(self) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-        """Stiffness of the bulk once and for all (linear kinematics): of the elements, and as a band array."""
-        K = tuple(_element_matrices(self, solid, np.zeros((self.n_dof // 2, 2))) for solid in self.solids)
-        values = np.concatenate([k.ravel() for k in K])
-        return K, np.bincount(self.bulk_positions, weights=values, minlength=self.band.size)
+        """Stiffness of the bulk once and for all (linear kinematics): element matrices (n_e, 2 n_a, 2 n_a), and band array."""
+        zero_Ai = np.zeros((self.n_dof // 2, 2))
+        parts = [element_stiffness(solid.basis, _bulk(self, solid, zero_Ai)[1], self.width) for solid in self.solids]
+        values = np.concatenate([all_entries(K).ravel() for K in parts])
+        return tuple(full_matrices(K) for K in parts), np.bincount(self.bulk_positions, values, self.band.size)
+
+    def touching_positions(self, conn_qa: np.ndarray) -> np.ndarray | None:
+        """Where the interface tangent goes in the band array; None where it needs a wider band. The last answer is kept."""
+        if self._touching is None or not np.array_equal(self._touching[0], conn_qa):
+            row, column = _square(conn_qa)
+            fits = self.band.reach(row, column) <= self.band.k
+            positions = _positions(self.band, [(row, column), self.stay_entries[:2]]) if fits else None
+            object.__setattr__(self, "_touching", (conn_qa, positions))
+        return self._touching[1]
 
 
-def respond(system: System, trial: State) -> Response:
-    """Residual and tangent of a trial state, whose history is that of the last converged one."""
-    bulk = _linear_bulk if system.kinematics == "linear" else _finite_bulk
-    internal_d, scale, bulk_energy, tangent = bulk(system, trial.u_d)
+def respond(system: System, trial: State, decide: bool = True) -> Response:
+    """Residual and tangent of a trial state, whose history is that of the last converged one.
+
+    Unless asked to ``decide`` anew by the sign of the gap, every point stays in contact or out of it as it is in ``trial``.
+    """
+    linear = system.kinematics == "linear"
+    internal_d, scale, bulk_energy, parts = (_linear_bulk if linear else _finite_bulk)(system, trial.u_d)
     touch = contact(system.interface, trial.u_d, trial.pairing)
-    closed_q = system.interface.law.closed(touch.g_q, trial.closed_q)
+    closed_q = touch.g_q < 0.0 if decide else trial.closed_q
     p_q, dp_q, k_q = traction(system.interface, touch, trial.k_q, closed_q)
-    f_d = forces(system.interface, touch, p_q)
-    K = stiffness(system.interface, touch, p_q, dp_q).tocoo()
-    band, tangent = _add(system, tangent, K)
+    internal_d += forces(system.interface, touch, p_q, system.n_dof)
     if system.stay_d is not None:
-        f_d = f_d + system.stay * (system.stay_d @ trial.u_d) * system.stay_d
-        row, column = system.stay_pairs
-        np.add.at(tangent, band.positions(row, column), system.stay * system.stay_d[row] * system.stay_d[column])
-    return Response(internal_d + f_d, scale, bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, band)
+        internal_d += system.stay * (system.stay_d @ trial.u_d) * system.stay_d
+    K_qdd = stiffness(system.interface, touch, p_q, dp_q)
+    band, tangent = _assemble(system, parts, touch.conn_qa, K_qdd)
+    return Response(internal_d, scale, bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, band)
 
 
 def factorise(response: Response) -> BandLU | None:
+    """LU of the tangent, which it overwrites; None where the tangent is exactly singular."""
     return factor(response.band, response.tangent)
 
 
-def stiffness_pattern(system: System) -> tuple[np.ndarray, np.ndarray]:
-    """Entries of the interface tangent, with room for every point to move one side on in either direction."""
-    interface, pairing = system.interface, pair(system.interface)
-    if pairing is None:
-        touches = (contact(interface, np.zeros(system.n_dof), None),)
-    else:
-        last = interface.master.sides - 1
-        shifted = (replace(pairing, c_q=np.clip(pairing.c_q + s, 0, last), xi_q=np.full_like(pairing.xi_q, 0.5)) for s in (-1, 0, 1))
-        still = replace(interface, frozen=True)
-        touches = tuple(contact(still, np.zeros(system.n_dof), p) for p in shifted)
-    K = [(abs(touch.G_qd).T @ abs(touch.G_qd)).tocoo() for touch in touches]
-    return np.concatenate([k.row for k in K]), np.concatenate([k.col for k in K])
+def joined(solids: list[Solid]) -> tuple[Solid, ...]:
+    """Blocks of one shape and one material taken together: fewer and longer array operations."""
+    groups: dict[tuple, list[Solid]] = {}
+    for solid in solids:
+        groups.setdefault((solid.basis.N_eqa.shape[1:], solid.D.tobytes()), []).append(solid)
+    return tuple(
+        Solid(BlockBasis(*(np.concatenate([getattr(s.basis, f.name) for s in group]) for f in fields(BlockBasis))), group[0].D)
+        for group in groups.values()
+    )
 
 
 def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, np.ndarray]:
     matrices, band_values = system.linear_bulk
     internal_d, square = np.zeros(system.n_dof), 0.0
-    for K, dofs in zip(matrices, system.element_dofs, strict=True):
-        f = K @ u_d[dofs][..., None]
-        internal_d += np.bincount(dofs.ravel(), weights=f.ravel(), minlength=system.n_dof)
+    for K, solid in zip(matrices, system.solids, strict=True):
+        d = dofs(solid.basis.conn_ea)
+        f = K @ u_d[d][..., None]
+        internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
         square += float(np.sum(f * f))
-    return internal_d, square**0.5, 0.5 * float(u_d @ internal_d), band_values.copy()
+    return internal_d, square**0.5, 0.5 * float(u_d @ internal_d), band_values
 
 
-def _finite_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, np.ndarray]:
-    u_Ai = u_d.reshape(-1, 2)
-    internal_d, matrices, square, stored = np.zeros(system.n_dof), [], 0.0, 0.0
-    for solid, dofs in zip(system.solids, system.element_dofs, strict=True):
-        P, A, W = KINEMATICS[system.kinematics](solid.D, gradient(solid.basis, u_Ai))
+def _finite_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, list[np.ndarray]]:
+    internal_d, square, stored, parts = np.zeros(system.n_dof), 0.0, 0.0, []
+    for solid in system.solids:
+        P, A, W = _bulk(system, solid, u_d.reshape(-1, 2))
         f = element_forces(solid.basis, P, system.width)
-        internal_d += np.bincount(dofs.ravel(), weights=f.ravel(), minlength=system.n_dof)
-        matrices.append(element_stiffness(solid.basis, A, system.width).ravel())
+        internal_d += np.bincount(dofs(solid.basis.conn_ea).ravel(), f.ravel(), system.n_dof)
         square += float(np.sum(f * f))
         stored += energy(solid.basis, W, system.width)
-    K = matrices[0] if len(matrices) == 1 else np.concatenate(matrices)
-    tangent = np.bincount(system.bulk_positions, weights=K, minlength=system.band.size)
-    return internal_d, square**0.5, stored, tangent
+        parts.append(all_entries(element_stiffness(solid.basis, A, system.width)).ravel())
+    return internal_d, square**0.5, stored, parts
 
 
-def _element_matrices(system: System, solid: Solid, u_Ai: np.ndarray) -> np.ndarray:
-    _, A, _ = KINEMATICS[system.kinematics](solid.D, gradient(solid.basis, u_Ai))
-    return element_stiffness(solid.basis, A, system.width)
+def _bulk(system: System, solid: Solid, u_Ai: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return KINEMATICS[system.kinematics](solid.D, gradient(solid.basis, u_Ai))
 
 
-def _add(system: System, tangent: np.ndarray, K: coo_array) -> tuple[Band, np.ndarray]:
-    """Add the interface to the band array; widen the band where a point has slid further than it has room for."""
-    band = system.band
-    need = band.reach(K.row, K.col)
-    if need > band.k:
-        wide = replace(band, k=need)
-        values = np.zeros(wide.size)
-        old = tangent[:-1].reshape(band.n, 3 * band.k + 1)
-        values[:-1].reshape(band.n, 3 * need + 1)[:, 2 * need - 2 * band.k : 2 * need + band.k + 1] = old
-        band, tangent = wide, values
-    np.add.at(tangent, band.positions(K.row, K.col), K.data)
-    return band, tangent
+def _assemble(
+    system: System, bulk: np.ndarray | list[np.ndarray], conn_qa: np.ndarray, K_qdd: np.ndarray
+) -> tuple[Band, np.ndarray]:
+    """Band array of bulk (entries of the elements, or a band array already), interface and spring.
+
+    Where a point has slid further than the band has room for, everything is placed anew in a wider one.
+    """
+    band, positions = system.band, system.touching_positions(conn_qa)
+    touching = np.concatenate([K_qdd.ravel(), system.stay_entries[2]])
+    if positions is None:
+        entries = [*system.bulk_entries, _square(conn_qa), system.stay_entries[:2]]
+        band = replace(band, k=band.reach(*entries[-2]))
+        return band, np.bincount(_positions(band, entries), np.concatenate([*bulk, touching]), band.size)
+    if isinstance(bulk, np.ndarray):
+        return band, bulk + np.bincount(positions, touching, band.size)
+    return band, np.bincount(np.concatenate([system.bulk_positions, positions]), np.concatenate([*bulk, touching]), band.size)
 
 
-def _dofs(conn_ea: np.ndarray) -> np.ndarray:
-    return (2 * conn_ea[..., None] + np.arange(2)).reshape(len(conn_ea), -1)
+def _reachable(interface: Interface) -> list[np.ndarray]:
+    """Control points that a point touches where it is now and one side on either way."""
+    pairing = pair(interface)
+    if pairing is None:
+        return [interface.conn_qa]
+    neighbours = (np.clip(pairing.c_q + step, 0, interface.master.sides - 1) for step in (-1, 0, 1))
+    return [np.concatenate([interface.conn_qa, interface.master.conn_ca[c_q]], axis=1) for c_q in neighbours]
 
 
-def _pairs(dofs_ed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    n_e, n = dofs_ed.shape
-    return np.repeat(dofs_ed, n, axis=1).ravel(), np.tile(dofs_ed, (1, n)).ravel()
+def _square(conn_qa: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns (n_q, 2 n_a, 2 n_a) of the matrices of all points."""
+    d = dofs(conn_qa)
+    return np.broadcast_arrays(d[:, :, None], d[:, None, :])
+
+
+def _positions(band: Band, entries: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
+    return np.concatenate([band.positions(row.ravel(), column.ravel()) for row, column in entries])
