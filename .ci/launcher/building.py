@@ -28,7 +28,10 @@ CAUSES = (
     (r"NO_PUBKEY|is not signed|Missing key", "the Debian archive keys are missing; install debian-archive-keyring"),
     (r"does not have a Release file", "the Debian mirror has no such suite; check DEBOND_SUITE and DEBOND_MIRROR"),
     (r"ensurepip|No module named (venv|pip)", "this Python cannot make virtual environments; install python3-venv"),
-    (r"newuidmap|subuid|unshare", "this account may not use user namespaces; as root: apt-get install uidmap"),
+    (
+        r"newuidmap|subuid|unshare",
+        "user namespaces need uidmap (as root: apt-get install uidmap) and a line for this account in /etc/subuid",
+    ),
     (r"Read-only file system|Permission denied", f"the cache folder cannot be written; {ANOTHER_CACHE} of your own"),
 )
 
