@@ -141,7 +141,8 @@ def test_j_is_no_check_on_a_coarse_mesh_of_a_sequence(scene: Scene) -> None:
 
 
 def test_an_interrupt_ends_all_runs(tmp_path: Path) -> None:
-    command = [sys.executable, "-P", "-m", "verify.cli", "verify", LINEAR, "--jobs", "2", "--out", str(tmp_path)]
+    command = [sys.executable, "-P", "-m", "verify.cli", "verify", LINEAR, "dcb-czm2-linear"]
+    command += ["--jobs", "2", "--out", str(tmp_path)]
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).resolve().parents[2])}
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment, start_new_session=True)
     deadline = time.monotonic() + 60
