@@ -19,9 +19,8 @@ if TYPE_CHECKING:
 
 def total_seconds(result: Result) -> float:
     """Wall time of the run: the recorded total, or the sum of its phases; NaN where nothing was timed."""
-    if not result.seconds:
-        return float("nan")
-    return float(result.seconds.get("total", sum(result.seconds.values())))
+    times = result.seconds or {}
+    return float(times.get("total", sum(times.values()))) or float("nan")
 
 
 def phase_seconds(result: Result) -> dict[str, float]:
@@ -35,7 +34,7 @@ def phase_seconds(result: Result) -> dict[str, float]:
 
 def timing(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
     """Stacked bars, one a run."""
-    timed = [entry for entry in runs if entry.result.seconds]
+    timed = [entry for entry in runs if total_seconds(entry.result) > 0]
     if not timed:
         return None
     with drawing():
@@ -67,7 +66,7 @@ def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -
     points = [
         (entry, total_seconds(entry.result), entry.agreement.error)
         for entry in runs
-        if entry.result.seconds and entry.agreement.error > 0
+        if total_seconds(entry.result) > 0 and entry.agreement.error > 0
     ]
     if not points:
         return None

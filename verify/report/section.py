@@ -192,7 +192,7 @@ def _run_row(entry: Entry, scene: Scene) -> RunRow:
         peak_opening=quantity(found.peak_opening, units.length, 3),
         steps=_steps(len(result.opening) - 1, result.rejected_steps),
         newton=number(iterations, 6) if iterations > 0 else "–",
-        seconds=seconds(cost.total_seconds(result)) if result.seconds else "–",
+        seconds=seconds(cost.total_seconds(result), "–"),
         memory=f"{number(result.peak_memory_mb, 3)} MB" if result.peak_memory_mb > 0 else "–",
     )
 

@@ -112,7 +112,7 @@ def _cell(section: Section, method: str, repeat: int) -> Cell:
         return Cell("–", "", "absent")
     if entry.agreement is None:
         return Cell("not run" if entry.result is None else "no curve", "", "absent")
-    time = seconds(total_seconds(entry.result)) if entry.result.seconds else ""
+    time = seconds(total_seconds(entry.result), "")
     unknowns = f"{entry.result.dofs} unknowns" if entry.result.dofs else ""
     tail = ", ".join(part for part in (time, unknowns) if part)
     if entry.is_reference:
@@ -137,9 +137,10 @@ def _sentences(sections: Sequence[Section]) -> list[str]:
             error, worst, _ = max(compared, key=lambda row: row[0])
             bases = sorted({s.reference.name for _, s, _ in compared})
             base = bases[0] if len(bases) == 1 else f"the reference ({' or '.join(bases)})"
-            extent = "" if all(e.complete for _, _, e in compared) else ", as far as it came"
+            whole = all(e.complete for _, _, e in compared)
+            extent = "over the whole curve" if whole else "as far as its runs came"
             where = f" (most on {worst.report.scene.name})" if len(compared) > 1 else ""
-            agrees = f"load within {percent(error)} of {base} over the whole curve{extent}{where}"
+            agrees = f"load within {percent(error)} of {base} {extent}{where}"
             sentences.append(f"{_capital(name)}: {agrees}; {took}.")
         elif any(e.is_reference for _, e in found):
             sentences.append(f"{_capital(name)}: the reference of this page; {took}.")

@@ -64,7 +64,7 @@ def number(value: float | None, digits: int = 3, pad: bool = False) -> str:
         text = text.rstrip("0").rstrip(".") if "." in text and not pad else text
     else:
         mantissa = f"{value / 10.0**exponent:.{digits - 1}f}".rstrip("0").rstrip(".")
-        text = f"{mantissa} × 10{str(exponent).translate(_SUPERSCRIPTS)}"
+        text = f"{mantissa}\u00a0×\u00a010{str(exponent).translate(_SUPERSCRIPTS)}"
     whole, point, rest = text.partition(".")
     if whole.lstrip("-").isdigit() and len(whole.lstrip("-")) > 4:
         whole = f"{int(whole):,}".replace(",", "\u202f")
@@ -83,7 +83,7 @@ def symbols(text: str) -> Markup:
 
 def quantity(value: float | None, unit: str, digits: int = 6) -> str:
     """A number with its unit, e.g. 14 mm."""
-    return f"{number(value, digits)} {unit}".strip()
+    return f"{number(value, digits)}\u00a0{unit}".strip()
 
 
 def percent(fraction: float | None) -> str:
@@ -91,19 +91,19 @@ def percent(fraction: float | None) -> str:
     if fraction is None or math.isnan(fraction):
         return NO_VALUE
     if 0 < abs(fraction) < 5e-6:
-        return "< 0.0005 %"
-    return f"{number(100 * fraction, 2, pad=True)} %"
+        return "<\u00a00.0005\u00a0%"
+    return f"{number(100 * fraction, 2, pad=True)}\u00a0%"
 
 
-def seconds(value: float | None) -> str:
+def seconds(value: float | None, unknown: str = NO_VALUE) -> str:
     """A duration: 0.31 s, 8.9 s, 2 min 5 s."""
     if value is None or math.isnan(value):
-        return NO_VALUE
+        return unknown
     if value < 0.095:
-        return "< 0.1 s"
+        return "<\u00a00.1\u00a0s"
     if value < 99.5:
-        return f"{number(value, 2, pad=True)} s"
-    return f"{int(round(value)) // 60} min {int(round(value)) % 60} s"
+        return f"{number(value, 2, pad=True)}\u00a0s"
+    return f"{int(round(value)) // 60}\u00a0min\u00a0{int(round(value)) % 60}\u00a0s"
 
 
 def span(values: list[float], form: object) -> str:
