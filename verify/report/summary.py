@@ -100,10 +100,17 @@ def _nth(section: Section, method: str, repeat: int) -> Entry | None:
 
 
 def _columns(sections: Sequence[Section]) -> list[tuple[str, int, str]]:
-    """Method, how many runs of it came before, and the heading."""
-    places = sorted({(rank(e.method), e.method, e.repeat, e.name) for s in sections for e in s.entries})
-    repeated = {method for _, method, repeat, _ in places if repeat}
-    return [(method, i, f"{name} {i + 1}" if method in repeated else name) for _, method, i, name in places]
+    """Method, how many runs of it came before, and the heading: the label where a method has several runs."""
+    places: dict[tuple[int, str, int], list[Entry]] = {}
+    for entry in (entry for section in sections for entry in section.entries):
+        places.setdefault((rank(entry.method), entry.method, entry.repeat), []).append(entry)
+    repeated = {method for _, method, repeat in places if repeat}
+    columns = []
+    for (_, method, repeat), found in sorted(places.items(), key=lambda item: item[0]):
+        labels = {entry.label for entry in found}
+        several = found[0].label if len(labels) == 1 else f"{found[0].name} {repeat + 1}"
+        columns.append((method, repeat, several if method in repeated else found[0].name))
+    return columns
 
 
 def _cell(section: Section, method: str, repeat: int) -> Cell:
