@@ -52,7 +52,8 @@ def observed_order(size: Sequence[float], value: Sequence[float]) -> float:
         q = np.log((r21**p - s) / (r32**p - s)) if r21 != r32 else 0.0
         return abs(level + q) / np.log(r21)
 
-    return _fixed_point(step, abs(level) / np.log(r21))
+    with np.errstate(all="ignore"):  # the iteration may wander far before it is given up
+        return _fixed_point(step, abs(level) / np.log(r21))
 
 
 def _fixed_point(step, p: float) -> float:
@@ -65,8 +66,7 @@ def _fixed_point(step, p: float) -> float:
             return float(new)
         p = new
     grid = np.geomspace(1e-3, 50.0, 400)
-    with np.errstate(all="ignore"):
-        off = np.array([step(x) - x for x in grid])
+    off = np.array([step(x) - x for x in grid])
     change = np.flatnonzero((off[:-1] * off[1:] < 0.0) & np.isfinite(off[:-1]) & np.isfinite(off[1:]))
     if len(change) == 0:
         return float("nan")

@@ -142,8 +142,8 @@ def _beam(problem: LefmProblem, end: float) -> tuple[Branch, Branch]:
     first, then = _split(problem, reach * (problem.precrack + more) ** 2, end)
     A = np.full_like(first, problem.precrack + more)
     stiffness = 3.0 * EI / (2.0 * A**3)
-    loading = Branch(first, stiffness * first, A - more, stiffness, 0.5 * stiffness * first**2,
-                     -stiffness * first * A**2 / (2.0 * EI))
+    loading = Branch(first, stiffness * first, np.full_like(first, problem.precrack), stiffness,
+                     0.5 * stiffness * first**2, -stiffness * first * A**2 / (2.0 * EI))
     A = np.sqrt(then / reach)
     P = np.sqrt(Gw * EI) / A
     growth = Branch(then, P, A - more, -0.5 * P / then, 0.5 * P * then, -P * A**2 / (2.0 * EI))
@@ -161,8 +161,10 @@ def _factors(problem: LefmProblem, end: float) -> tuple[Branch, Branch]:
     more = chi(problem) * problem.arm_thickness
     reach = 2.0 / 3.0 * np.sqrt(Gw / EI)
     simple = reach * (a0 + more) ** 2
-    onset = _fixed_point(lambda d: simple * _N(d / a0) / np.sqrt(_F(d / a0)), simple)
-    first, then = _split(problem, float(onset), end)
+    onset = np.inf
+    if end**2 * _F(end / a0) >= (simple * _N(end / a0)) ** 2 or _F(end / a0) <= 0.0:  # G reaches G_Ic before the end
+        onset = float(_fixed_point(lambda d: simple * _N(d / a0) / np.sqrt(_F(d / a0)), simple))
+    first, then = _split(problem, onset, end)
 
     def stored(opening, a):
         r = opening / a

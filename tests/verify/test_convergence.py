@@ -1,0 +1,74 @@
+"""Order, Richardson and grid convergence index: published triples and sequences with a known limit."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from verify.convergence import assess, observed_order
+
+NARROW = (1.0, 1.5, 2.0)
+WIDE = (1.0, 2.0, 2.0 * np.sqrt(4500 / 980))  # 18000, 4500 and 980 cells
+
+
+@pytest.mark.parametrize(
+    ("size", "value", "order", "limit", "gci"),
+    [  # Celik, Ghia, Roache, Freitas (2008), J. Fluids Eng. 130, 078001, table 1
+        (NARROW, (6.063, 5.972, 5.863), 1.53, 6.1685, 0.022),
+        (WIDE, (10.7880, 10.7250, 10.6050), 0.75, 10.8801, 0.011),
+        (WIDE, (6.0042, 5.9624, 6.0909), 1.51, 6.0269, 0.005),
+    ],
+)
+def test_published_triples(size, value, order, limit, gci):
+    found = assess(size, value)
+    assert found.order == pytest.approx(order, abs=0.005)
+    assert found.limit == pytest.approx(limit, abs=1e-4)
+    assert found.gci == pytest.approx(gci, abs=0.0005)
+
+
+def test_oscillating_triple_is_not_asymptotic():
+    found = assess(WIDE, (6.0042, 5.9624, 6.0909))
+    assert not found.asymptotic and "oscillate" in found.verdict
+
+
+@given(st.floats(0.5, 6.0), st.floats(1.2, 3.0), st.floats(1.2, 3.0), st.floats(-5.0, 5.0), st.floats(0.1, 2.0))
+def test_power_law_is_recovered_at_any_ratios(p, r21, r32, limit, c):
+    h = 0.1 * np.array([1.0, r21, r21 * r32])
+    value = limit + c * h**p
+    if abs(value[1] - value[0]) < 1e-5:
+        return  # the differences are rounding
+    assert observed_order(h, value) == pytest.approx(p, rel=1e-5)
+    found = assess(h, value)
+    assert found.asymptotic
+    assert found.limit == pytest.approx(limit, abs=1e-6)
+
+
+def test_meshes_come_in_any_order_and_more_than_three():
+    h = np.array([0.4, 0.1, 0.05, 0.2])
+    found = assess(h, 2.0 + 3.0 * h**2, expected=2.0)
+    assert found.asymptotic and found.order == pytest.approx(2.0) and found.limit == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("value", "word"),
+    [
+        ((1.0, 1.1, 1.05), "oscillate"),
+        ((1.0, 1.2, 1.3), "settle"),
+        ((1.0, 1.0, 1.0), "do not change"),
+        ((1.0, 1.0, 1.1), "no order"),
+    ],
+)
+def test_says_why_not(value, word):
+    found = assess((1.0, 2.0, 4.0), value)
+    assert not found.asymptotic and word in found.verdict
+
+
+def test_pre_asymptotic_and_wrong_order_are_told():
+    h = np.array([1.0, 2.0, 4.0, 8.0])
+    assert "coarser" in assess(h, 1.0 + 2e-2 * h + 1e-3 * h**4).verdict
+    assert "expected 4" in assess(h, 1.0 + h**2, expected=4.0).verdict
+
+
+def test_refuses_two_meshes():
+    with pytest.raises(ValueError, match="at least three"):
+        assess((1.0, 2.0), (1.0, 1.1))

@@ -1,0 +1,141 @@
+"""The theories of the DCB without a process zone, against each other and against known values."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+from scipy.special import ellipeinc, ellipkinc, logit
+
+from verify import elastica
+from verify.curve import curve_error
+from verify.lefm import THEORIES, LefmProblem, chi, solve
+from verify.result import CURVE_COLUMNS, steps_from_rows
+
+DCB = LefmProblem(14.0, 0.2, 4.0, 1.0, 120e3, 120e3, 50e3, 0.1, 3.0)
+
+
+def steps(problem):
+    return steps_from_rows(solve(problem).rows)
+
+
+def test_simple_peak_is_the_known_one():
+    s = steps(replace(DCB, theory="simple"))
+    assert s["load"].max() == pytest.approx(np.sqrt(0.1 * 80.0) / 4.0, rel=1e-12)
+    assert s["opening"][s["load"].argmax()] == pytest.approx(2 * s["load"].max() * 4.0**3 / (3 * 80.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+def test_rows(theory):
+    s = steps(replace(DCB, theory=theory))
+    assert set(CURVE_COLUMNS) <= set(s) and s["opening"][-1] == pytest.approx(3.0) and len(s["opening"]) == 151
+    assert all(s[name][0] == 0.0 for name in CURVE_COLUMNS if name != "crack_length") and s["crack_length"][0] == 4.0
+    assert np.all(np.diff(s["opening"]) > 0.0) and np.all(np.diff(s["crack_length"]) > -1e-12)
+    tolerance = 1e-4 if theory == "factors" else 1e-12
+    gap = s["external_work"] - s["stored_energy"] - s["dissipated_energy"]
+    assert np.abs(gap).max() < tolerance * s["external_work"][-1]
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+def test_work_and_slope_belong_to_the_load(theory):
+    s = steps(replace(DCB, theory=theory, points=2000))
+    h, P, growing = np.diff(s["opening"]), s["load"], s["dissipated_energy"] > 1e-9
+    work = h * (P[1:] + P[:-1]) / 2 + h**2 / 12 * (s["load_slope"][:-1] - s["load_slope"][1:])
+    one_branch = growing[:-1] == growing[1:]
+    assert np.abs(np.diff(s["external_work"]) - work)[one_branch].max() < 1e-10 * s["external_work"][-1]
+
+
+@pytest.mark.parametrize("theory", ["simple", "corrected", "elastica"])
+def test_j_is_the_toughness_while_the_crack_grows(theory):
+    s = steps(replace(DCB, theory=theory))
+    J = s["load"] * (np.abs(s["face_slope_top"]) + np.abs(s["face_slope_bottom"])) / DCB.width
+    assert J[s["dissipated_energy"] > 1e-9] == pytest.approx(0.1, rel=1e-12)
+
+
+def test_chi_of_an_isotropic_arm():
+    assert chi(DCB) == pytest.approx(0.6452, abs=1e-4)
+
+
+def test_small_openings_of_all_agree_with_beam_theory():
+    small = replace(DCB, opening=1e-3)
+    simple, corrected = steps(replace(small, theory="simple")), steps(replace(small, theory="corrected"))
+    assert steps(replace(small, theory="elastica"))["load"] == pytest.approx(simple["load"], rel=1e-7)
+    assert steps(replace(small, theory="factors"))["load"] == pytest.approx(corrected["load"], rel=1e-7)
+
+
+@pytest.mark.parametrize("opening", [0.05, 0.1, 0.2])
+def test_factors_are_the_elastica_to_second_order(opening):
+    """Very slender arms, for which the correction of the crack length is nothing; r = opening / a from 0.05 to 0.2."""
+    slender = LefmProblem(100.0, 1e-3, 1.0, 1.0, 1e12, 1e12, 5e11, 1e4, opening)
+    end = [steps(replace(slender, theory=theory))["load"][-1] for theory in ("factors", "elastica", "corrected")]
+    assert end[0] / end[1] - 1 == pytest.approx(-2 * chi(slender) * 1e-3 * 1.5, abs=0.5 * opening**4 + 1e-4)
+
+
+def test_elastica_against_legendre_integrals():
+    """Bisshopp and Drucker: alpha = F(k) - F(k, phi), deflection 1 - 2 (E(k) - E(k, phi)) / alpha."""
+    S = np.sin(np.radians([10.0, 30.0, 60.0, 85.0]))
+    k2 = (1 + S) / 2
+    phi = np.arcsin(1 / np.sqrt(2 * k2))
+    alpha = ellipkinc(np.pi / 2, k2) - ellipkinc(phi, k2)
+    deflection = 1 - 2 * (ellipeinc(np.pi / 2, k2) - ellipeinc(phi, k2)) / alpha
+    length, end = elastica.shape(logit(S))
+    np.testing.assert_allclose(length / np.sqrt(2), alpha, rtol=1e-12)
+    np.testing.assert_allclose(end / length, deflection, rtol=1e-11)
+
+
+def test_elastica_against_integration_of_its_equation():
+    S = 0.8
+    length, end = elastica.shape(logit(np.array([S])))
+
+    def rates(_, y):  # from the loaded end; units of sqrt(E I / 2 P), so E I phi'' = -P cos(phi) reads phi'' = -cos / 2
+        return [y[1], -np.cos(y[0]) / 2, np.sin(y[0])]
+
+    found = solve_ivp(rates, (0.0, length[0]), [np.arcsin(S), 0.0, 0.0], rtol=1e-12, atol=1e-12).y[:, -1]
+    assert found[0] == pytest.approx(0.0, abs=1e-9) and found[2] == pytest.approx(end[0], rel=1e-9)
+
+
+def test_elastica_tends_to_the_peel_load():
+    """Arms so flexible that their ends stand upright: 2 P = G w."""
+    s = steps(replace(DCB, arm_thickness=1e-3, opening=10.0, theory="elastica"))
+    assert s["load"][-1] == pytest.approx(0.05, rel=1e-6)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.sampled_from(THEORIES), st.floats(1e-3, 1e3), st.floats(1e-3, 1e3))
+def test_units(theory, metre, newton):
+    stress = newton / metre**2
+    other = LefmProblem(14.0 * metre, 0.2 * metre, 4.0 * metre, metre, 120e3 * stress, 120e3 * stress, 50e3 * stress,
+                        0.1 * newton / metre, 3.0 * metre, theory=theory)
+    a, b = steps(replace(DCB, theory=theory)), steps(other)
+    assert b["load"] == pytest.approx(a["load"] * newton, rel=1e-9)
+    assert b["dissipated_energy"] == pytest.approx(a["dissipated_energy"] * newton * metre, rel=1e-9, abs=1e-12)
+
+
+def test_theory_follows_the_kinematics():
+    finite = replace(DCB, kinematics="finite")
+    assert finite.named_theory == "factors" and DCB.named_theory == "corrected"
+    a, b = steps(finite), steps(replace(DCB, theory="elastica"))
+    assert curve_error((a["opening"], a["load"]), (b["opening"], b["load"])) < 0.05
+
+
+def test_crack_that_reaches_the_end_stops():
+    found = solve(replace(DCB, opening=6.0))
+    assert found.status.startswith("stopped: separated") and found.rows[-1]["crack_length"] <= 14.0
+
+
+def test_ends_before_the_crack_grows():
+    s = steps(replace(DCB, opening=0.1))
+    assert s["dissipated_energy"][-1] == 0.0 and s["opening"][-1] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("opening", [(1.0, 0.5, 3.0), 0.0])
+def test_refuses_unloading(opening):
+    with pytest.raises(ValueError, match="load.opening"):
+        solve(replace(DCB, opening=opening))
+
+
+def test_refuses_openings_beyond_the_factors():
+    with pytest.raises(ValueError, match="elastica"):
+        solve(replace(DCB, arm_thickness=0.01, opening=10.0, theory="factors"))
