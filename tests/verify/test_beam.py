@@ -9,6 +9,7 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from verify.arm import Arm
 from verify.beam import BeamProblem, solve
 from verify.curve import curve_error, hermite, load_at, peak
 from verify.lefm import LefmProblem
@@ -151,6 +152,16 @@ def test_softening_state_is_the_closed_form():
     _, v0, P = rebuilt(front)
     assert P == pytest.approx(s["load"][i], rel=1e-7)
     assert 2 * v0 == pytest.approx(s["opening"][i], rel=1e-7)
+
+
+@pytest.mark.parametrize("finite", [False, True])
+def test_derivative_of_the_rates(finite):
+    """Against central differences, at states bent far beyond any specimen."""
+    arm, rng = Arm(0.24, 1 / 12, finite), np.random.default_rng(1)
+    y, k, c = rng.normal(size=(50, 4)), rng.normal(size=50), rng.normal(size=50)
+    step = 1e-6 * np.eye(4)
+    numeric = [(arm.rates(y + e, k, c)[0] - arm.rates(y - e, k, c)[0]) / 2e-6 for e in step]
+    np.testing.assert_allclose(arm.rates(y, k, c)[1], np.stack(numeric, axis=-1), rtol=1e-7, atol=1e-8)
 
 
 @pytest.mark.parametrize("name", ["czm1_linear", "czm2_finite"])
