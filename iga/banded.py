@@ -14,7 +14,8 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 class Band:
     """Numbering of the free unknowns and their half bandwidth.
 
-    ``place_d`` (n_dof,) is the equation of each degree of freedom, -1 where it is fixed; ``n`` equations, half bandwidth ``k``.
+    ``place_d`` (n_dof,) is the equation of each degree of freedom, -1 where it is fixed; ``n`` equations, half
+    bandwidth ``k``.
     """
 
     place_d: np.ndarray
@@ -27,7 +28,7 @@ class Band:
         return (3 * self.k + 1) * self.n + 1
 
     def positions(self, row: np.ndarray, column: np.ndarray) -> np.ndarray:
-        """Index of each entry (row, column) of degrees of freedom in a band array of this numbering (LAPACK, Fortran order)."""
+        """Index of each entry (row, column), as degrees of freedom, in a band array (LAPACK layout, Fortran order)."""
         i, j = self.place_d[row], self.place_d[column]
         return np.where((i < 0) | (j < 0), self.size - 1, 2 * self.k + i + 3 * self.k * j)
 

@@ -15,8 +15,9 @@ from iga.extraction import SIDES, Chain, ElementBlock, Mesh
 class BlockBasis:
     """Basis of one block of elements at the same parametric points of each.
 
-    ``N_eqa`` (n_e, n_q, n_a), ``dN_eqaI`` (n_e, n_q, n_a, 2) reference gradients, ``dV_eq`` (n_e, n_q) area (or, on a side,
-    length) that each point stands for, ``X_eqI`` (n_e, n_q, 2) reference positions, ``conn_ea`` (n_e, n_a) control points.
+    ``N_eqa`` (n_e, n_q, n_a), ``dN_eqaI`` (n_e, n_q, n_a, 2) reference gradients, ``dV_eq`` (n_e, n_q) area (or, on a
+    side, length) that each point stands for, ``X_eqI`` (n_e, n_q, 2) reference positions, ``conn_ea`` (n_e, n_a)
+    control points.
     """
 
     conn_ea: np.ndarray
@@ -49,7 +50,9 @@ def block_basis(mesh: Mesh, block: ElementBlock, points_q: np.ndarray, weights_q
     J_eqIs = np.einsum("eaI,eqas->eqIs", P_eaI, dN_param)
     det = J_eqIs[..., 0, 0] * J_eqIs[..., 1, 1] - J_eqIs[..., 0, 1] * J_eqIs[..., 1, 0]
     if not np.all(det > 0):
-        raise ValueError(f"element {int(np.argmin(det.min(1)))} is turned inside out: its smallest Jacobian is {det.min():.3g}")
+        raise ValueError(
+            f"element {int(np.argmin(det.min(1)))} is turned inside out: its smallest Jacobian is {det.min():.3g}"
+        )
     dN = np.einsum("eqas,eqsI->eqaI", dN_param, np.linalg.inv(J_eqIs))
     return BlockBasis(block.conn_ea, N, dN, det * weights_q, np.einsum("eqa,eaI->eqI", N, P_eaI))
 

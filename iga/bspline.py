@@ -24,7 +24,9 @@ class KnotVector:
             raise ValueError(f"a knot vector of degree {p} needs at least {2 * (p + 1)} finite, non-decreasing knots")
         multiplicity = np.unique(knots, return_counts=True)[1]
         if multiplicity.size < 2 or multiplicity[0] != p + 1 or multiplicity[-1] != p + 1:
-            raise ValueError(f"the end knots must have multiplicity {p + 1}, got {multiplicity[0]} and {multiplicity[-1]}")
+            raise ValueError(
+                f"the end knots must have multiplicity {p + 1}, got {multiplicity[0]} and {multiplicity[-1]}"
+            )
         if np.any(multiplicity[1:-1] > p):
             raise ValueError(f"inner knots may have multiplicity {p} at most, got {multiplicity[1:-1].max()}")
         object.__setattr__(self, "knots", knots)
@@ -105,8 +107,8 @@ def insert_knot(kv: KnotVector, x: float) -> tuple[KnotVector, np.ndarray]:
 def bezier_extraction(kv: KnotVector) -> np.ndarray:
     """Extraction operators of all spans at once: N_a = sum_b C_eab B_b on span e.
 
-    The Bernstein coefficient b of a spline on [x0, x1] is its polar form at x0 (p - b times) and x1 (b times), which is what
-    inserting both knots up to multiplicity p gives (Ramshaw 1989; Borden, Scott, Evans, Hughes 2011).
+    The Bernstein coefficient b of a spline on [x0, x1] is its polar form at x0 (p - b times) and x1 (b times), which
+    is what inserting both knots up to multiplicity p gives (Ramshaw 1989; Borden, Scott, Evans, Hughes 2011).
 
     Returns
     -------

@@ -11,7 +11,7 @@ PAIRS = ((0, 0), (0, 1), (1, 1))
 
 
 def gradient(basis: BlockBasis, u_Ai: np.ndarray) -> np.ndarray:
-    """Displacement gradient H_iIeq (2, 2, n_e, n_q): components first, so that work on one component runs through memory."""
+    """Displacement gradient H_iIeq (2, 2, n_e, n_q), components first: work on one runs straight through memory."""
     H_eqIi = basis.dN_ea_qI.swapaxes(1, 2) @ u_Ai[basis.conn_ea]
     n_e, n_q = basis.dV_eq.shape
     return np.ascontiguousarray(H_eqIi.reshape(n_e, n_q, 2, 2).transpose(3, 2, 0, 1))
@@ -43,7 +43,7 @@ def element_stiffness(basis: BlockBasis, A_iIjJeq: np.ndarray, width: float) -> 
 
 
 def stiffness_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and columns (n_e, n_a, 4, n_a) of all entries: those of `element_stiffness`, then the transposed block (1, 0)."""
+    """Rows and columns (n_e, n_a, 4, n_a) of all entries: the three `PAIRS`, then the transposed block (1, 0)."""
     i, j = np.array([*PAIRS, (0, 1)]).T
     row = 2 * conn_ea[:, :, None, None] + i[:, None]
     column = 2 * conn_ea[:, None, None, :] + j[:, None]

@@ -11,9 +11,9 @@ import numpy as np
 class BilinearLaw:
     """Mode I bilinear law (Dimitri, De Lorenzis, Zavarise 2013, sec. 2).
 
-    ``strength`` p_max [stress], ``toughness`` G_Ic [force/length], ``ductility`` g_u/g_max > 1, ``penalty`` [stress/length].
-    Without ``contact`` the secant stiffness of the opening side continues to negative gaps; without ``irreversible`` the damage
-    follows the present gap down as well as up, and nothing is dissipated.
+    ``strength`` p_max [stress], ``toughness`` G_Ic [force/length], ``ductility`` g_u/g_max > 1, ``penalty``
+    [stress/length]. Without ``contact`` the secant stiffness of the opening side continues to negative gaps; without
+    ``irreversible`` the damage follows the present gap down as well as up, and nothing is dissipated.
     """
 
     strength: float
@@ -52,7 +52,9 @@ class BilinearLaw:
         """d = 1 - secant / stiffness: 0 up to g_max, 1 from g_u on."""
         return 1.0 - self.secant(k) / self.stiffness
 
-    def traction(self, g: np.ndarray, k: np.ndarray, closed: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def traction(
+        self, g: np.ndarray, k: np.ndarray, closed: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Traction, consistent tangent and new history.
 
         Parameters
@@ -73,7 +75,7 @@ class BilinearLaw:
         return np.where(closed, self.penalty, secant) * g, np.where(closed, self.penalty, slope), k_new
 
     def energies(self, g: np.ndarray, k: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Energies per area of a state: stored in cohesion, stored in contact, dissipated (k includes the present gap)."""
+        """Energies per area: stored in cohesion, stored in contact, dissipated; k includes the present gap."""
         work = self.work(k)
         if self.irreversible:
             secant = self.secant(k)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,9 +32,10 @@ COARSENING = 4.0
 class Problem:
     """A double cantilever beam in plain numbers, any consistent units.
 
-    X runs from 0 (loaded end) to ``length``, the interface lies on Y = 0 and is bonded from ``precrack`` on; each arm is
-    ``arm_thickness`` thick. ``opening`` is the programme of separations of the loaded faces; ``symmetry`` models the upper arm
-    alone against its mirror image. ``slave`` is the arm whose points are projected. ``dofs`` is the number aimed at, never exceeded.
+    X runs from 0 (loaded end) to ``length``, the interface lies on Y = 0 and is bonded from ``precrack`` on; each arm
+    is ``arm_thickness`` thick. ``opening`` is the programme of separations of the loaded faces; ``symmetry`` models
+    the upper arm alone against its mirror image. ``slave`` is the arm whose points are projected. ``dofs`` is the
+    number aimed at, never exceeded.
     """
 
     length: float
@@ -96,15 +97,21 @@ def arm_mesh(problem: Problem, bottom: float) -> Mesh:
         raise ValueError(f"a {problem.basis} mesh of degree {p} needs at least {least} unknowns, got {problem.dofs}")
     breaks = graded_breaks(problem.length, problem.precrack, elements)
     through = bottom + problem.arm_thickness * np.linspace(0.0, 1.0, 2)
-    return nurbs_rectangle(open_knots(breaks, p), open_knots(through, p)) if spline else lagrange_rectangle(breaks, through, p)
+    return (
+        nurbs_rectangle(open_knots(breaks, p), open_knots(through, p))
+        if spline
+        else lagrange_rectangle(breaks, through, p)
+    )
 
 
 def graded_breaks(length: float, precrack: float, elements: int) -> np.ndarray:
-    """Element boundaries (elements + 1,): uniform on either side of the precrack's end, `COARSENING` times longer before it."""
+    """Element boundaries (elements + 1,): equal along the bond, equal and `COARSENING` times longer before it."""
     bond = length - precrack
     before = round(elements * precrack / (precrack + COARSENING * bond))
     before = min(max(before, 1), elements - 1)
-    return np.concatenate([np.linspace(0.0, precrack, before + 1)[:-1], np.linspace(precrack, length, elements - before + 1)])
+    return np.concatenate(
+        [np.linspace(0.0, precrack, before + 1)[:-1], np.linspace(precrack, length, elements - before + 1)]
+    )
 
 
 def build(problem: Problem, phase: Phase = untimed) -> Specimen:
@@ -137,7 +144,9 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
     return Specimen(system, arms, meshes, problem.precrack, upper_is_slave, copies, probe)
 
 
-def solve(problem: Problem, on_step: Callable[[Mapping[str, float]], None] | None = None, phase: Phase = untimed) -> Solution:
+def solve(
+    problem: Problem, on_step: Callable[[Mapping[str, float]], None] | None = None, phase: Phase = untimed
+) -> Solution:
     """Solve a double cantilever beam.
 
     Parameters
@@ -159,7 +168,7 @@ def solve(problem: Problem, on_step: Callable[[Mapping[str, float]], None] | Non
     snapshots: list[dict[str, object]] = []
     wanted = sorted(problem.snapshot_openings)
     end = End("complete", 0)
-    for item in follow(specimen.system, problem.opening, problem.steps, phase=phase):
+    for item in follow(specimen.system, by_way_of(problem.opening, wanted), problem.steps, phase=phase):
         if isinstance(item, End):
             end = item
             continue
@@ -171,6 +180,17 @@ def solve(problem: Problem, on_step: Callable[[Mapping[str, float]], None] | Non
             snapshots.append(snapshot(specimen, item))
     dofs, elements = specimen.system.n_dof, sum(mesh.elements for mesh in specimen.meshes)
     return Solution(tuple(rows), dofs, elements, end.rejected, end.status, tuple(snapshots))
+
+
+def by_way_of(programme: Sequence[float], stops: Sequence[float]) -> tuple[float, ...]:
+    """The programme with a stop at each of ``stops`` (increasing) where it first comes by."""
+    way, left, here = [], list(stops), 0.0
+    for goal in programme:
+        while left and here < left[0] < goal:
+            way.append(left.pop(0))
+        way.append(goal)
+        here = goal
+    return tuple(way)
 
 
 def _arm(mesh: Mesh, first: int, D: np.ndarray) -> Arm:
@@ -206,7 +226,7 @@ def _interface(problem: Problem, meshes: tuple[Mesh, ...], first: np.ndarray) ->
 def _points(
     problem: Problem, meshes: tuple[Mesh, ...], first: np.ndarray, xi: np.ndarray, w: np.ndarray, sides: slice
 ) -> Interface:
-    """Interface with the rule (xi, w) on each of the bonded ``sides`` of the slave; the whole of the other arm is master."""
+    """Interface with the rule (xi, w) on the bonded ``sides`` of the slave; the whole other arm is master."""
     slave, master = (1, 0) if problem.slave == "bottom" and not problem.symmetry else (0, 1)
     names = ("bottom", "top")
     P_AI = np.concatenate([mesh.P_AI for mesh in meshes])
@@ -225,9 +245,16 @@ def _points(
         X_qi=X_qi,
         P_AI=P_AI,
         law=BilinearLaw(
-            problem.strength, problem.toughness, problem.ductility, problem.penalty, problem.contact, problem.irreversible
+            problem.strength,
+            problem.toughness,
+            problem.ductility,
+            problem.penalty,
+            problem.contact,
+            problem.irreversible,
         ),
-        master=None if problem.symmetry else surface(meshes[master], meshes[master].chains[names[master]], int(first[master])),
+        master=None
+        if problem.symmetry
+        else surface(meshes[master], meshes[master].chains[names[master]], int(first[master])),
         mirror_i=np.array([0.0, 1.0]) if problem.symmetry else None,
         frozen=problem.kinematics == "linear",
     )

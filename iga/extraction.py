@@ -1,7 +1,7 @@
 """The seam: every discretisation ends here as control points, weights, and Bezier extraction operators.
 
-On element e the functions are ``N_a = sum_b C_eab B_b`` and, with weights, ``R_a = w_a N_a / sum_c w_c N_c``. Whatever lies
-beyond (basis, assembly, interface) knows nothing else of a mesh.
+On element e the functions are ``N_a = sum_b C_eab B_b`` and, with weights, ``R_a = w_a N_a / sum_c w_c N_c``. Whatever
+lies beyond (basis, assembly, interface) knows nothing else of a mesh.
 """
 
 from __future__ import annotations
@@ -64,8 +64,13 @@ class Mesh:
 
 
 def tensor_mesh(
-    degrees: tuple[int, int], C_s: np.ndarray, conn_s: np.ndarray, C_t: np.ndarray, conn_t: np.ndarray,
-    P_AI: np.ndarray, w_A: np.ndarray,
+    degrees: tuple[int, int],
+    C_s: np.ndarray,
+    conn_s: np.ndarray,
+    C_t: np.ndarray,
+    conn_t: np.ndarray,
+    P_AI: np.ndarray,
+    w_A: np.ndarray,
 ) -> Mesh:
     """Mesh from 1-D extractions in two directions.
 

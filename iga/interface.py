@@ -1,7 +1,8 @@
 """Gauss-point-to-surface cohesion and contact in one formulation.
 
-Every quadrature point of the slave is projected on the current master on its own; the gap along the master's normal drives one
-traction law for opening and closing (Dimitri, De Lorenzis, Zavarise 2013; De Lorenzis, Temizer, Wriggers, Zavarise 2011).
+Every quadrature point of the slave is projected on the current master on its own; the gap along the master's normal
+drives one traction law for opening and closing (Dimitri, De Lorenzis, Zavarise 2013; De Lorenzis, Temizer, Wriggers,
+Zavarise 2011).
 """
 
 from __future__ import annotations
@@ -20,10 +21,10 @@ class Interface:
     """Slave points, master surface and the law between them.
 
     ``N_qa`` (n_q, n_a) slave functions at the points, on the control points ``conn_qa``; ``dA_q`` (n_q,) reference area
-    (length x width) of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the whole model.
-    ``master`` is None where the partner is the mirror image of the slave in the line through the origin with normal
-    ``mirror_i``: then the gap is twice the distance to it. ``frozen`` keeps the pairing and normals of the reference
-    configuration (linear kinematics): no search is done.
+    (length x width) of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the
+    whole model. ``master`` is None where the partner is the mirror image of the slave in the line through the origin
+    with normal ``mirror_i``: then the gap is twice the distance to it. ``frozen`` keeps the pairing and normals of the
+    reference configuration (linear kinematics): no search is done.
     """
 
     N_qa: np.ndarray
@@ -49,10 +50,10 @@ class Interface:
 class Contact:
     """Gaps and their variations in one configuration.
 
-    ``g_q`` (n_q,), ``n_qi`` (n_q, 2) master normals, ``on_q`` False for points beyond the ends of the master. ``conn_qa``
-    (n_q, n_a) lists the control points of slave and master side that a point touches; ``V_qrd`` (n_q, r, 2 n_a) holds the row
-    of the first variation, ``dg = V_0 du``, and, where the geometry is not frozen, the rows T and Nb of the second (see
-    `stiffness`) with ``m_q`` and ``kappa_q``.
+    ``g_q`` (n_q,), ``n_qi`` (n_q, 2) master normals, ``on_q`` False for points beyond the ends of the master.
+    ``conn_qa`` (n_q, n_a) lists the control points of slave and master side that a point touches; ``V_qrd`` (n_q, r, 2
+    n_a) holds the row of the first variation, ``dg = V_0 du``, and, where the geometry is not frozen, the rows T and
+    Nb of the second (see `stiffness`) with ``m_q`` and ``kappa_q``.
     """
 
     pairing: Pairing | None
@@ -63,6 +64,10 @@ class Contact:
     V_qrd: np.ndarray
     m_q: np.ndarray | None = None
     kappa_q: np.ndarray | None = None
+
+    def rates(self, v_d: np.ndarray) -> np.ndarray:
+        """Rates (n_q,) of the gaps when the displacements change by v_d."""
+        return np.sum(self.V_qrd[:, 0] * v_d[dofs(self.conn_qa)], axis=1)
 
     def row(self, q: int, n_dof: int) -> np.ndarray:
         """Gradient (n_dof,) of the gap at one point."""
@@ -118,8 +123,8 @@ def forces(interface: Interface, contact: Contact, p_q: np.ndarray, n_dof: int) 
 def stiffness(interface: Interface, contact: Contact, p_q: np.ndarray, dp_q: np.ndarray) -> np.ndarray:
     """Complete tangent of each point (n_q, 2 n_a, 2 n_a), ``K = int p' G'G dGamma + int p D(dg) dGamma``, symmetric.
 
-    With y' = t, m = t.t, kappa = n.y'', a = m - g kappa, T = t.(dx - dy), Nb = n.dy', the second variation of the gap is
-    ``D(dg) = -1/a [T Nb + Nb T + g Nb Nb + (kappa / m) T T]`` (Wriggers 2006, sec. 9.1, in the present notation).
+    With y' = t, m = t.t, kappa = n.y'', a = m - g kappa, T = t.(dx - dy), Nb = n.dy', the second variation of the gap
+    is ``D(dg) = -1/a [T Nb + Nb T + g Nb Nb + (kappa / m) T T]`` (Wriggers 2006, sec. 9.1, in the present notation).
     """
     V = contact.V_qrd
     c_qrs = np.zeros((len(V), V.shape[1], V.shape[1]))

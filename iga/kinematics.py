@@ -1,7 +1,7 @@
 """From displacement gradient to first Piola-Kirchhoff stress, its tangent, and stored energy, for every point at once.
 
-Both kinematics speak the same language, so that one assembler serves them: ``P_iI = dW/dH_iI`` and ``A_iIjJ = dP_iI/dH_jJ``.
-Components come first in all arrays: each of the few operations then runs over all points in a row.
+Both kinematics speak the same language, so that one assembler serves them: ``P_iI = dW/dH_iI`` and ``A_iIjJ =
+dP_iI/dH_jJ``. Components come first in all arrays: each of the few operations then runs over all points in a row.
 """
 
 from __future__ import annotations
@@ -21,7 +21,9 @@ def elasticity_tensor(D: np.ndarray) -> np.ndarray:
 
 
 def finite_strain(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """St. Venant-Kirchhoff, total Lagrangian: ``E = (F'F - 1)/2``, ``S = D:E``, ``P = F S`` (Bonet and Wood 2008, sec. 6.4).
+    """St. Venant-Kirchhoff solid, total Lagrangian (Bonet and Wood 2008, sec. 6.4).
+
+    ``E = (F'F - 1)/2``, ``S = D:E``, ``P = F S``.
 
     Parameters
     ----------
@@ -74,12 +76,14 @@ def _deformation(H: np.ndarray) -> np.ndarray:
 
 
 def _svk(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Second Piola-Kirchhoff stress (3, ...) and energy; E is formed from H, which keeps its digits where F is close to one."""
-    E_v = np.stack([
-        H[0, 0] + 0.5 * (H[0, 0] ** 2 + H[1, 0] ** 2),
-        H[1, 1] + 0.5 * (H[0, 1] ** 2 + H[1, 1] ** 2),
-        H[0, 1] + H[1, 0] + H[0, 0] * H[0, 1] + H[1, 0] * H[1, 1],
-    ])
+    """Second Piola-Kirchhoff stress (3, ...) and energy; E is formed from H to keep its digits near F = 1."""
+    E_v = np.stack(
+        [
+            H[0, 0] + 0.5 * (H[0, 0] ** 2 + H[1, 0] ** 2),
+            H[1, 1] + 0.5 * (H[0, 1] ** 2 + H[1, 1] ** 2),
+            H[0, 1] + H[1, 0] + H[0, 0] * H[0, 1] + H[1, 0] * H[1, 1],
+        ]
+    )
     S_v = np.tensordot(D, E_v, axes=1)
     return S_v, 0.5 * np.sum(S_v * E_v, axis=0)
 

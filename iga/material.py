@@ -8,9 +8,9 @@ import numpy as np
 def orthotropic(E1: float, E2: float, G12: float, nu12: float, plane: str) -> np.ndarray:
     """Elasticity matrix D (3, 3), axis 1 along X.
 
-    Plane stress inverts the in-plane compliance. Plane strain needs the third direction, taken as transversely like the second
-    (E3 = E2, nu13 = nu23 = nu12), and takes the in-plane block of the inverted 3-D compliance; with E1 = E2 and
-    G12 = E / (2 (1 + nu)) both are the isotropic matrices (Jones 1999, eqs. 2.15 and 2.60).
+    Plane stress inverts the in-plane compliance. Plane strain needs the third direction, taken as transversely like
+    the second (E3 = E2, nu13 = nu23 = nu12), and takes the in-plane block of the inverted 3-D compliance; with E1 = E2
+    and G12 = E / (2 (1 + nu)) both are the isotropic matrices (Jones 1999, eqs. 2.15 and 2.60).
 
     Raises
     ------

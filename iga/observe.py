@@ -99,7 +99,9 @@ def face_slope(arm: Arm, u_d: np.ndarray) -> float:
 def face_energy(arm: Arm, u_d: np.ndarray, kinematics: str) -> float:
     """Integral of the strain energy density over the loaded face, per unit width."""
     u_Ai = u_d.reshape(-1, 2)
-    return sum(float(np.sum(KINEMATICS[kinematics](arm.D, gradient(basis, u_Ai))[2] * basis.dV_eq)) for basis in arm.face)
+    return sum(
+        float(np.sum(KINEMATICS[kinematics](arm.D, gradient(basis, u_Ai))[2] * basis.dV_eq)) for basis in arm.face
+    )
 
 
 def face_length(face: tuple[BlockBasis, ...]) -> float:

@@ -1,10 +1,11 @@
 """The equilibrium path: one bordered system, a control equation, Newton with line search, and step control.
 
-Unknowns are the displacements and the load. Equilibrium ``internal(u) = load f`` is bordered by one scalar control equation; one
-factorisation serves both right-hand sides. A further control is one more function like `opening_control`.
+Unknowns are the displacements and the load. Equilibrium ``internal(u) = load f`` is bordered by one scalar control
+equation; one factorisation serves both right-hand sides. A further control is one more function like
+`opening_control`.
 
-While damage grows the opening of the cohesive front is prescribed, so that the path is followed through snap-backs; otherwise
-the opening of the specimen is.
+While damage grows the opening of the cohesive front is prescribed, so that the path is followed through snap-backs;
+otherwise the opening of the specimen is.
 """
 
 from __future__ import annotations
@@ -22,13 +23,17 @@ from iga.system import Phase, Response, State, System, factorise, respond, untim
 Control = Callable[[State, Response], tuple[float, np.ndarray]]
 
 
+#: Attempts at the contact of the first tangent.
+START = 30
+
+
 @dataclass(frozen=True)
 class Newton:
     """Tolerance on the residual relative to the forces in play, and limits.
 
-    Far ahead of a crack the gaps alternate in sign while they decay below rounding: deciding there anew in every iteration sets
-    penalty against cohesion for ever. So contact is settled once the residual is below ``settle``; what a point could be wrong
-    by is then below that, too.
+    Far ahead of a crack the gaps alternate in sign while they decay below rounding: deciding there anew in every
+    iteration sets penalty against cohesion for ever. So contact is settled once the residual is below ``settle``; what
+    a point could be wrong by is then below that, too.
     """
 
     tolerance: float = 2e-11
@@ -98,8 +103,8 @@ def follow(
     Parameters
     ----------
     programme : openings to be reached one after the other, from zero.
-    steps : number of steps asked for over the whole programme; one that fails is halved, down to 1/1024, and grows again
-        afterwards.
+    steps : number of steps asked for over the whole programme; one that fails is halved, down to 1/1024, and grows
+        again afterwards.
     """
     largest = float(np.sum(np.abs(np.diff([0.0, *programme])))) / steps
     step, rejected = largest, 0
@@ -107,9 +112,12 @@ def follow(
     yield point
     for goal in programme:
         loading = goal > point.opening
-        while point.opening != goal and not (loading and point.opening > goal):
+        while point.opening != goal:
             control, change, exact = _choose(system, point, goal, step, step / largest, loading)
             reached = _advance(system, point, control, change, newton, phase)
+            if reached is not None and loading and reached.opening > goal and not exact:
+                exact = True
+                reached = _advance(system, point, opening_control(system), goal - point.opening, newton, phase)
             if reached is not None:
                 moved = abs(reached.opening - point.opening)
                 point = replace(reached, opening=goal) if exact else reached
@@ -134,23 +142,35 @@ def _choose(
     if q is None or 0.0 < left < step and fraction == 1.0:
         exact = abs(left) < 1.001 * step
         return opening_control(system), left if exact else np.copysign(step, left), exact
-    gap_rate = float(point.response.contact.row(q, system.n_dof) @ point.du_d)
+    gap_rate = float(point.response.contact.rates(point.du_d)[q])
     change = min(0.25 * fraction * system.interface.law.g_u, abs(gap_rate) * step)
     return gap_control(system, q), change, False
 
 
 def _start(system: System, phase: Phase) -> Point:
+    """The unloaded state with the tangent of the path that leaves it.
+
+    There all gaps are zero and which of them will close shows in their rates only: contact is set by these until it
+    stays.
+    """
     state = system.start()
-    with phase("assembly"):
-        response = respond(system, state)
-    point = _point(system, state, response, (), phase)
-    if point is None:
-        raise ValueError("the unloaded system is singular: the supports or the interface do not hold the bodies")
+    for _ in range(START):
+        with phase("assembly"):
+            response = respond(system, state, decide=False)
+        point = _point(system, state, response, (), phase)
+        if point is None:
+            raise ValueError("the unloaded system is singular: the supports or the interface do not hold the bodies")
+        closing_q = response.contact.rates(point.du_d) < 0.0
+        if np.array_equal(closing_q, state.closed_q):
+            break
+        state = replace(state, closed_q=closing_q)
     return point
 
 
-def _advance(system: System, point: Point, control: Control, change: float, newton: Newton, phase: Phase) -> Point | None:
-    """One step by Newton from the tangent predictor; None where it does not converge. Nothing is committed before the end."""
+def _advance(
+    system: System, point: Point, control: Control, change: float, newton: Newton, phase: Phase
+) -> Point | None:
+    """One step by Newton from the tangent predictor, or None; nothing is committed before it has converged."""
     value, a_d = control(point.state, point.response)
     target = value + change
     d_opening = change / float(a_d @ point.du_d)
@@ -158,7 +178,9 @@ def _advance(system: System, point: Point, control: Control, change: float, newt
     trial = replace(old, u_d=old.u_d + d_opening * point.du_d, load=old.load + d_opening * point.slope)
     trial, response, norm = _evaluate(system, trial, True, phase)
     residuals = [norm]
-    while norm > newton.tolerance or not _met(control(trial, response)[0], target, change, newton.tolerance):
+    while norm > max(newton.tolerance, response.rounding / response.scale) or not _met(
+        control(trial, response)[0], target, change, newton.tolerance
+    ):
         if len(residuals) > newton.iterations or not np.isfinite(norm):
             return None
         with phase("factor"):
@@ -179,8 +201,9 @@ def _advance(system: System, point: Point, control: Control, change: float, newt
 def _work(start: Point, end: Point, change: float, rates: tuple[float, float]) -> float:
     """Integral of the load over the opening along one step, both cubic Hermite curves over the controlled quantity.
 
-    ``change`` is the step of that quantity and ``rates`` the derivative of the opening by it at both ends. Unlike a rule over the
-    opening it holds where the path turns back. Its error is of fourth order; three Gauss points integrate it exactly.
+    ``change`` is the step of that quantity and ``rates`` the derivative of the opening by it at both ends. Unlike a
+    rule over the opening it holds where the path turns back. Its error is of fourth order; three Gauss points
+    integrate it exactly.
     """
     s, w = gauss(3)
     values = np.stack([(1 + 2 * s) * (1 - s) ** 2, s * s * (3 - 2 * s)])
@@ -238,7 +261,9 @@ def _search(
     return best
 
 
-def _point(system: System, state: State, response: Response, residuals: tuple[float, ...], phase: Phase) -> Point | None:
+def _point(
+    system: System, state: State, response: Response, residuals: tuple[float, ...], phase: Phase
+) -> Point | None:
     """The converged point with its exact path tangent ``K du = f d_load``, scaled to a unit change of the opening."""
     with phase("factor"):
         lu = factorise(response)
@@ -254,5 +279,6 @@ def _point(system: System, state: State, response: Response, residuals: tuple[fl
 def _advice(opening: float) -> str:
     return (
         f"stopped: Newton did not converge beyond opening {opening:.6g} even with a step 1024 times smaller; "
-        "the path probably snaps back here: refine the mesh along the crack (discretization.dofs) or lower interface.strength"
+        "refine the mesh along the crack (discretization.dofs), take more interface points "
+        "(discretization.interface_points) or lower interface.strength"
     )

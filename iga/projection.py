@@ -12,7 +12,7 @@ from iga.surface import Surface
 
 @dataclass(frozen=True)
 class Pairing:
-    """Where each point met the surface: side ``c_q``, parameter ``xi_q`` in [0, 1], and ``on_q``, False beyond its ends."""
+    """Where each point met: side ``c_q``, parameter ``xi_q`` in [0, 1]; ``on_q`` is False beyond the ends."""
 
     c_q: np.ndarray
     xi_q: np.ndarray
@@ -34,9 +34,9 @@ def closest_points(
 ) -> Pairing:
     """Project points on the surface: ``(x - y(xi)) . y'(xi) = 0`` by Newton, from the pairing before.
 
-    A point that runs off a side goes on from the end of the neighbour; at the two ends of the chain it is held there and
-    marked as off. At a kink between two sides, where it would jump for ever, it stays on the kink. Where the curvature makes
-    Newton's denominator useless, ``|y'|^2`` alone takes its place (Gauss-Newton).
+    A point that runs off a side goes on from the end of the neighbour; at the two ends of the chain it is held there
+    and marked as off. At a kink between two sides, where it would jump for ever, it stays on the kink. Where the
+    curvature makes Newton's denominator useless, ``|y'|^2`` alone takes its place (Gauss-Newton).
 
     Parameters
     ----------
@@ -73,7 +73,9 @@ def closest_points(
     return Pairing(c, xi, ~off)
 
 
-def _newton_step(surface: Surface, x_qi: np.ndarray, Q_cbi: np.ndarray, c_q: np.ndarray, xi_q: np.ndarray) -> np.ndarray:
+def _newton_step(
+    surface: Surface, x_qi: np.ndarray, Q_cbi: np.ndarray, c_q: np.ndarray, xi_q: np.ndarray
+) -> np.ndarray:
     r0, r1, r2 = surface.coefficients(c_q, xi_q, 2)
     y, t, t_xi = (np.einsum("qb,qbi->qi", r, Q_cbi[c_q]) for r in (r0, r1, r2))
     d = x_qi - y

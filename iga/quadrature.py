@@ -14,7 +14,8 @@ def gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
 def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Lobatto points and weights (n,), n >= 2, end points included, exact for degree 2n - 3.
 
-    Inner points are the roots of P'_{n-1}; ``w = 2 / (n (n - 1) P_{n-1}(x)^2)`` on [-1, 1] (Abramowitz and Stegun 1964, 25.4.32).
+    Inner points are the roots of P'_{n-1}; ``w = 2 / (n (n - 1) P_{n-1}(x)^2)`` on [-1, 1] (Abramowitz and Stegun
+    1964, 25.4.32).
     """
     if n < 2:
         raise ValueError(f"a Lobatto rule has at least 2 points, got {n}")
@@ -23,7 +24,9 @@ def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
     return 0.5 * (x + 1.0), 1.0 / (n * (n - 1) * P(x) ** 2)
 
 
-def square(rule_s: tuple[np.ndarray, np.ndarray], rule_t: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def square(
+    rule_s: tuple[np.ndarray, np.ndarray], rule_t: tuple[np.ndarray, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
     """Product rule: points (n, 2) and weights (n,) on the unit square."""
     (s, w_s), (t, w_t) = rule_s, rule_t
     points = np.stack([np.tile(s, len(t)), np.repeat(t, len(s))], -1)

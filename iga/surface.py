@@ -1,4 +1,4 @@
-"""A surface as a chain of element sides: rational Bezier curves, evaluated at one point a quadrature point, all at once."""
+"""A surface as a chain of element sides: rational curves, evaluated at many points at once."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from iga.extraction import SIDES, Chain, Mesh
 class Surface:
     """A chain of n_c rational curves of degree p.
 
-    ``C_cab`` (n_c, p+1, p+1) is the homogeneous extraction ``w_A C_Ab`` of each side and ``conn_ca`` (n_c, p+1) its control
-    points; ``w_cb`` (n_c, p+1) are the Bezier weights. Whatever the mesh, p + 1 functions live on a side of degree p.
-    ``outward`` is +1 where the body lies to the left of the walking direction, -1 where to the right.
+    ``C_cab`` (n_c, p+1, p+1) is the homogeneous extraction ``w_A C_Ab`` of each side and ``conn_ca`` (n_c, p+1) its
+    control points; ``w_cb`` (n_c, p+1) are the Bezier weights. Whatever the mesh, p + 1 functions live on a side of
+    degree p. ``outward`` is +1 where the body lies to the left of the walking direction, -1 where to the right.
     """
 
     degree: int

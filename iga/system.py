@@ -36,8 +36,8 @@ class Solid:
 class State:
     """A configuration: displacements u_d (n_dof,), load, history k_q (n_q,).
 
-    ``closed_q`` (n_q,) and ``pairing``, which points were in contact and where the interface met, are where the next search
-    starts, not history.
+    ``closed_q`` (n_q,) and ``pairing``, which points were in contact and where the interface met, are where the next
+    search starts, not history.
     """
 
     u_d: np.ndarray
@@ -51,12 +51,14 @@ class State:
 class Response:
     """What a configuration answers.
 
-    ``internal_d`` (n_dof,) forces of bulk and interface; ``scale`` the norm of the forces that the elements hold against each
-    other, by which a residual is judged; ``bulk_energy``; the interface with traction p_q, slope dp_q and new history k_q.
+    ``internal_d`` (n_dof,) forces of bulk and interface; ``scale`` the norm of the forces that the elements hold
+    against each other, by which a residual is judged, and ``rounding`` the norm below which it is noise;
+    ``bulk_energy``; the interface with traction p_q, slope dp_q and new history k_q.
     """
 
     internal_d: np.ndarray
     scale: float
+    rounding: float
     bulk_energy: float
     contact: Contact
     p_q: np.ndarray
@@ -71,13 +73,14 @@ class Response:
 class System:
     """All that stays the same during a run.
 
-    ``load_d`` (n_dof,) is the load vector for a unit resultant and, being the mean over the loaded faces, at once the row that
-    measures the opening. ``x_d`` (n_dof,) is the coordinate along the specimen, used for numbering. ``width`` is that of the
-    bulk; where a mirror image is not modelled it counts twice, so that forces and energies are those of the whole.
+    ``load_d`` (n_dof,) is the load vector for a unit resultant and, being the mean over the loaded faces, at once the
+    row that measures the opening. ``x_d`` (n_dof,) is the coordinate along the specimen, used for numbering. ``width``
+    is that of the bulk; where a mirror image is not modelled it counts twice, so that forces and energies are those of
+    the whole.
 
-    An interface without friction lets two bodies turn together about their supports. A spring of stiffness ``stay`` on the
-    displacement ``stay_d . u`` takes that freedom. It measures how far the two loaded faces are out of line, so that the
-    balance of moments itself says that it carries no force.
+    An interface without friction lets two bodies turn together about their supports. A spring of stiffness ``stay`` on
+    the displacement ``stay_d . u`` takes that freedom. It measures how far the two loaded faces are out of line, so
+    that the balance of moments itself says that it carries no force.
     """
 
     solids: tuple[Solid, ...]
@@ -129,14 +132,21 @@ class System:
 
     @cached_property
     def linear_bulk(self) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-        """Stiffness of the bulk once and for all (linear kinematics): element matrices (n_e, 2 n_a, 2 n_a), and band array."""
+        """Stiffness of the linear bulk: element matrices (n_e, 2 n_a, 2 n_a), and the band array."""
         zero_Ai = np.zeros((self.n_dof // 2, 2))
         parts = [element_stiffness(solid.basis, _bulk(self, solid, zero_Ai)[1], self.width) for solid in self.solids]
         values = np.concatenate([all_entries(K).ravel() for K in parts])
         return tuple(full_matrices(K) for K in parts), np.bincount(self.bulk_positions, values, self.band.size)
 
+    @cached_property
+    def stiffest(self) -> tuple[np.ndarray, ...]:
+        """Largest entry (n_e,) of each element's stiffness when unloaded."""
+        zero_Ai = np.zeros((self.n_dof // 2, 2))
+        parts = (element_stiffness(solid.basis, _bulk(self, solid, zero_Ai)[1], self.width) for solid in self.solids)
+        return tuple(np.abs(K).max((1, 2, 3)) for K in parts)
+
     def touching_positions(self, conn_qa: np.ndarray) -> np.ndarray | None:
-        """Where the interface tangent goes in the band array; None where it needs a wider band. The last answer is kept."""
+        """Where the interface tangent goes in the band array, None where too far. The last answer is kept."""
         if self._touching is None or not np.array_equal(self._touching[0], conn_qa):
             row, column = _square(conn_qa)
             fits = self.band.reach(row, column) <= self.band.k
@@ -148,7 +158,8 @@ class System:
 def respond(system: System, trial: State, decide: bool = True) -> Response:
     """Residual and tangent of a trial state, whose history is that of the last converged one.
 
-    Unless asked to ``decide`` anew by the sign of the gap, every point stays in contact or out of it as it is in ``trial``.
+    Unless asked to ``decide`` anew by the sign of the gap, every point stays in contact or out of it as it is in
+    ``trial``.
     """
     linear = system.kinematics == "linear"
     internal_d, scale, bulk_energy, parts = (_linear_bulk if linear else _finite_bulk)(system, trial.u_d)
@@ -160,7 +171,9 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
         internal_d += system.stay * (system.stay_d @ trial.u_d) * system.stay_d
     K_qdd = stiffness(system.interface, touch, p_q, dp_q)
     band, tangent = _assemble(system, parts, touch.conn_qa, K_qdd)
-    return Response(internal_d, scale, bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, band)
+    return Response(
+        internal_d, scale, _rounding(system, trial.u_d), bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, band
+    )
 
 
 def factorise(response: Response) -> BandLU | None:
@@ -174,9 +187,21 @@ def joined(solids: list[Solid]) -> tuple[Solid, ...]:
     for solid in solids:
         groups.setdefault((solid.basis.N_eqa.shape[1:], solid.D.tobytes()), []).append(solid)
     return tuple(
-        Solid(BlockBasis(*(np.concatenate([getattr(s.basis, f.name) for s in group]) for f in fields(BlockBasis))), group[0].D)
+        Solid(
+            BlockBasis(*(np.concatenate([getattr(s.basis, f.name) for s in group]) for f in fields(BlockBasis))),
+            group[0].D,
+        )
         for group in groups.values()
     )
+
+
+def _rounding(system: System, u_d: np.ndarray) -> float:
+    """Norm of what one rounding of the displacements does to the forces: long thin elements are stiff across."""
+    squares = (
+        np.sum((size_e * np.abs(u_d[dofs(solid.basis.conn_ea)]).max(1)) ** 2)
+        for size_e, solid in zip(system.stiffest, system.solids, strict=True)
+    )
+    return float(np.finfo(float).eps * np.sqrt(sum(squares)))
 
 
 def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, np.ndarray]:
@@ -221,7 +246,9 @@ def _assemble(
         return band, np.bincount(_positions(band, entries), np.concatenate([*bulk, touching]), band.size)
     if isinstance(bulk, np.ndarray):
         return band, bulk + np.bincount(positions, touching, band.size)
-    return band, np.bincount(np.concatenate([system.bulk_positions, positions]), np.concatenate([*bulk, touching]), band.size)
+    return band, np.bincount(
+        np.concatenate([system.bulk_positions, positions]), np.concatenate([*bulk, touching]), band.size
+    )
 
 
 def _reachable(interface: Interface) -> list[np.ndarray]:

@@ -16,6 +16,7 @@ import numpy as np
 from verify.checks import run_checks
 from verify.effects import simulated
 from verify.folder import CurveWriter, write_fields, write_json
+from verify.memory import keep_freed_memory
 from verify.methods import solve
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
 from verify.scene import Scene
@@ -45,6 +46,7 @@ def run(
     on_step : called after every converged step, for progress
     solver : what to run; ``verify.methods.solve``
     """
+    keep_freed_memory()
     if mpi_rank() > 0:  # the same numbers are on every rank: one of them writes
         return _silent(scene, method, solver), ()
     writer = CurveWriter(folder)

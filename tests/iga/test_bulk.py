@@ -1,0 +1,167 @@
+"""The solid: derivatives against differences, rigid motion, patch test, convergence rates."""
+
+import numpy as np
+import pytest
+
+from iga.basis import block_basis
+from iga.bspline import open_knots
+from iga.bulk import all_entries, element_forces, element_stiffness, full_matrices, gradient, stiffness_entries
+from iga.extraction import Mesh
+from iga.interface import dofs
+from iga.kinematics import KINEMATICS, cauchy_stress, finite_strain
+from iga.lagrange import lagrange_rectangle
+from iga.material import isotropic, orthotropic
+from iga.nurbs import nurbs_rectangle
+from iga.quadrature import gauss, square
+
+D_GENERIC = orthotropic(130.0, 9.0, 5.0, 0.3, "stress")
+
+
+def test_plane_stress_and_strain_matrices_of_an_isotropic_solid():
+    E, nu = 3.0, 0.3
+    stress = E / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
+    strain = E / ((1 + nu) * (1 - 2 * nu)) * np.array([[1 - nu, nu, 0], [nu, 1 - nu, 0], [0, 0, (1 - 2 * nu) / 2]])
+    assert np.allclose(isotropic(E, nu, "stress"), stress, rtol=1e-13)
+    assert np.allclose(isotropic(E, nu, "strain"), strain, rtol=1e-13)
+
+
+def test_constants_that_store_negative_energy_are_refused():
+    with pytest.raises(ValueError, match="negative energy"):
+        orthotropic(1.0, 10.0, 1.0, 0.9, "strain")
+
+
+@pytest.mark.parametrize("kinematics", KINEMATICS)
+def test_stress_is_the_derivative_of_energy_and_the_tangent_that_of_stress(kinematics, rng):
+    law, h = KINEMATICS[kinematics], 1e-6
+    H = 0.3 * rng.standard_normal((2, 2, 11))
+    P, A, _ = law(D_GENERIC, H)
+    for j in range(2):
+        for J in range(2):
+            step = np.zeros_like(H)
+            step[j, J] = h
+            (P1, _, W1), (P0, _, W0) = law(D_GENERIC, H + step), law(D_GENERIC, H - step)
+            assert np.max(np.abs((W1 - W0) / (2 * h) - P[j, J])) < 1e-6 * np.max(np.abs(P))
+            assert np.max(np.abs((P1 - P0) / (2 * h) - A[:, :, j, J])) < 1e-6 * np.max(np.abs(A))
+
+
+@pytest.mark.parametrize("angle", [1e-3, 0.7, np.pi])
+def test_a_rigid_rotation_is_free_of_stress(angle):
+    R = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    P, _, W = finite_strain(D_GENERIC, (R - np.eye(2))[..., None])
+    assert np.max(np.abs(P)) < 1e-13 * D_GENERIC.max() and abs(W[0]) < 1e-25 * D_GENERIC.max()
+
+
+def test_cauchy_stress_turns_with_the_body(rng):
+    H = 0.2 * rng.standard_normal((2, 2, 5))
+    Q = np.array([[0.6, -0.8], [0.8, 0.6]])
+    turned = np.einsum("ij,jIn->iIn", Q, H + np.eye(2)[..., None]) - np.eye(2)[..., None]
+    expected = np.einsum("ik,kln,jl->ijn", Q, cauchy_stress(D_GENERIC, H, "finite"), Q)
+    assert np.allclose(cauchy_stress(D_GENERIC, turned, "finite"), expected, rtol=1e-12, atol=1e-12)
+
+
+def warped(mesh: Mesh, amount: float) -> Mesh:
+    """The same mesh with its inner control points moved: elements are no longer rectangles."""
+    X, Y = mesh.P_AI.T
+    bump = amount * np.sin(np.pi * X) * np.sin(np.pi * Y)
+    return Mesh(mesh.P_AI + np.stack([bump, -0.7 * bump], -1), mesh.w_A, mesh.blocks, mesh.chains)
+
+
+def unit_square(kind: str, degree: int, elements: int) -> Mesh:
+    breaks = np.linspace(0.0, 1.0, elements + 1)
+    if kind == "nurbs":
+        return nurbs_rectangle(open_knots(breaks, degree), open_knots(breaks, degree))
+    return lagrange_rectangle(breaks, breaks, degree)
+
+
+def with_weights(mesh: Mesh, rng) -> Mesh:
+    return Mesh(mesh.P_AI, rng.uniform(0.7, 1.4, len(mesh.P_AI)), mesh.blocks, mesh.chains)
+
+
+@pytest.mark.parametrize("kinematics", KINEMATICS)
+@pytest.mark.parametrize("kind", ["nurbs", "rational", "lagrange"])
+@pytest.mark.parametrize("degree", [1, 2, 3, 4, 5])
+def test_patch(kind, degree, kinematics, rng):
+    """A linear field on warped elements: constant stress, and no force on any inner control point."""
+    mesh = warped(unit_square("lagrange" if kind == "lagrange" else "nurbs", degree, 3), 0.05)
+    mesh = with_weights(mesh, rng) if kind == "rational" else mesh
+    inside = np.all((mesh.P_AI > 1e-9) & (mesh.P_AI < 1 - 1e-9), axis=1)
+    basis = block_basis(mesh, mesh.blocks[0], *square(gauss(14), gauss(14)))
+    u = mesh.P_AI @ np.array([[0.05, -0.02], [0.03, 0.04]])
+    P, _, _ = KINEMATICS[kinematics](D_GENERIC, gradient(basis, u))
+    assert np.ptp(P, axis=(2, 3)).max() < 1e-10 * np.abs(P).max()
+    f = np.zeros_like(u)
+    np.add.at(f, basis.conn_ea, element_forces(basis, P, 1.0))
+    assert np.abs(f[inside]).max() < 1e-10 * np.abs(f).max()
+
+
+@pytest.mark.parametrize("kind", ["nurbs", "lagrange"])
+def test_element_stiffness_is_the_derivative_of_the_element_forces(kind, rng):
+    mesh = warped(unit_square(kind, 3, 2), 0.05)
+    basis = block_basis(mesh, mesh.blocks[0], *square(gauss(4), gauss(4)))
+    u, v, h = 0.1 * rng.standard_normal(mesh.P_AI.shape), rng.standard_normal(mesh.P_AI.shape), 1e-6
+
+    def forces(u):
+        return element_forces(basis, finite_strain(D_GENERIC, gradient(basis, u))[0], 1.5)
+
+    K = element_stiffness(basis, finite_strain(D_GENERIC, gradient(basis, u))[1], 1.5)
+    d = dofs(basis.conn_ea)
+    expected = ((forces(u + h * v) - forces(u - h * v)) / (2 * h)).reshape(len(d), -1)
+    full = full_matrices(K)
+    assert np.allclose((full @ v.ravel()[d][..., None])[..., 0], expected, rtol=0, atol=1e-6 * np.abs(expected).max())
+    assert np.allclose(full, full.swapaxes(1, 2), rtol=0, atol=1e-12 * np.abs(full).max())
+    row, column = stiffness_entries(basis.conn_ea)
+    n = u.size
+    scattered = np.bincount((row * n + column).ravel(), all_entries(K).ravel(), n * n).reshape(n, n)
+    direct = np.zeros((n, n))
+    np.add.at(direct, (d[:, :, None], d[:, None, :]), full)
+    assert np.allclose(scattered, direct, rtol=0, atol=1e-12 * np.abs(direct).max())
+
+
+def manufactured_error(kind: str, degree: int, elements: int) -> tuple[float, int]:
+    """Relative L2 error of a linear elastic problem with a smooth solution, and the order that the mesh promises."""
+    mesh, D = warped(unit_square(kind, degree, elements), 0.03), isotropic(1.0, 0.3, "stress")
+    basis = block_basis(mesh, mesh.blocks[0], *square(gauss(degree + 2), gauss(degree + 2)))
+    X, Y = basis.X_eqI[..., 0], basis.X_eqI[..., 1]
+
+    def exact(X, Y):
+        return np.stack([np.sin(np.pi * X) * np.sin(np.pi * Y), np.sin(2 * np.pi * X) * np.sin(np.pi * Y)], -1)
+
+    s, c = np.sin, np.cos
+    pi = np.pi
+    u_xx, u_yy = -(pi**2) * s(pi * X) * s(pi * Y), -(pi**2) * s(pi * X) * s(pi * Y)
+    u_xy = pi**2 * c(pi * X) * c(pi * Y)
+    v_xx, v_yy = -4 * pi**2 * s(2 * pi * X) * s(pi * Y), -(pi**2) * s(2 * pi * X) * s(pi * Y)
+    v_xy = 2 * pi**2 * c(2 * pi * X) * c(pi * Y)
+    body = -np.stack(
+        [
+            D[0, 0] * u_xx + D[0, 1] * v_xy + D[2, 2] * (u_yy + v_xy),
+            D[1, 0] * u_xy + D[1, 1] * v_yy + D[2, 2] * (u_xy + v_xx),
+        ],
+        -1,
+    )
+    A = KINEMATICS["linear"](D, np.zeros((2, 2, *basis.dV_eq.shape)))[1]
+    K, d, n = full_matrices(element_stiffness(basis, A, 1.0)), dofs(basis.conn_ea), mesh.P_AI.size
+    matrix, load = np.zeros((n, n)), np.zeros(n)
+    np.add.at(matrix, (d[:, :, None], d[:, None, :]), K)
+    np.add.at(load, d, np.einsum("eqa,eqi,eq->eai", basis.N_eqa, body, basis.dV_eq).reshape(d.shape))
+    inside = np.all((mesh.P_AI > 1e-9) & (mesh.P_AI < 1 - 1e-9), axis=1)
+    free = np.repeat(inside, 2)
+    u = np.zeros(n)
+    u[free] = np.linalg.solve(matrix[np.ix_(free, free)], load[free])
+    error = np.einsum("eqa,eai->eqi", basis.N_eqa, u.reshape(-1, 2)[basis.conn_ea]) - exact(X, Y)
+    total = np.sum(exact(X, Y) ** 2 * basis.dV_eq[..., None])
+    return float(np.sqrt(np.sum(error**2 * basis.dV_eq[..., None]) / total)), mesh.order
+
+
+@pytest.mark.parametrize("kind", ["nurbs", "lagrange"])
+@pytest.mark.parametrize(
+    ("degree", "levels", "level"),
+    [(1, (8, 12, 16), 2e-2), (2, (6, 9, 13), 1.5e-3), (3, (5, 7, 10), 5e-4), (4, (4, 5, 7), 2e-4)],
+)
+def test_convergence_rate_of_a_manufactured_solution(kind, degree, levels, level):
+    errors, orders = zip(*(manufactured_error(kind, degree, n) for n in levels), strict=True)
+    rates = np.log(np.array(errors[:-1]) / errors[1:]) / np.log(np.array(levels[1:]) / levels[:-1])
+    print(f"{kind} degree {degree}: errors {errors}, rates {rates}")
+    assert orders[0] == degree + 1
+    assert np.all(rates > orders[0] - 0.35)
+    assert errors[-1] < level

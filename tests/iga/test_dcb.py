@@ -1,0 +1,203 @@
+"""The double cantilever beam as a whole: identities at every step, invariances, and how Newton converges."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from iga.cohesive import BilinearLaw
+from iga.dcb import Problem, build, solve
+from iga.path import Newton, Point, follow
+
+E, NU = 120e3, 0.2
+CZM1 = Problem(
+    length=14.0,
+    arm_thickness=0.2,
+    precrack=4.0,
+    E1=E,
+    E2=E,
+    G12=E / (2 * (1 + NU)),
+    nu12=NU,
+    strength=4.0,
+    toughness=0.1,
+    ductility=12.5,
+    penalty=1e5,
+    opening=(3.0,),
+)
+SHORT = replace(CZM1, opening=(1.0,), dofs=800, steps=40)
+
+
+def column(solution, name):
+    return np.array([row[name] for row in solution.rows])
+
+
+@pytest.fixture(scope="module", params=["nurbs", "lagrange"])
+def short(request):
+    return solve(replace(SHORT, basis=request.param))
+
+
+@pytest.fixture(scope="module", params=["linear", "finite"])
+def nurbs(request):
+    return solve(replace(SHORT, kinematics=request.param))
+
+
+def test_the_whole_programme_is_run_and_the_first_row_is_zero(short):
+    assert short.status == "complete" and short.rows[-1]["opening"] >= 1.0
+    assert all(
+        value == 0.0
+        for name, value in short.rows[0].items()
+        if name not in ("crack_length", "load_slope", "newton_iterations", "load_moment")
+    )
+    assert short.dofs <= 800 and short.dofs > 0.95 * 800
+
+
+def test_forces_and_moments_are_in_balance_at_every_step(short):
+    load = column(short, "load")
+    assert np.max(np.abs(load - column(short, "interface_force"))) < 1e-8 * load.max()
+    assert np.max(np.abs(column(short, "reaction_x"))) < 1e-8 * load.max()
+    assert np.max(np.abs(column(short, "reaction_y"))) < 1e-8 * load.max()
+    moment = column(short, "load_moment") + column(short, "interface_moment")
+    assert np.max(np.abs(moment)) < 1e-8 * load.max() * CZM1.precrack
+
+
+def test_energy_is_conserved_at_every_step(short):
+    gap = column(short, "external_work") - column(short, "stored_energy") - column(short, "dissipated_energy")
+    assert np.max(np.abs(gap)) < 5e-3 * column(short, "dissipated_energy")[-1]
+
+
+def test_j_integral_equals_the_work_of_the_tractions_at_the_tip(nurbs):
+    J = column(nurbs, "load") * (
+        abs(column(nurbs, "face_slope_top")) + abs(column(nurbs, "face_slope_bottom"))
+    ) - column(nurbs, "face_energy")
+    law = BilinearLaw(4.0, 0.1, 12.5, 1e5)
+    assert np.max(np.abs(J - law.work(np.maximum(column(nurbs, "tip_opening"), 0.0)))) < 0.01 * law.toughness
+
+
+def test_slopes_are_those_of_the_curve():
+    """d load / d opening from the tangent against a difference of two converged loads."""
+    points = [p for p in follow(build(SHORT).system, (0.3, 0.3 + 1e-5), 4) if isinstance(p, Point)]
+    at = next(i for i, p in enumerate(points) if p.opening == 0.3)
+    difference = (points[-1].state.load - points[at].state.load) / 1e-5
+    assert points[at].slope == pytest.approx(difference, rel=1e-4)
+
+
+def test_width_and_units_scale_out():
+    small = replace(SHORT, dofs=400, steps=20)
+    load = column(solve(small), "load")
+    wide = solve(replace(small, width=3.0))
+    assert np.allclose(column(wide, "load"), 3.0 * load, rtol=1e-9, atol=1e-12)
+    m = 1e-3  # the same in N and m
+    metres = replace(
+        small,
+        length=14 * m,
+        arm_thickness=0.2 * m,
+        precrack=4 * m,
+        width=m,
+        E1=E / m**2,
+        E2=E / m**2,
+        G12=small.G12 / m**2,
+        strength=4 / m**2,
+        toughness=0.1 / m,
+        penalty=1e5 / m**3,
+        opening=(1.0 * m,),
+    )
+    assert np.allclose(column(solve(metres), "load"), load, rtol=1e-9, atol=1e-12)
+
+
+def test_one_arm_against_its_mirror_image_is_the_whole():
+    """Linear kinematics: the same discrete problem. Energies and forces are those of both arms."""
+    whole = replace(SHORT, kinematics="linear", dofs=400, steps=20)
+    full, half = solve(whole), solve(replace(whole, symmetry=True))
+    assert half.dofs == full.dofs // 2
+    for name in (
+        "opening",
+        "load",
+        "stored_energy",
+        "dissipated_energy",
+        "external_work",
+        "tip_opening",
+        "face_energy",
+        "interface_force",
+    ):
+        assert np.allclose(
+            column(half, name), column(full, name), rtol=1e-7, atol=1e-9 * abs(column(full, name)).max()
+        ), name
+
+
+def test_slave_and_master_can_be_exchanged():
+    small = replace(SHORT, dofs=400, steps=20)
+    top, bottom = solve(small), solve(replace(small, slave="bottom"))
+    assert np.allclose(column(top, "load"), column(bottom, "load"), rtol=1e-4, atol=1e-6)
+
+
+def test_the_linear_curve_is_the_small_opening_limit_of_the_finite_one():
+    """One step to a small opening: the two differ by second order."""
+
+    def load(kinematics, opening):
+        return solve(replace(SHORT, kinematics=kinematics, opening=(opening,), steps=1, dofs=400)).rows[-1]["load"]
+
+    change = [abs(load("finite", d) / load("linear", d) - 1) for d in (0.08, 0.04)]
+    assert change[0] < 2e-3 and change[1] < 0.6 * change[0]
+
+
+def test_unloading_follows_the_secant_and_reloading_meets_the_curve_again():
+    straight = solve(replace(SHORT, opening=(0.9,), kinematics="linear"))
+    back = solve(replace(SHORT, opening=(0.6, 0.2, 0.9), kinematics="linear", steps=80))
+    opening, load = column(back, "opening"), column(back, "load")
+    top, bottom = np.flatnonzero(opening == 0.6)[0], np.flatnonzero(opening == 0.2)[0]
+    assert load[bottom] == pytest.approx(load[top] / 3.0, rel=0.02), (
+        "the bulk is linear and the interface unloads to the origin"
+    )
+    assert np.all(np.diff(column(back, "dissipated_energy")) > -1e-12)
+    assert load[-1] == pytest.approx(straight.rows[-1]["load"], rel=2e-3)
+
+
+def test_no_row_comes_from_a_step_that_has_not_converged():
+    points = [p for p in follow(build(SHORT).system, (0.8,), 30) if isinstance(p, Point)]
+    assert all(p.residuals[-1] <= Newton().tolerance for p in points[1:])
+
+
+@pytest.mark.parametrize("kinematics", ["linear", "finite"])
+def test_newton_converges_quadratically_away_from_kinks(kinematics):
+    """A bulk step before damage with contact off: three residual norms in a row, each about the square of the one
+    before.
+    """
+    problem = replace(
+        SHORT, kinematics=kinematics, contact=False, ductility=1.01, strength=400.0, opening=(1.0,), steps=1
+    )
+    point = [p for p in follow(build(problem).system, problem.opening, 1) if isinstance(p, Point)][-1]
+    print(f"{kinematics}: residual norms {point.residuals}")
+    if kinematics == "linear":
+        assert len(point.residuals) <= 2
+        return
+    above_rounding = [r for r in point.residuals if r > 1e-13]
+    start = next(i for i, r in enumerate(above_rounding) if r < 1e-1)
+    r = above_rounding[start : start + 3]
+    assert len(r) >= 2
+    for before, after in zip(r[:-1], r[1:], strict=True):
+        assert after < 10.0 * before**2 + 1e-12
+
+
+def test_snapshots_are_taken_where_asked():
+    solution = solve(replace(SHORT, dofs=400, steps=20, snapshot_openings=(0.3, 0.8)))
+    assert [s["opening"] >= o for s, o in zip(solution.snapshots, (0.3, 0.8), strict=True)] == [True, True]
+    snap = solution.snapshots[-1]
+    assert np.all(np.diff(snap["s_q"]) > 0) and len(snap["gap_q"]) == len(snap["traction_q"]) == len(snap["damage_q"])
+    assert snap["X_euvi"].shape == snap["u_euvi"].shape == (*snap["stress_euv"].shape, 2)
+    assert snap["stress_euv"].shape[0] == solution.elements
+    force = np.trapezoid(snap["traction_q"], snap["s_q"])
+    assert force == pytest.approx(snap["load"], rel=0.1)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 4, 5])
+@pytest.mark.parametrize("basis", ["nurbs", "lagrange"])
+def test_every_degree_runs(basis, degree):
+    solution = solve(replace(SHORT, basis=basis, degree=degree, opening=(0.3,), steps=6, dofs=600))
+    assert solution.status == "complete" and solution.rows[-1]["load"] > 0.0
+
+
+def test_a_mesh_that_cannot_be_made_is_refused():
+    with pytest.raises(ValueError, match="at least"):
+        solve(replace(SHORT, dofs=40))
+    with pytest.raises(ValueError, match="basis"):
+        solve(replace(SHORT, basis="fourier"))

@@ -1,0 +1,179 @@
+"""Projection on curved surfaces, and the complete tangent of the interface in every state it can be in."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from iga.dcb import Problem, build
+from iga.extraction import Mesh
+from iga.interface import contact, dofs, forces, stiffness, traction
+from iga.lagrange import lagrange_rectangle
+from iga.projection import closest_points, nearest_samples
+from iga.surface import surface
+from tests.iga.test_splines import quarter_annulus
+
+
+def project(surface, x, y):
+    return closest_points(surface, x, y, nearest_samples(surface, x, y))
+
+
+def position(surface, pairing, y):
+    (r,) = surface.coefficients(pairing.c_q, pairing.xi_q, 0)
+    return np.einsum("qb,qbi->qi", r, surface.bezier_points(y)[pairing.c_q])
+
+
+@pytest.mark.parametrize("refine", [0, 4])
+def test_closest_points_on_a_circle_lie_on_the_ray_from_its_centre(refine, rng):
+    mesh = quarter_annulus(1.0, 2.0, refine)
+    arc = surface(mesh, mesh.chains["top"], 0)
+    angle = rng.uniform(0.05, np.pi / 2 - 0.05, 40)
+    x = rng.uniform(1.2, 4.0, 40)[:, None] * np.stack([np.cos(angle), np.sin(angle)], -1)
+    pairing = project(arc, x, mesh.P_AI)
+    assert np.all(pairing.on_q)
+    assert np.max(np.abs(position(arc, pairing, mesh.P_AI) - 2.0 * x / np.linalg.norm(x, axis=1)[:, None])) < 1e-12
+
+
+def test_points_beyond_the_ends_are_marked_and_held_at_the_end():
+    mesh = lagrange_rectangle(np.linspace(0, 3, 4), np.array([0.0, 1.0]), 3)
+    bottom = surface(mesh, mesh.chains["bottom"], 0)
+    x = np.array([[-0.5, -0.1], [0.2, 0.3], [2.9, -0.2], [3.4, 0.1]])
+    pairing = project(bottom, x, mesh.P_AI)
+    assert pairing.on_q.tolist() == [False, True, True, False]
+    assert np.allclose(
+        position(bottom, pairing, mesh.P_AI), np.stack([np.clip(x[:, 0], 0, 3), 0 * x[:, 0]], -1), atol=1e-12
+    )
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_closest_points_on_a_wavy_surface_with_kinks_beat_every_sample(degree, rng):
+    mesh = lagrange_rectangle(np.linspace(0, 6, 7), np.array([0.0, 1.0]), degree)
+    y = mesh.P_AI + np.stack([0 * mesh.P_AI[:, 0], 0.3 * np.sin(2.0 * mesh.P_AI[:, 0])], -1)
+    top = surface(mesh, mesh.chains["top"], 0)
+    x = np.stack([rng.uniform(0.1, 5.9, 60), 1.4 + rng.uniform(-0.2, 0.6, 60)], -1)
+    found = np.linalg.norm(x - position(top, project(top, x, y), y), axis=1)
+    c, xi = np.repeat(np.arange(6), 401), np.tile(np.linspace(0, 1, 401), 6)
+    (r,) = top.coefficients(c, xi, 0)
+    samples = np.einsum("qb,qbi->qi", r, top.bezier_points(y)[c])
+    best = np.min(np.linalg.norm(x[:, None] - samples[None], axis=2), axis=1)
+    assert np.all(found < best + 1e-3)
+
+
+PROBLEM = Problem(
+    length=6.0,
+    arm_thickness=0.5,
+    precrack=2.0,
+    E1=1000.0,
+    E2=900.0,
+    G12=300.0,
+    nu12=0.2,
+    strength=4.0,
+    toughness=0.4,
+    ductility=4.0,
+    penalty=5e3,
+    opening=(1.0,),
+    dofs=800,
+)
+
+#: gap of the deformed arms in units of g_max, history in the same units
+STATES = {
+    "open elastic": (0.6, 0.0),
+    "softening": (2.0, 1.0),
+    "unloading": (1.5, 2.5),
+    "fully open": (6.0, 1.0),
+    "closed": (-0.4, 0.0),
+    "closed after damage": (-0.4, 2.5),
+}
+
+
+def deformed(system, opening: float, shift: float, rng) -> np.ndarray:
+    """Both arms bent along one curve, the upper one slid along it by ``shift`` and lifted off by ``opening``."""
+    X, Y = system.interface.P_AI.T
+    upper = np.arange(len(X)) < len(X) // 2
+    s, t = X + np.where(upper, shift, 0.0), Y + np.where(upper, opening, 0.0)
+    slope = 0.225 * np.cos(0.9 * s)
+    n = np.stack([-slope, np.ones_like(slope)], -1) / np.sqrt(1 + slope**2)[:, None]
+    x = np.stack([s, 0.25 * np.sin(0.9 * s)], -1) + t[:, None] * n
+    return (x - system.interface.P_AI + 1e-5 * rng.standard_normal(x.shape)).ravel()
+
+
+@pytest.mark.parametrize("slave", ["top", "bottom"])
+@pytest.mark.parametrize("basis", ["nurbs", "lagrange"])
+@pytest.mark.parametrize("state", STATES)
+def test_tangent_on_a_curved_sliding_interface(state, basis, slave, rng):
+    """Central difference to 1e-6 in every state; slid by a third of an element, so that no point meets its twin."""
+    system = build(replace(PROBLEM, basis=basis, slave=slave)).system
+    interface, law = system.interface, system.interface.law
+    opening, history = (v * law.g_max for v in STATES[state])
+    u, h = deformed(system, opening, 0.11, rng), 1e-6
+    k = np.full(interface.points, history)
+    start = system.start().pairing
+    touch = contact(interface, u, start)
+    closed = touch.g_q < 0
+    assert np.ptp(touch.n_qi[:, 0]) > 0.1, "the surface is curved"
+    on = touch.on_q
+    assert np.all(closed[on] == (opening < 0)) and np.sum(~on) < 5, f"gaps {touch.g_q.min()} .. {touch.g_q.max()}"
+
+    def residual(u):
+        touch = contact(interface, u, start)
+        return forces(interface, touch, traction(interface, touch, k, closed)[0], system.n_dof)
+
+    p, dp, _ = traction(interface, touch, k, closed)
+    K, d = stiffness(interface, touch, p, dp), dofs(touch.conn_qa)
+    matrix = np.zeros((system.n_dof, system.n_dof))
+    np.add.at(matrix, (d[:, :, None], d[:, None, :]), K)
+    assert np.allclose(matrix, matrix.T, rtol=0, atol=1e-12 * max(np.abs(matrix).max(), 1e-300))
+    for _ in range(3):
+        v = rng.standard_normal(system.n_dof)
+        difference = (residual(u + h * v) - residual(u - h * v)) / (2 * h)
+        assert np.allclose(
+            matrix @ v, difference, rtol=0, atol=1e-6 * max(np.abs(difference).max(), 1e-9 * law.stiffness)
+        )
+
+
+def test_the_gap_does_not_change_when_everything_turns(rng):
+    system = build(PROBLEM).system
+    interface = system.interface
+    u = deformed(system, 0.05, 0.1, rng).reshape(-1, 2)
+    Q = np.array([[0.8, -0.6], [0.6, 0.8]])
+    turned = (interface.P_AI + u) @ Q.T - interface.P_AI
+    start = system.start().pairing
+    before, after = contact(interface, u.ravel(), start), contact(interface, turned.ravel(), start)
+    assert np.max(np.abs(before.g_q - after.g_q)) < 1e-12
+    assert np.allclose(before.n_qi @ Q.T, after.n_qi, atol=1e-10)
+
+
+def test_interface_forces_are_in_balance_when_meshes_do_not_match(rng):
+    """The traction acts along the line from a point to its projection: forces and moments cancel on any two meshes."""
+    system = build(PROBLEM).system
+    interface = system.interface
+    u = deformed(system, 0.04, 0.3, rng)
+    touch = contact(interface, u, system.start().pairing)
+    R = forces(interface, touch, touch.on_q * rng.standard_normal(interface.points), system.n_dof).reshape(-1, 2)
+    x = interface.P_AI + u.reshape(-1, 2)
+    scale = np.abs(R).sum()
+    assert np.all(np.abs(R.sum(0)) < 1e-12 * scale)
+    assert abs(np.sum(x[:, 0] * R[:, 1] - x[:, 1] * R[:, 0])) < 1e-11 * scale
+
+
+def test_a_point_off_the_master_is_free():
+    system = build(PROBLEM).system
+    interface = system.interface
+    u = np.zeros((system.n_dof // 2, 2))
+    u[: len(u) // 2] = [1.0, 0.1]
+    touch = contact(interface, u.ravel(), system.start().pairing)
+    gone = interface.X_qi[:, 0] + 1.0 > PROBLEM.length
+    assert np.array_equal(~touch.on_q, gone) and gone.any()
+    p, dp, k = traction(interface, touch, np.zeros(interface.points), touch.g_q < 0)
+    assert np.all(p[gone] == 0) and np.all(dp[gone] == 0) and np.all(k[gone] == 0)
+
+
+def test_a_surface_must_have_one_degree():
+    a, b = (
+        lagrange_rectangle(np.linspace(0, 1, 2), np.array([0.0, 1.0]), 2),
+        lagrange_rectangle(np.linspace(0, 1, 2), np.array([0.0, 1.0]), 3),
+    )
+    chain = replace(a.chains["top"], block_c=np.array([0, 1]), element_c=np.array([0, 0]))
+    both = Mesh(np.concatenate([a.P_AI, b.P_AI]), np.ones(len(a.P_AI) + len(b.P_AI)), (*a.blocks, *b.blocks))
+    with pytest.raises(ValueError, match="one degree"):
+        surface(both, chain, 0)

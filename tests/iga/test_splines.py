@@ -1,0 +1,152 @@
+"""Bases: partition of unity, two routes to every value, knot insertion, exact geometry."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from iga.basis import block_basis, chain_basis
+from iga.bernstein import bernstein, bernstein_derivative
+from iga.bspline import KnotVector, bezier_extraction, cox_de_boor, insert_knot, open_knots
+from iga.lagrange import lagrange_extraction, lagrange_rectangle
+from iga.nurbs import nurbs_mesh, nurbs_rectangle
+from iga.quadrature import gauss, lobatto, square
+
+
+@st.composite
+def knot_vectors(draw):
+    """Open knot vectors of degree 1 to 5 with random spans and random inner multiplicities."""
+    p = draw(st.integers(1, 5))
+    spans = draw(st.lists(st.floats(0.05, 20.0), min_size=1, max_size=7))
+    breaks = np.concatenate([[0.0], np.cumsum(spans)]) + draw(st.floats(-10.0, 10.0))
+    repeats = [draw(st.integers(1, p)) for _ in breaks[1:-1]]
+    inner = np.repeat(breaks[1:-1], repeats)
+    return KnotVector(p, np.concatenate([np.repeat(breaks[0], p + 1), inner, np.repeat(breaks[-1], p + 1)]))
+
+
+@given(st.integers(0, 6), st.floats(0.0, 1.0))
+def test_bernstein_polynomials_are_a_partition_of_unity_and_not_negative(p, xi):
+    B = bernstein(p, np.array(xi))
+    assert abs(B.sum() - 1.0) < 1e-14 and np.all(B >= 0.0)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("p", [1, 3, 5])
+def test_bernstein_derivatives_against_numpy_polynomials(p, order):
+    xi = np.linspace(0.0, 1.0, 7)
+    for b in range(p + 1):
+        coefficients = np.polynomial.polynomial.polyfit(
+            np.linspace(0, 1, p + 1), bernstein(p, np.linspace(0, 1, p + 1))[:, b], p
+        )
+        expected = np.polynomial.polynomial.polyval(xi, np.polynomial.polynomial.polyder(coefficients, order))
+        assert np.allclose(bernstein_derivative(p, xi, order)[:, b], expected, atol=1e-10)
+
+
+@given(knot_vectors())
+def test_extraction_equals_cox_de_boor(kv):
+    """Polar forms against the recursion, at random points of every span."""
+    C, spans, p = bezier_extraction(kv), kv.spans, kv.degree
+    xi = np.linspace(0.03, 0.97, 5)
+    left, right = kv.knots[spans], kv.knots[spans + 1]
+    x = (left[:, None] + (right - left)[:, None] * xi).ravel()
+    extracted = np.einsum("eab,qb->eqa", C, bernstein(p, xi)).reshape(len(x), -1)
+    full = cox_de_boor(kv, x)
+    first = np.repeat(spans - p, len(xi))
+    local = np.take_along_axis(full, first[:, None] + np.arange(p + 1), axis=1)
+    assert np.max(np.abs(extracted - local)) < 1e-13
+    assert np.max(np.abs(full.sum(1) - 1.0)) < 1e-13
+    assert np.max(np.abs(full.sum(1) - local.sum(1))) < 1e-13, "a function outside the span is not zero there"
+
+
+@given(knot_vectors(), st.floats(0.01, 0.99), st.randoms())
+def test_knot_insertion_leaves_the_curve_where_it_is(kv, where, random):
+    span = random.choice(list(kv.spans))
+    x = kv.knots[span] + where * (kv.knots[span + 1] - kv.knots[span])
+    finer, T = insert_knot(kv, x)
+    P = np.array([random.uniform(-1, 1) for _ in range(kv.functions)])
+    t = np.linspace(kv.knots[0], kv.knots[-1], 23)
+    assert np.max(np.abs(cox_de_boor(finer, t) @ (T @ P) - cox_de_boor(kv, t) @ P)) < 1e-12
+
+
+@given(knot_vectors())
+def test_extraction_is_what_inserting_knots_gives(kv):
+    """The coefficients on a span are the control points once both its knots have multiplicity p."""
+    fine, T = kv, np.eye(kv.functions)
+    for x in kv.breaks[1:-1]:
+        for _ in range(kv.degree - np.count_nonzero(kv.knots == x)):
+            fine, step = insert_knot(fine, x)
+            T = step @ T
+    C = bezier_extraction(kv)
+    for e, span in enumerate(kv.spans):
+        rows = slice(e * kv.degree, e * kv.degree + kv.degree + 1)
+        assert np.max(np.abs(T[rows, span - kv.degree : span + 1].T - C[e])) < 1e-12
+
+
+@pytest.mark.parametrize("p", [1, 2, 3, 4, 5])
+def test_lagrange_functions_are_one_at_their_node_and_zero_at_the_others(p):
+    nodes = np.linspace(0.0, 1.0, p + 1)
+    assert np.allclose(bernstein(p, nodes) @ lagrange_extraction(p).T, np.eye(p + 1), atol=1e-12)
+
+
+@pytest.mark.parametrize("n", range(1, 13))
+def test_rules_are_exact_to_their_degree_and_no_further(n):
+    for rule, degree in ((gauss, 2 * n - 1), (lobatto, 2 * n - 3)):
+        if rule is lobatto and n == 1:
+            continue
+        x, w = rule(n)
+        for k in range(degree + 1):
+            assert abs(w @ x**k - 1.0 / (k + 1)) < 1e-13
+        assert abs(w @ (2 * x - 1) ** (degree + 1) - 1.0 / (degree + 2)) > 1e-12
+
+
+def quarter_annulus(inner: float, outer: float, refine: int = 0):
+    """Exact quarter annulus, walked clockwise from the Y axis so that the map keeps its orientation."""
+    kv_s, kv_t = open_knots(np.array([0.0, 1.0]), 2), open_knots(np.array([0.0, 1.0]), 1)
+    arc = np.array([[0.0, 1.0], [1.0, 1.0], [1.0, 0.0]])
+    w_s = np.array([1.0, np.sqrt(0.5), 1.0])
+    homogeneous = np.concatenate([arc * w_s[:, None], w_s[:, None]], axis=1)
+    for x in np.linspace(0, 1, refine + 2)[1:-1]:
+        kv_s, T = insert_knot(kv_s, x)
+        homogeneous = T @ homogeneous
+    w, arc = homogeneous[:, 2], homogeneous[:, :2] / homogeneous[:, 2:]
+    return nurbs_mesh(kv_s, kv_t, np.concatenate([inner * arc, outer * arc]), np.concatenate([w, w]))
+
+
+@pytest.mark.parametrize("refine", [0, 3])
+def test_area_and_arc_length_of_an_annulus_are_exact(refine):
+    mesh = quarter_annulus(1.0, 2.0, refine)
+    (block,) = mesh.blocks
+    basis = block_basis(mesh, block, *square(gauss(12), gauss(2)))
+    assert abs(basis.dV_eq.sum() - 3 * np.pi / 4) < 1e-12
+    (side,) = chain_basis(mesh, mesh.chains["top"], *gauss(12))
+    assert abs(side.dV_eq.sum() - np.pi) < 1e-12
+    assert np.max(np.abs(basis.N_eqa.sum(-1) - 1.0)) < 1e-14
+    assert np.max(np.abs(basis.dN_eqaI.sum(2))) < 1e-12
+
+
+@settings(max_examples=20, deadline=None)
+@given(knot_vectors(), knot_vectors())
+def test_rectangles_reproduce_linear_fields(kv_s, kv_t):
+    mesh = nurbs_rectangle(kv_s, kv_t)
+    (block,) = mesh.blocks
+    basis = block_basis(mesh, block, *square(gauss(2), gauss(2)))
+    gradient = np.einsum("eqaI,eai->eqIi", basis.dN_eqaI, mesh.P_AI[basis.conn_ea])
+    assert np.max(np.abs(gradient - np.eye(2))) < 1e-10
+    size = np.ptp(kv_s.knots) * np.ptp(kv_t.knots)
+    assert abs(basis.dV_eq.sum() / size - 1.0) < 1e-12
+
+
+def test_a_mesh_that_is_turned_inside_out_is_refused():
+    mesh = lagrange_rectangle(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 1)
+    flipped = type(mesh)(mesh.P_AI * [-1.0, 1.0], mesh.w_A, mesh.blocks, mesh.chains)
+    with pytest.raises(ValueError, match="inside out"):
+        block_basis(flipped, flipped.blocks[0], *square(gauss(2), gauss(2)))
+
+
+@pytest.mark.parametrize(
+    "knots",
+    [[0, 0, 1, 1, 1], [0, 0, 0, 0.5, 0.2, 1, 1, 1], [0, 0, 0, 0.5, 0.5, 0.5, 1, 1, 1], [0, 0, 0, np.nan, 1, 1, 1]],
+)
+def test_bad_knot_vectors_are_refused(knots):
+    with pytest.raises(ValueError):
+        KnotVector(2, np.array(knots, dtype=float))
