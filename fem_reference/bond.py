@@ -16,7 +16,8 @@ class Bond:
 
         internal force  f = G^T (w p)          tangent  K = G^T diag(w dp/dg) G
 
-    with w the weight of a point times the width (Schellekens and de Borst 1993, Int. J. Numer. Methods Eng. 36, eqs. 8-14).
+    with w the weight of a point times the width (Schellekens and de Borst
+    1993, Int. J. Numer. Methods Eng. 36, 43-66).
 
     Parameters
     ----------
@@ -40,7 +41,13 @@ class Bond:
         G_free = self.G.copy()
         G_free.diagonalScale(R=vec_n)
         scaled = G_free.copy()
-        made = {"G_free": G_free, "scaled": scaled, "product": G_free.transposeMatMult(scaled), "vec_n": vec_n, "vec_q": vec_q}
+        made = {
+            "G_free": G_free,
+            "scaled": scaled,
+            "product": G_free.transposeMatMult(scaled),
+            "vec_n": vec_n,
+            "vec_q": vec_q,
+        }
         for name, value in made.items():
             object.__setattr__(self, name, value)
 

@@ -12,7 +12,7 @@ from dolfinx import fem, mesh
 from dolfinx.fem import petsc
 from petsc4py import PETSc
 
-#: -O3 vectorises the loops over basis functions; -march=native gained nothing more and ties the compiled forms to one CPU.
+#: -O3 vectorises the loops over basis functions; -march=native gained nothing more and ties the forms to one CPU.
 JIT_OPTIONS = {"cffi_extra_compile_args": ["-O3"]}
 
 _HAS_ENTITY_MAP = hasattr(mesh, "EntityMap")  # since 0.10
@@ -74,7 +74,7 @@ def create_block_matrix(blocks: Sequence[Sequence[fem.Form]]) -> PETSc.Mat:
 
 
 def add_block_matrix(A: PETSc.Mat, blocks: Sequence[Sequence[fem.Form]], bcs: Sequence[fem.DirichletBC]) -> None:
-    """Add the blocks to ``A``, constrained rows and columns left out and 1 put on their diagonal; assembled on return."""
+    """Add the blocks to ``A`` and assemble it; constrained rows and columns are left out, with 1 on their diagonal."""
     assemble = petsc.assemble_matrix_block if _HAS_BLOCK_FUNCTIONS else petsc.assemble_matrix
     assemble(A, blocks, bcs=bcs)
     A.assemble()

@@ -21,10 +21,10 @@ UPPER, LOWER, BOND = 1, 2, 1
 class WeakForm:
     """UFL forms on the parent mesh; lists are blocks (upper, lower).
 
-    ``internal`` and ``bulk`` are the internal forces of the arms and their tangent; ``load`` the face forces of a unit load;
-    ``slope`` the mean du_y/dX of each face as a functional. ``gap`` (one row of blocks), ``weight`` and ``position`` are
-    integrals over the bond against functions that are 1 at one of its quadrature points: of the gap as a bilinear form, of
-    1 and of X.
+    ``internal`` and ``bulk`` are the internal forces of the arms and their tangent; ``load`` the face forces of a unit
+    load; ``slope`` the mean du_y/dX of each face as a functional. ``gap`` (one row of blocks), ``weight`` and
+    ``position`` are integrals over the bond against functions that are 1 at one of its quadrature points: of the gap as
+    a bilinear form, of 1 and of X.
     """
 
     internal: list
@@ -48,7 +48,7 @@ def bulk_points(degree: int) -> int:
 
 
 def bond_points(degree: int) -> int:
-    """Gauss points on an element of the bond: more than smooth tractions need, since the law has kinks inside elements."""
+    """Gauss points on an element of the bond: more than smooth tractions need, since the law has kinks inside."""
     return degree + 3
 
 
@@ -63,7 +63,7 @@ def displacements(bodies: TwoBodies, degree: int) -> tuple[fem.Function, fem.Fun
 def weak_form(problem: Problem, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function]) -> WeakForm:
     """All forms of the problem.
 
-    Material and sizes enter as constants, so that one compiled form serves every problem of the same degree and kinematics.
+    Material and sizes enter as constants: one compiled form serves every problem of the same degree and kinematics.
     """
     domain, finite, (u, w) = bodies.parent, problem.kinematics == "finite", displacement
     V = ufl.MixedFunctionSpace(u.function_space, w.function_space)
@@ -85,7 +85,10 @@ def weak_form(problem: Problem, bodies: TwoBodies, displacement: tuple[fem.Funct
         slope=ufl.extract_blocks(v_u[1].dx(0) / face * ds(UPPER) + v_w[1].dx(0) / face * ds(LOWER)),
         energy=stored,
         face_energy=energy_density(u, D, finite) * ds(UPPER) + energy_density(w, D, finite) * ds(LOWER),
-        gap=[ufl.TrialFunction(u.function_space)("+")[1] * q * dS(BOND), -ufl.TrialFunction(w.function_space)("-")[1] * q * dS(BOND)],
+        gap=[
+            ufl.TrialFunction(u.function_space)("+")[1] * q * dS(BOND),
+            -ufl.TrialFunction(w.function_space)("-")[1] * q * dS(BOND),
+        ],
         weight=q * dS(BOND),
         position=ufl.SpatialCoordinate(domain)("+")[0] * q * dS(BOND),
         maps=entity_maps(domain, (bodies.upper, bodies.lower, bodies.bond), bodies.interface_quads),

@@ -12,7 +12,8 @@ class Law:
     """Traction against opening with damage on opening and a penalty on closing.
 
     p = (1 - d) K0 g with K0 = p_max / g_max, d = g_u (k - g_max) / (k (g_u - g_max)) between g_max and g_u, and k the
-    largest gap so far; g < 0: p = penalty g (Alfano and Crisfield 2001, Int. J. Numer. Methods Eng. 50, eqs. 1-5).
+    largest gap so far; g < 0: p = penalty g (Alfano and Crisfield 2001, Int. J. Numer. Methods
+    Eng. 50, 1701-1736).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Two arms on one conforming mesh: the parent, a submesh for each arm, and one for the bonded interface between them."""
+"""Two arms on one conforming mesh: the parent, a submesh for each arm, and one for the bond between them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class TwoBodies:
 
 
 def grid_lines(problem: Problem) -> np.ndarray:
-    """Element boundaries along the specimen (elements + 1,): even on both sides of the end of the precrack, and one on it."""
+    """Element boundaries along the specimen (elements + 1,): one at the end of the precrack, even on either side."""
     n = problem.elements
     on_precrack = min(max(round(n * problem.precrack / problem.length), 1), n - 1)
     bonded = np.linspace(problem.precrack, problem.length, n - on_precrack + 1)
@@ -53,7 +53,7 @@ def two_bodies(problem: Problem, comm: MPI.Intracomm) -> TwoBodies:
     face = mesh.locate_entities_boundary(parent, 1, lambda x: np.abs(x[0]) < near)
     is_upper = np.zeros(_count(parent, tdim), dtype=bool)
     is_upper[upper] = True
-    face_pairs = _sides(parent, _owned(parent, 1, face))[:, :2]
+    face_pairs = _sides(parent, _owned(parent, 1, face), 1)
     on_top = is_upper[face_pairs[:, 0]]
     return TwoBodies(
         parent,
@@ -64,7 +64,7 @@ def two_bodies(problem: Problem, comm: MPI.Intracomm) -> TwoBodies:
         _owned(parent, tdim, lower),
         face_pairs[on_top],
         face_pairs[~on_top],
-        _upper_first(_sides(parent, _owned(parent, 1, bonded)), is_upper),
+        _upper_first(_sides(parent, _owned(parent, 1, bonded), 2), is_upper),
     )
 
 
@@ -90,15 +90,13 @@ def _owned(parent: mesh.Mesh, dim: int, entities: np.ndarray) -> np.ndarray:
     return entities[entities < parent.topology.index_map(dim).size_local]
 
 
-def _sides(parent: mesh.Mesh, facets: np.ndarray) -> np.ndarray:
-    """(cell, local facet) on every side of each facet: (n, 2) on the boundary, (n, 4) inside."""
+def _sides(parent: mesh.Mesh, facets: np.ndarray, n_sides: int) -> np.ndarray:
+    """(cell, local facet) on each side of the facets: (n, 2) on the boundary with one side, (n, 4) inside with two."""
     to_cells, to_facets = parent.topology.connectivity(1, 2), parent.topology.connectivity(2, 1)
     facets_cf = to_facets.array.reshape(-1, 4)  # a quadrilateral has four
-    starts = to_cells.offsets[facets]
-    n_sides = (to_cells.offsets[facets + 1] - starts).min(initial=2)
-    cells_fs = to_cells.array[starts[:, None] + np.arange(n_sides)]
+    cells_fs = to_cells.array[to_cells.offsets[facets][:, None] + np.arange(n_sides)]
     local_fs = np.argmax(facets_cf[cells_fs] == facets[:, None, None], axis=2)
-    return np.stack([cells_fs, local_fs], axis=2).reshape(facets.size, -1).astype(np.int32)
+    return np.stack([cells_fs, local_fs], axis=2).reshape(facets.size, 2 * n_sides).astype(np.int32)
 
 
 def _upper_first(quads: np.ndarray, is_upper: np.ndarray) -> np.ndarray:

@@ -29,7 +29,7 @@ class Model:
     """A problem ready to be solved.
 
     Unknowns ``u_n`` are the displacements owned by this rank: x and y in turn, upper arm first. The load enters as
-    ``load * load_n``, and ``load_n @ u_n``, summed over the ranks, is the opening: the same vector is force and constraint.
+    ``load * load_n``, and ``load_n @ u_n``, summed over the ranks, is the opening: one vector is force and constraint.
     Points ``q`` of the bond are those that this rank owns.
     """
 
@@ -99,7 +99,7 @@ class Model:
             return self.free_n * (self.bond_force(u_n, k_q) + self.bulk_force(u_n) - load * self.load_n)
 
     def tangent(self, u_n: np.ndarray, k_q: np.ndarray) -> PETSc.Mat:
-        """Derivative of the residual by the displacements, 1 on the diagonal where supported; valid until the next call."""
+        """Derivative of the residual by the displacements, 1 on the diagonal where held; valid until the next call."""
         if self.problem.kinematics == "finite":
             self.assemble_bulk(u_n)
         _, dp_q = self.law.traction(self.bond.gap(u_n), k_q)
@@ -148,7 +148,7 @@ def build_model(problem: Problem, phase: Phase, comm: MPI.Intracomm) -> Model:
         problem=problem,
         bodies=bodies,
         displacement=displacement,
-        law=Law(problem.strength, problem.toughness, problem.ductility, problem.penalty, problem.contact, problem.irreversible),
+        law=law_of(problem),
         bond=bond,
         internal=internal,
         bulk=bulk,
@@ -168,6 +168,12 @@ def build_model(problem: Problem, phase: Phase, comm: MPI.Intracomm) -> Model:
     )
 
 
+def law_of(problem: Problem) -> Law:
+    """The traction law of a problem."""
+    p = problem
+    return Law(p.strength, p.toughness, p.ductility, p.penalty, p.contact, p.irreversible)
+
+
 def _vector(blocks: list, weak: WeakForm) -> BlockVector:
     return BlockVector(compile_forms(blocks, weak.maps))
 
@@ -181,7 +187,8 @@ def _bond(problem: Problem, weak: WeakForm, free_n: np.ndarray) -> tuple[Bond, n
     share = G.createVecLeft()
     share.array[:] = 1.0 / weight_q
     G.diagonalScale(L=share)
-    return Bond(without_zeros(G), problem.width * weight_q, free_n), _vector([weak.position], weak).assemble() / weight_q
+    X_q = _vector([weak.position], weak).assemble() / weight_q
+    return Bond(without_zeros(G), problem.width * weight_q, free_n), X_q
 
 
 def _node_positions(u: fem.Function) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -14,7 +14,11 @@ from fem_reference.model import Model
 TOLERANCE = 1e-10
 #: The residual that rounding leaves, in units of (machine epsilon) x (largest displacement) x (largest stiffness).
 ROUNDING = 16.0
-MAX_ITERATIONS = 25
+#: Iterations with full steps, and, should these fail, from the start again with a line search.
+MAX_FULL = 20
+MAX_SEARCHED = 60
+#: Residual over the force scale beyond which there is no coming back.
+DIVERGED = 1e12
 #: A step is long enough when this part of the work along it, or less, is left.
 SLACK = 0.5
 MAX_SEARCHES = 6
@@ -45,7 +49,10 @@ class OpeningControl:
 
 @dataclass(frozen=True)
 class Attempt:
-    """How a search for equilibrium ended; ``residuals`` are norms over the force scale, at the start and after each iteration."""
+    """How a search for equilibrium ended.
+
+    ``residuals`` are norms over the force scale, at the start and after each iteration.
+    """
 
     u_n: np.ndarray
     load: float
@@ -60,29 +67,45 @@ class Attempt:
 def find_equilibrium(
     model: Model, control: Control, u_n: np.ndarray, load: float, k_q: np.ndarray, force_scale: float
 ) -> Attempt:
-    """Newton from a guess that may violate both equilibrium and control, at a load other than zero or with a force scale.
+    """Newton from a guess that may violate both equilibrium and control.
 
     The bordered system [K, -f; c_u, c_P] [du; dP] = -[r; c] needs one factorisation of K and two back-substitutions
-    (Batoz and Dhatt 1979, Int. J. Numer. Methods Eng. 14, sec. 3).
+    (Batoz and Dhatt 1979, Int. J. Numer. Methods Eng. 14, 1262-1267).
 
     Parameters
     ----------
     k_q : committed history of the bond, not changed here.
-    force_scale : norm of the external forces met so far; the guess's own load counts too.
+    force_scale : norm of the external forces met so far; it or the load of the guess must be other than zero.
     """
+    plain = _newton(model, control, u_n, load, k_q, force_scale, MAX_FULL, full_step)
+    if plain.converged:
+        return plain
+    careful = _newton(model, control, u_n, load, k_q, force_scale, MAX_SEARCHED, line_search)
+    return replace(careful, residuals=plain.residuals[:-1] + careful.residuals)
 
+
+def _newton(
+    model: Model,
+    control: Control,
+    u_n: np.ndarray,
+    load: float,
+    k_q: np.ndarray,
+    force_scale: float,
+    most: int,
+    choose_length: Callable,
+) -> Attempt:
     scale = max(force_scale, abs(load) * model.norm(model.load_n))
     target = max(TOLERANCE, ROUNDING * model.rounding(u_n) / scale)
     r_n = model.residual(u_n, load, k_q)
     norms = [model.norm(r_n) / scale]
-    while norms[-1] > target and len(norms) <= MAX_ITERATIONS:
+    while target < norms[-1] < DIVERGED and len(norms) <= most:
         model.factorise(u_n, k_q)
         du_n, d_load = bordered_step(model, control, u_n, load, r_n)
 
         def residual_at(s: float, u_n=u_n, load=load, du_n=du_n, d_load=d_load) -> np.ndarray:
             return model.residual(u_n + s * du_n, load + s * d_load, k_q)
 
-        s, r_n = line_search(model, residual_at, du_n, r_n)
+        s, r_n = choose_length(model, residual_at, du_n, r_n)
         u_n, load = u_n + s * du_n, load + s * d_load
         norms.append(model.norm(r_n) / scale)
     return Attempt(u_n, load, tuple(norms), norms[-1] <= target)
@@ -99,14 +122,25 @@ def bordered_step(
     return by_residual_n + d_load * by_load_n, d_load
 
 
+def full_step(
+    model: Model, residual_at: Callable[[float], np.ndarray], du_n: np.ndarray, r_n: np.ndarray
+) -> tuple[float, np.ndarray]:
+    """The Newton step as it is.
+
+    Arms that turn need it: a step of pure rotation stretches them to second order, which raises the residual a
+    thousandfold before the next step takes it away, and a line search would not let it pass.
+    """
+    return 1.0, residual_at(1.0)
+
+
 def line_search(
     model: Model, residual_at: Callable[[float], np.ndarray], du_n: np.ndarray, r_n: np.ndarray
 ) -> tuple[float, np.ndarray]:
-    """Length of a Newton step, and the residual after it.
+    """Length of a Newton step where kinks of the law make full ones go round in circles, and the residual after it.
 
-    The full step is right unless a kink of the law lies in between. It is taken when it lowers the residual, or most of
+    The full step is taken when it lowers the residual, or most of
     the work G(s) = du . r(s) that remains along it; else s is sought where G vanishes, which is where the energy is
-    lowest along du, by false position (Crisfield 1991, Non-linear FE Analysis of Solids and Structures, sec. 9.2).
+    lowest along du, by false position (Crisfield 1991, Non-linear FE Analysis of Solids and Structures, ch. 9).
     """
     before, low = model.norm(r_n), (0.0, model.dot(du_n, r_n))
     slack = SLACK * abs(low[1])

@@ -57,8 +57,9 @@ class Problem:
         _one_of("plane", self.plane, ("stress", "strain"))
         _one_of("kinematics", self.kinematics, ("linear", "finite"))
         _one_of("degree", self.degree, (1, 2, 3, 4))
-        positive = ("length", "arm_thickness", "precrack", "width", "E1", "E2", "G12", "strength", "toughness", "penalty")
-        for name in (*positive, "elements_across", "steps"):
+        lengths = ("length", "arm_thickness", "precrack", "width")
+        moduli = ("E1", "E2", "G12", "strength", "toughness", "penalty")
+        for name in (*lengths, *moduli, "elements_across", "steps"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name}: must be > 0, got {getattr(self, name)}")
         if not self.precrack < self.length:
@@ -67,6 +68,7 @@ class Problem:
             raise ValueError(f"ductility: must be > 1, got {self.ductility}")
         if self.elements < 2:
             raise ValueError(f"elements: must be >= 2, one on the precrack and one on the bond, got {self.elements}")
+        in_plane_stiffness(self.E1, self.E2, self.G12, self.nu12, self.plane)
         if not np.any(self.opening):
             raise ValueError(f"opening: must have an opening other than 0, got {self.opening}")
 
@@ -79,9 +81,10 @@ class Problem:
 def in_plane_stiffness(E1: float, E2: float, G12: float, nu12: float, plane: str) -> np.ndarray:
     """Stiffness (3, 3) of an orthotropic sheet in Voigt order 11, 22, 12 with engineering shear.
 
-    Plane stress inverts the in-plane compliance. Plane strain inverts the compliance of the solid and takes its in-plane
-    block; the solid's third direction is a second transverse one: E3 = E2, nu13 = nu12, nu23 = nu12. Both reduce to
-    the usual isotropic matrices where E1 = E2 (Jones 1999, Mechanics of Composite Materials, eqs. 2.26 and 2.61).
+    Plane stress inverts the in-plane compliance. Plane strain inverts the compliance of the solid and takes its
+    in-plane block; the solid's third direction is a second transverse one: E3 = E2, nu13 = nu12, nu23 = nu12. Both
+    reduce to the usual isotropic matrices where E1 = E2 (Jones 1999, Mechanics of Composite Materials, ch. 2).
+    Raises ValueError where the compliance is not positive definite.
     """
     compliance_33 = np.array(
         [
@@ -91,6 +94,8 @@ def in_plane_stiffness(E1: float, E2: float, G12: float, nu12: float, plane: str
         ]
     )
     normal = compliance_33[:2, :2] if plane == "stress" else compliance_33
+    if np.min(np.linalg.eigvalsh(normal)) <= 0:
+        raise ValueError(f"nu12: with E1 = {E1} and E2 = {E2} the material would store negative energy, got {nu12}")
     D = np.zeros((3, 3))
     D[:2, :2] = np.linalg.inv(normal)[:2, :2]
     D[2, 2] = G12

@@ -71,7 +71,7 @@ def resultant(model: Model, force_n: np.ndarray, component: int) -> float:
 def moment(model: Model, state: State, force_n: np.ndarray) -> float:
     """Moment of nodal forces about the origin, anticlockwise.
 
-    The levers are those in which the model balances: current positions with finite kinematics, reference ones with linear.
+    The levers are those in which the model balances: positions are current with finite kinematics, reference if linear.
     """
     x_nI = model.X_nI.copy()
     if model.problem.kinematics == "finite":
@@ -89,15 +89,15 @@ def tip_opening(model: Model) -> float:
 
 
 def crack_length(model: Model, state: State) -> float:
-    """Distance from the loaded end to the foremost fully open point, linear between the points of the bond."""
-    X_q, g_q = ordered_along(model, state.g_q)
-    open_q = np.flatnonzero(g_q >= model.law.g_open)
+    """Distance from the loaded end to the foremost point that has been fully open, linear between its points."""
+    X_q, k_q = ordered_along(model, state.k_q)
+    open_q = np.flatnonzero(k_q >= model.law.g_open)
     if not open_q.size:
         return model.problem.precrack
     last = open_q[-1]
     if last == X_q.size - 1:
         return model.problem.length
-    share = (g_q[last] - model.law.g_open) / (g_q[last] - g_q[last + 1])
+    share = (k_q[last] - model.law.g_open) / (k_q[last] - k_q[last + 1])
     return float(X_q[last] + share * (X_q[last + 1] - X_q[last]))
 
 

@@ -10,11 +10,12 @@ from fem_reference.assembled import owned
 from fem_reference.mesh import TwoBodies
 from fem_reference.problem import Problem
 
-
 Displacement = tuple[fem.Function, fem.Function]
 
 
-def supports(problem: Problem, bodies: TwoBodies, displacement: Displacement) -> tuple[tuple[fem.DirichletBC, ...], np.ndarray]:
+def supports(
+    problem: Problem, bodies: TwoBodies, displacement: Displacement
+) -> tuple[tuple[fem.DirichletBC, ...], np.ndarray]:
     """Conditions at the far end of the bond: each arm is held in x, the lower one also in y.
 
     Returns the conditions, and for every owned unknown 1 where it is free and 0 where it is held.

@@ -1,0 +1,67 @@
+"""The same curve on one rank and on more."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
+
+PROGRAM = """
+import json, sys
+from fem_reference.problem import Problem
+from fem_reference.solve import solve_dcb
+from mpi4py import MPI
+rows = []
+problem = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, E2=120e3, G12=50e3, nu12=0.2, strength=4.0,
+                  toughness=0.1, ductility=12.5, opening=(0.9, 0.6), steps=15, snapshot_openings=(0.9,))
+solution = solve_dcb(problem, on_step=rows.append)
+assert bool(rows) == (MPI.COMM_WORLD.rank == 0)
+if MPI.COMM_WORLD.rank == 0:
+    snapshot = solution.snapshots[0]
+    names = ("s_q", "gap_q", "traction_q", "damage_q", "u_euvi", "stress_euv")
+    fields = {name: float(abs(snapshot[name]).sum()) for name in names}
+    print("RESULT" + json.dumps({"rows": rows, "dofs": solution.dofs, "status": solution.status, "fields": fields}))
+"""
+
+
+def curve(ranks):
+    mpirun = shutil.which("mpirun")
+    if mpirun is None:
+        pytest.skip("mpirun is not installed")
+    settings = {
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+        "OMPI_MCA_mpi_yield_when_idle": "1",
+        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+        "OMP_NUM_THREADS": "1",
+    }
+    done = subprocess.run(
+        [mpirun, "-n", str(ranks), sys.executable, "-c", PROGRAM],
+        capture_output=True,
+        text=True,
+        timeout=240,
+        env=os.environ | settings,
+        cwd=Path(__file__).parents[2],
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    return json.loads(done.stdout.split("RESULT")[1])
+
+
+def test_two_and_three_ranks_give_the_curve_of_one():
+    alone = curve(1)
+    assert alone["status"] == "complete"
+    for ranks in (2, 3):
+        together = curve(ranks)
+        assert together["status"] == "complete"
+        assert together["dofs"] == alone["dofs"]
+        for name in ("opening", "load", "crack_length", "stored_energy", "dissipated_energy", "external_work"):
+            a, b = (np.array([row[name] for row in run["rows"]]) for run in (alone, together))
+            assert b == pytest.approx(a, rel=1e-8, abs=1e-8 * np.max(np.abs(a))), name
+        assert together["fields"] == pytest.approx(alone["fields"], rel=1e-6)
