@@ -33,9 +33,9 @@ class BlockBasis:
         return np.ascontiguousarray(self.dN_eqaI.transpose(0, 2, 1, 3)).reshape(n_e, n_a, n_q * 2)
 
     @cached_property
-    def dN_Jeqb(self) -> np.ndarray:
-        """Gradients with their component first, (2, n_e, n_q, n_a)."""
-        return np.ascontiguousarray(self.dN_eqaI.transpose(3, 0, 1, 2))
+    def dN_eqJb(self) -> np.ndarray:
+        """Gradients as the right factor (n_e, n_q, 2, n_a) of one small product a point."""
+        return np.ascontiguousarray(self.dN_eqaI.swapaxes(2, 3))
 
 
 def block_basis(mesh: Mesh, block: ElementBlock, points_q: np.ndarray, weights_q: np.ndarray) -> BlockBasis:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from math import comb
 
 import numpy as np
@@ -47,6 +48,29 @@ def bernstein_derivative(degree: int, xi: np.ndarray, order: int = 1) -> np.ndar
     lower = bernstein_derivative(degree - 1, xi, order - 1)
     zero = np.zeros_like(lower[..., :1])
     return degree * (np.concatenate([zero, lower], -1) - np.concatenate([lower, zero], -1))
+
+
+def bernstein_jet(degree: int, xi_q: np.ndarray, orders: int) -> np.ndarray:
+    """Values and derivatives up to ``orders`` at many points by one matrix product (orders + 1, n_q, p + 1).
+
+    Through monomials: faster than `bernstein_derivative` and good to some 10 units of rounding for p <= 5 on [0, 1].
+    """
+    powers_q = np.ones((degree + 1, len(xi_q)))
+    for b in range(degree):
+        np.multiply(powers_q[b], xi_q, out=powers_q[b + 1])
+    return powers_q.T @ _monomials(degree, orders)
+
+
+@cache
+def _monomials(degree: int, orders: int) -> np.ndarray:
+    """Coefficients (orders + 1, p + 1, p + 1) of the Bernstein polynomials and their derivatives in powers of xi."""
+    coefficients = np.zeros((orders + 1, degree + 1, degree + 1))
+    for b in range(degree + 1):
+        for k in range(b, degree + 1):
+            coefficients[0, k, b] = comb(degree, k) * comb(k, b) * (-1) ** (k - b)
+    for order in range(orders):
+        coefficients[order + 1, :-1] = coefficients[order, 1:] * np.arange(1, degree + 1)[:, None]
+    return coefficients
 
 
 def tensor(B_s: np.ndarray, B_t: np.ndarray) -> np.ndarray:

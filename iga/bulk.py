@@ -12,9 +12,18 @@ PAIRS = ((0, 0), (0, 1), (1, 1))
 
 def gradient(basis: BlockBasis, u_Ai: np.ndarray) -> np.ndarray:
     """Displacement gradient H_iIeq (2, 2, n_e, n_q), components first: work on one runs straight through memory."""
-    H_eqIi = basis.dN_ea_qI.swapaxes(1, 2) @ u_Ai[basis.conn_ea]
+    H_eqIi = basis.dN_ea_qI.swapaxes(1, 2) @ relative(basis.conn_ea, u_Ai)
     n_e, n_q = basis.dV_eq.shape
     return np.ascontiguousarray(H_eqIi.reshape(n_e, n_q, 2, 2).transpose(3, 2, 0, 1))
+
+
+def relative(conn_ea: np.ndarray, u_Ai: np.ndarray) -> np.ndarray:
+    """Displacements (n_e, n_a, 2) of an element's control points relative to its first one.
+
+    The rest of the motion is rigid; left in, its rounding would be multiplied by the stiffness of the element.
+    """
+    u_eai = u_Ai[conn_ea]
+    return u_eai - u_eai[:, :1]
 
 
 def element_forces(basis: BlockBasis, P_iIeq: np.ndarray, width: float) -> np.ndarray:
@@ -31,14 +40,10 @@ def element_stiffness(basis: BlockBasis, A_iIjJeq: np.ndarray, width: float) -> 
     """
     n_e, n_q = basis.dV_eq.shape
     n_a = basis.conn_ea.shape[1]
-    dV_eq = width * basis.dV_eq
-    AdN = np.empty((n_e, n_q, 2, 3, n_a))
-    term = np.empty((n_e, n_q, n_a))
-    for p, (i, j) in enumerate(PAIRS):
-        for first in range(2):
-            np.multiply((A_iIjJeq[i, first, j, 0] * dV_eq)[..., None], basis.dN_Jeqb[0], out=AdN[:, :, first, p])
-            np.multiply((A_iIjJeq[i, first, j, 1] * dV_eq)[..., None], basis.dN_Jeqb[1], out=term)
-            AdN[:, :, first, p] += term
+    i, j = np.array(PAIRS).T
+    A_pIJeq = A_iIjJeq[i, :, j] * (width * basis.dV_eq)  # (3, I, J, n_e, n_q)
+    A_eqIpJ = np.ascontiguousarray(A_pIJeq.transpose(3, 4, 1, 0, 2)).reshape(n_e, n_q, 6, 2)
+    AdN = A_eqIpJ @ basis.dN_eqJb
     return (basis.dN_ea_qI @ AdN.reshape(n_e, n_q * 2, 3 * n_a)).reshape(n_e, n_a, 3, n_a)
 
 
@@ -54,7 +59,10 @@ def stiffness_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def all_entries(K_eapb: np.ndarray) -> np.ndarray:
     """Values (n_e, n_a, 4, n_a) for `stiffness_entries`."""
-    return np.concatenate([K_eapb, K_eapb[:, :, 1:2]], axis=2)
+    n_e, n_a, _, _ = K_eapb.shape
+    entries = np.empty((n_e, n_a, 4, n_a))
+    entries[:, :, :3], entries[:, :, 3] = K_eapb, K_eapb[:, :, 1]
+    return entries
 
 
 def full_matrices(K_eapb: np.ndarray) -> np.ndarray:

@@ -47,6 +47,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         float(system.interface.dA_q @ e) for e in system.interface.law.energies(response.contact.g_q, state.k_q)
     )
     reaction_d = np.where(system.free_d, 0.0, response.internal_d - state.load * system.load_d)
+    spring_d = 0.0 if system.stay_d is None else -system.stay * (system.stay_d @ state.u_d) * system.stay_d
     slopes = [face_slope(arm, state.u_d) for arm in specimen.arms]
     return {
         "opening": point.opening,
@@ -61,7 +62,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         "face_slope_top": slopes[0],
         "face_slope_bottom": slopes[1] if len(slopes) > 1 else -slopes[0],
         "face_energy": specimen.copies * sum(face_energy(arm, state.u_d, system.kinematics) for arm in specimen.arms),
-        **_balance(specimen, point),
+        **_balance(specimen, point, (reaction_d + spring_d).reshape(-1, 2)),
         "reaction_x": float(reaction_d[0::2].sum()),
         "reaction_y": float(reaction_d[1::2].sum()),
         "bulk_energy": response.bulk_energy,
@@ -116,8 +117,8 @@ def mean_row(face: tuple[BlockBasis, ...], component: int, n_dof: int) -> np.nda
     return row_d / face_length(face)
 
 
-def _balance(specimen: Specimen, point: Point) -> dict[str, float]:
-    """Interface tractions on the upper arm against the load there: resultant and moment about the origin."""
+def _balance(specimen: Specimen, point: Point, support_Ai: np.ndarray) -> dict[str, float]:
+    """Force and moment of the interface on the upper arm, and the moment of load and supports there."""
     system, state, touch = specimen.system, point.state, point.response.contact
     interface = system.interface
     moved = 0.0 if system.kinematics == "linear" else 1.0
@@ -128,8 +129,10 @@ def _balance(specimen: Specimen, point: Point) -> dict[str, float]:
     face = specimen.arms[0].face
     x_face = sum(float(np.sum(b.X_eqI[..., 0] * b.dV_eq)) for b in face) / face_length(face)
     x_face += moved * float(mean_row(face, 0, system.n_dof) @ state.u_d)
+    upper = slice(0, len(specimen.meshes[0].P_AI))
+    held_Ai, R_Ai = (interface.P_AI + moved * state.u_d.reshape(-1, 2))[upper], support_Ai[upper]
     return {
         "interface_force": float(pull_qi[:, 1].sum()),
-        "load_moment": x_face * state.load,
+        "load_moment": x_face * state.load + float(np.sum(held_Ai[:, 0] * R_Ai[:, 1] - held_Ai[:, 1] * R_Ai[:, 0])),
         "interface_moment": float(np.sum(x_qi[:, 1] * pull_qi[:, 0] - x_qi[:, 0] * pull_qi[:, 1])),
     }

@@ -36,7 +36,7 @@ class Newton:
     a point could be wrong by is then below that, too.
     """
 
-    tolerance: float = 2e-11
+    tolerance: float = 5e-12
     settle: float = 1e-8
     iterations: int = 25
     halvings: int = 5

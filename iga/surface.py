@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from iga.bernstein import bernstein_derivative
+from iga.bernstein import bernstein_jet
 from iga.extraction import SIDES, Chain, Mesh
 
 
@@ -29,6 +30,11 @@ class Surface:
     def sides(self) -> int:
         return len(self.w_cb)
 
+    @cached_property
+    def polynomial(self) -> bool:
+        """All weights equal one: nothing to divide by."""
+        return bool(np.allclose(self.w_cb, 1.0, rtol=0.0, atol=1e-13))
+
     def bezier_points(self, x_AI: np.ndarray) -> np.ndarray:
         """Homogeneous Bezier points (n_c, p + 1, 2) of a configuration x_AI (n_A, 2) of the control points."""
         return self.C_cab.swapaxes(1, 2) @ x_AI[self.conn_ca]
@@ -38,7 +44,9 @@ class Surface:
 
         Quotient rule (Piegl and Tiller 1997, eq. 4.8): ``r_k = (B^(k) - sum_{i=1..k} binom(k, i) W^(i) r_{k-i}) / W``.
         """
-        B = [bernstein_derivative(self.degree, xi_q, k) for k in range(orders + 1)]
+        B = bernstein_jet(self.degree, xi_q, orders)
+        if self.polynomial:
+            return tuple(B)
         W = [np.sum(self.w_cb[c_q] * b, -1, keepdims=True) for b in B]
         r = [B[0] / W[0]]
         if orders > 0:

@@ -11,7 +11,16 @@ import numpy as np
 
 from iga.banded import Band, BandLU, factor, number
 from iga.basis import BlockBasis
-from iga.bulk import all_entries, element_forces, element_stiffness, energy, full_matrices, gradient, stiffness_entries
+from iga.bulk import (
+    all_entries,
+    element_forces,
+    element_stiffness,
+    energy,
+    full_matrices,
+    gradient,
+    relative,
+    stiffness_entries,
+)
 from iga.interface import Contact, Interface, contact, dofs, forces, pair, stiffness, traction
 from iga.kinematics import KINEMATICS
 from iga.projection import Pairing
@@ -70,6 +79,18 @@ class Response:
 
 
 @dataclass(frozen=True)
+class Pattern:
+    """Band array and the place in it (n_values,) of every entry of bulk, interface and spring, in this order.
+
+    Linear kinematics leaves out the bulk, which is in place already.
+    """
+
+    conn_qa: np.ndarray
+    band: Band
+    positions: np.ndarray
+
+
+@dataclass(frozen=True)
 class System:
     """All that stays the same during a run.
 
@@ -92,7 +113,6 @@ class System:
     x_d: np.ndarray
     stay_d: np.ndarray | None = None
     stay: float = 0.0
-    _touching: tuple | None = None
 
     @property
     def n_dof(self) -> int:
@@ -112,6 +132,11 @@ class System:
         return number(row, column, self.x_d, self.free_d)
 
     @cached_property
+    def reference_conn_qa(self) -> np.ndarray:
+        """Control points that each interface point touches before anything moves."""
+        return contact(self.interface, np.zeros(self.n_dof), pair(self.interface)).conn_qa
+
+    @cached_property
     def stay_entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rows, columns and values that the spring adds to the tangent."""
         if self.stay_d is None:
@@ -120,39 +145,53 @@ class System:
         row, column = np.repeat(held, held.size), np.tile(held, held.size)
         return row, column, self.stay * self.stay_d[row] * self.stay_d[column]
 
-    @property
+    @cached_property
     def bulk_entries(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Rows and columns of the element matrices."""
         return [stiffness_entries(solid.basis.conn_ea) for solid in self.solids]
 
     @cached_property
-    def bulk_positions(self) -> np.ndarray:
-        """Where each entry of each element matrix goes in the band array."""
-        return _positions(self.band, self.bulk_entries)
+    def element_dofs(self) -> tuple[np.ndarray, ...]:
+        """Degrees of freedom (n_e, 2 n_a) of the elements of each block."""
+        return tuple(dofs(solid.basis.conn_ea) for solid in self.solids)
 
     @cached_property
-    def linear_bulk(self) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-        """Stiffness of the linear bulk: element matrices (n_e, 2 n_a, 2 n_a), and the band array."""
+    def unloaded_stiffness(self) -> tuple[np.ndarray, ...]:
+        """Element stiffness (n_e, n_a, 3, n_a) of each block before anything moves; linear: for good."""
         zero_Ai = np.zeros((self.n_dof // 2, 2))
-        parts = [element_stiffness(solid.basis, _bulk(self, solid, zero_Ai)[1], self.width) for solid in self.solids]
-        values = np.concatenate([all_entries(K).ravel() for K in parts])
-        return tuple(full_matrices(K) for K in parts), np.bincount(self.bulk_positions, values, self.band.size)
+        return tuple(
+            element_stiffness(solid.basis, _bulk(self, solid, zero_Ai)[1], self.width) for solid in self.solids
+        )
+
+    @cached_property
+    def linear_matrices(self) -> tuple[np.ndarray, ...]:
+        """The same as full matrices (n_e, 2 n_a, 2 n_a)."""
+        return tuple(full_matrices(K) for K in self.unloaded_stiffness)
+
+    @cached_property
+    def linear_band(self) -> np.ndarray:
+        """The same as a band array."""
+        values = np.concatenate([all_entries(K).ravel() for K in self.unloaded_stiffness])
+        return np.bincount(_positions(self.band, self.bulk_entries), values, self.band.size)
 
     @cached_property
     def stiffest(self) -> tuple[np.ndarray, ...]:
-        """Largest entry (n_e,) of each element's stiffness when unloaded."""
-        zero_Ai = np.zeros((self.n_dof // 2, 2))
-        parts = (element_stiffness(solid.basis, _bulk(self, solid, zero_Ai)[1], self.width) for solid in self.solids)
-        return tuple(np.abs(K).max((1, 2, 3)) for K in parts)
+        """Largest entry (n_e,) of each element's stiffness."""
+        return tuple(np.abs(K).max((1, 2, 3)) for K in self.unloaded_stiffness)
 
-    def touching_positions(self, conn_qa: np.ndarray) -> np.ndarray | None:
-        """Where the interface tangent goes in the band array, None where too far. The last answer is kept."""
-        if self._touching is None or not np.array_equal(self._touching[0], conn_qa):
-            row, column = _square(conn_qa)
-            fits = self.band.reach(row, column) <= self.band.k
-            positions = _positions(self.band, [(row, column), self.stay_entries[:2]]) if fits else None
-            object.__setattr__(self, "_touching", (conn_qa, positions))
-        return self._touching[1]
+    def pattern(self, conn_qa: np.ndarray) -> Pattern:
+        """Where all entries go when the points touch conn_qa; wider than `band` where one has slid too far for it.
+
+        The last answer is kept: the points change sides seldom.
+        """
+        kept = self.__dict__.get("_pattern")
+        if kept is None or not np.array_equal(kept.conn_qa, conn_qa):
+            touching = [_square(conn_qa), self.stay_entries[:2]]
+            band = replace(self.band, k=max(self.band.k, self.band.reach(*touching[0])))
+            bulk = [] if self.kinematics == "linear" else self.bulk_entries
+            kept = Pattern(conn_qa, band, _positions(band, [*bulk, *touching]))
+            self.__dict__["_pattern"] = kept
+        return kept
 
 
 def respond(system: System, trial: State, decide: bool = True) -> Response:
@@ -170,10 +209,15 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     if system.stay_d is not None:
         internal_d += system.stay * (system.stay_d @ trial.u_d) * system.stay_d
     K_qdd = stiffness(system.interface, touch, p_q, dp_q)
-    band, tangent = _assemble(system, parts, touch.conn_qa, K_qdd)
-    return Response(
-        internal_d, scale, _rounding(system, trial.u_d), bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, band
-    )
+    # an open crack asks for no entries in the matrix, however far it has moved
+    carries_q = (p_q != 0.0) | (dp_q != 0.0)
+    pattern = system.pattern(np.where(carries_q[:, None], touch.conn_qa, system.reference_conn_qa))
+    values = np.concatenate([*parts, K_qdd.ravel(), system.stay_entries[2]])
+    tangent = np.bincount(pattern.positions, values, pattern.band.size)
+    if linear:
+        tangent += system.linear_band
+    rounding = _rounding(system, trial.u_d)
+    return Response(internal_d, scale, rounding, bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, pattern.band)
 
 
 def factorise(response: Response) -> BandLU | None:
@@ -196,31 +240,29 @@ def joined(solids: list[Solid]) -> tuple[Solid, ...]:
 
 
 def _rounding(system: System, u_d: np.ndarray) -> float:
-    """Norm of what one rounding of the displacements does to the forces: long thin elements are stiff across."""
+    """Norm of what rounding of the displacements does to the forces: long thin elements are stiff across."""
     squares = (
-        np.sum((size_e * np.abs(u_d[dofs(solid.basis.conn_ea)]).max(1)) ** 2)
+        np.sum((size_e * np.abs(relative(solid.basis.conn_ea, u_d.reshape(-1, 2))).max((1, 2))) ** 2)
         for size_e, solid in zip(system.stiffest, system.solids, strict=True)
     )
-    return float(np.finfo(float).eps * np.sqrt(sum(squares)))
+    return float(10.0 * np.finfo(float).eps * np.sqrt(sum(squares)))
 
 
-def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, np.ndarray]:
-    matrices, band_values = system.linear_bulk
+def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, list[np.ndarray]]:
     internal_d, square = np.zeros(system.n_dof), 0.0
-    for K, solid in zip(matrices, system.solids, strict=True):
-        d = dofs(solid.basis.conn_ea)
-        f = K @ u_d[d][..., None]
+    for K, solid, d in zip(system.linear_matrices, system.solids, system.element_dofs, strict=True):
+        f = K @ relative(solid.basis.conn_ea, u_d.reshape(-1, 2)).reshape(len(d), -1, 1)
         internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
         square += float(np.sum(f * f))
-    return internal_d, square**0.5, 0.5 * float(u_d @ internal_d), band_values
+    return internal_d, square**0.5, 0.5 * float(u_d @ internal_d), []
 
 
 def _finite_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, list[np.ndarray]]:
     internal_d, square, stored, parts = np.zeros(system.n_dof), 0.0, 0.0, []
-    for solid in system.solids:
+    for solid, d in zip(system.solids, system.element_dofs, strict=True):
         P, A, W = _bulk(system, solid, u_d.reshape(-1, 2))
         f = element_forces(solid.basis, P, system.width)
-        internal_d += np.bincount(dofs(solid.basis.conn_ea).ravel(), f.ravel(), system.n_dof)
+        internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
         square += float(np.sum(f * f))
         stored += energy(solid.basis, W, system.width)
         parts.append(all_entries(element_stiffness(solid.basis, A, system.width)).ravel())
@@ -228,27 +270,8 @@ def _finite_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, fl
 
 
 def _bulk(system: System, solid: Solid, u_Ai: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Stress, tangent and energy density at all points."""
     return KINEMATICS[system.kinematics](solid.D, gradient(solid.basis, u_Ai))
-
-
-def _assemble(
-    system: System, bulk: np.ndarray | list[np.ndarray], conn_qa: np.ndarray, K_qdd: np.ndarray
-) -> tuple[Band, np.ndarray]:
-    """Band array of bulk (entries of the elements, or a band array already), interface and spring.
-
-    Where a point has slid further than the band has room for, everything is placed anew in a wider one.
-    """
-    band, positions = system.band, system.touching_positions(conn_qa)
-    touching = np.concatenate([K_qdd.ravel(), system.stay_entries[2]])
-    if positions is None:
-        entries = [*system.bulk_entries, _square(conn_qa), system.stay_entries[:2]]
-        band = replace(band, k=band.reach(*entries[-2]))
-        return band, np.bincount(_positions(band, entries), np.concatenate([*bulk, touching]), band.size)
-    if isinstance(bulk, np.ndarray):
-        return band, bulk + np.bincount(positions, touching, band.size)
-    return band, np.bincount(
-        np.concatenate([system.bulk_positions, positions]), np.concatenate([*bulk, touching]), band.size
-    )
 
 
 def _reachable(interface: Interface) -> list[np.ndarray]:

@@ -32,7 +32,7 @@ EVIDENCE_COLUMNS = (
     "interface_force",  # vertical resultant of the interface tractions on the upper arm
     "reaction_x",  # sums of the support reactions
     "reaction_y",
-    "load_moment",  # moment about the origin, current configuration, of the load on the upper arm
+    "load_moment",  # moment about the origin, current configuration, of load and supports on the upper arm
     "interface_moment",  # and of the interface tractions on the upper arm
     "bulk_energy",
     "cohesive_energy",
