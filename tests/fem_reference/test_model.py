@@ -7,6 +7,7 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
+from dolfinx import fem
 from mpi4py import MPI
 
 from fem_reference.mesh import grid_lines
@@ -79,6 +80,35 @@ def test_rigid_rotation_leaves_finite_arms_without_stress(finite):
     u_n = displacement(finite, lambda X, Y, up: ((c - 1) * X - s * Y, s * X + (c - 1) * Y))
     stretched_n = displacement(finite, lambda X, Y, up: (0.8 * X, 0.0 * Y))
     assert np.linalg.norm(finite.bulk_force(u_n)) < 1e-12 * np.linalg.norm(finite.bulk_force(stretched_n))
+
+
+def test_turning_a_stretched_arm_stores_nothing_more(finite):
+    """Fibres turn with the arm: an orthotropic sheet tells strain in the reference from strain in the current axes."""
+    c, s, e = np.cos(0.8), np.sin(0.8), 0.05
+    energies = []
+    for turn in (np.eye(2), np.array([[c, -s], [s, c]])):
+        H = turn @ np.diag([1 + e, 1.0]) - np.eye(2)
+        finite.displace(
+            displacement(finite, lambda X, Y, up, H=H: (H[0, 0] * X + H[0, 1] * Y, H[1, 0] * X + H[1, 1] * Y))
+        )
+        energies.append(fem.assemble_scalar(finite.energy))
+    p, E11 = finite.problem, e + 0.5 * e**2
+    W = 0.5 * p.elasticity_IJ[0, 0] * E11**2
+    assert energies == pytest.approx([W * 2 * p.length * p.arm_thickness * p.width] * 2, rel=1e-12)
+    assert fem.assemble_scalar(finite.face_energy) == pytest.approx(W * 2 * p.arm_thickness, rel=1e-12)
+
+
+def test_supports_hold_one_point_an_arm(finite):
+    held = np.flatnonzero(finite.free_n == 0)
+    assert finite.X_nI[held] == pytest.approx(np.array([[SMALL.length, 0.0]] * 3))
+    assert sorted(zip(finite.upper_n[held], held % 2, strict=True)) == [(False, 0), (False, 1), (True, 0)]
+    A = finite.tangent(bent(finite, 0.3, np.random.default_rng(2)), 0 * finite.X_q)
+    x, y = A.createVecs()
+    for n in held:
+        x.array[:] = 0.0
+        x.array[n] = 1.0
+        A.mult(x, y)
+        assert np.array_equal(y.array, x.array)
 
 
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
