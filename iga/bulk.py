@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from iga.basis import BlockBasis
@@ -57,12 +59,17 @@ def stiffness_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.where(transposed, column, row), np.where(transposed, row, column)
 
 
-def all_entries(K_eapb: np.ndarray) -> np.ndarray:
-    """Values (n_e, n_a, 4, n_a) for `stiffness_entries`."""
-    n_e, n_a, _, _ = K_eapb.shape
-    entries = np.empty((n_e, n_a, 4, n_a))
-    entries[:, :, :3], entries[:, :, 3] = K_eapb, K_eapb[:, :, 1]
-    return entries
+def all_entries(parts: Sequence[np.ndarray], *others: np.ndarray) -> np.ndarray:
+    """Values (n_values,) for `stiffness_entries` of each block (n_e, n_a, 3, n_a), with any others behind them."""
+    ends = np.cumsum([0] + [K.size // 3 * 4 for K in parts] + [v.size for v in others])
+    values = np.empty(ends[-1])
+    for K, first, end in zip(parts, ends[:-1], ends[1:], strict=False):
+        n_e, n_a, _, _ = K.shape
+        entries = values[first:end].reshape(n_e, n_a, 4, n_a)
+        entries[:, :, :3], entries[:, :, 3] = K, K[:, :, 1]
+    for v, first, end in zip(others, ends[len(parts) : -1], ends[len(parts) + 1 :], strict=True):
+        values[first:end] = v.ravel()
+    return values
 
 
 def full_matrices(K_eapb: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ import numpy as np
 
 from iga.banded import BandLU
 from iga.quadrature import gauss
-from iga.system import Phase, Response, State, System, factorise, respond, untimed
+from iga.system import Phase, Response, State, System, factorise, respond, rounding, untimed
 
 #: Value of a control at a state with its response, and its gradient with respect to u (n_dof,).
 Control = Callable[[State, Response], tuple[float, np.ndarray]]
@@ -178,7 +178,7 @@ def _advance(
     trial = replace(old, u_d=old.u_d + d_opening * point.du_d, load=old.load + d_opening * point.slope)
     trial, response, norm = _evaluate(system, trial, True, phase)
     residuals = [norm]
-    while norm > max(newton.tolerance, response.rounding / response.scale) or not _met(
+    while not _balanced(system, trial, response, norm, newton) or not _met(
         control(trial, response)[0], target, change, newton.tolerance
     ):
         if len(residuals) > newton.iterations or not np.isfinite(norm):
@@ -214,6 +214,13 @@ def _work(start: Point, end: Point, change: float, rates: tuple[float, float]) -
     load = np.array([start.state.load, end.state.load]) @ values + d_opening * [start.slope, end.slope] @ slopes
     d_opening_ds = np.array([start.opening, end.opening]) @ d_values + d_opening @ d_slopes
     return float(np.sum(w * load * d_opening_ds))
+
+
+def _balanced(system: System, trial: State, response: Response, norm: float, newton: Newton) -> bool:
+    """Below the tolerance, or below what rounding leaves where elements are so thin that this is more."""
+    if norm > newton.settle:
+        return False
+    return norm <= newton.tolerance or norm * response.scale <= rounding(system, trial.u_d)
 
 
 def _met(value: float, target: float, change: float, tolerance: float) -> bool:

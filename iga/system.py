@@ -61,13 +61,12 @@ class Response:
     """What a configuration answers.
 
     ``internal_d`` (n_dof,) forces of bulk and interface; ``scale`` the norm of the forces that the elements hold
-    against each other, by which a residual is judged, and ``rounding`` the norm below which it is noise;
-    ``bulk_energy``; the interface with traction p_q, slope dp_q and new history k_q.
+    against each other, by which a residual is judged; ``bulk_energy``; the interface with traction p_q, slope dp_q and
+    new history k_q; the ``tangent`` as a band array.
     """
 
     internal_d: np.ndarray
     scale: float
-    rounding: float
     bulk_energy: float
     contact: Contact
     p_q: np.ndarray
@@ -171,7 +170,7 @@ class System:
     @cached_property
     def linear_band(self) -> np.ndarray:
         """The same as a band array."""
-        values = np.concatenate([all_entries(K).ravel() for K in self.unloaded_stiffness])
+        values = all_entries(self.unloaded_stiffness)
         return np.bincount(_positions(self.band, self.bulk_entries), values, self.band.size)
 
     @cached_property
@@ -212,12 +211,11 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     # an open crack asks for no entries in the matrix, however far it has moved
     carries_q = (p_q != 0.0) | (dp_q != 0.0)
     pattern = system.pattern(np.where(carries_q[:, None], touch.conn_qa, system.reference_conn_qa))
-    values = np.concatenate([*parts, K_qdd.ravel(), system.stay_entries[2]])
+    values = all_entries(parts, K_qdd, system.stay_entries[2])
     tangent = np.bincount(pattern.positions, values, pattern.band.size)
     if linear:
         tangent += system.linear_band
-    rounding = _rounding(system, trial.u_d)
-    return Response(internal_d, scale, rounding, bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, pattern.band)
+    return Response(internal_d, scale, bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, pattern.band)
 
 
 def factorise(response: Response) -> BandLU | None:
@@ -239,7 +237,7 @@ def joined(solids: list[Solid]) -> tuple[Solid, ...]:
     )
 
 
-def _rounding(system: System, u_d: np.ndarray) -> float:
+def rounding(system: System, u_d: np.ndarray) -> float:
     """Norm of what rounding of the displacements does to the forces: long thin elements are stiff across."""
     squares = (
         np.sum((size_e * np.abs(relative(solid.basis.conn_ea, u_d.reshape(-1, 2))).max((1, 2))) ** 2)
@@ -265,7 +263,7 @@ def _finite_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, fl
         internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
         square += float(np.sum(f * f))
         stored += energy(solid.basis, W, system.width)
-        parts.append(all_entries(element_stiffness(solid.basis, A, system.width)).ravel())
+        parts.append(element_stiffness(solid.basis, A, system.width))
     return internal_d, square**0.5, stored, parts
 
 
