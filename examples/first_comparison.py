@@ -20,8 +20,8 @@ methods = ["nurbs", "beam", "lefm"] + ["dolfinx"] * dolfinx_installed()
 results = {method: solve(scene, method) for method in methods}
 
 # %% [markdown]
-# How far are the load-opening curves apart? The beam is a theory of its own, not a mesh: what is left between it and the
-# spline solution is the error of both. LEFM is another model, the limit of an infinitely strong interface, so the
+# How far are the load-opening curves apart? The beam is a theory of its own, not a mesh: what is left between it and
+# the spline solution is the error of both. LEFM is another model, the limit of an infinitely strong interface, so the
 # distance to it is no error at all.
 
 # %%

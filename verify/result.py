@@ -63,8 +63,8 @@ class Snapshot:
 class Result:
     """A run, as far as it came.
 
-    ``steps`` maps a column name to an array (n_steps,); it holds CURVE_COLUMNS and those EVIDENCE_COLUMNS the method knows.
-    ``status`` is ``complete`` or ``stopped: <cause and what to do>``.
+    ``steps`` maps a column name to an array (n_steps,); it holds CURVE_COLUMNS and those EVIDENCE_COLUMNS that the
+    method knows. ``status`` is ``complete`` or ``stopped: <cause and what to do>``.
     """
 
     method: str
