@@ -23,8 +23,8 @@ from iga.system import Phase, Response, State, System, factorise, respond, round
 Control = Callable[[State, Response], tuple[float, np.ndarray]]
 
 
-#: Attempts at the contact of the first tangent.
-START = 30
+#: Attempts at the contact of a tangent that leaves a state, and the gap, in units of g_max, that counts as none.
+CONTACT, NO_GAP = 30, 1e-6
 
 
 @dataclass(frozen=True)
@@ -88,9 +88,10 @@ def gap_control(system: System, point: int) -> Control:
 
 
 def front(system: System, point: Point) -> int | None:
-    """The most open quadrature point that still carries traction, once it is damaged: the front of the crack."""
+    """The most open quadrature point whose damage is growing: the front of the crack."""
     law, g_q = system.interface.law, point.response.contact.g_q
-    alive = np.where((point.state.k_q > law.g_max) & (point.state.k_q < law.g_u), g_q, -np.inf)
+    k_q = point.state.k_q
+    alive = np.where((k_q > law.g_max) & (k_q < law.g_u) & (g_q >= (1.0 - 1e-9) * k_q), g_q, -np.inf)
     most = int(np.argmax(alive))
     return most if alive[most] > 0.0 else None
 
@@ -108,10 +109,15 @@ def follow(
     """
     largest = float(np.sum(np.abs(np.diff([0.0, *programme])))) / steps
     step, rejected = largest, 0
-    point = _start(system, phase)
+    heading = float(np.sign(programme[0]))
+    point = _departing(system, system.start(), heading, phase)
     yield point
     for goal in programme:
-        loading = goal > point.opening
+        if heading * (goal - point.opening) < 0.0:
+            heading = -heading
+            turned = _departing(system, point.state, heading, phase)
+            point = replace(turned, external_work=point.external_work)
+        loading = heading > 0.0
         while point.opening != goal:
             control, change, exact = _choose(system, point, goal, step, step / largest, loading)
             reached = _advance(system, point, control, change, newton, phase)
@@ -147,23 +153,27 @@ def _choose(
     return gap_control(system, q), change, False
 
 
-def _start(system: System, phase: Phase) -> Point:
-    """The unloaded state with the tangent of the path that leaves it.
+def _departing(system: System, state: State, direction: float, phase: Phase) -> Point:
+    """A converged state with the tangent of the path that leaves it for larger (+1) or smaller (-1) openings.
 
-    There all gaps are zero and which of them will close shows in their rates only: contact is set by these until it
-    stays.
+    Points that set out to unload do so along their secants, for which a history larger by a rounding is enough. Where a
+    gap is zero, as all are before anything moves, its rate alone shows whether it will close: contact is set by the
+    rates until it stays.
     """
-    state = system.start()
-    for _ in range(START):
+    tiny = NO_GAP * system.interface.law.g_max
+    held = replace(state, k_q=state.k_q * (1.0 + 1e-12)) if direction < 0.0 else state
+    for _ in range(CONTACT):
         with phase("assembly"):
-            response = respond(system, state, decide=False)
-        point = _point(system, state, response, (), phase)
+            response = respond(system, held, decide=False)
+        point = _point(system, replace(state, closed_q=held.closed_q), response, (), phase)
         if point is None:
-            raise ValueError("the unloaded system is singular: the supports or the interface do not hold the bodies")
-        closing_q = response.contact.rates(point.du_d) < 0.0
-        if np.array_equal(closing_q, state.closed_q):
+            raise ValueError("the system is singular: the supports or the interface do not hold the bodies")
+        touch = response.contact
+        rates_q = direction * touch.rates(point.du_d)
+        closed_q = np.where(np.abs(touch.g_q) <= tiny, rates_q < 0.0, touch.g_q < 0.0)
+        if np.array_equal(closed_q, held.closed_q):
             break
-        state = replace(state, closed_q=closing_q)
+        held = replace(held, closed_q=closed_q)
     return point
 
 
@@ -191,7 +201,8 @@ def _advance(
             du_d, d_load = _correction(system, trial, response, lu, control, target)
         trial, response, norm = _search(system, trial, du_d, d_load, norm, newton, phase)
         residuals.append(norm)
-    reached = _point(system, replace(trial, k_q=response.k_q), response, tuple(residuals), phase)
+    state = replace(trial, k_q=response.k_q, scale=max(old.scale, response.scale))
+    reached = _point(system, state, response, tuple(residuals), phase)
     if reached is None:
         return None
     rates = (1.0 / float(a_d @ point.du_d), 1.0 / float(control(trial, response)[1] @ reached.du_d))

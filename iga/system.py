@@ -33,6 +33,10 @@ def untimed(_name: str) -> AbstractContextManager:
     return nullcontext()
 
 
+#: Part of the largest forces met so far by which a residual is judged where the present ones are smaller yet.
+UNLOADED = 1e-3
+
+
 @dataclass(frozen=True)
 class Solid:
     """One block of elements with one material: basis at the quadrature points and elasticity matrix D (3, 3)."""
@@ -45,7 +49,8 @@ class Solid:
 class State:
     """A configuration: displacements u_d (n_dof,), load, history k_q (n_q,).
 
-    ``closed_q`` (n_q,) and ``pairing``, which points were in contact and where the interface met, are where the next
+    ``scale`` is the largest force scale (see `Response`) of all converged states so far. ``closed_q`` (n_q,) and
+    ``pairing``, which points were in contact and where the interface met, are where the next
     search starts, not history.
     """
 
@@ -54,6 +59,7 @@ class State:
     k_q: np.ndarray
     closed_q: np.ndarray
     pairing: Pairing | None
+    scale: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -215,6 +221,7 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     tangent = np.bincount(pattern.positions, values, pattern.band.size)
     if linear:
         tangent += system.linear_band
+    scale = max(scale, UNLOADED * trial.scale)
     return Response(internal_d, scale, bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, pattern.band)
 
 

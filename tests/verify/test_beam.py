@@ -180,8 +180,18 @@ def test_slope_is_that_of_the_path(name):
 def test_small_openings_of_the_finite_beam_are_linear():
     differences = []
     for scale in (1.0, 0.1, 0.01):  # the same cohesive process at ever smaller openings: stiffness up, law fixed
-        both = [replace(SHORT, young=120e3 / scale, shear=50e3 / scale, strength=4.0, toughness=0.1 * scale,
-                        opening=scale, kinematics=kinematics) for kinematics in ("linear", "finite")]
+        both = [
+            replace(
+                SHORT,
+                young=120e3 / scale,
+                shear=50e3 / scale,
+                strength=4.0,
+                toughness=0.1 * scale,
+                opening=scale,
+                kinematics=kinematics,
+            )
+            for kinematics in ("linear", "finite")
+        ]
         differences.append(curve_error(curve(both[1]), curve(both[0])))
     assert differences[0] > 1e-4
     assert differences[1] < 0.02 * differences[0] and differences[2] < 0.02 * differences[1]
@@ -231,9 +241,21 @@ def test_flexible_arms_reach_the_peel_load():
 def test_units(metre, newton, kinematics):
     stress = newton / metre**2
     here = replace(SHORT, kinematics=kinematics)
-    there = BeamProblem(14 * metre, 0.2 * metre, 4 * metre, metre, 120e3 * stress, 50e3 * stress, 4 * stress,
-                        0.1 * newton / metre, 12.5, 1e5 * stress / metre, kinematics=kinematics, opening=metre,
-                        points=60)
+    there = BeamProblem(
+        14 * metre,
+        0.2 * metre,
+        4 * metre,
+        metre,
+        120e3 * stress,
+        50e3 * stress,
+        4 * stress,
+        0.1 * newton / metre,
+        12.5,
+        1e5 * stress / metre,
+        kinematics=kinematics,
+        opening=metre,
+        points=60,
+    )
     units = {"opening": metre, "load": newton, "external_work": newton * metre, "crack_length": metre}
     for name, unit in units.items():
         assert steps(there)[name] == pytest.approx(steps(here)[name] * unit, rel=1e-9)
@@ -248,9 +270,18 @@ def test_width_scales_the_load():
 @pytest.mark.parametrize(
     "changes",
     [
-        {"strength": 0.5}, {"strength": 1.0}, {"strength": 200.0}, {"ductility": 1.01}, {"ductility": 1e4},
-        {"penalty": 1e2}, {"penalty": 1e6}, {"penalty": 1e8}, {"arm_thickness": 0.014}, {"precrack": 0.3},
-        {"kinematics": "finite", "strength": 40.0}, {"contact": False},
+        {"strength": 0.5},
+        {"strength": 1.0},
+        {"strength": 200.0},
+        {"ductility": 1.01},
+        {"ductility": 1e4},
+        {"penalty": 1e2},
+        {"penalty": 1e6},
+        {"penalty": 1e8},
+        {"arm_thickness": 0.014},
+        {"precrack": 0.3},
+        {"kinematics": "finite", "strength": 40.0},
+        {"contact": False},
     ],
     ids=str,
 )
@@ -261,8 +292,10 @@ def test_hard_cases_complete(changes):
 
 
 def test_penalty_no_longer_matters_when_it_is_stiff():
-    errors = [curve_error(curve(replace(CZM1, penalty=p, points=60)), curve(replace(CZM1, penalty=1e8, points=60)))
-              for p in (1e3, 1e4, 1e5, 1e6)]
+    errors = [
+        curve_error(curve(replace(CZM1, penalty=p, points=60)), curve(replace(CZM1, penalty=1e8, points=60)))
+        for p in (1e3, 1e4, 1e5, 1e6)
+    ]
     assert np.all(np.diff(errors) < 0.0) and errors[1] < 1.5e-3 and errors[2] < 3e-4 and errors[3] < 5e-5
 
 

@@ -31,9 +31,7 @@ REFUSED = {
     "solve /dev/null": "specimen: is missing",
     "solve missing.toml": "is neither a packaged scene nor a file",
     "solve broken.toml": "broken.toml:1",
-    "solve dcb-czm1 --method fem": (
-        '--method: must be "nurbs", "lagrange", "dolfinx", "beam" or "lefm", got \'fem\''
-    ),
+    "solve dcb-czm1 --method fem": ('--method: must be "nurbs", "lagrange", "dolfinx", "beam" or "lefm", got \'fem\''),
     "solve dcb-czm1 --method nubrs": 'did you mean "nurbs"?',
     "solve dcb-czm1 --method tspline": "(it is not available yet)",
     "solve dcb-czm1 --dofs 0": "argument --dofs: must be an integer >= 1, got '0'",

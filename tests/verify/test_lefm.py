@@ -106,8 +106,18 @@ def test_elastica_tends_to_the_peel_load():
 @given(st.sampled_from(THEORIES), st.floats(1e-3, 1e3), st.floats(1e-3, 1e3))
 def test_units(theory, metre, newton):
     stress = newton / metre**2
-    other = LefmProblem(14.0 * metre, 0.2 * metre, 4.0 * metre, metre, 120e3 * stress, 120e3 * stress, 50e3 * stress,
-                        0.1 * newton / metre, 3.0 * metre, theory=theory)
+    other = LefmProblem(
+        14.0 * metre,
+        0.2 * metre,
+        4.0 * metre,
+        metre,
+        120e3 * stress,
+        120e3 * stress,
+        50e3 * stress,
+        0.1 * newton / metre,
+        3.0 * metre,
+        theory=theory,
+    )
     a, b = steps(replace(DCB, theory=theory)), steps(other)
     assert b["load"] == pytest.approx(a["load"] * newton, rel=1e-9)
     assert b["dissipated_energy"] == pytest.approx(a["dissipated_energy"] * newton * metre, rel=1e-9, abs=1e-12)

@@ -39,7 +39,7 @@ BROKEN = {
     "interface.penalty=0": "interface.penalty: must be > 0, got 0",
     "interface.law=exponential": "interface.law: must be \"bilinear\", got 'exponential'",
     "interface.strenght=6": 'interface.strenght: is not a key of a scene, got 6; did you mean "strength"?',
-    "interfce.strength=6": 'interfce: is not a key of a scene, got {\'strength\': 6}; did you mean "interface"?',
+    "interfce.strength=6": "interfce: is not a key of a scene, got {'strength': 6}; did you mean \"interface\"?",
     "specimen.kind=peel": "specimen.kind: must be \"dcb\", got 'peel'",
     "specimen.precrack=14": "specimen.precrack: must be < specimen.length = 14, got 14",
     "specimen.plane=flat": 'specimen.plane: must be "stress" or "strain", got \'flat\'',
