@@ -48,7 +48,8 @@ def row_of(model: Model, state: State) -> dict[str, float]:
         "external_work": state.work,
         "newton_iterations": state.iterations,
         "load_slope": state.slope,
-        "tip_opening": tip_opening(model),
+        "tip_opening": opening_at(model, model.problem.precrack),
+        "end_opening": opening_at(model, model.problem.length),
         "face_slope_top": model.dot(model.slope_n * on_upper_n, state.u_n),
         "face_slope_bottom": model.dot(model.slope_n * ~on_upper_n, state.u_n),
         "face_energy": face,
@@ -79,11 +80,11 @@ def moment(model: Model, state: State, force_n: np.ndarray) -> float:
     return model.comm.allreduce(float(x_nI[::2, 0] @ force_n[1::2] - x_nI[::2, 1] @ force_n[::2]))
 
 
-def tip_opening(model: Model) -> float:
-    """Normal gap at the end of the precrack, of the displacements last put into the forms."""
+def opening_at(model: Model, X: float) -> float:
+    """Normal gap at a vertex of the interface, of the displacements last put into the forms."""
     jump = 0.0
     for u, body, sign in zip(model.displacement, (model.bodies.upper, model.bodies.lower), (1.0, -1.0), strict=True):
-        dofs = dofs_at(u, body.mesh, model.problem, model.problem.precrack, 1)
+        dofs = dofs_at(u, body.mesh, model.problem, X, 1)
         jump += sign * float(np.sum(u.x.array[dofs[dofs < owned(u)]]))
     return model.comm.allreduce(jump)
 

@@ -139,7 +139,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             stay_d=None if problem.symmetry else mean_row(arms[0].face, 0, n_dof) - mean_row(arms[1].face, 0, n_dof),
             stay=problem.E1 * problem.width * problem.arm_thickness / problem.length,
         )
-        probe = _points(problem, meshes, first, np.zeros(1), np.zeros(1), slice(0, 1))
+        probe = _points(problem, meshes, first, *lobatto(2), [0, -1])
     upper_is_slave = problem.symmetry or problem.slave == "top"
     return Specimen(system, arms, meshes, problem.precrack, upper_is_slave, copies, probe)
 
@@ -224,7 +224,12 @@ def _interface(problem: Problem, meshes: tuple[Mesh, ...], first: np.ndarray) ->
 
 
 def _points(
-    problem: Problem, meshes: tuple[Mesh, ...], first: np.ndarray, xi: np.ndarray, w: np.ndarray, sides: slice
+    problem: Problem,
+    meshes: tuple[Mesh, ...],
+    first: np.ndarray,
+    xi: np.ndarray,
+    w: np.ndarray,
+    sides: slice | list[int],
 ) -> Interface:
     """Interface with the rule (xi, w) on the bonded ``sides`` of the slave; the whole other arm is master."""
     slave, master = (1, 0) if problem.slave == "bottom" and not problem.symmetry else (0, 1)

@@ -26,7 +26,7 @@ class Arm:
 
 @dataclass(frozen=True)
 class Specimen:
-    """A system and what it takes to read it: arms (upper first), meshes, and a probe at the end of the precrack.
+    """A system and what it takes to read it: arms (upper first), meshes, and a probe at the two ends of the interface.
 
     ``copies`` is 2 where one arm stands for both.
     """
@@ -48,6 +48,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
     )
     reaction_d = np.where(system.free_d, 0.0, response.internal_d - state.load * system.load_d)
     spring_d = 0.0 if system.stay_d is None else -system.stay * (system.stay_d @ state.u_d) * system.stay_d
+    tip, end = openings(specimen, point)
     slopes = [face_slope(arm, state.u_d) for arm in specimen.arms]
     return {
         "opening": point.opening,
@@ -58,7 +59,8 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         "external_work": point.external_work,
         "newton_iterations": point.iterations,
         "load_slope": point.slope,
-        "tip_opening": tip_opening(specimen, point),
+        "tip_opening": tip,
+        "end_opening": end,
         "face_slope_top": slopes[0],
         "face_slope_bottom": slopes[1] if len(slopes) > 1 else -slopes[0],
         "face_energy": specimen.copies * sum(face_energy(arm, state.u_d, system.kinematics) for arm in specimen.arms),
@@ -85,9 +87,10 @@ def crack_length(specimen: Specimen, k_q: np.ndarray) -> float:
     return float(X[last] + (X[last + 1] - X[last]) * (k[last] - g_u) / (k[last] - k[last + 1]))
 
 
-def tip_opening(specimen: Specimen, point: Point) -> float:
-    """Gap at the end of the precrack."""
-    return float(contact(specimen.probe, point.state.u_d, pair(specimen.probe)).g_q[0])
+def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
+    """Gaps at the end of the precrack and at the far end of the interface."""
+    g_q = contact(specimen.probe, point.state.u_d, pair(specimen.probe)).g_q
+    return float(g_q[0]), float(g_q[-1])
 
 
 def face_slope(arm: Arm, u_d: np.ndarray) -> float:

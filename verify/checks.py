@@ -61,15 +61,26 @@ def j_deviation(scene: Scene, steps: Steps) -> float | None:
 
     J w = load (|s_top| + |s_bottom|) - w sum over the faces of the integral of W dY, with s the mean slope du_y/dX of
     the loaded face; it equals the area under the law up to the opening at the tip of the precrack (Rice 1968, J. Appl.
-    Mech. 35, with dead tractions on the faces). With damage it holds while the interface loads, not while it unloads.
+    Mech. 35, with dead tractions on the faces), less the area up to the gap at the far end, which a short ligament has
+    as well. With damage it holds while the interface loads, not while it unloads.
     """
     if not _has(steps, "face_slope_top", "face_slope_bottom", "face_energy", "tip_opening"):
         return None
     slopes = np.abs(steps["face_slope_top"]) + np.abs(steps["face_slope_bottom"])
     J = steps["load"] * slopes / scene.specimen.width - steps["face_energy"]
-    area = law_of(scene).area(steps["tip_opening"])
+    law = law_of(scene)
+    area = law.area(steps["tip_opening"]) - law.area(steps.get("end_opening", np.zeros(J.size)))
     valid = loading(steps) if scene.effects.irreversible else np.ones(J.size, dtype=bool)
-    return _worst((J - area)[valid] / scene.interface.toughness)
+    return _worst((J - area)[valid & far_from_end(scene, steps)] / scene.interface.toughness)
+
+
+def far_from_end(scene: Scene, steps: Steps) -> np.ndarray:
+    """Steps before the crack feels the far end: its contact holds less than a hundredth of G_Ic; bool (n_steps,).
+
+    After that the specimen turns about its end, on a spot of contact smaller than an element.
+    """
+    end = steps.get("end_opening", np.zeros(steps["opening"].size))
+    return np.abs(law_of(scene).area(end)) <= 0.01 * scene.interface.toughness
 
 
 def loading(steps: Steps) -> np.ndarray:
@@ -110,11 +121,14 @@ def support_forces(scene: Scene, steps: Steps) -> float | None:
 
 
 def dissipation_gap(scene: Scene, steps: Steps) -> float | None:
-    """|dissipated / (G_Ic w new crack) - 1| from the first growth to the end; none for less than five arm thicknesses.
+    """|dissipated / (G_Ic w new crack) - 1| from the first growth on; none for less than five arm thicknesses.
 
     Counted from the first open point on, when a whole process zone is already under way: it travels with the crack and
     drops out of the difference, but for its slow change of length and the distance of the points that see the crack.
+    It is counted until the zone reaches the far end.
     """
+    before = far_from_end(scene, steps)
+    steps = {name: column[before] for name, column in steps.items()}
     crack = np.maximum.accumulate(steps["crack_length"])
     grown = np.flatnonzero(crack > scene.specimen.precrack)
     if not scene.effects.irreversible or not grown.size:

@@ -26,6 +26,7 @@ CURVE_COLUMNS = (
 EVIDENCE_COLUMNS = (
     "load_slope",  # d load / d opening of the path at this point, exact (bordered system)
     "tip_opening",  # normal gap at the end of the precrack
+    "end_opening",  # and at the far end of the interface
     "face_slope_top",  # mean of du_y/dX over the loaded face, signed
     "face_slope_bottom",
     "face_energy",  # sum over the loaded faces of the integral of W dY, per unit width

@@ -60,11 +60,13 @@ def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None
         "crack_length": h * max([m.precrack, *field.x[1:][kind == OPEN]]),
         "stored_energy": energies["bulk"] + energies["cohesive"] + energies["contact"],
         "dissipated_energy": energies["dissipated"],
-        "external_work": before["external_work"] + step / 2.0 * (before["load"] + load)
+        "external_work": before["external_work"]
+        + step / 2.0 * (before["load"] + load)
         + step**2 / 12.0 * (before["load_slope"] - slope),
         "newton_iterations": float(state.iterations),
         "load_slope": slope,
         "tip_opening": 2.0 * h * float(field.at(np.array([m.precrack]))[0, V]),
+        "end_opening": 2.0 * h * float(field.at(np.array([m.length]))[0, V]),
         "face_slope_top": rate,
         "face_slope_bottom": -rate,
         "face_energy": 2.0 * float(m.arm.energy(first)[0]) * units.force / units.width,
@@ -76,9 +78,25 @@ def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None
 
 
 def _unloaded(m: Model, units: Units, slope: float) -> dict[str, float]:
-    names = ("opening", "load", "crack_length", "stored_energy", "dissipated_energy", "external_work",
-             "newton_iterations", "load_slope", "tip_opening", "face_slope_top", "face_slope_bottom", "face_energy",
-             "interface_force", "bulk_energy", "cohesive_energy", "contact_energy")
+    names = (
+        "opening",
+        "load",
+        "crack_length",
+        "stored_energy",
+        "dissipated_energy",
+        "external_work",
+        "newton_iterations",
+        "load_slope",
+        "tip_opening",
+        "end_opening",
+        "face_slope_top",
+        "face_slope_bottom",
+        "face_energy",
+        "interface_force",
+        "bulk_energy",
+        "cohesive_energy",
+        "contact_energy",
+    )
     return {**dict.fromkeys(names, 0.0), "crack_length": m.precrack * units.h, "load_slope": slope}
 
 
