@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from iga.dcb import Problem, build
 from iga.extraction import Mesh
@@ -23,15 +25,17 @@ def position(surface, pairing, y):
     return np.einsum("qb,qbi->qi", r, surface.bezier_points(y)[pairing.c_q])
 
 
-@pytest.mark.parametrize("refine", [0, 4])
-def test_closest_points_on_a_circle_lie_on_the_ray_from_its_centre(refine, rng):
-    mesh = quarter_annulus(1.0, 2.0, refine)
+ARCS = [quarter_annulus(1.0, 2.0, refine) for refine in (0, 4)]
+
+
+@given(st.sampled_from(ARCS), st.floats(0.02, np.pi / 2 - 0.02), st.floats(0.8, 6.0))
+def test_closest_points_on_a_circle_lie_on_the_ray_from_its_centre(mesh, angle, radius):
+    """From inside and outside of the exact circle; the gap along the normal is the difference of the radii."""
     arc = surface(mesh, mesh.chains["top"], 0)
-    angle = rng.uniform(0.05, np.pi / 2 - 0.05, 40)
-    x = rng.uniform(1.2, 4.0, 40)[:, None] * np.stack([np.cos(angle), np.sin(angle)], -1)
-    pairing = project(arc, x, mesh.P_AI)
+    ray = np.array([[np.cos(angle), np.sin(angle)]])
+    pairing = project(arc, radius * ray, mesh.P_AI)
     assert np.all(pairing.on_q)
-    assert np.max(np.abs(position(arc, pairing, mesh.P_AI) - 2.0 * x / np.linalg.norm(x, axis=1)[:, None])) < 1e-12
+    assert np.max(np.abs(position(arc, pairing, mesh.P_AI) - 2.0 * ray)) < 1e-11
 
 
 def test_points_beyond_the_ends_are_marked_and_held_at_the_end():
