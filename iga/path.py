@@ -1,8 +1,4 @@
-"""The equilibrium path: one bordered system, a control equation, Newton with line search, and step control.
-
-Unknowns are the displacements and the load. Equilibrium ``internal(u) = load f`` is bordered by one scalar control
-equation; one factorisation serves both right-hand sides. A further control is one more function like
-`opening_control`.
+"""The equilibrium path: tangent predictor, choice of the control, step length, programme.
 
 While damage grows the opening of the cohesive front is prescribed, so that the path is followed through snap-backs;
 otherwise the opening of the specimen is.
@@ -10,36 +6,17 @@ otherwise the opening of the specimen is.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from iga.banded import BandLU
+from iga.newton import DEFAULT, Control, Newton, equilibrium, gap_control, opening_control
 from iga.quadrature import gauss
-from iga.system import Phase, Response, State, System, factorise, respond, rounding, untimed
-
-#: Value of a control at a state with its response, and its gradient with respect to u (n_dof,).
-Control = Callable[[State, Response], tuple[float, np.ndarray]]
-
+from iga.system import Phase, Response, State, System, factorise, respond, untimed
 
 #: Attempts at the contact of a tangent that leaves a state, and the gap, in units of g_max, that counts as none.
 CONTACT, NO_GAP = 30, 1e-6
-
-
-@dataclass(frozen=True)
-class Newton:
-    """Tolerance on the residual relative to the forces in play, and limits.
-
-    Far ahead of a crack the gaps alternate in sign while they decay below rounding: deciding there anew in every
-    iteration sets penalty against cohesion for ever. So contact is settled once the residual is below ``settle``; what
-    a point could be wrong by is then below that, too.
-    """
-
-    tolerance: float = 5e-12
-    settle: float = 1e-8
-    iterations: int = 25
-    halvings: int = 5
 
 
 @dataclass(frozen=True)
@@ -69,24 +46,6 @@ class End:
     rejected: int
 
 
-def opening_control(system: System) -> Control:
-    """Mean opening of the loaded faces."""
-
-    def control(state: State, response: Response) -> tuple[float, np.ndarray]:
-        return float(system.load_d @ state.u_d), system.load_d
-
-    return control
-
-
-def gap_control(system: System, point: int) -> Control:
-    """Gap at one quadrature point of the interface."""
-
-    def control(state: State, response: Response) -> tuple[float, np.ndarray]:
-        return float(response.contact.g_q[point]), response.contact.row(point, system.n_dof)
-
-    return control
-
-
 def front(system: System, point: Point) -> int | None:
     """The most open quadrature point whose damage is growing: the front of the crack."""
     law, g_q = system.interface.law, point.response.contact.g_q
@@ -97,7 +56,7 @@ def front(system: System, point: Point) -> int | None:
 
 
 def follow(
-    system: System, programme: Sequence[float], steps: int, newton: Newton = Newton(), phase: Phase = untimed
+    system: System, programme: Sequence[float], steps: int, newton: Newton = DEFAULT, phase: Phase = untimed
 ) -> Iterator[Point | End]:
     """Walk through a programme of openings; yields every converged `Point` and, last, the `End`.
 
@@ -180,29 +139,17 @@ def _departing(system: System, state: State, direction: float, phase: Phase) -> 
 def _advance(
     system: System, point: Point, control: Control, change: float, newton: Newton, phase: Phase
 ) -> Point | None:
-    """One step by Newton from the tangent predictor, or None; nothing is committed before it has converged."""
+    """One step from the tangent predictor, or None; nothing is committed before it has converged."""
     value, a_d = control(point.state, point.response)
-    target = value + change
     d_opening = change / float(a_d @ point.du_d)
     old = point.state
     trial = replace(old, u_d=old.u_d + d_opening * point.du_d, load=old.load + d_opening * point.slope)
-    trial, response, norm = _evaluate(system, trial, True, phase)
-    residuals = [norm]
-    while not _balanced(system, trial, response, norm, newton) or not _met(
-        control(trial, response)[0], target, change, newton.tolerance
-    ):
-        if len(residuals) > newton.iterations or not np.isfinite(norm):
-            return None
-        with phase("factor"):
-            lu = factorise(response)
-        if lu is None:
-            return None
-        with phase("solve"):
-            du_d, d_load = _correction(system, trial, response, lu, control, target)
-        trial, response, norm = _search(system, trial, du_d, d_load, norm, newton, phase)
-        residuals.append(norm)
+    found = equilibrium(system, trial, control, value + change, change, newton, phase)
+    if found is None:
+        return None
+    trial, response, residuals = found
     state = replace(trial, k_q=response.k_q, scale=max(old.scale, response.scale))
-    reached = _point(system, state, response, tuple(residuals), phase)
+    reached = _point(system, state, response, residuals, phase)
     if reached is None:
         return None
     rates = (1.0 / float(a_d @ point.du_d), 1.0 / float(control(trial, response)[1] @ reached.du_d))
@@ -225,58 +172,6 @@ def _work(start: Point, end: Point, change: float, rates: tuple[float, float]) -
     load = np.array([start.state.load, end.state.load]) @ values + d_opening * [start.slope, end.slope] @ slopes
     d_opening_ds = np.array([start.opening, end.opening]) @ d_values + d_opening @ d_slopes
     return float(np.sum(w * load * d_opening_ds))
-
-
-def _balanced(system: System, trial: State, response: Response, norm: float, newton: Newton) -> bool:
-    """Below the tolerance, or below what rounding leaves where elements are so thin that this is more."""
-    if norm > newton.settle:
-        return False
-    return norm <= newton.tolerance or norm * response.scale <= rounding(system, trial.u_d)
-
-
-def _met(value: float, target: float, change: float, tolerance: float) -> bool:
-    return abs(value - target) <= max(1e-6 * abs(change), tolerance * abs(target))
-
-
-def _evaluate(system: System, trial: State, decide: bool, phase: Phase) -> tuple[State, Response, float]:
-    """Response to a trial state, and that state with the contact it found, from which the next search starts."""
-    with phase("assembly"):
-        response = respond(system, trial, decide)
-    found = replace(trial, pairing=response.contact.pairing, closed_q=response.closed_q)
-    return found, response, residual_norm(system, trial.load, response)
-
-
-def residual_norm(system: System, load: float, response: Response) -> float:
-    """Norm of the residual of the free unknowns relative to the forces that the elements hold against each other."""
-    r_d = np.where(system.free_d, response.internal_d - load * system.load_d, 0.0)
-    return float(np.linalg.norm(r_d)) / (response.scale or 1.0)
-
-
-def _correction(
-    system: System, trial: State, response: Response, lu: BandLU, control: Control, target: float
-) -> tuple[np.ndarray, float]:
-    """Bordered step: ``du = v + z d_load`` with K v = -r, K z = f, and d_load from the linearised control."""
-    residual_d = response.internal_d - trial.load * system.load_d
-    v, z = lu.solve(np.stack([-residual_d, system.load_d], -1)).T
-    value, a_d = control(trial, response)
-    d_load = (target - value - a_d @ v) / (a_d @ z)
-    return v + d_load * z, float(d_load)
-
-
-def _search(
-    system: System, trial: State, du_d: np.ndarray, d_load: float, norm: float, newton: Newton, phase: Phase
-) -> tuple[State, Response, float]:
-    """Full Newton step, or the best of a few halved ones where the full one makes the residual grow."""
-    best = None
-    for halving in range(newton.halvings + 1):
-        fraction = 0.5**halving
-        candidate = replace(trial, u_d=trial.u_d + fraction * du_d, load=trial.load + fraction * d_load)
-        candidate, response, reached = _evaluate(system, candidate, norm > newton.settle, phase)
-        if best is None or reached < best[2]:
-            best = (candidate, response, reached)
-        if reached < norm:
-            break
-    return best
 
 
 def _point(

@@ -7,7 +7,8 @@ import pytest
 
 from iga.cohesive import BilinearLaw
 from iga.dcb import Problem, build, solve
-from iga.path import Newton, Point, follow
+from iga.newton import Newton
+from iga.path import Point, follow
 
 E, NU = 120e3, 0.2
 CZM1 = Problem(
