@@ -15,8 +15,8 @@ from iga.extraction import SIDES, Chain, ElementBlock, Mesh
 class BlockBasis:
     """Basis of one block of elements at the same parametric points of each.
 
-    ``N_eqa`` (n_e, n_q, n_a), ``dN_eqaI`` (n_e, n_q, n_a, 2) reference gradients, ``dV_eq`` (n_e, n_q) area (or, on a
-    side, length) that each point stands for, ``X_eqI`` (n_e, n_q, 2) reference positions, ``conn_ea`` (n_e, n_a)
+    ``N_eqa`` (n_e, n_q, n_a), ``dN_eqaI`` (n_e, n_q, n_a, 2) reference gradients, ``dV_eq`` (n_e, n_q) volume (or, on
+    a side, length) that each point stands for, ``X_eqI`` (n_e, n_q, 2) reference positions, ``conn_ea`` (n_e, n_a)
     control points.
     """
 
@@ -27,10 +27,17 @@ class BlockBasis:
     X_eqI: np.ndarray
 
     @cached_property
-    def dN_ea_qI(self) -> np.ndarray:
-        """Gradients as the left factor (n_e, n_a, 2 n_q) of one matrix product an element."""
+    def dN_e_qI_a(self) -> np.ndarray:
+        """Gradients as the left factor (n_e, 2 n_q, n_a) of one matrix product an element, with its displacements."""
         n_e, n_q, n_a, _ = self.dN_eqaI.shape
-        return np.ascontiguousarray(self.dN_eqaI.transpose(0, 2, 1, 3)).reshape(n_e, n_a, n_q * 2)
+        return np.ascontiguousarray(self.dN_eqaI.swapaxes(2, 3)).reshape(n_e, n_q * 2, n_a)
+
+    @cached_property
+    def dNdV_ea_qI(self) -> np.ndarray:
+        """Gradients times volume as the left factor (n_e, n_a, 2 n_q) of one product an element, with stresses."""
+        n_e, n_q, n_a, _ = self.dN_eqaI.shape
+        dNdV_eqaI = self.dN_eqaI * self.dV_eq[..., None, None]
+        return np.ascontiguousarray(dNdV_eqaI.transpose(0, 2, 1, 3)).reshape(n_e, n_a, n_q * 2)
 
     @cached_property
     def dN_eqJb(self) -> np.ndarray:
@@ -38,8 +45,10 @@ class BlockBasis:
         return np.ascontiguousarray(self.dN_eqaI.swapaxes(2, 3))
 
 
-def block_basis(mesh: Mesh, block: ElementBlock, points_q: np.ndarray, weights_q: np.ndarray) -> BlockBasis:
-    """Basis of a whole block at the points (n_q, 2) of a rule on the unit square; ``dV`` are areas.
+def block_basis(
+    mesh: Mesh, block: ElementBlock, points_q: np.ndarray, weights_q: np.ndarray, width: float = 1.0
+) -> BlockBasis:
+    """Basis of a whole block at the points (n_q, 2) of a rule on the unit square; ``dV`` are areas times ``width``.
 
     Raises
     ------
@@ -54,7 +63,7 @@ def block_basis(mesh: Mesh, block: ElementBlock, points_q: np.ndarray, weights_q
             f"element {int(np.argmin(det.min(1)))} is turned inside out: its smallest Jacobian is {det.min():.3g}"
         )
     dN = np.einsum("eqas,eqsI->eqaI", dN_param, np.linalg.inv(J_eqIs))
-    return BlockBasis(block.conn_ea, N, dN, det * weights_q, np.einsum("eqa,eaI->eqI", N, P_eaI))
+    return BlockBasis(block.conn_ea, N, dN, det * (weights_q * width), np.einsum("eqa,eaI->eqI", N, P_eaI))
 
 
 def chain_basis(mesh: Mesh, chain: Chain, points_q: np.ndarray, weights_q: np.ndarray) -> tuple[BlockBasis, ...]:

@@ -14,7 +14,7 @@ PAIRS = ((0, 0), (0, 1), (1, 1))
 
 def gradient(basis: BlockBasis, u_Ai: np.ndarray) -> np.ndarray:
     """Displacement gradient H_iIeq (2, 2, n_e, n_q), components first: work on one runs straight through memory."""
-    H_eqIi = basis.dN_ea_qI.swapaxes(1, 2) @ relative(basis.conn_ea, u_Ai)
+    H_eqIi = basis.dN_e_qI_a @ relative(basis.conn_ea, u_Ai)
     n_e, n_q = basis.dV_eq.shape
     return np.ascontiguousarray(H_eqIi.reshape(n_e, n_q, 2, 2).transpose(3, 2, 0, 1))
 
@@ -28,14 +28,14 @@ def relative(conn_ea: np.ndarray, u_Ai: np.ndarray) -> np.ndarray:
     return u_eai - u_eai[:, :1]
 
 
-def element_forces(basis: BlockBasis, P_iIeq: np.ndarray, width: float) -> np.ndarray:
+def element_forces(basis: BlockBasis, P_iIeq: np.ndarray) -> np.ndarray:
     """Internal forces ``f_eai = int P_iI dN_a/dX_I dV`` (n_e, n_a, 2)."""
     n_e, n_q = basis.dV_eq.shape
-    P_eqIi = (P_iIeq * (width * basis.dV_eq)).transpose(2, 3, 1, 0)
-    return basis.dN_ea_qI @ P_eqIi.reshape(n_e, n_q * 2, 2)
+    P_eqIi = P_iIeq.transpose(2, 3, 1, 0)
+    return basis.dNdV_ea_qI @ P_eqIi.reshape(n_e, n_q * 2, 2)
 
 
-def element_stiffness(basis: BlockBasis, A_iIjJeq: np.ndarray, width: float) -> np.ndarray:
+def element_stiffness(basis: BlockBasis, A_iIjJeq: np.ndarray) -> np.ndarray:
     """Stiffness ``K_e(p)ab = int dN_a/dX_I A_iIjJ dN_b/dX_J dV`` (n_e, n_a, 3, n_a) for the three `PAIRS` p = (i, j).
 
     One matrix product an element; the block (1, 0) is the transpose of (0, 1).
@@ -43,10 +43,10 @@ def element_stiffness(basis: BlockBasis, A_iIjJeq: np.ndarray, width: float) -> 
     n_e, n_q = basis.dV_eq.shape
     n_a = basis.conn_ea.shape[1]
     i, j = np.array(PAIRS).T
-    A_pIJeq = A_iIjJeq[i, :, j] * (width * basis.dV_eq)  # (3, I, J, n_e, n_q)
+    A_pIJeq = A_iIjJeq[i, :, j]  # (3, I, J, n_e, n_q)
     A_eqIpJ = np.ascontiguousarray(A_pIJeq.transpose(3, 4, 1, 0, 2)).reshape(n_e, n_q, 6, 2)
     AdN = A_eqIpJ @ basis.dN_eqJb
-    return (basis.dN_ea_qI @ AdN.reshape(n_e, n_q * 2, 3 * n_a)).reshape(n_e, n_a, 3, n_a)
+    return (basis.dNdV_ea_qI @ AdN.reshape(n_e, n_q * 2, 3 * n_a)).reshape(n_e, n_a, 3, n_a)
 
 
 def stiffness_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -82,6 +82,6 @@ def full_matrices(K_eapb: np.ndarray) -> np.ndarray:
     return K.reshape(n_e, 2 * n_a, 2 * n_a)
 
 
-def energy(basis: BlockBasis, W_eq: np.ndarray, width: float) -> float:
+def energy(basis: BlockBasis, W_eq: np.ndarray) -> float:
     """Integral of an energy density (n_e, n_q) over the bulk."""
-    return float(np.sum(W_eq * basis.dV_eq)) * width
+    return float(np.sum(W_eq * basis.dV_eq))

@@ -123,8 +123,12 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
         first = np.cumsum([0] + [len(mesh.P_AI) for mesh in meshes])
         P_AI = np.concatenate([mesh.P_AI for mesh in meshes])
         D = orthotropic(problem.E1, problem.E2, problem.G12, problem.nu12, problem.plane)
-        arms = tuple(_arm(mesh, start, D) for mesh, start in zip(meshes, first[:-1], strict=True))
+        # a mirror image that is not modelled counts in the width, so that forces and energies are those of the whole
         copies = 2.0 if problem.symmetry else 1.0
+        width = copies * problem.width
+        # p points keep the order (Ciarlet 1978, sec. 4.1); on C^0 elements they would leave spurious modes
+        along = max(problem.degree, 2) if problem.basis == "nurbs" else problem.degree + 1
+        arms = tuple(_arm(mesh, start, D, width, along) for mesh, start in zip(meshes, first[:-1], strict=True))
         n_dof = 2 * len(P_AI)
         mean = [mean_row(arm.face, 1, n_dof) for arm in arms]
         load_d = 2.0 * mean[0] if problem.symmetry else mean[0] - mean[1]
@@ -132,7 +136,6 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             solids=joined([solid for arm in arms for solid in arm.solids]),
             interface=_interface(problem, meshes, first),
             kinematics=problem.kinematics,
-            width=copies * problem.width,
             load_d=load_d,
             free_d=_free(problem, P_AI, first),
             x_d=np.repeat(P_AI[:, 0], 2),
@@ -193,12 +196,12 @@ def by_way_of(programme: Sequence[float], stops: Sequence[float]) -> tuple[float
     return tuple(way)
 
 
-def _arm(mesh: Mesh, first: int, D: np.ndarray) -> Arm:
-    """Basis of one arm, numbered from ``first`` on: (p+1)^2 Gauss points in the bulk and p+1 on the loaded face."""
+def _arm(mesh: Mesh, first: int, D: np.ndarray, width: float, along: int) -> Arm:
+    """Basis of one arm, numbered from ``first`` on; ``along`` x (p+1) Gauss points an element, p+1 on the face."""
     solids = []
     for block in mesh.blocks:
-        rules = [gauss(degree + 1) for degree in block.degrees]
-        solids.append(Solid(_shifted(block_basis(mesh, block, *square(*rules)), first), D))
+        rules = gauss(along), gauss(block.degrees[1] + 1)
+        solids.append(Solid(_shifted(block_basis(mesh, block, *square(*rules), width), first), D))
     face = chain_basis(mesh, mesh.chains["left"], *gauss(max(block.degrees[1] for block in mesh.blocks) + 1))
     return Arm(tuple(solids), tuple(_shifted(basis, first) for basis in face), D)
 

@@ -30,7 +30,7 @@ def nearest_samples(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, sample
 
 
 def closest_points(
-    surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing, tolerance: float = 1e-7, iterations: int = 60
+    surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing, tolerance: float = 1e-6, iterations: int = 60
 ) -> Pairing:
     """Project points on the surface: ``(x - y(xi)) . y'(xi) = 0`` by Newton, from the pairing before.
 

@@ -100,9 +100,7 @@ class System:
     """All that stays the same during a run.
 
     ``load_d`` (n_dof,) is the load vector for a unit resultant and, being the mean over the loaded faces, at once the
-    row that measures the opening. ``x_d`` (n_dof,) is the coordinate along the specimen, used for numbering. ``width``
-    is that of the bulk; where a mirror image is not modelled it counts twice, so that forces and energies are those of
-    the whole.
+    row that measures the opening. ``x_d`` (n_dof,) is the coordinate along the specimen, used for numbering.
 
     An interface without friction lets two bodies turn together about their supports. A spring of stiffness ``stay`` on
     the displacement ``stay_d . u`` takes that freedom. It measures how far the two loaded faces are out of line, so
@@ -112,7 +110,6 @@ class System:
     solids: tuple[Solid, ...]
     interface: Interface
     kinematics: str
-    width: float
     load_d: np.ndarray
     free_d: np.ndarray
     x_d: np.ndarray
@@ -164,9 +161,7 @@ class System:
     def unloaded_stiffness(self) -> tuple[np.ndarray, ...]:
         """Element stiffness (n_e, n_a, 3, n_a) of each block before anything moves; linear: for good."""
         zero_Ai = np.zeros((self.n_dof // 2, 2))
-        return tuple(
-            element_stiffness(solid.basis, _bulk(self, solid, zero_Ai)[1], self.width) for solid in self.solids
-        )
+        return tuple(element_stiffness(solid.basis, _bulk(self, solid, zero_Ai)[1]) for solid in self.solids)
 
     @cached_property
     def linear_matrices(self) -> tuple[np.ndarray, ...]:
@@ -266,11 +261,11 @@ def _finite_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, fl
     internal_d, square, stored, parts = np.zeros(system.n_dof), 0.0, 0.0, []
     for solid, d in zip(system.solids, system.element_dofs, strict=True):
         P, A, W = _bulk(system, solid, u_d.reshape(-1, 2))
-        f = element_forces(solid.basis, P, system.width)
+        f = element_forces(solid.basis, P)
         internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
         square += float(np.sum(f * f))
-        stored += energy(solid.basis, W, system.width)
-        parts.append(element_stiffness(solid.basis, A, system.width))
+        stored += energy(solid.basis, W)
+        parts.append(element_stiffness(solid.basis, A))
     return internal_d, square**0.5, stored, parts
 
 

@@ -90,7 +90,7 @@ def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: s
 
 def _read(path: Path, source: str) -> dict[str, Any]:
     try:
-        text = path.read_bytes().decode()
+        text = path.read_bytes().decode("utf-8-sig")  # some editors begin with a byte order mark
     except FileNotFoundError:
         known = packaged_scenes()
         hint = suggestion(source, known) or f"the packaged scenes are {', '.join(known)}"

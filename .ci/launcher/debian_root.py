@@ -80,6 +80,13 @@ def build(root: Path) -> None:
     say(f"the root is ready after {time.monotonic() - start:.0f} s")
 
 
+def own_mounts() -> list[str]:
+    """Words that give a command mounts of its own, which go when it goes, even when it is killed in the middle."""
+    words = ["unshare", "--mount"]
+    works = shutil.which(words[0]) and subprocess.run([*words, "true"], capture_output=True).returncode == 0
+    return words if works else []
+
+
 def recipe(part: Path) -> list[str]:
     """The mmdebstrap command; an ordinary user unpacks a tar file, so that all files are his own to remove."""
     words = ["mmdebstrap", "--variant=apt", "--include=" + ",".join(PACKAGES)]
@@ -88,7 +95,7 @@ def recipe(part: Path) -> list[str]:
         words.append('--aptopt=Acquire::Check-Valid-Until "false"')  # a mirror's copy may be older than its validity
     mirror = [os.environ["DEBOND_MIRROR"]] if os.environ.get("DEBOND_MIRROR") else []
     if os.geteuid() == 0:
-        return [*words, suite(), str(part), *mirror]
+        return [*own_mounts(), *words, suite(), str(part), *mirror]
     part.mkdir()
     make = shlex.join([*words, "--mode=unshare", "--format=tar", suite(), "-", *mirror])
     unpack = shlex.join(["tar", "--extract", "--no-same-owner", "--exclude=./dev/*", f"--directory={part}"])

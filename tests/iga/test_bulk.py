@@ -90,7 +90,7 @@ def test_patch(kind, degree, kinematics, rng):
     P, _, _ = KINEMATICS[kinematics](D_GENERIC, gradient(basis, u))
     assert np.ptp(P, axis=(2, 3)).max() < 1e-10 * np.abs(P).max()
     f = np.zeros_like(u)
-    np.add.at(f, basis.conn_ea, element_forces(basis, P, 1.0))
+    np.add.at(f, basis.conn_ea, element_forces(basis, P))
     assert np.abs(f[inside]).max() < 1e-10 * np.abs(f).max()
 
 
@@ -101,9 +101,9 @@ def test_element_stiffness_is_the_derivative_of_the_element_forces(kind, rng):
     u, v, h = 0.1 * rng.standard_normal(mesh.P_AI.shape), rng.standard_normal(mesh.P_AI.shape), 1e-6
 
     def forces(u):
-        return element_forces(basis, finite_strain(D_GENERIC, gradient(basis, u))[0], 1.5)
+        return element_forces(basis, finite_strain(D_GENERIC, gradient(basis, u))[0])
 
-    K = element_stiffness(basis, finite_strain(D_GENERIC, gradient(basis, u))[1], 1.5)
+    K = element_stiffness(basis, finite_strain(D_GENERIC, gradient(basis, u))[1])
     d = dofs(basis.conn_ea)
     expected = ((forces(u + h * v) - forces(u - h * v)) / (2 * h)).reshape(len(d), -1)
     full = full_matrices(K)
@@ -140,7 +140,7 @@ def manufactured_error(kind: str, degree: int, elements: int) -> tuple[float, in
         -1,
     )
     A = KINEMATICS["linear"](D, np.zeros((2, 2, *basis.dV_eq.shape)))[1]
-    K, d, n = full_matrices(element_stiffness(basis, A, 1.0)), dofs(basis.conn_ea), mesh.P_AI.size
+    K, d, n = full_matrices(element_stiffness(basis, A)), dofs(basis.conn_ea), mesh.P_AI.size
     matrix, load = np.zeros((n, n)), np.zeros(n)
     np.add.at(matrix, (d[:, :, None], d[:, None, :]), K)
     np.add.at(load, d, np.einsum("eqa,eqi,eq->eai", basis.N_eqa, body, basis.dV_eq).reshape(d.shape))
