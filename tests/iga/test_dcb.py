@@ -168,6 +168,33 @@ def test_closing_altogether_and_opening_again(kinematics):
     assert load[again] == pytest.approx(load[top], rel=1e-6)
 
 
+def test_external_work_is_integrated_to_fourth_order():
+    """Nothing is lost while the interface stays elastic: twice the steps, a sixteenth of the gap in the ledger."""
+
+    def gap(steps: int) -> float:
+        last = solve(replace(SHORT, strength=1e3, toughness=1e2, ductility=1.01, opening=(2.0,), steps=steps)).rows[-1]
+        assert last["dissipated_energy"] == 0.0
+        return abs(last["external_work"] / last["stored_energy"] - 1.0)
+
+    gaps = [gap(4), gap(8)]
+    print(f"ledger gaps {gaps}")
+    assert gaps[0] < 1e-4 and gaps[1] < gaps[0] / 8.0
+
+
+def test_the_way_back_is_known_at_the_turning_point():
+    """Linear bulk, interface on its secants: the predictor is the solution, and the work given back is exact."""
+    solution = solve(replace(SHORT, kinematics="linear", contact=False, opening=(0.6, 0.3), steps=40))
+    top = int(np.argmax(column(solution, "opening")))
+    assert np.all(column(solution, "newton_iterations")[top + 1 :] == 1)
+    gap = column(solution, "external_work") - column(solution, "stored_energy") - column(solution, "dissipated_energy")
+    assert abs(gap[-1] - gap[top]) < 1e-9 * solution.rows[top]["external_work"]
+
+
+def test_a_stiff_penalty_does_not_set_contact_against_cohesion_for_ever():
+    """Far ahead of the crack the gaps alternate in sign below rounding."""
+    assert solve(replace(SHORT, penalty=1e7, opening=(0.1,), steps=4)).status == "complete"
+
+
 def test_no_row_comes_from_a_step_that_has_not_converged():
     points = [p for p in follow(build(SHORT).system, (0.8,), 30) if isinstance(p, Point)]
     assert all(p.residuals[-1] <= Newton().tolerance for p in points[1:])
