@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from verify import __version__
 from verify.checks import run_checks
 from verify.effects import simulated
 from verify.folder import CurveWriter, write_fields, write_json
@@ -101,8 +102,8 @@ def mpi_size() -> int:
 
 def versions() -> dict[str, str]:
     """Python and those of the packages that are installed."""
-    found = {"python": platform.python_version()}
-    for name in ("debond", "numpy", "scipy", "pydantic", "fenics-dolfinx", "petsc4py", "mpi4py"):
+    found = {"debond": __version__, "python": platform.python_version()}
+    for name in ("numpy", "scipy", "pydantic", "fenics-dolfinx", "petsc4py", "mpi4py"):
         try:
             found[name] = version(name)
         except PackageNotFoundError:
