@@ -8,6 +8,10 @@ import numpy as np
 from petsc4py import PETSc
 
 
+#: PETSc refuses pivots below 2.2e-14 whatever the units; only zero itself is to be refused.
+ZERO_PIVOT = 1e-300
+
+
 @dataclass(frozen=True)
 class Factorisation:
     """LU of a matrix that keeps its pattern: PETSc's own in serial, MUMPS over several ranks.
@@ -31,6 +35,7 @@ class Factorisation:
         else:
             pc.setFactorSolverType("petsc")
             pc.setFactorOrdering(PETSc.Mat.OrderingType.RCM)
+            pc.setFactorPivot(zeropivot=ZERO_PIVOT)
         x, b = self.matrix.createVecs()
         for name, value in (("ksp", ksp), ("x", x), ("b", b)):
             object.__setattr__(self, name, value)

@@ -54,6 +54,16 @@ def test_run_starts_unloaded_and_ends_at_the_programme(run):
     assert 5.5 < run["crack_length"][-1] < 6.5
 
 
+@pytest.mark.parametrize("unit", [1e-15, 1e9])
+def test_the_unit_of_force_does_not_matter(unit):
+    """Nothing in the solver has a size of its own: the rotation that the supports leave free has no pivot to speak of."""
+    stresses = ("E1", "E2", "G12", "strength", "toughness", "penalty")
+    small = replace(SHORT, kinematics="linear", opening=(0.6,), steps=15)
+    scaled = replace(small, **{name: unit * getattr(small, name) for name in stresses})
+    load = columns(small)["load"]
+    assert np.max(np.abs(columns(scaled)["load"] / unit - load)) < 1e-9 * np.max(load)
+
+
 def test_j_integral_is_the_area_under_the_law(run):
     law = Law(CZM1.strength, CZM1.toughness, CZM1.ductility, CZM1.penalty)
     J = run["load"] * (np.abs(run["face_slope_top"]) + np.abs(run["face_slope_bottom"])) - run["face_energy"]
