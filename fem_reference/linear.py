@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from petsc4py import PETSc
 
-
 #: PETSc refuses pivots below 2.2e-14 whatever the units; only zero itself is to be refused.
 ZERO_PIVOT = 1e-300
 

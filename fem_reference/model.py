@@ -163,9 +163,15 @@ def build_model(problem: Problem, phase: Phase, comm: MPI.Intracomm) -> Model:
         bulk_matrix=bulk_matrix,
         tangent_matrix=tangent_matrix,
         factorisation=Factorisation(tangent_matrix),
-        largest_stiffness=bulk_matrix.getDiagonal().max()[1],
+        largest_stiffness=_largest(bulk_matrix, free_n, comm),
         phase=phase,
     )
+
+
+def _largest(matrix: PETSc.Mat, free_n: np.ndarray, comm: MPI.Intracomm) -> float:
+    """Largest entry on the diagonal of the free unknowns; that of a held one is 1 and no stiffness."""
+    diagonal_n = matrix.getDiagonal().array_r * free_n
+    return comm.allreduce(float(np.max(diagonal_n, initial=0.0)), MPI.MAX)
 
 
 def law_of(problem: Problem) -> Law:

@@ -56,7 +56,7 @@ def test_run_starts_unloaded_and_ends_at_the_programme(run):
 
 @pytest.mark.parametrize("unit", [1e-15, 1e9])
 def test_the_unit_of_force_does_not_matter(unit):
-    """Nothing in the solver has a size of its own: the rotation that the supports leave free has no pivot to speak of."""
+    """Nothing in the solver has a size of its own; the free rotation has no pivot to speak of."""
     stresses = ("E1", "E2", "G12", "strength", "toughness", "penalty")
     small = replace(SHORT, kinematics="linear", opening=(0.6,), steps=15)
     scaled = replace(small, **{name: unit * getattr(small, name) for name in stresses})
