@@ -223,8 +223,8 @@ def test_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 @pytest.mark.parametrize(
     ("line", "word"),
     [
-        ("Temporary failure resolving 'deb.debian.org'", "network"),
-        ("E: Could not connect to deb.debian.org:80, connection timed out", "network"),
+        ("Temporary failure resolving 'mirror.example'", "network"),
+        ("E: Could not connect to mirror.example:80, connection timed out", "network"),
         ("NewConnectionError('Failed to establish a new connection')", "network"),
         ("dpkg: error: failed to write: No space left on device", "disk is full"),
         ("W: GPG error: NO_PUBKEY 6ED0E7B82643E131", "debian-archive-keyring"),
