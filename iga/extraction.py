@@ -38,9 +38,6 @@ class Chain:
     block_c: np.ndarray
     element_c: np.ndarray
 
-    def part(self, keep_c: np.ndarray) -> Chain:
-        return Chain(self.side, self.block_c[keep_c], self.element_c[keep_c])
-
 
 @dataclass(frozen=True)
 class Mesh:
