@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from time import perf_counter
 
-#: Phases in the order of a run. What DOLFINx compiles at run time is part of its "mesh": paid before the first step.
+#: Phases in the order of a run. What DOLFINx compiles at run time is part of its "basis", before the first step.
 PHASES = ("mesh", "basis", "assembly", "factor", "solve")
 
 
