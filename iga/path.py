@@ -25,7 +25,8 @@ class Point:
 
     ``slope`` is d load / d opening and ``du_d`` is du / d opening along the path, from the tangent at this very point;
     ``external_work`` is the integral of the load over the opening along the path.
-    ``residuals`` are the norms that Newton went through, relative to the scale of the forces.
+    ``residuals`` are the norms that Newton went through, relative to the scale of the forces; ``heading`` is the sign
+    of the change of the opening along the path.
     """
 
     state: State
@@ -36,14 +37,19 @@ class Point:
     external_work: float
     iterations: int
     residuals: tuple[float, ...]
+    heading: float = 1.0
 
 
 @dataclass(frozen=True)
 class End:
-    """How a path ended: ``complete`` or ``stopped: <cause and what to do>``, and how many steps were taken back."""
+    """How a path ended: ``complete`` or ``stopped: <cause and what to do>``, and how many steps were taken back.
+
+    ``separated``: the specimen came apart before the programme was over, which is a complete path, too.
+    """
 
     status: str
     rejected: int
+    separated: bool = False
 
 
 def front(system: System, point: Point) -> int | None:

@@ -25,8 +25,10 @@ CURVE_COLUMNS = (
 #: What the checks need besides; a method leaves out what it cannot know.
 EVIDENCE_COLUMNS = (
     "load_slope",  # d load / d opening of the path at this point, exact (bordered system)
+    "heading",  # +1 where the opening grows along the path at this point, -1 where it falls (snap-back, unloading)
     "tip_opening",  # normal gap at the end of the precrack
     "end_opening",  # and at the far end of the interface
+    "damage_front",  # from the loaded end to the foremost point past its strength, g > g_max; at least the precrack
     "face_slope_top",  # mean of du_y/dX over the loaded face, signed
     "face_slope_bottom",
     "face_energy",  # sum over the loaded faces of the integral of W dY, per unit width
@@ -65,12 +67,16 @@ class Result:
     """A run, as far as it came.
 
     ``steps`` maps a column name to an array (n_steps,); it holds CURVE_COLUMNS and those EVIDENCE_COLUMNS that the
-    method knows. ``status`` is ``complete`` or ``stopped: <cause and what to do>``.
+    method knows. ``status`` is ``complete`` or ``stopped: <cause and what to do>``. ``ending`` says what else is worth
+    saying of it: "separated at opening 5.2". ``condition`` is the largest condition number (1-norm, estimated) of the
+    tangents that were looked at, 0 where none was.
     """
 
     method: str
     steps: Mapping[str, np.ndarray]
     status: str = "complete"
+    ending: str = ""
+    condition: float = 0.0
     dofs: int = 0
     elements: int = 0
     rejected_steps: int = 0
