@@ -8,6 +8,7 @@ Zavarise 2011).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -22,8 +23,8 @@ class Interface:
 
     ``N_qa`` (n_q, n_a) slave functions at the points, on the control points ``conn_qa``; ``dA_q`` (n_q,) reference area
     (length x width) of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the
-    whole model. ``master`` is None where the partner is the mirror image of the slave in the line through the origin
-    with normal ``mirror_i``: then the gap is twice the distance to it. ``frozen`` keeps the pairing and normals of the
+    whole model. ``master`` is None where the partner is the mirror image of the slave in the straight line that it lies
+    on, with unit normal ``mirror_i``: then the gap is twice the distance to it. ``frozen`` keeps the pairing and normals of the
     reference configuration (linear kinematics): no search is done.
     """
 
@@ -41,9 +42,14 @@ class Interface:
     def points(self) -> int:
         return len(self.dA_q)
 
+    @cached_property
+    def local_AI(self) -> np.ndarray:
+        """Control points seen from one of them: wherever the specimen lies, its coordinates are no larger than it."""
+        return self.P_AI - self.P_AI[0]
+
     def at_slave(self, v_Ai: np.ndarray) -> np.ndarray:
         """A field of the control points (n_A, 2) at the slave points (n_q, 2)."""
-        return np.sum(self.N_qa[..., None] * v_Ai[self.conn_qa], axis=1)
+        return (self.N_qa[:, None] @ v_Ai[self.conn_qa])[:, 0]
 
 
 @dataclass(frozen=True)
@@ -78,8 +84,9 @@ def pair(interface: Interface) -> Pairing | None:
     """Pairing in the reference configuration."""
     if interface.master is None:
         return None
-    start = nearest_samples(interface.master, interface.X_qi, interface.P_AI)
-    return closest_points(interface.master, interface.X_qi, interface.P_AI, start)
+    X_qi = interface.at_slave(interface.local_AI)
+    start = nearest_samples(interface.master, X_qi, interface.local_AI)
+    return closest_points(interface.master, X_qi, interface.local_AI, start)
 
 
 def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Contact:
@@ -87,18 +94,17 @@ def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Con
     if interface.master is None:
         return _mirrored(interface, u_d)
     master, u_Ai = interface.master, u_d.reshape(-1, 2)
-    x_AI = interface.P_AI if interface.frozen else interface.P_AI + u_Ai
-    x_qi = interface.at_slave(x_AI)
-    pairing = guess if interface.frozen else closest_points(master, x_qi, x_AI, guess)
+    x_AI = interface.local_AI if interface.frozen else interface.local_AI + u_Ai
+    pairing = guess if interface.frozen else closest_points(master, interface.at_slave(x_AI), x_AI, guess)
     r0, r1, r2 = master.coefficients(pairing.c_q, pairing.xi_q, 2)
     Q_qbi = master.bezier_points(x_AI)[pairing.c_q]
-    y_qi, t_qi, t_xi_qi = (np.sum(r[..., None] * Q_qbi, axis=1) for r in (r0, r1, r2))
+    t_qi, t_xi_qi = ((r[:, None] @ Q_qbi)[:, 0] for r in (r1, r2))
     n_qi = normal(t_qi, master.outward)
     conn_qa = np.concatenate([interface.conn_qa, master.conn_ca[pairing.c_q]], axis=1)
     D_qa = np.concatenate([interface.N_qa, -master.functions(pairing.c_q, r0)], axis=1)
-    G_qd, g_q = _along(D_qa, n_qi), np.sum((x_qi - y_qi) * n_qi, -1)
+    g_q = np.sum(_jump(interface, D_qa, conn_qa, u_Ai) * n_qi, -1)
+    G_qd = _along(D_qa, n_qi)
     if interface.frozen:
-        g_q = g_q + np.sum(G_qd * u_d[dofs(conn_qa)], -1)
         return Contact(pairing, g_q, n_qi, pairing.on_q, conn_qa, G_qd[:, None])
     moving_qa = np.concatenate([np.zeros_like(interface.N_qa), master.functions(pairing.c_q, r1)], axis=1)
     V_qrd = np.stack([G_qd, _along(D_qa, t_qi), _along(moving_qa, n_qi)], axis=1)
@@ -138,6 +144,17 @@ def stiffness(interface: Interface, contact: Contact, p_q: np.ndarray, dp_q: np.
     return V.swapaxes(1, 2) @ (c_qrs @ V)
 
 
+def rounding(interface: Interface, u_d: np.ndarray, stiffness_q: np.ndarray | None = None) -> float:
+    """Norm of what rounding of the displacements does to the interface forces.
+
+    ``stiffness_q`` (n_q,) is the slope of each point's traction, or the largest that the law has.
+    """
+    if stiffness_q is None:
+        stiffness_q = np.full(interface.points, max(interface.law.penalty, interface.law.stiffness))
+    u_q = np.abs(u_d.reshape(-1, 2)[interface.conn_qa]).max((1, 2))
+    return float(np.finfo(float).eps * np.linalg.norm(stiffness_q * interface.dA_q * u_q))
+
+
 def dofs(conn_qa: np.ndarray) -> np.ndarray:
     """Degrees of freedom (..., 2 n_a) of control points (..., n_a), numbered 2A + i."""
     return (2 * conn_qa[..., None] + np.arange(2)).reshape(*conn_qa.shape[:-1], -1)
@@ -146,8 +163,20 @@ def dofs(conn_qa: np.ndarray) -> np.ndarray:
 def _mirrored(interface: Interface, u_d: np.ndarray) -> Contact:
     n_qi = np.broadcast_to(interface.mirror_i, interface.X_qi.shape)
     G_qd = _along(2.0 * interface.N_qa, n_qi)
-    g_q = 2.0 * interface.X_qi @ interface.mirror_i + np.sum(G_qd * u_d[dofs(interface.conn_qa)], -1)
+    g_q = np.sum(G_qd * u_d[dofs(interface.conn_qa)], -1)
     return Contact(None, g_q, n_qi, np.ones(interface.points, dtype=bool), interface.conn_qa, G_qd[:, None])
+
+
+def _jump(interface: Interface, D_qa: np.ndarray, conn_qa: np.ndarray, u_Ai: np.ndarray) -> np.ndarray:
+    """Slave minus master (n_q, 2), with the rounding of the jump and not of the positions.
+
+    A penalty multiplies every bit that is lost here. So positions and displacements are taken apart, and both from
+    their values at the last control point of a row; the functions D_qa of a row sum to zero.
+    """
+    z_Ai = np.concatenate([interface.local_AI, u_Ai], axis=1)
+    z_qai = z_Ai[conn_qa]
+    jump_qi = (D_qa[:, None] @ (z_qai - z_qai[:, -1:]))[:, 0]
+    return jump_qi[:, :2] + jump_qi[:, 2:]
 
 
 def _along(N_qa: np.ndarray, v_qi: np.ndarray) -> np.ndarray:

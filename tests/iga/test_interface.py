@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from iga.dcb import Problem, build
 from iga.extraction import Mesh
-from iga.interface import contact, dofs, forces, stiffness, traction
+from iga.interface import contact, dofs, forces, pair, rounding, stiffness, traction
 from iga.lagrange import lagrange_rectangle
 from iga.projection import closest_points, nearest_samples
 from iga.surface import surface
@@ -145,6 +145,23 @@ def test_the_gap_does_not_change_when_everything_turns(rng):
     before, after = contact(interface, u.ravel(), start), contact(interface, turned.ravel(), start)
     assert np.max(np.abs(before.g_q - after.g_q)) < 1e-12
     assert np.allclose(before.n_qi @ Q.T, after.n_qi, atol=1e-10)
+
+
+@pytest.mark.parametrize("kinematics", ["finite", "linear"])
+def test_gaps_are_rounded_as_displacements_are_wherever_the_specimen_lies(kinematics, rng):
+    """A penalty of 1e10 makes a traction of every bit lost: tilted, 1e4 away, gaps of 1e-9 keep all their digits."""
+    interface = build(replace(PROBLEM, kinematics=kinematics)).system.interface
+    Q = np.array([[0.8, -0.6], [0.6, 0.8]])
+    moved = replace(interface, P_AI=interface.P_AI @ Q.T + [1e4, -2e4], X_qi=interface.X_qi @ Q.T + [1e4, -2e4])
+    start, u_Ai = pair(moved), np.zeros_like(moved.P_AI)
+    # the control points themselves are rounded, but alike on both sides
+    assert np.max(np.abs(contact(moved, u_Ai.ravel(), start).g_q)) < 1e-16
+    u_Ai[: len(u_Ai) // 2] = 1e-9 * Q[:, 1]
+    touch = contact(moved, u_Ai.ravel(), start)
+    assert np.max(np.abs(touch.g_q - 1e-9)) < 1e-16
+    small = rounding(moved, u_Ai.ravel())
+    assert small == pytest.approx(0.5 * rounding(moved, 2.0 * u_Ai.ravel())) and small > 0.0
+    assert rounding(moved, u_Ai.ravel(), np.zeros(moved.points)) == 0.0
 
 
 def test_interface_forces_are_in_balance_when_meshes_do_not_match(rng):
