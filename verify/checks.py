@@ -34,7 +34,7 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
     """
     j_tolerance = J_TOLERANCE_LAGRANGE if result.method == "lagrange" else J_TOLERANCE
     values: list[tuple[str, Callable[[Scene, Steps], float | None], float, str]] = [
-        ("completed", _missing_part, 1e-9, "The run reached the end of the load programme."),
+        ("completed", _missing_part, 1e-9, "The run reached the end of the load programme, or the specimen separated."),
         ("j-integral", j_deviation, j_tolerance, "The J-integral of the specimen is the area under the law."),
         ("energy-ledger", energy_gap, ENERGY_TOLERANCE, "External work is stored or dissipated, nothing is lost."),
         ("interface-force", interface_gap, BALANCE_TOLERANCE, "The interface tractions carry the load."),
@@ -42,7 +42,11 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
         ("reactions", support_forces, BALANCE_TOLERANCE, "The supports carry nothing."),
         ("dissipation", dissipation_gap, DISSIPATION_TOLERANCE, "A new length of crack costs G_Ic times the width."),
     ]
-    found = ((name, value(scene, result.steps), *rest) for name, value, *rest in values)
+    separated = result.complete and result.ending.startswith("separated")
+    found = (
+        (name, 0.0 if separated and value is _missing_part else value(scene, result.steps), *rest)
+        for name, value, *rest in values
+    )
     return tuple(
         Check(name, subject or result.method, worst, tolerance, "exact", meaning)
         for name, worst, tolerance, meaning in found
@@ -109,7 +113,7 @@ def moment_gap(scene: Scene, steps: Steps) -> float | None:
     """Worst sum of the moments on the upper arm over the moment of the peak load about the tip of the precrack."""
     if not _has(steps, "load_moment", "interface_moment"):
         return None
-    lever = scene.specimen.precrack
+    lever = scene.specimen.free_length
     return _worst((steps["load_moment"] + steps["interface_moment"]) / _scale(lever * _peak(steps["load"])))
 
 
@@ -121,7 +125,7 @@ def support_forces(scene: Scene, steps: Steps) -> float | None:
 
 
 def dissipation_gap(scene: Scene, steps: Steps) -> float | None:
-    """|dissipated / (G_Ic w new crack) - 1| from the first growth on; none for less than five arm thicknesses.
+    """|dissipated / (G_Ic w new crack) - 1| from the first growth on; none below five thicknesses.
 
     Counted from the first open point on, when a whole process zone is already under way: it travels with the crack and
     drops out of the difference, but for its slow change of length and the distance of the points that see the crack.
@@ -130,12 +134,12 @@ def dissipation_gap(scene: Scene, steps: Steps) -> float | None:
     before = far_from_end(scene, steps)
     steps = {name: column[before] for name, column in steps.items()}
     crack = np.maximum.accumulate(steps["crack_length"])
-    grown = np.flatnonzero(crack > scene.specimen.precrack)
+    grown = np.flatnonzero(crack > scene.specimen.free_length)
     if not scene.effects.irreversible or not grown.size:
         return None
     first = grown[0]
     new_crack = crack[-1] - crack[first]
-    if new_crack < 5 * scene.specimen.arm_thickness:
+    if new_crack < 5 * scene.specimen.loaded_thickness:
         return None
     dissipated = steps["dissipated_energy"][-1] - steps["dissipated_energy"][first]
     return float(abs(dissipated / (scene.interface.toughness * scene.specimen.width * new_crack) - 1))

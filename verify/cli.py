@@ -48,7 +48,7 @@ def parser() -> argparse.ArgumentParser:
         return sub
 
     sub = command("verify", _verify, "Every method on every scene, all checks, one report.", "verify dcb-czm1 --jobs 2")
-    sub.add_argument("scenes", nargs="*", metavar="SCENE", help="packaged names or files; all packaged ones by default")
+    sub.add_argument("scenes", nargs="*", metavar="SCENE", help="packaged name or file; default: those for all methods")
     sub.add_argument("--out", type=Path, default=Path("debond-report"), metavar="DIR", help="default: debond-report")
     sub.add_argument("--full", action="store_true", help="finer meshes as well, with observed order and uncertainty")
     sub.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help="runs at a time")
@@ -135,22 +135,25 @@ def _print_result(result, checks, folder: Path) -> None:
     print("\n".join(check_table(checks)))
     if not result.complete:
         _say(f"debond: {result.method} {result.status}")
-    print(f"{result.status}: {folder}")
+    print(f"{', '.join(filter(None, (result.status, result.ending)))}: {folder}")
 
 
 def _verify(options: argparse.Namespace) -> int:
     from verify.run import mpi_size
-    from verify.scene import SceneError, load_scene, packaged_scenes
+    from verify.scene import SceneError, load_scene, verified_scenes
     from verify.verification import verify
 
     if mpi_size() > 1:
         raise Refusal(f"verify: must be started in 1 process, without mpirun, got {mpi_size()}")
     scenes, wrong = [], []
-    for source in options.scenes or packaged_scenes():
+    for source in options.scenes or verified_scenes():
         try:
             scenes.append((source, load_scene(source)))
         except SceneError as error:
             wrong.append(str(error))
+    for source, scene in scenes:
+        if scene.specimen.kind == "peel":
+            wrong.append(f"{source}: must be a dcb for verify (peel: not available yet); debond solve takes it")
     names = [scene.name for _, scene in scenes]
     twice = sorted({name for name in names if names.count(name) > 1})
     wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]

@@ -10,9 +10,13 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from verify.schema import Isotropic, Orthotropic, Scene, Section
+from verify.schema import Scene
+from verify.section import Section
+from verify.specimen import Dcb, Isotropic, Orthotropic, Peel
 
-_TAGS: Mapping[str, type[Section]] = {"isotropic": Isotropic, "orthotropic": Orthotropic}
+_MATERIALS: Mapping[str, type[Section]] = {"isotropic": Isotropic, "orthotropic": Orthotropic}
+_SPECIMENS: Mapping[str, type[Section]] = {"dcb": Dcb, "peel": Peel}
+_ALTERNATIVES = {"specimen": _SPECIMENS, **dict.fromkeys(("material", "strip", "substrate"), _MATERIALS)}
 _BOUNDS = (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))
 _KINDS = {float: "a number", int: "an integer", bool: "true or false", str: "a text"}
 
@@ -20,10 +24,10 @@ _KINDS = {float: "a number", int: "an integer", bool: "true or false", str: "a t
 def complaints(error: ValidationError, raw: Mapping[str, Any]) -> list[str]:
     """One sentence for every error, in the order of the schema."""
     details = [e for e in error.errors() if e["type"] != "default_factory_not_called"]
-    if any(e["loc"] == ("specimen", "kind") and e["type"] != "missing" for e in details):
+    kind = ("specimen", "dcb", "kind")
+    if any(e["loc"] == kind for e in details):
         # another specimen has other keys, so nothing can be said about those that belong to it
-        of_the_specimen = {"specimen", "material", "strip", "substrate"}
-        details = [e for e in details if e["loc"] == ("specimen", "kind") or e["loc"][0] not in of_the_specimen]
+        details = [e for e in details if e["loc"] == kind or e["loc"][0] not in _ALTERNATIVES]
     return [sentence for e in details for sentence in _sentences(e, raw)]
 
 
@@ -67,8 +71,8 @@ def _place(loc: tuple[str | int, ...]) -> tuple[type[Section], FieldInfo | None,
     field: FieldInfo | None = None
     path: list[str | int] = []
     for part in loc:
-        if part in _TAGS and path == ["material"]:
-            here = _TAGS[str(part)]
+        if len(path) == 1 and part in _ALTERNATIVES.get(str(path[0]), ()):
+            here = _ALTERNATIVES[str(path[0])][str(part)]
             continue
         path.append(part)
         if here is not None and isinstance(part, str):
@@ -93,12 +97,14 @@ def _dotted(path: tuple[str | int, ...], raw: Mapping[str, Any]) -> str:
 def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) -> str:
     """The range of a key; with its type in front where ``full``."""
     annotation = field.annotation if field else None
+    if path == ("specimen", "kind"):
+        return one_of(_SPECIMENS)
     if get_origin(annotation) is Literal:
         return one_of(get_args(annotation))
     if get_origin(annotation) is tuple:
         return "a number" if isinstance(path[-1], int) else "a number, or a list of at least one number"
     if annotation not in _KINDS:
-        tables = [annotation] if isinstance(annotation, type) else list(_TAGS.values())
+        tables = [annotation] if isinstance(annotation, type) else list(_ALTERNATIVES[str(path[0])].values())
         return "a table of " + ", or of ".join(", ".join(table.model_fields) for table in tables)
     if annotation is str and field.metadata:
         return "1 to 80 letters, digits, dots, dashes and underscores, a letter or digit first"

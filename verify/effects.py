@@ -20,16 +20,20 @@ _FIXED: dict[str, dict[str, Any]] = {
 def end_rotation(scene: Scene) -> float:
     """Largest rotation of a loaded end face over the programme, in radians, by simple beam theory.
 
-    With Delta = 2 P a^3 / (3 E I), P_c = sqrt(w G E I) / a and theta = P a^2 / (2 E I), so theta = 3 Delta / (4 a),
-    where the crack is the precrack or, if larger, what holds Delta in equilibrium, a^2 = 3/2 Delta sqrt(E I / (w G)).
+    An arm of bending stiffness E I, bent to the deflection d over a free length a, turns by theta = 3 d / (2 a). The
+    free length is that before any growth or, if larger, what holds d in equilibrium: d = a^2/3 sqrt(c w G / (E I)).
+    Of a dcb d is half the opening and c = 1, as two arms share G; a strip is peeled alone, and c = 2.
     """
-    specimen, material = scene.specimen, scene.material
+    specimen, opening = scene.specimen, max(map(abs, scene.load.opening))
+    if specimen.kind == "peel":
+        material, length, share, deflection = scene.strip, specimen.strip_length, 2.0, opening
+    else:
+        material, length, share, deflection = scene.material, specimen.length, 1.0, opening / 2
+    thickness = specimen.loaded_thickness
     young = getattr(material, "young", None) or material.E1
-    stiffness = young * specimen.width * specimen.arm_thickness**3 / 12
-    opening = max(map(abs, scene.load.opening))
-    grown = sqrt(1.5 * opening * sqrt(stiffness / (specimen.width * scene.interface.toughness)))
-    crack = min(max(specimen.precrack, grown), specimen.length)
-    return 0.75 * opening / crack
+    bending = young * specimen.width * thickness**3 / 12
+    grown = sqrt(3 * deflection * sqrt(bending / (share * specimen.width * scene.interface.toughness)))
+    return 1.5 * deflection / min(max(specimen.free_length, thickness, grown), length)
 
 
 def simulated(scene: Scene, method: str) -> dict[str, Any]:

@@ -79,6 +79,8 @@ def read_result(folder: Path) -> Result:
         method=known["method"],
         steps=steps,
         status=known["status"],
+        ending=known.get("ending", ""),
+        condition=known.get("condition", 0.0),
         dofs=known["dofs"],
         elements=known["elements"],
         rejected_steps=known["rejected_steps"],

@@ -10,7 +10,8 @@ from typing import Any
 from verify.effects import simulated
 from verify.refusal import Refusal
 from verify.result import Result, Snapshot, steps_from_rows
-from verify.schema import Isotropic, Scene
+from verify.schema import Discretization, Pose, Scene
+from verify.specimen import Isotropic, Material
 from verify.timing import Stopwatch, peak_memory_mb
 
 #: name -> what it is, in the words of the report
@@ -74,6 +75,8 @@ def solve(scene: Scene, method: str, on_step: OnStep | None = None) -> Result:
 
 def require(scene: Scene, method: str) -> None:
     """Raise ``Unsuitable`` where the method is not made for the scene, ``NotRun`` where this machine lacks it."""
+    if scene.specimen.kind == "peel" and method not in WITH_DOFS:
+        raise Unsuitable(f"specimen.kind: must be \"dcb\" for {method}, got 'peel' (peel: not available yet)")
     if method == "dolfinx" and not dolfinx_installed():
         raise NotRun(DOLFINX_MISSING)
     mesh, programme = scene.discretization, scene.load.opening
@@ -92,15 +95,31 @@ def least_dofs(method: str, degree: int) -> int:
 
 
 def problem_keys(scene: Scene, method: str) -> dict[str, Any]:
-    """What every solver's own ``Problem`` calls by the same names: geometry, material, law, load, effects."""
-    specimen, interface, effects = scene.specimen, scene.interface, simulated(scene, method)
+    """What every solver's own ``Problem`` of a dcb calls by the same names: geometry, material, law, load, effects."""
+    specimen = scene.specimen
     return {
         "length": specimen.length,
         "arm_thickness": specimen.arm_thickness,
         "precrack": specimen.precrack,
+        **elastic_constants(scene.material),
+        **_common_keys(scene, method),
+        "symmetry": simulated(scene, method)["symmetry"],
+        "steps": counted_steps(scene),
+    }
+
+
+def counted_steps(scene: Scene) -> int:
+    """Steps for the methods that do not choose their own."""
+    steps = scene.discretization.steps
+    return Discretization.model_fields["steps"].default if steps == "auto" else steps
+
+
+def _common_keys(scene: Scene, method: str) -> dict[str, Any]:
+    """What does not depend on the kind of the specimen."""
+    specimen, interface, effects = scene.specimen, scene.interface, simulated(scene, method)
+    return {
         "width": specimen.width,
         "plane": specimen.plane,
-        **elastic_constants(scene),
         "strength": interface.strength,
         "toughness": interface.toughness,
         "ductility": interface.ductility,
@@ -109,35 +128,65 @@ def problem_keys(scene: Scene, method: str) -> dict[str, Any]:
         "irreversible": effects["irreversible"],
         "opening": scene.load.opening,
         "kinematics": effects["kinematics"],
-        "symmetry": effects["symmetry"],
-        "steps": scene.discretization.steps,
         "snapshot_openings": tuple(f * max(0.0, *scene.load.opening) for f in SNAPSHOT_FRACTIONS),
     }
 
 
-def elastic_constants(scene: Scene) -> dict[str, float]:
+def elastic_constants(material: Material) -> dict[str, float]:
     """E1, E2, G12 and nu12, of an isotropic material as well."""
-    material = scene.material
     if isinstance(material, Isotropic):
         young, poisson = material.young, material.poisson
         return {"E1": young, "E2": young, "G12": young / (2 * (1 + poisson)), "nu12": poisson}
     return material.model_dump()
 
 
+def _iga_keys(scene: Scene, method: str) -> dict[str, Any]:
+    """Mesh, interface rule, steps and pose, as both specimens of ``iga`` call them."""
+    mesh, pose = scene.discretization, scene.pose
+    return {
+        "basis": method,
+        "degree": mesh.degree,
+        "dofs": mesh.dofs,
+        "interface_rule": mesh.interface_rule,
+        "interface_points": mesh.interface_points,
+        "mismatch": mesh.mismatch,
+        "slave": mesh.slave,
+        "steps": mesh.steps,
+        "angle": pose.angle,
+        "mirror": pose.mirror,
+        "shift": pose.shift,
+    }
+
+
 def _iga(scene: Scene, method: str, on_step: OnStep) -> Result:
+    return (_iga_peel if scene.specimen.kind == "peel" else _iga_dcb)(scene, method, on_step)
+
+
+def _iga_dcb(scene: Scene, method: str, on_step: OnStep) -> Result:
     from iga import dcb
 
     watch = Stopwatch()
-    mesh = scene.discretization
-    problem = dcb.Problem(
-        basis=method,
-        degree=mesh.degree,
-        dofs=mesh.dofs,
-        interface_rule=mesh.interface_rule,
-        interface_points=mesh.interface_points,
-        **problem_keys(scene, method),
+    keys = problem_keys(scene, method) | _iga_keys(scene, method)
+    return _result(
+        method, dcb.solve(dcb.Problem(**_taken(dcb.Problem, keys)), on_step=on_step, phase=watch.phase), watch
     )
-    return _result(method, dcb.solve(problem, on_step=on_step, phase=watch.phase), watch)
+
+
+def _iga_peel(scene: Scene, method: str, on_step: OnStep) -> Result:
+    from iga import peel
+
+    watch = Stopwatch()
+    specimen = scene.specimen.model_dump(exclude={"kind", "width", "plane"})
+    materials = {"strip": elastic_constants(scene.strip), "substrate": elastic_constants(scene.substrate)}
+    problem = peel.Problem(**specimen, **materials, **_common_keys(scene, method), **_iga_keys(scene, method))
+    return _result(method, peel.solve(problem, on_step=on_step, phase=watch.phase), watch)
+
+
+def _taken(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:
+    """``keys`` less those that are the scene's defaults and that this solver does not have."""
+    plain = {**Discretization().model_dump(), **Pose().model_dump()}
+    known = {field.name for field in fields(problem)}
+    return {key: value for key, value in keys.items() if key in known or value != plain.get(key)}
 
 
 def _dolfinx(scene: Scene, method: str, on_step: OnStep) -> Result:
@@ -154,12 +203,12 @@ def _beam(scene: Scene, method: str, on_step: OnStep) -> Result:
     from verify.beam import solve as solve_beam
 
     watch = Stopwatch()
-    keys, constants = problem_keys(scene, method), elastic_constants(scene)
+    keys, constants = problem_keys(scene, method), elastic_constants(scene.material)
     taken = {field.name for field in fields(BeamProblem)} & set(keys)
     problem = BeamProblem(
         young=axial_modulus(scene),
         shear=constants["G12"],
-        points=scene.discretization.steps,
+        points=counted_steps(scene),
         **{name: keys[name] for name in taken},
     )
     with watch.phase("solve"):
@@ -180,13 +229,13 @@ def _lefm(scene: Scene, method: str, on_step: OnStep) -> Result:
     from verify.lefm import solve as solve_lefm
 
     watch = Stopwatch()
-    keys, constants = problem_keys(scene, method), elastic_constants(scene)
+    keys, constants = problem_keys(scene, method), elastic_constants(scene.material)
     taken = {field.name for field in fields(LefmProblem)} & set(keys)
     problem = LefmProblem(
         young=axial_modulus(scene),
         transverse=constants["E2"],
         shear=constants["G12"],
-        points=scene.discretization.steps,
+        points=counted_steps(scene),
         **{name: keys[name] for name in taken},
     )
     with watch.phase("solve"):
@@ -205,16 +254,21 @@ def _lefm(scene: Scene, method: str, on_step: OnStep) -> Result:
 
 def axial_modulus(scene: Scene) -> float:
     """Stiffness against stretching along the arm; in plane strain E1 / (1 - nu13 nu31), E3 = E2 and nu13 = nu12."""
-    c = elastic_constants(scene)
+    c = elastic_constants(scene.material)
     return c["E1"] if scene.specimen.plane == "stress" else c["E1"] / (1 - c["nu12"] ** 2 * c["E2"] / c["E1"])
 
 
 def _result(method: str, solution: Any, watch: Stopwatch) -> Result:
-    """``solution``: rows, dofs, elements, rejected_steps, status, snapshots, as both field solvers return them."""
+    """``solution``: rows, dofs, elements, rejected_steps, status, snapshots, as both field solvers return them.
+
+    And ending and condition, from a solver that knows them.
+    """
     return Result(
         method=method,
         steps=steps_from_rows(solution.rows),
         status=solution.status,
+        ending=getattr(solution, "ending", ""),
+        condition=getattr(solution, "condition", 0.0),
         dofs=solution.dofs,
         elements=solution.elements,
         rejected_steps=solution.rejected_steps,

@@ -153,6 +153,8 @@ def summary(scene: Scene, result: Result, checks: tuple[Check, ...]) -> dict[str
         "machine": machine(),
         "threads": _number("OMP_NUM_THREADS", default=os.cpu_count() or 1),
         "status": result.status,
+        "ending": result.ending,
+        "condition": result.condition,
     }
 
 

@@ -12,7 +12,8 @@ from pydantic import ValidationError
 
 from verify.complaints import complaints, suggestion
 from verify.refusal import Refusal
-from verify.schema import Dcb, Discretization, Dolfinx, Effects, Interface, Isotropic, Load, Orthotropic, Scene
+from verify.schema import Discretization, Dolfinx, Effects, Interface, Load, Pose, Scene
+from verify.specimen import Dcb, Isotropic, Orthotropic, Peel
 
 __all__ = [
     "Dcb",
@@ -23,11 +24,14 @@ __all__ = [
     "Isotropic",
     "Load",
     "Orthotropic",
+    "Peel",
+    "Pose",
     "Scene",
     "SceneError",
     "load_scene",
     "packaged_scenes",
     "parse_scene",
+    "verified_scenes",
 ]
 
 _FOLDER = Path(__file__).with_name("scenes")
@@ -51,6 +55,11 @@ class SceneError(Refusal):
 def packaged_scenes() -> tuple[str, ...]:
     """Names of the scenes that come with the project."""
     return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
+
+
+def verified_scenes() -> tuple[str, ...]:
+    """Those of the packaged scenes that every method can solve."""
+    return tuple(name for name in packaged_scenes() if load_scene(name).specimen.kind == "dcb")
 
 
 def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene:

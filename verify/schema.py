@@ -6,77 +6,13 @@ user reads about a broken one are made in ``verify.complaints``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationInfo, field_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, ValidatorFunctionWrapHandler, field_validator
 from pydantic_core import PydanticCustomError
 
-Positive: TypeAlias = Annotated[float, Field(gt=0)]
-
-
-def refuse(text: str, *found: tuple[tuple[str | int, ...], object]) -> PydanticCustomError:
-    """A broken rule between keys: ``text`` completes "must be ...", ``found`` has rests of key paths and values."""
-    return PydanticCustomError("rule", "{text}", {"text": text, "found": found})
-
-
-class Section(BaseModel):
-    """A table of the scene file: nothing is coerced, nothing unknown is let through, nothing changes afterwards."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
-
-
-class Dcb(Section):
-    """Double cantilever beam: two arms, bonded on X in [precrack, length], loaded at X = 0."""
-
-    kind: Literal["dcb"]
-    length: Positive
-    arm_thickness: Positive
-    precrack: Positive
-    width: Positive = 1.0
-    plane: Literal["stress", "strain"] = "stress"
-
-    @field_validator("precrack")
-    @classmethod
-    def _bonded_part_is_left(cls, precrack: float, info: ValidationInfo) -> float:
-        length = info.data.get("length")
-        if length is not None and precrack >= length:
-            raise refuse(f"< specimen.length = {length:g}", ((), precrack))
-        return precrack
-
-
-class Isotropic(Section):
-    young: Positive
-    poisson: float = Field(gt=-1, lt=0.5)
-
-
-class Orthotropic(Section):
-    """Axis 1 runs along the specimen; nu12 is the contraction along 2 for a pull along 1."""
-
-    E1: Positive
-    E2: Positive
-    G12: Positive
-    nu12: float
-
-    @field_validator("nu12")
-    @classmethod
-    def _positive_definite(cls, nu12: float, info: ValidationInfo) -> float:
-        if "E1" in info.data and "E2" in info.data:
-            limit = (info.data["E1"] / info.data["E2"]) ** 0.5
-            if abs(nu12) >= limit:
-                raise refuse(f"> {-limit:.6g} and < {limit:.6g}, that is |nu12| < sqrt(E1/E2)", ((), nu12))
-        return nu12
-
-
-def material_kind(value: object) -> str:
-    """Tell the two materials apart by their keys."""
-    keys = set(value) if isinstance(value, Mapping) else {value.__class__.__name__}
-    return "orthotropic" if keys & {*Orthotropic.model_fields, "Orthotropic"} else "isotropic"
-
-
-Material: TypeAlias = Annotated[
-    Annotated[Isotropic, Tag("isotropic")] | Annotated[Orthotropic, Tag("orthotropic")], Discriminator(material_kind)
-]
+from verify.section import Positive, Section, refuse
+from verify.specimen import MATERIALS, Material, Specimen, definite
 
 
 def _hundred_initial_stiffnesses(data: dict[str, Any]) -> float:
@@ -119,6 +55,24 @@ class Effects(Section):
     symmetry: bool = False
 
 
+def _as_pair(value: object) -> object:
+    """TOML has no tuples; anything but two things is refused here, what they are afterwards."""
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise refuse("a list of two numbers", ((), value))
+    return tuple(value)
+
+
+class Pose(Section):
+    """Where the specimen is solved: reflected (X to -X), then rotated, then moved, with its supports and its load.
+
+    Only the ``iga`` methods are told: no answer depends on it, and that is what it is there to show.
+    """
+
+    angle: float = Field(default=0.0, ge=-360, le=360)  # degrees, counter-clockwise
+    mirror: bool = False
+    shift: Annotated[tuple[float, float], BeforeValidator(_as_pair)] = (0.0, 0.0)
+
+
 class Discretization(Section):
     """How finely the ``iga`` methods resolve the scene."""
 
@@ -126,14 +80,9 @@ class Discretization(Section):
     dofs: int = Field(default=1956, ge=40, le=1_000_000)
     interface_rule: Literal["gauss", "lobatto", "lumped"] = "gauss"
     interface_points: int = Field(default=2, ge=1, le=12)
-    steps: int = Field(default=150, ge=1, le=100_000)  # equal opening increments asked of every path follower
-
-    @field_validator("interface_rule")
-    @classmethod
-    def _built(cls, rule: str) -> str:
-        if rule == "lumped":
-            raise refuse('"gauss" or "lobatto" ("lumped" is not available yet)', ((), rule))
-        return rule
+    mismatch: float = Field(default=1.0, ge=0.05, le=20)  # element length of the lower body over that of the upper one
+    slave: Literal["upper", "lower"] = "upper"  # the body whose points carry the interface
+    steps: int | Literal["auto"] = 150  # equal opening increments, or "auto": the path chooses by accuracy
 
     @field_validator("interface_points")
     @classmethod
@@ -141,6 +90,14 @@ class Discretization(Section):
         if info.data.get("interface_rule") == "lobatto" and points < 2:
             raise refuse("an integer from 2 to 12 for the lobatto rule", ((), points))
         return points
+
+    @field_validator("steps", mode="before")
+    @classmethod
+    def _counted_or_chosen(cls, steps: object) -> object:
+        counted = isinstance(steps, int) and not isinstance(steps, bool) and 1 <= steps <= 100_000
+        if not counted and steps != "auto":
+            raise refuse('an integer >= 1 and <= 100000, or "auto"', ((), steps))
+        return steps
 
 
 class Dolfinx(Section):
@@ -155,26 +112,32 @@ class Scene(Section):
 
     name: str = Field(default="scene", pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=80)  # names folders
     units: str = "consistent units"
-    specimen: Dcb
-    material: Material
+    specimen: Specimen
+    material: Material | None = Field(default=None, validate_default=True)
+    strip: Material | None = Field(default=None, validate_default=True)
+    substrate: Material | None = Field(default=None, validate_default=True)
     interface: Interface
     load: Load
+    pose: Pose = Pose()
     effects: Effects = Effects()
     discretization: Discretization = Discretization()
     dolfinx: Dolfinx = Dolfinx()
 
-    @field_validator("material")
+    @field_validator("material", "strip", "substrate", mode="wrap")
     @classmethod
-    def _positive_definite_in_plane_strain(cls, material: Material, info: ValidationInfo) -> Material:
-        """With the third direction like the second (E3 = E2, nu13 = nu23 = nu12): 1 - nu12 - 2 nu12^2 E2/E1 > 0."""
+    def _of_this_specimen(cls, value: object, validate: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
+        """Each kind of specimen has its own materials; nothing is said while the specimen itself is broken."""
         specimen = info.data.get("specimen")
-        if isinstance(material, Isotropic) or specimen is None or specimen.plane == "stress":
-            return material
-        ratio = material.E2 / material.E1
-        low, high = (max((sign * (1 + 8 * ratio) ** 0.5 - 1) / (4 * ratio), -1) for sign in (-1, 1))
-        if not low < material.nu12 < high:
-            raise refuse(f"> {low:.6g} and < {high:.6g} in plane strain", (("nu12",), material.nu12))
-        return material
+        if specimen is None:
+            return validate(value) if value is not None else None
+        wanted = MATERIALS[specimen.kind]
+        if info.field_name in wanted:
+            if value is None:
+                raise PydanticCustomError("missing", "missing")
+            return definite(validate(value), specimen.plane)
+        if value is not None:
+            raise refuse(f"left out: the materials of a {specimen.kind} are {' and '.join(wanted)}", ((), value))
+        return None
 
     @field_validator("load")
     @classmethod
@@ -183,8 +146,33 @@ class Scene(Section):
         specimen = info.data.get("specimen")
         if specimen is None:
             return load
-        low, high = -2 * specimen.arm_thickness, 2 * specimen.length
+        thickness, length = (
+            ("strip_thickness", "strip_length") if specimen.kind == "peel" else ("arm_thickness", "length")
+        )
+        low, high = -2 * getattr(specimen, thickness), 2 * getattr(specimen, length)
         outside = [(("opening", i), opening) for i, opening in enumerate(load.opening) if not low <= opening <= high]
         if outside:
-            raise refuse(f">= {low:g} (-2 arm_thickness) and <= {high:g} (2 length)", *outside)
+            raise refuse(f">= {low:g} (-2 {thickness}) and <= {high:g} (2 {length})", *outside)
         return load
+
+    @field_validator("effects")
+    @classmethod
+    def _symmetric_specimen(cls, effects: Effects, info: ValidationInfo) -> Effects:
+        specimen = info.data.get("specimen")
+        if effects.symmetry and specimen is not None and specimen.kind == "peel":
+            raise refuse("false for a peel: strip and substrate differ", (("symmetry",), True))
+        return effects
+
+    @field_validator("discretization")
+    @classmethod
+    def _two_meshes(cls, mesh: Discretization, info: ValidationInfo) -> Discretization:
+        effects = info.data.get("effects")
+        if effects is not None and effects.symmetry:
+            given = {"mismatch": mesh.mismatch, "slave": mesh.slave}
+            for key, plain in (("mismatch", 1.0), ("slave", "upper")):
+                if given[key] != plain:
+                    text = f"{plain:g}" if key == "mismatch" else f'"{plain}"'
+                    raise refuse(
+                        f"{text} with effects.symmetry, which models the upper arm alone", ((key,), given[key])
+                    )
+        return mesh

@@ -86,6 +86,13 @@ def test_an_empty_run_has_not_completed(scene: Scene) -> None:
     assert failed(scene, empty) == {"completed"}
 
 
+def test_a_separated_specimen_has_completed(scene: Scene, beam: Result) -> None:
+    short = replace(beam, steps={name: column[:-20] for name, column in beam.steps.items()})
+    assert failed(scene, short) == {"completed"}
+    assert failed(scene, replace(short, ending="separated at opening 2")) == set()
+    assert failed(scene, replace(short, ending="separated at opening 2", status="stopped: no")) == {"completed"}
+
+
 def test_unloading_steps_do_not_count_for_j() -> None:
     """Up, down and up again: damage grows on the way to a new maximum; before any there is nothing to unload."""
     steps = {"dissipated_energy": np.array([0.0, 0.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0])}

@@ -47,6 +47,8 @@ REFUSED = {
     ),
     "solve dcb-czm1 --method lefm --out a-file": "--out: must be a folder that can be written to, got 'a-file'",
     "solve dcb-czm1 --colour red": "--colour",
+    "solve peel-120 --method beam": "specimen.kind: must be \"dcb\" for beam, got 'peel' (peel: not available yet)",
+    "verify peel-120": "peel-120: must be a dcb for verify (peel: not available yet)",
     "verify dcb-czm1 dcb-czm3": "dcb-czm3:",
     "verify dcb-czm1 dcb-czm1": "SCENE: must have different names, got 'dcb-czm1' more than once",
     "verify --jobs 0": "argument --jobs: must be an integer >= 1, got '0'",

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,7 @@ from verify.timing import Stopwatch
 HEADER = "opening,load,crack_length,stored_energy,dissipated_energy,external_work,newton_iterations"
 RESULT_KEYS = {
     "scene", "method", "dofs", "elements", "steps", "newton_iterations", "rejected_steps", "peak_load", "peak_opening",
-    "seconds", "peak_memory_mb", "effects", "checks", "versions", "machine", "threads", "status",
+    "seconds", "peak_memory_mb", "effects", "checks", "versions", "machine", "threads", "status", "ending", "condition",
 }  # fmt: skip
 SECONDS_KEYS = ["mesh", "basis", "assembly", "factor", "solve", "other", "total"]
 PROJECT = Path(__file__).resolve().parents[2]
@@ -86,7 +87,8 @@ def test_result_json_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
     assert all(set(check) == {"value", "tolerance", "kind", "passed"} for check in about["checks"].values())
     assert about["steps"] == 5 and about["newton_iterations"] == 10
     assert about["peak_load"] == 6.0 and about["peak_opening"] == 3.0
-    assert about["status"] == "complete" and about["scene"]["interface"]["strength"] == 4.0
+    assert about["status"] == "complete" and about["ending"] == "" and about["condition"] == 0.0
+    assert about["scene"]["interface"]["strength"] == 4.0
 
 
 def test_a_run_is_read_back_as_it_was(scene: Scene, tmp_path: Path) -> None:
@@ -97,6 +99,16 @@ def test_a_run_is_read_back_as_it_was(scene: Scene, tmp_path: Path) -> None:
     assert [s.opening for s in read.snapshots] == [1.0, 3.0]
     assert np.array_equal(read.snapshots[1].u_euvi, written.snapshots[1].u_euvi)
     assert (read.method, read.dofs, read.elements, read.status) == ("nurbs", 1956, 222, "complete")
+
+
+def test_ending_and_condition_are_read_back(scene: Scene, tmp_path: Path) -> None:
+    def solver(scene: Scene, method: str, on_step) -> Result:
+        return replace(stub(scene, method, on_step), ending="separated at opening 2.5", condition=3e7)
+
+    _, checks = run(scene, "nurbs", tmp_path, solver=solver)
+    read = read_result(tmp_path)
+    assert (read.ending, read.condition) == ("separated at opening 2.5", 3e7)
+    assert next(check for check in checks if check.name == "completed").passed
 
 
 def test_fields_are_kept_only_when_asked_for(scene: Scene, tmp_path: Path) -> None:

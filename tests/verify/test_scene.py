@@ -10,7 +10,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from verify.effects import end_rotation, simulated
-from verify.scene import Isotropic, Orthotropic, Scene, SceneError, load_scene, packaged_scenes, parse_scene
+from verify.scene import (
+    Dcb,
+    Isotropic,
+    Orthotropic,
+    Peel,
+    Scene,
+    SceneError,
+    load_scene,
+    packaged_scenes,
+    parse_scene,
+    verified_scenes,
+)
 
 MINIMAL = """
 [specimen]
@@ -40,7 +51,7 @@ BROKEN = {
     "interface.law=exponential": "interface.law: must be \"bilinear\", got 'exponential'",
     "interface.strenght=6": 'interface.strenght: is not a key of a scene, got 6; did you mean "strength"?',
     "interfce.strength=6": "interfce: is not a key of a scene, got {'strength': 6}; did you mean \"interface\"?",
-    "specimen.kind=peel": "specimen.kind: must be \"dcb\", got 'peel'",
+    "specimen.kind=enf": 'specimen.kind: must be "dcb" or "peel", got \'enf\'',
     "specimen.precrack=14": "specimen.precrack: must be < specimen.length = 14, got 14",
     "specimen.plane=flat": 'specimen.plane: must be "stress" or "strain", got \'flat\'',
     "material.poisson=0.5": "material.poisson: must be > -1 and < 0.5, got 0.5",
@@ -60,10 +71,21 @@ BROKEN = {
     "discretization.degree=6": "discretization.degree: must be >= 1 and <= 5, got 6",
     "discretization.degree=3.0": "discretization.degree: must be an integer >= 1 and <= 5, got 3.0",
     "discretization.interface_points=13": "discretization.interface_points: must be >= 1 and <= 12, got 13",
-    "discretization.interface_rule=lumped": (
-        'discretization.interface_rule: must be "gauss" or "lobatto" ("lumped" is not available yet), got \'lumped\''
+    "discretization.interface_rule=simpson": (
+        'discretization.interface_rule: must be "gauss", "lobatto" or "lumped", got \'simpson\''
     ),
-    "discretization.steps=0": "discretization.steps: must be >= 1 and <= 100000, got 0",
+    "discretization.steps=0": 'discretization.steps: must be an integer >= 1 and <= 100000, or "auto", got 0',
+    "discretization.steps=true": 'discretization.steps: must be an integer >= 1 and <= 100000, or "auto", got true',
+    "discretization.steps=automatic": (
+        "discretization.steps: must be an integer >= 1 and <= 100000, or \"auto\", got 'automatic'"
+    ),
+    "discretization.mismatch=0.01": "discretization.mismatch: must be >= 0.05 and <= 20, got 0.01",
+    "discretization.slave=top": 'discretization.slave: must be "upper" or "lower", got \'top\'',
+    "pose.angle=400": "pose.angle: must be >= -360 and <= 360, got 400",
+    "pose.mirror=1": "pose.mirror: must be true or false, got 1",
+    "pose.shift=1e4": "pose.shift: must be a list of two numbers, got 10000",
+    "pose.shift=[1.0]": "pose.shift: must be a list of two numbers, got [1.0]",
+    'pose.shift=[1.0, "x"]': "pose.shift[1]: must be a number, got 'x'",
     "dolfinx.degree=5": "dolfinx.degree: must be >= 1 and <= 4, got 5",
     "dolfinx=3": "dolfinx: must be a table of degree, elements, got 3",
     "units=3": "units: must be a text, got 3",
@@ -73,6 +95,25 @@ BROKEN = {
     ),
     "interface.strength": '--set interface.strength: must be KEY=VALUE with a dotted key, like "interface.strength=6"',
     "a b=3": '--set a b=3: must be KEY=VALUE with a dotted key, like "interface.strength=6"',
+}
+
+
+#: the same for a peel
+BROKEN_PEEL = {
+    "specimen.bond_length=130.0": "specimen.bond_length: must be <= specimen.substrate_length = 120, got 130",
+    "specimen.strip_length=100.0": "specimen.bond_length: must be <= specimen.strip_length = 100, got 120",
+    "specimen.precrack=4.0": (
+        "specimen.precrack: is not a key of a scene, got 4.0; the keys here are kind, strip_length, strip_thickness, "
+        "substrate_length, substrate_thickness, bond_length, width, plane"
+    ),
+    "material={young=1.0, poisson=0.2}": (
+        "material: must be left out: the materials of a peel are strip and substrate, "
+        "got {'young': 1.0, 'poisson': 0.2}"
+    ),
+    "strip.young=-1": "strip.young: must be > 0, got -1",
+    "substrate.poison=0.2": 'substrate.poison: is not a key of a scene, got 0.2; did you mean "poisson"?',
+    "effects.symmetry=true": "effects.symmetry: must be false for a peel: strip and substrate differ, got true",
+    "load.opening=301": "load.opening: must be >= -4 (-2 strip_thickness) and <= 300 (2 strip_length), got 301",
 }
 
 
@@ -98,7 +139,11 @@ def test_a_useful_scene_is_short(tmp_path: Path) -> None:
 
 def test_packaged_scenes_are_those_of_the_paper() -> None:
     names = {"dcb-czm1", "dcb-czm2", "dcb-czm1-linear", "dcb-czm2-linear"}
-    assert names <= set(packaged_scenes())
+    peels = {"peel-60", "peel-80", "peel-100", "peel-120", "peel-as-printed", "peel-soft"}
+    assert set(packaged_scenes()) == names | peels
+    assert set(verified_scenes()) == names
+    for name in peels:
+        assert load_scene(name).name == name
     for name in names:
         scene = load_scene(name)
         assert scene.name == name
@@ -109,6 +154,31 @@ def test_packaged_scenes_are_those_of_the_paper() -> None:
 @pytest.mark.parametrize("override", BROKEN)
 def test_a_broken_scene_is_refused_with_key_range_and_value(override: str) -> None:
     assert sentences("dcb-czm1", override) == (BROKEN[override],)
+
+
+@pytest.mark.parametrize("override", BROKEN_PEEL)
+def test_a_broken_peel_is_refused_with_key_range_and_value(override: str) -> None:
+    assert sentences("peel-120", override) == (BROKEN_PEEL[override],)
+
+
+def test_each_kind_of_specimen_has_its_own_materials(tmp_path: Path) -> None:
+    strip = "strip={young=1.0, poisson=0.2}"
+    (said,) = sentences("dcb-czm1", strip)
+    assert said.startswith("strip: must be left out: the materials of a dcb are material, got")
+    path = minimal(tmp_path)
+    path.write_text(MINIMAL.replace("[material]", "[strip]"))
+    assert [s.split(":")[:2] for s in sentences(path)] == [
+        ["material", " is missing, must be a table of young, poisson, or of E1, E2, G12, nu12"],
+        ["strip", " must be left out"],
+    ]
+    peel = load_scene("peel-120")
+    assert peel.material is None and peel.strip.young == 250e3 and peel.substrate.young == 5e3
+
+
+def test_mismatched_meshes_need_two_arms() -> None:
+    assert sentences("dcb-czm1", "effects.symmetry=true", "discretization.mismatch=1.37") == (
+        "discretization.mismatch: must be 1 with effects.symmetry, which models the upper arm alone, got 1.37",
+    )
 
 
 def test_everything_that_is_wrong_is_said_at_once() -> None:
@@ -131,16 +201,16 @@ def test_a_missing_key_is_named_with_its_range(tmp_path: Path) -> None:
 
 
 def test_an_empty_file_is_no_scene() -> None:
-    assert [s.split(":")[0] for s in sentences("/dev/null")] == ["specimen", "material", "interface", "load"]
+    assert [s.split(":")[0] for s in sentences("/dev/null")] == ["specimen", "interface", "load"]
 
 
 def test_another_specimen_is_refused_by_its_kind_alone(tmp_path: Path) -> None:
-    path = tmp_path / "peel.toml"
+    path = tmp_path / "enf.toml"
     path.write_text(
-        '[specimen]\nkind = "peel"\nstrip_length = 150\n[strip]\nyoung = 1\n[interface]\nstrength = 6\ntoughness = 1\n'
+        '[specimen]\nkind = "enf"\nstrip_length = 150\n[strip]\nyoung = 1\n[interface]\nstrength = 6\ntoughness = 1\n'
     )
     kind, load = sentences(path)
-    assert kind == "specimen.kind: must be \"dcb\", got 'peel'"
+    assert kind == 'specimen.kind: must be "dcb" or "peel", got \'enf\''
     assert load.startswith("load: is missing")
 
 
@@ -197,13 +267,28 @@ def test_automatic_kinematics_follows_the_rotation() -> None:
     assert end_rotation(scene) == pytest.approx(0.1994, rel=1e-3)
 
 
+def test_rotation_of_a_peeled_strip() -> None:
+    """E I = 166667, so sqrt(E I / (2 w G)) = 912.87: at opening 6 the free length is sqrt(18 * 912.87) = 128.2."""
+    assert end_rotation(load_scene("peel-120")) == pytest.approx(9 / 128.186, rel=1e-4)
+    assert end_rotation(load_scene("peel-60", ["load.opening=0.1"])) == pytest.approx(0.15 / 90)
+
+
 values = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8) | st.just(10**400) | st.just("dcb"),
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats()
+    | st.text(max_size=8)
+    | st.just(10**400)
+    | st.just("dcb")
+    | st.just("peel")
+    | st.just("auto"),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=6), inner, max_size=3),
     max_leaves=6,
 )
 tables = {name: getattr(field.annotation, "model_fields", {}) for name, field in Scene.model_fields.items()}
-tables["material"] = Isotropic.model_fields | Orthotropic.model_fields
+tables["specimen"] = Dcb.model_fields | Peel.model_fields
+tables["material"] = tables["strip"] = tables["substrate"] = Isotropic.model_fields | Orthotropic.model_fields
 places = [*tables, "nonsense", *(f"{table}.{key}" for table, keys in tables.items() for key in [*keys, "nonsense"])]
 
 

@@ -1,0 +1,21 @@
+"""What every table of a scene file is made of."""
+
+from __future__ import annotations
+
+from typing import Annotated, TypeAlias
+
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+Positive: TypeAlias = Annotated[float, Field(gt=0)]
+
+
+def refuse(text: str, *found: tuple[tuple[str | int, ...], object]) -> PydanticCustomError:
+    """A broken rule between keys: ``text`` completes "must be ...", ``found`` has rests of key paths and values."""
+    return PydanticCustomError("rule", "{text}", {"text": text, "found": found})
+
+
+class Section(BaseModel):
+    """A table of the scene file: nothing is coerced, nothing unknown is let through, nothing changes afterwards."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)

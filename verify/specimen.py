@@ -1,0 +1,127 @@
+"""The bodies of a scene: specimens and their materials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator
+
+from verify.section import Positive, Section, refuse
+
+
+class Dcb(Section):
+    """Double cantilever beam: two arms, bonded on X in [precrack, length], loaded at X = 0."""
+
+    kind: Literal["dcb"]
+    length: Positive
+    arm_thickness: Positive
+    precrack: Positive
+    width: Positive = 1.0
+    plane: Literal["stress", "strain"] = "stress"
+
+    @field_validator("precrack")
+    @classmethod
+    def _bonded_part_is_left(cls, precrack: float, info: ValidationInfo) -> float:
+        length = info.data.get("length")
+        if length is not None and precrack >= length:
+            raise refuse(f"< specimen.length = {length:g}", ((), precrack))
+        return precrack
+
+    @property
+    def free_length(self) -> float:
+        """Distance from the loaded end to the bond."""
+        return self.precrack
+
+    @property
+    def loaded_thickness(self) -> float:
+        return self.arm_thickness
+
+
+class Peel(Section):
+    """A strip peeled off a substrate: left ends flush at X = 0, bonded on X in [0, bond_length], strip pulled up at its
+    right end, substrate clamped at its base."""
+
+    kind: Literal["peel"]
+    strip_length: Positive
+    strip_thickness: Positive
+    substrate_length: Positive
+    substrate_thickness: Positive
+    bond_length: Positive
+    width: Positive = 1.0
+    plane: Literal["stress", "strain"] = "stress"
+
+    @field_validator("bond_length")
+    @classmethod
+    def _both_bodies_are_there(cls, bond_length: float, info: ValidationInfo) -> float:
+        for key in ("strip_length", "substrate_length"):
+            limit = info.data.get(key)
+            if limit is not None and bond_length > limit:
+                raise refuse(f"<= specimen.{key} = {limit:g}", ((), bond_length))
+        return bond_length
+
+    @property
+    def free_length(self) -> float:
+        """Distance from the loaded end to the bond."""
+        return self.strip_length - self.bond_length
+
+    @property
+    def loaded_thickness(self) -> float:
+        return self.strip_thickness
+
+
+def specimen_kind(value: object) -> str:
+    """Tell the specimens apart by their kind; one without a kind that is known is refused as a dcb."""
+    kind = value.get("kind") if isinstance(value, Mapping) else getattr(value, "kind", None)
+    return "peel" if kind == "peel" else "dcb"
+
+
+Specimen: TypeAlias = Annotated[Annotated[Dcb, Tag("dcb")] | Annotated[Peel, Tag("peel")], Discriminator(specimen_kind)]
+
+#: The materials that a scene must give, by the kind of its specimen; the others it must not.
+MATERIALS: Mapping[str, tuple[str, ...]] = {"dcb": ("material",), "peel": ("strip", "substrate")}
+
+
+class Isotropic(Section):
+    young: Positive
+    poisson: float = Field(gt=-1, lt=0.5)
+
+
+class Orthotropic(Section):
+    """Axis 1 runs along the specimen; nu12 is the contraction along 2 for a pull along 1."""
+
+    E1: Positive
+    E2: Positive
+    G12: Positive
+    nu12: float
+
+    @field_validator("nu12")
+    @classmethod
+    def _positive_definite(cls, nu12: float, info: ValidationInfo) -> float:
+        if "E1" in info.data and "E2" in info.data:
+            limit = (info.data["E1"] / info.data["E2"]) ** 0.5
+            if abs(nu12) >= limit:
+                raise refuse(f"> {-limit:.6g} and < {limit:.6g}, that is |nu12| < sqrt(E1/E2)", ((), nu12))
+        return nu12
+
+
+def material_kind(value: object) -> str:
+    """Tell the two materials apart by their keys."""
+    keys = set(value) if isinstance(value, Mapping) else {value.__class__.__name__}
+    return "orthotropic" if keys & {*Orthotropic.model_fields, "Orthotropic"} else "isotropic"
+
+
+Material: TypeAlias = Annotated[
+    Annotated[Isotropic, Tag("isotropic")] | Annotated[Orthotropic, Tag("orthotropic")], Discriminator(material_kind)
+]
+
+
+def definite(material: Material, plane: str) -> Material:
+    """In plane strain, the third direction like the second (E3 = E2, nu13 = nu12): 1 - nu12 - 2 nu12^2 E2/E1 > 0."""
+    if isinstance(material, Isotropic) or plane == "stress":
+        return material
+    ratio = material.E2 / material.E1
+    low, high = (max((sign * (1 + 8 * ratio) ** 0.5 - 1) / (4 * ratio), -1) for sign in (-1, 1))
+    if not low < material.nu12 < high:
+        raise refuse(f"> {low:.6g} and < {high:.6g} in plane strain", (("nu12",), material.nu12))
+    return material
