@@ -14,6 +14,7 @@ from iga.extraction import Mesh
 from iga.fields import snapshot
 from iga.interface import Interface
 from iga.lagrange import lagrange_rectangle
+from iga.lumped import lumped
 from iga.material import orthotropic
 from iga.nurbs import nurbs_rectangle
 from iga.observe import Arm, Specimen, mean_row, row
@@ -222,6 +223,8 @@ def _free(problem: Problem, P_AI: np.ndarray, first: np.ndarray) -> np.ndarray:
 
 
 def _interface(problem: Problem, meshes: tuple[Mesh, ...], first: np.ndarray) -> Interface:
+    if problem.interface_rule == "lumped":
+        return lumped(_points(problem, meshes, first, *gauss(problem.degree + 1), slice(None)))
     xi, w = RULES[problem.interface_rule](problem.interface_points)
     return _points(problem, meshes, first, xi, w, slice(None))
 

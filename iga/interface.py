@@ -23,9 +23,12 @@ class Interface:
 
     ``N_qa`` (n_q, n_a) slave functions at the points, on the control points ``conn_qa``; ``dA_q`` (n_q,) reference area
     (length x width) of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the
-    whole model. ``master`` is None where the partner is the mirror image of the slave in the straight line that it lies
-    on, with unit normal ``mirror_i``: then the gap is twice the distance to it. ``frozen`` keeps the pairing and normals of the
-    reference configuration (linear kinematics): no search is done.
+    whole model. ``frozen`` keeps the pairing and normals of the reference configuration (linear kinematics): no search
+    is done.
+
+    Nothing is searched either where ``master`` is None: ``mirror_i`` (2,) or (n_q, 2) is the unit normal and partners
+    are known, the control points ``twin_qa`` that take the same functions and lie at the same places, or, without
+    these, the mirror image of the slave in the straight line that it lies on: then the gap is twice the distance to it.
     """
 
     N_qa: np.ndarray
@@ -37,10 +40,16 @@ class Interface:
     master: Surface | None
     mirror_i: np.ndarray | None = None
     frozen: bool = False
+    twin_qa: np.ndarray | None = None
 
     @property
     def points(self) -> int:
         return len(self.dA_q)
+
+    @cached_property
+    def known_conn_qa(self) -> np.ndarray:
+        """Control points that every point touches for good, where nothing is searched."""
+        return self.conn_qa if self.twin_qa is None else np.concatenate([self.conn_qa, self.twin_qa], axis=1)
 
     @cached_property
     def local_AI(self) -> np.ndarray:
@@ -92,7 +101,7 @@ def pair(interface: Interface) -> Pairing | None:
 def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Contact:
     """Gaps in the configuration u_d (2 n_A,), searching from the pairing ``guess``."""
     if interface.master is None:
-        return _mirrored(interface, u_d)
+        return _known(interface, u_d)
     master, u_Ai = interface.master, u_d.reshape(-1, 2)
     x_AI = interface.local_AI if interface.frozen else interface.local_AI + u_Ai
     pairing = guess if interface.frozen else closest_points(master, interface.at_slave(x_AI), x_AI, guess)
@@ -160,11 +169,12 @@ def dofs(conn_qa: np.ndarray) -> np.ndarray:
     return (2 * conn_qa[..., None] + np.arange(2)).reshape(*conn_qa.shape[:-1], -1)
 
 
-def _mirrored(interface: Interface, u_d: np.ndarray) -> Contact:
+def _known(interface: Interface, u_d: np.ndarray) -> Contact:
+    N_qa, conn_qa = interface.N_qa, interface.known_conn_qa
+    D_qa = 2.0 * N_qa if interface.twin_qa is None else np.concatenate([N_qa, -N_qa], axis=1)
     n_qi = np.broadcast_to(interface.mirror_i, interface.X_qi.shape)
-    G_qd = _along(2.0 * interface.N_qa, n_qi)
-    g_q = np.sum(G_qd * u_d[dofs(interface.conn_qa)], -1)
-    return Contact(None, g_q, n_qi, np.ones(interface.points, dtype=bool), interface.conn_qa, G_qd[:, None])
+    g_q = np.sum((D_qa[:, None] @ u_d.reshape(-1, 2)[conn_qa])[:, 0] * n_qi, -1)
+    return Contact(None, g_q, n_qi, np.ones(interface.points, dtype=bool), conn_qa, _along(D_qa, n_qi)[:, None])
 
 
 def _jump(interface: Interface, D_qa: np.ndarray, conn_qa: np.ndarray, u_Ai: np.ndarray) -> np.ndarray:

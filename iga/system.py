@@ -278,7 +278,7 @@ def _reachable(interface: Interface) -> list[np.ndarray]:
     """Control points that a point touches where it is now and one side on either way."""
     pairing = pair(interface)
     if pairing is None:
-        return [interface.conn_qa]
+        return [interface.known_conn_qa]
     neighbours = (np.clip(pairing.c_q + step, 0, interface.master.sides - 1) for step in (-1, 0, 1))
     return [np.concatenate([interface.conn_qa, interface.master.conn_ca[c_q]], axis=1) for c_q in neighbours]
 
