@@ -28,6 +28,9 @@ RULES = {"gauss": gauss, "lobatto": lobatto}
 #: Elements before the crack tip only bend; they may be this much longer than those on the crack path.
 COARSENING = 4.0
 
+#: Stiffness of a tie that shall not give, relative to the modulus times the width.
+RIGID = 1e3
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -57,7 +60,7 @@ class Problem:
     irreversible: bool = True
     kinematics: str = "finite"
     symmetry: bool = False
-    slave: str = "top"
+    slave: str = "upper"
     basis: str = "nurbs"
     degree: int = 3
     dofs: int = 1956
@@ -133,18 +136,19 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
         n_dof = 2 * len(P_AI)
         mean = [mean_row(arm.face, 1, n_dof) for arm in arms]
         load_d = 2.0 * mean[0] if problem.symmetry else mean[0] - mean[1]
+        springs_rd, spring_r = _supports(problem, P_AI, first, arms)
         system = System(
             solids=joined([solid for arm in arms for solid in arm.solids]),
             interface=_interface(problem, meshes, first),
             kinematics=problem.kinematics,
             load_d=load_d,
-            free_d=_free(problem, P_AI, first),
+            free_d=np.ones(n_dof, dtype=bool),
             x_d=np.repeat(P_AI[:, 0], 2),
-            stay_d=None if problem.symmetry else mean_row(arms[0].face, 0, n_dof) - mean_row(arms[1].face, 0, n_dof),
-            stay=problem.E1 * problem.width * problem.arm_thickness / problem.length,
+            springs_rd=springs_rd,
+            spring_r=spring_r,
         )
         probe = _points(problem, meshes, first, *lobatto(2), [0, -1])
-    upper_is_slave = problem.symmetry or problem.slave == "top"
+    upper_is_slave = problem.symmetry or problem.slave == "upper"
     return Specimen(system, arms, meshes, problem.precrack, upper_is_slave, copies, probe)
 
 
@@ -211,15 +215,29 @@ def _shifted(basis: BlockBasis, first: int) -> BlockBasis:
     return replace(basis, conn_ea=basis.conn_ea + first)
 
 
-def _free(problem: Problem, P_AI: np.ndarray, first: np.ndarray) -> np.ndarray:
-    """Supports: each arm's corner of interface and far end held in x, the lower arm's also in y."""
-    free_d = np.ones(2 * len(P_AI), dtype=bool)
-    for arm, start in enumerate(first[:-1]):
-        corner = start + int(np.argmin(np.linalg.norm(P_AI[start : first[arm + 1]] - [problem.length, 0.0], axis=1)))
-        free_d[2 * corner] = False
-        if arm == 1:
-            free_d[2 * corner + 1] = False
-    return free_d
+def _supports(
+    problem: Problem, P_AI: np.ndarray, first: np.ndarray, arms: tuple[Arm, ...]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Rows (n_r, n_dof) of the displacements that are held, and by how stiff a spring (n_r,).
+
+    The lower arm's corner of interface and far end is held in x and y, and how far the two loaded faces are out of line
+    takes the rotation: the rigid motions of the whole, so that these springs carry no force. An interface without
+    friction leaves free to slide one arm along the other, which is tied at these corners, too: the tie carries what
+    the tractions of a bent interface amount to lengthwise and is as good as rigid. One arm alone is held in x.
+    """
+    n_dof = 2 * len(P_AI)
+    corners = [
+        start + int(np.argmin(np.linalg.norm(P_AI[start:end] - [problem.length, 0.0], axis=1)))
+        for start, end in zip(first[:-1], first[1:], strict=True)
+    ]
+    x_rd = np.array([np.eye(1, n_dof, 2 * corner)[0] for corner in corners])
+    soft = problem.E1 * problem.width * problem.arm_thickness / problem.length
+    if len(arms) == 1:
+        return x_rd, np.array([soft])
+    y_d = np.eye(1, n_dof, 2 * corners[1] + 1)[0]
+    aligned_d = mean_row(arms[0].face, 0, n_dof) - mean_row(arms[1].face, 0, n_dof)
+    tie = RIGID * problem.E1 * problem.width
+    return np.stack([x_rd[1], y_d, aligned_d, x_rd[0] - x_rd[1]]), np.array([soft, soft, soft, tie])
 
 
 def _interface(problem: Problem, meshes: tuple[Mesh, ...], first: np.ndarray) -> Interface:
@@ -238,7 +256,7 @@ def _points(
     sides: slice | list[int],
 ) -> Interface:
     """Interface with the rule (xi, w) on the bonded ``sides`` of the slave; the whole other arm is master."""
-    slave, master = (1, 0) if problem.slave == "bottom" and not problem.symmetry else (0, 1)
+    slave, master = (1, 0) if problem.slave == "lower" and not problem.symmetry else (0, 1)
     names = ("bottom", "top")
     P_AI = np.concatenate([mesh.P_AI for mesh in meshes])
     whole = surface(meshes[slave], meshes[slave].chains[names[slave]], int(first[slave]))

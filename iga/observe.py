@@ -47,7 +47,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         float(system.interface.dA_q @ e) for e in system.interface.law.energies(response.contact.g_q, state.k_q)
     )
     reaction_d = np.where(system.free_d, 0.0, response.internal_d - state.load * system.load_d)
-    spring_d = 0.0 if system.stay_d is None else -system.stay * (system.stay_d @ state.u_d) * system.stay_d
+    reaction_d += system.spring_forces(state.u_d) @ system.springs_rd
     tip, end = openings(specimen, point)
     slopes = [face_slope(arm, state.u_d) for arm in specimen.arms]
     return {
@@ -64,7 +64,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         "face_slope_top": slopes[0],
         "face_slope_bottom": slopes[1] if len(slopes) > 1 else -slopes[0],
         "face_energy": specimen.copies * sum(face_energy(arm, state.u_d, system.kinematics) for arm in specimen.arms),
-        **_balance(specimen, point, (reaction_d + spring_d).reshape(-1, 2)),
+        **_balance(specimen, point, reaction_d.reshape(-1, 2)),
         "reaction_x": float(reaction_d[0::2].sum()),
         "reaction_y": float(reaction_d[1::2].sum()),
         "bulk_energy": response.bulk_energy,

@@ -85,7 +85,7 @@ class Response:
 
 @dataclass(frozen=True)
 class Pattern:
-    """Band array and the place in it (n_values,) of every entry of bulk, interface and spring, in this order.
+    """Band array and the place in it (n_values,) of every entry of bulk, interface and springs, in this order.
 
     Linear kinematics leaves out the bulk, which is in place already.
     """
@@ -102,9 +102,9 @@ class System:
     ``load_d`` (n_dof,) is the load vector for a unit resultant and, being the mean over the loaded faces, at once the
     row that measures the opening. ``x_d`` (n_dof,) is the coordinate along the specimen, used for numbering.
 
-    An interface without friction lets two bodies turn together about their supports. A spring of stiffness ``stay`` on
-    the displacement ``stay_d . u`` takes that freedom. It measures how far the two loaded faces are out of line, so
-    that the balance of moments itself says that it carries no force.
+    Rigid motions that nothing else resists are held by springs of stiffness ``spring_r`` (n_r,) on the displacements
+    ``springs_rd @ u`` (n_r,), in any direction and of any group of points; where they are as many as the motions of the
+    whole, balance itself says that they carry no force. ``free_d`` is False where a degree of freedom is fixed.
     """
 
     solids: tuple[Solid, ...]
@@ -113,8 +113,8 @@ class System:
     load_d: np.ndarray
     free_d: np.ndarray
     x_d: np.ndarray
-    stay_d: np.ndarray | None = None
-    stay: float = 0.0
+    springs_rd: np.ndarray
+    spring_r: np.ndarray
 
     @property
     def n_dof(self) -> int:
@@ -129,7 +129,7 @@ class System:
     def band(self) -> Band:
         """Numbering for bulk and interface, with room for every point to move one side on in either direction."""
         entries = [*self.bulk_entries]
-        entries += [_square(conn_qa) for conn_qa in _reachable(self.interface)]
+        entries += [_square(conn_qa) for conn_qa in _reachable(self.interface)] + [self.spring_entries[:2]]
         row, column = (np.concatenate([entry[i].ravel() for entry in entries]) for i in range(2))
         return number(row, column, self.x_d, self.free_d)
 
@@ -139,13 +139,19 @@ class System:
         return contact(self.interface, np.zeros(self.n_dof), pair(self.interface)).conn_qa
 
     @cached_property
-    def stay_entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Rows, columns and values that the spring adds to the tangent."""
-        if self.stay_d is None:
-            return np.zeros(0, dtype=int), np.zeros(0, dtype=int), np.zeros(0)
-        held = np.flatnonzero(self.stay_d)
-        row, column = np.repeat(held, held.size), np.tile(held, held.size)
-        return row, column, self.stay * self.stay_d[row] * self.stay_d[column]
+    def spring_entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rows, columns and values that the springs add to the tangent."""
+        parts = [np.zeros((3, 0))]
+        for a_d, stiffness in zip(self.springs_rd, self.spring_r, strict=True):
+            held = np.flatnonzero(a_d)
+            row, column = np.repeat(held, held.size), np.tile(held, held.size)
+            parts.append(np.stack([row, column, stiffness * a_d[row] * a_d[column]]))
+        row, column, value = np.concatenate(parts, axis=1)
+        return row.astype(int), column.astype(int), value
+
+    def spring_forces(self, u_d: np.ndarray) -> np.ndarray:
+        """Forces (n_r,) that the springs exert on the bodies, along their own displacements."""
+        return -self.spring_r * (self.springs_rd @ u_d)
 
     @cached_property
     def bulk_entries(self) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -186,7 +192,7 @@ class System:
         """
         kept = self.__dict__.get("_pattern")
         if kept is None or not np.array_equal(kept.conn_qa, conn_qa):
-            touching = [_square(conn_qa), self.stay_entries[:2]]
+            touching = [_square(conn_qa), self.spring_entries[:2]]
             band = replace(self.band, k=max(self.band.k, self.band.reach(*touching[0])))
             bulk = [] if self.kinematics == "linear" else self.bulk_entries
             kept = Pattern(conn_qa, band, _positions(band, [*bulk, *touching]))
@@ -206,13 +212,12 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     closed_q = touch.g_q < 0.0 if decide else trial.closed_q
     p_q, dp_q, k_q = traction(system.interface, touch, trial.k_q, closed_q)
     internal_d += forces(system.interface, touch, p_q, system.n_dof)
-    if system.stay_d is not None:
-        internal_d += system.stay * (system.stay_d @ trial.u_d) * system.stay_d
+    internal_d -= system.spring_forces(trial.u_d) @ system.springs_rd
     K_qdd = stiffness(system.interface, touch, p_q, dp_q)
     # an open crack asks for no entries in the matrix, however far it has moved
     carries_q = (p_q != 0.0) | (dp_q != 0.0)
     pattern = system.pattern(np.where(carries_q[:, None], touch.conn_qa, system.reference_conn_qa))
-    values = all_entries(parts, K_qdd, system.stay_entries[2])
+    values = all_entries(parts, K_qdd, system.spring_entries[2])
     tangent = np.bincount(pattern.positions, values, pattern.band.size)
     if linear:
         tangent += system.linear_band

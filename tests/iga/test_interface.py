@@ -101,7 +101,7 @@ def deformed(system, opening: float, shift: float, rng) -> np.ndarray:
     return (x - system.interface.P_AI + 1e-5 * rng.standard_normal(x.shape)).ravel()
 
 
-@pytest.mark.parametrize("slave", ["top", "bottom"])
+@pytest.mark.parametrize("slave", ["upper", "lower"])
 @pytest.mark.parametrize("basis", ["nurbs", "lagrange"])
 @pytest.mark.parametrize("state", STATES)
 def test_tangent_on_a_curved_sliding_interface(state, basis, slave, rng):
