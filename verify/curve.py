@@ -37,6 +37,45 @@ def envelope(opening: ArrayLike, load: ArrayLike) -> tuple[np.ndarray, np.ndarra
     return np.append(d[:1], x), np.append(P[:1], y)
 
 
+def dense(
+    opening: ArrayLike, load: ArrayLike, slope: ArrayLike, heading: ArrayLike, per_step: int = 10
+) -> tuple[np.ndarray, np.ndarray]:
+    """The path between converged points, through snap-backs as well: ``per_step`` points on every step.
+
+    A geometric Hermite cubic in the plane of opening and load, each over its largest size: unit tangents
+    heading (1, slope), as long as the chord of the step. A chord falls short of its arc by the third power of the step,
+    which shifts points along the curve and not off it: the curve is of fourth order all the same.
+
+    A point where the path turns round, as at the end of a leg of the programme, has the tangent of its arrival. A step
+    that sets out against its tangent has a kink there, and leaves it as the parabola does that ends with the other one.
+
+    Parameters
+    ----------
+    opening, load, slope, heading : (n,) converged points, d load / d opening (infinite where the path turns), and +1
+        or -1 where the opening grows or falls along the path.
+
+    Returns
+    -------
+    opening, load : ((n - 1) per_step + 1,)
+    """
+    points = np.stack([np.asarray(opening, dtype=float), np.asarray(load, dtype=float)], axis=1)
+    if len(points) < 2:
+        return points[:, 0], points[:, 1]
+    size = np.max(np.abs(points), axis=0)
+    size[size == 0.0] = 1.0
+    start, chord = points[:-1] / size, np.diff(points / size, axis=0)
+    angle = np.arctan(np.asarray(slope, dtype=float) * size[0] / size[1])
+    unit = np.asarray(heading, dtype=float)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    length = np.linalg.norm(chord, axis=1, keepdims=True)
+    first, last = length * unit[:-1], length * unit[1:]
+    against = np.sum(first * chord, axis=1, keepdims=True) < 0.0
+    first = np.where(against, 2.0 * chord - last, first)
+    t = np.linspace(0.0, 1.0, per_step + 1)[1:, None, None]
+    between = start + t * t * (3.0 - 2.0 * t) * chord + t * (1.0 - t) ** 2 * first - t * t * (1.0 - t) * last
+    d, P = np.concatenate([points[:1], size * between.swapaxes(0, 1).reshape(-1, 2)]).T
+    return d, P
+
+
 def load_at(curve: Curve, opening: ArrayLike) -> np.ndarray:
     """Load of the envelope at openings; NaN outside it. At a jump the load before it."""
     d, P = envelope(*curve)

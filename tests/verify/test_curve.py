@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.curve import curve_error, envelope, hermite, load_at, oscillation, peak
+from verify.curve import curve_error, dense, envelope, hermite, load_at, oscillation, peak
 
 CHECKS = Path(__file__).parents[2] / "../shared/accept/checks.py"
 
@@ -97,6 +97,66 @@ def test_hermite_is_exact_for_cubics_and_of_fourth_order():
 def test_hermite_follows_the_envelope():
     found = hermite([0, 1, 0.5, 1.5], [0, 2, 1, 2], [2, 2, 1, 1], [1.25, 2.0])
     assert found == pytest.approx([1.75, np.nan], nan_ok=True)
+
+
+def snapping(t):
+    """A closed path that snaps back twice: opening, load, slope d load / d opening, heading."""
+    d, dd = t + 0.6 * np.sin(3 * t), 1.0 + 1.8 * np.cos(3 * t)
+    P, dP = 40.0 * np.sin(0.8 * t), 32.0 * np.cos(0.8 * t)
+    return d, P, dP / dd, np.sign(dd)
+
+
+def distance(curve, exact):
+    """Largest distance of points to a polyline, each axis over its largest size."""
+    size = np.abs(exact).max(axis=1)
+    points, line = (np.transpose(c) / size for c in (curve, exact))
+    start, along = line[:-1], np.diff(line, axis=0)
+    share = np.sum((points[:, None] - start) * along, axis=2) / np.sum(along**2, axis=1)
+    nearest = start + np.clip(share, 0.0, 1.0)[..., None] * along
+    return np.sqrt(np.sum((points[:, None] - nearest) ** 2, axis=2).min(axis=1)).max()
+
+
+def test_dense_curve_follows_snap_backs_to_fourth_order():
+    exact = np.array(snapping(np.linspace(0.0, 4.0, 10001))[:2])
+    assert np.any(np.diff(exact[0]) < 0.0)
+    errors = [distance(dense(*snapping(np.linspace(0.0, 4.0, n + 1))), exact) for n in (50, 100, 200)]
+    assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 3.8) and errors[-1] < 1e-6
+
+
+def test_a_dense_curve_gives_envelope_and_curve_error_of_a_snap_back():
+    exact = np.array(snapping(np.linspace(0.0, 4.0, 20001))[:2])
+    few = snapping(np.linspace(0.0, 4.0, 41))
+    assert curve_error(dense(*few), exact) < 2e-4
+    assert curve_error(few[:2], exact) > 20 * curve_error(dense(*few), exact)
+
+
+def test_dense_curve_passes_through_its_points_at_any_scale():
+    path = snapping(np.linspace(0.0, 4.0, 21))
+    d, P = dense(*path, per_step=7)
+    np.testing.assert_allclose([d[::7], P[::7]], path[:2], rtol=1e-13, atol=1e-13)
+    scaled = dense(1e-6 * path[0], 1e9 * path[1], 1e15 * path[2], path[3], per_step=7)
+    np.testing.assert_allclose([1e6 * scaled[0], 1e-9 * scaled[1]], [d, P], rtol=1e-12, atol=1e-12)
+
+
+def test_dense_curve_takes_a_vertical_tangent():
+    t = np.linspace(0.0, np.pi, 41)  # half a circle: the path turns back at the middle point
+    slope = np.where(t == t[20], np.inf, np.tan(t))
+    d, P = dense(np.sin(t), 1.0 - np.cos(t), slope, np.where(t > t[20], -1.0, 1.0))
+    assert np.max(np.abs(np.hypot(d, P - 1.0) - 1.0)) < 1e-6
+
+
+def test_dense_curve_leaves_the_end_of_a_leg_as_the_next_leg_does():
+    """Up to 1 along load = opening - opening^2 / 4, back to the origin along the secant."""
+    up = np.linspace(0.0, 1.0, 6)
+    d, P = np.append(up, [0.5, 0.0]), np.append(up - up**2 / 4, [0.375, 0.0])
+    slope, heading = np.append(1.0 - up / 2, [0.75, 0.75]), np.append(np.ones(6), [-1.0, -1.0])
+    x, y = dense(d, P, slope, heading)
+    np.testing.assert_allclose(y[50:], 0.75 * x[50:], atol=1e-14)
+    assert np.all(np.diff(x[50:]) < 0.0)
+
+
+def test_dense_curve_of_one_point():
+    assert np.array_equal(np.array(dense([0.0], [0.0], [1.0], [1.0])), [[0.0], [0.0]])
 
 
 def test_peak_between_points():
