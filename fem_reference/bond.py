@@ -59,7 +59,11 @@ class Bond:
 
     def force(self, p_q: np.ndarray) -> np.ndarray:
         """Internal force (n_n,) of tractions; supported unknowns have theirs too."""
-        self.vec_q.array[:] = self.weight_q * p_q
+        return self.spread(self.weight_q * p_q)
+
+    def spread(self, force_q: np.ndarray) -> np.ndarray:
+        """Nodal forces G^T f (n_n,) of a force at every point; of a unit force, the gap there as a functional."""
+        self.vec_q.array[:] = force_q
         self.G.multTranspose(self.vec_q, self.vec_n)
         return self.vec_n.array_r.copy()
 

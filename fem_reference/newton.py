@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
+from fem_reference.control import Control
 from fem_reference.model import Model
 
 #: Residual over the force scale at which a state counts as converged.
@@ -22,29 +22,6 @@ DIVERGED = 1e12
 #: A step is long enough when this part of the work along it, or less, is left.
 SLACK = 0.5
 MAX_SEARCHES = 6
-
-
-class Control(Protocol):
-    """What is prescribed of a step: one scalar equation in displacements and load."""
-
-    def residual(self, model: Model, u_n: np.ndarray, load: float) -> float:
-        """What is missing; zero when the prescription is met."""
-
-    def gradient(self, model: Model, u_n: np.ndarray, load: float) -> tuple[np.ndarray, float]:
-        """Its derivatives by the displacements (n_n,) and by the load."""
-
-
-@dataclass(frozen=True)
-class OpeningControl:
-    """The mean opening of the loaded faces is prescribed."""
-
-    opening: float
-
-    def residual(self, model: Model, u_n: np.ndarray, load: float) -> float:
-        return model.dot(model.load_n, u_n) - self.opening
-
-    def gradient(self, model: Model, u_n: np.ndarray, load: float) -> tuple[np.ndarray, float]:
-        return model.load_n, 0.0
 
 
 @dataclass(frozen=True)
@@ -69,7 +46,7 @@ def find_equilibrium(
 ) -> Attempt:
     """Newton from a guess that may violate both equilibrium and control.
 
-    The bordered system [K, -f; c_u, c_P] [du; dP] = -[r; c] needs one factorisation of K and two back-substitutions
+    The bordered system [K, -f; c, 0] [du; dP] = [-r; missing] needs one factorisation of K and two back-substitutions
     (Batoz and Dhatt 1979, Int. J. Numer. Methods Eng. 14, 1262-1267).
 
     Parameters
@@ -100,7 +77,7 @@ def _newton(
     norms = [model.norm(r_n) / scale]
     while target < norms[-1] < DIVERGED and len(norms) <= most:
         model.factorise(u_n, k_q)
-        du_n, d_load = bordered_step(model, control, u_n, load, r_n)
+        du_n, d_load = bordered_step(model, control, u_n, r_n)
 
         def residual_at(s: float, u_n=u_n, load=load, du_n=du_n, d_load=d_load) -> np.ndarray:
             return model.residual(u_n + s * du_n, load + s * d_load, k_q)
@@ -111,14 +88,11 @@ def _newton(
     return Attempt(u_n, load, tuple(norms), norms[-1] <= target)
 
 
-def bordered_step(
-    model: Model, control: Control, u_n: np.ndarray, load: float, r_n: np.ndarray
-) -> tuple[np.ndarray, float]:
+def bordered_step(model: Model, control: Control, u_n: np.ndarray, r_n: np.ndarray) -> tuple[np.ndarray, float]:
     """Increments of displacement and load, with the tangent last factorised."""
     by_residual_n, by_load_n = model.solve(-r_n), model.solve(model.free_n * model.load_n)
-    c_n, c_load = control.gradient(model, u_n, load)
-    missing = control.residual(model, u_n, load) + model.dot(c_n, by_residual_n)
-    d_load = -missing / (model.dot(c_n, by_load_n) + c_load)
+    missing = control.value - model.dot(control.row_n, u_n + by_residual_n)
+    d_load = missing / model.dot(control.row_n, by_load_n)
     return by_residual_n + d_load * by_load_n, d_load
 
 

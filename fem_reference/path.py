@@ -1,94 +1,180 @@
-"""The path of equilibrium along the load programme: predictor, Newton, step length."""
+"""The path of equilibrium along the load programme: predictor, control, Newton, step length, end."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fem_reference.control import FRONT_STEP, Control, Front, at, front_of, opening_control
 from fem_reference.model import Model
-from fem_reference.newton import OpeningControl, bordered_step, find_equilibrium
+from fem_reference.newton import bordered_step, find_equilibrium
 from fem_reference.problem import Problem
 from fem_reference.state import State
+from fem_reference.work import work_along
 
 #: A step is halved this often before the run stops.
 MAX_HALVINGS = 12
+#: Steps towards one goal after which a path that does not arrive is given up.
+MAX_STEPS = 20_000
+#: A specimen has separated when its load has fallen to this part of the peak while damage grew.
+SEPARATED = 1e-4
+#: A step that ends within this part of an increment before the goal is drawn out to the goal.
+NEAR = 0.01
+#: How far ahead the direction of a path that sets out is read off, as a part of the way to the goal.
+TRIFLE = 1e-6
 
 
 @dataclass(frozen=True)
 class Failure:
-    """A step that did not converge; ``final`` when it cannot be made shorter."""
+    """A step that did not converge; ``final`` when the run stops for it."""
 
     reason: str
     final: bool = False
 
 
-def targets(problem: Problem) -> list[np.ndarray]:
-    """Openings to reach, one array a branch of the programme: equal increments, about ``steps`` over all branches."""
+@dataclass(frozen=True)
+class Separation:
+    """The end of a path on which nothing is left that carries."""
+
+    opening: float
+
+
+def branches(problem: Problem) -> list[np.ndarray]:
+    """Equal increments of the opening, about ``steps`` over the whole programme: their ends, one array a branch."""
     corners = np.concatenate([[0.0], problem.opening])
-    lengths = np.abs(np.diff(corners))
-    counts = np.maximum(1, np.rint(problem.steps * lengths / lengths.sum()).astype(int))
-    branches = zip(corners[:-1], corners[1:], counts, lengths, strict=True)
-    return [np.linspace(start, end, n + 1)[1:] for start, end, n, length in branches if length > 0]
+    ways = np.abs(np.diff(corners))
+    counts = np.maximum(1, np.rint(problem.steps * ways / ways.sum()).astype(int))
+    parts = zip(corners[:-1], corners[1:], counts, ways, strict=True)
+    return [np.linspace(start, end, n + 1) for start, end, n, way in parts if way > 0]
 
 
-def path(model: Model) -> Iterator[State | Failure]:
-    """Converged states along the programme, and the failures between them; ends after a final one."""
-    branches = targets(model.problem)
-    state = unloaded(model, towards=branches[0][0])
-    yield state
-    force_scale = 0.0
-    for branch in branches:
-        state = departing(model, state, towards=branch[-1])
-        for target in branch:
-            for point in reach(model, state, target, force_scale):
-                yield point
-                if isinstance(point, Failure) and point.final:
-                    return
-                state = state if isinstance(point, Failure) else point
-                force_scale = max(force_scale, abs(state.load) * model.norm(model.load_n))
-
-
-def reach(model: Model, state: State, target: float, force_scale: float) -> Iterator[State | Failure]:
-    """Converged states on the way to one target opening: in one step, or in halves of it that grow again."""
-    whole, part = target - state.opening, 1.0
-    while state.opening != target:
-        left = target - state.opening
-        goal = target if part * abs(whole) >= abs(left) * (1 - 1e-9) else state.opening + part * whole
-        point = step(model, state, goal, force_scale)
-        if isinstance(point, State):
-            state, part = point, 2 * part
-        else:
-            part *= 0.5
-            point = replace(point, final=part < 0.5**MAX_HALVINGS)
-        yield point
-        if isinstance(point, Failure) and point.final:
+def path(model: Model) -> Iterator[State | Failure | Separation]:
+    """Converged states along the programme, and the failures between them; ends after a final one or a separation."""
+    state = unloaded(model)
+    for lines in branches(model.problem):
+        first = state.heading == 0.0
+        state = departing(model, state, lines[-1])
+        if first:
+            yield state
+        state = yield from reach(model, state, lines)
+        if state is None:
             return
 
 
-def step(model: Model, state: State, opening: float, force_scale: float) -> State | Failure:
+def reach(
+    model: Model, state: State, lines: np.ndarray
+) -> Generator[State | Failure | Separation, None, State | None]:
+    """Converged states along a branch; returns the last one, or None where the path ends before its goal.
+
+    Steps that fail are halved and grow again afterwards.
+    """
+    goal, part = float(lines[-1]), 1.0
+    for _ in range(MAX_STEPS):
+        point = advance(model, state, lines, part)
+        if isinstance(point, Failure):
+            part *= 0.5
+            final = part < 0.5**MAX_HALVINGS
+            yield replace(point, final=final)
+            if final:
+                return None
+            continue
+        yield point
+        if point.opening == goal:
+            return point
+        if separated(model, state, point, goal):
+            yield Separation(point.opening)
+            return None
+        state, part = point, min(1.0, 2 * part)
+    yield Failure(
+        f"the path did not come from opening {state.opening:.6g} to {goal:.6g} in {MAX_STEPS} steps; "
+        "use more elements along the specimen or a higher degree",
+        final=True,
+    )
+    return None
+
+
+def advance(model: Model, state: State, lines: np.ndarray, part: float) -> State | Failure:
+    """One step: to the next line of the branch, or as far as the front is to be led where damage grows fast.
+
+    An opening can be met by two states, before and after a snap-back. A step over which the front has gone further
+    than it may has missed the path between them, and is taken again by the front.
+    """
+    goal, reach = float(lines[-1]), part * abs(lines[1] - lines[0])
+    front, ahead = front_of(model, state, reach), goal > state.opening
+    if front is None:
+        state = departing(model, state, goal)
+        return step(model, state, opening_control(model, next_line(state.opening, lines, reach)))
+    front_control = front.control(model, reach, part)
+    if (state.heading > 0) == ahead and front.calm(model, reach, part):
+        control = opening_control(model, next_line(state.opening, lines, reach))
+        reached = step(model, state, control, along_n=front_control.row_n)
+        if isinstance(reached, State) and not skipped(model, front, reached, part):
+            return reached
+    return lead(model, state, front_control, lines)
+
+
+def next_line(opening: float, lines: np.ndarray, reach: float) -> float:
+    """The first line of a branch that is clearly ahead, or as far towards it as a step may reach."""
+    way = (lines - opening) / (lines[1] - lines[0])
+    line = float(lines[np.argmax(way > NEAR)]) if way[-1] > NEAR else float(lines[-1])
+    left = line - opening
+    return line if abs(left) <= reach * (1 + NEAR) else opening + float(np.copysign(reach, left))
+
+
+def skipped(model: Model, front: Front, reached: State, part: float) -> bool:
+    """Whether the front has opened by more than the largest step of it."""
+    return abs(at(model, front.place, reached.g_q) - front.gap) > part * FRONT_STEP * model.law.g_open
+
+
+def lead(model: Model, state: State, control: Control, lines: np.ndarray) -> State | Failure:
+    """A step of the front; one that passes the goal, or all but reaches it, is taken again so that it ends there."""
+    reached = step(model, state, control)
+    goal, increment = float(lines[-1]), lines[1] - lines[0]
+    if isinstance(reached, Failure) or (goal - reached.opening) / increment > NEAR:
+        return reached
+    share = (goal - state.opening) / (reached.opening - state.opening)
+    between = state.u_n + share * (reached.u_n - state.u_n), state.load + share * (reached.load - state.load)
+    return step(model, state, opening_control(model, goal), between, control.row_n)
+
+
+def step(
+    model: Model,
+    state: State,
+    control: Control,
+    guess: tuple[np.ndarray, float] | None = None,
+    along_n: np.ndarray | None = None,
+) -> State | Failure:
     """The next converged state, its history committed, or why there is none.
 
     The tangent that gives the direction of the path also gives one more correction, which leaves rounding alone.
+
+    Parameters
+    ----------
+    guess : displacements and load to begin with; those that the tangent of the path predicts unless given.
+    along_n : the functional that grows or falls steadily along the step; the prescribed one unless given.
     """
-    move = opening - state.opening
-    guess = state.u_n + move * state.rate_n, state.load + move * state.slope
-    control = OpeningControl(opening)
-    attempt = find_equilibrium(model, control, *guess, state.k_q, force_scale)
+    if guess is None:
+        move = (control.value - model.dot(control.row_n, state.u_n)) / model.dot(control.row_n, state.rate_n)
+        guess = state.u_n + move * state.rate_n, state.load + move * state.slope
+    attempt = find_equilibrium(model, control, *guess, state.k_q, state.peak * model.norm(model.load_n))
     if not attempt.converged:
         return Failure(
             f"no equilibrium beyond opening {state.opening:.6g} in {attempt.iterations} iterations "
-            f"(residual {attempt.residuals[-1]:.1e} of the load); the specimen may snap back here: "
-            "use more elements along it or a higher degree"
+            f"(residual {attempt.residuals[-1]:.1e} of the load), however short the step; "
+            "use more elements along the specimen or a higher degree"
         )
     model.factorise(attempt.u_n, state.k_q)
     rate_n, slope = tangent_of_path(model)
-    du_n, d_load = bordered_step(
-        model, control, attempt.u_n, attempt.load, model.residual(attempt.u_n, attempt.load, state.k_q)
-    )
+    du_n, d_load = bordered_step(model, control, attempt.u_n, model.residual(attempt.u_n, attempt.load, state.k_q))
     u_n, load = attempt.u_n + du_n, attempt.load + d_load
+    row_n = control.row_n if along_n is None else along_n
+    change = model.dot(row_n, u_n - state.u_n)
+    rates = change / model.dot(row_n, state.rate_n), change / model.dot(row_n, rate_n)
+    opening = control.value if control.row_n is model.load_n else model.dot(model.load_n, u_n)
     g_q = model.bond.gap(u_n)
+    work = work_along((state.opening, opening), (state.load, load), (state.slope, slope), rates)
     return State(
         u_n=u_n,
         load=load,
@@ -97,7 +183,9 @@ def step(model: Model, state: State, opening: float, force_scale: float) -> Stat
         g_q=g_q,
         rate_n=rate_n,
         slope=slope,
-        work=state.work + 0.5 * move * (state.load + load) + move**2 / 12 * (state.slope - slope),
+        heading=float(np.sign(rates[1])),
+        peak=max(state.peak, abs(load)),
+        work=state.work + work,
         iterations=attempt.iterations + 1,
     )
 
@@ -109,28 +197,38 @@ def tangent_of_path(model: Model) -> tuple[np.ndarray, float]:
     return by_load_n / compliance, 1.0 / compliance
 
 
-def unloaded(model: Model, towards: float) -> State:
-    """The specimen before anything happens, and the direction in which it sets out.
-
-    Where gaps open and where they close is settled by the first load; it is read off a state a trifle ahead.
-    """
+def unloaded(model: Model) -> State:
+    """The specimen before anything happens; it has no heading yet."""
     u_n, k_q = np.zeros_like(model.load_n), np.zeros_like(model.X_q)
     model.factorise(u_n, k_q)
     rate_n, slope = tangent_of_path(model)
-    trifle = 1e-6 * towards
-    ahead = find_equilibrium(model, OpeningControl(trifle), trifle * rate_n, trifle * slope, k_q, 0.0)
-    model.factorise(ahead.u_n, k_q)
-    rate_n, slope = tangent_of_path(model)
-    return State(u_n, 0.0, 0.0, k_q, np.zeros_like(k_q), rate_n, slope, 0.0, 0)
+    return State(u_n, 0.0, 0.0, k_q, np.zeros_like(k_q), rate_n, slope, 0.0, 0.0, 0.0, 0)
 
 
-def departing(model: Model, state: State, towards: float) -> State:
-    """The same state with the direction in which a path that turns round leaves it: unloading along all secants.
+def departing(model: Model, state: State, goal: float) -> State:
+    """The same state with the direction in which the path leaves it for a goal.
 
-    A gap equal to its history is on the edge between loading and unloading; a history raised by a trifle decides it.
+    Where the path turns round, and where all gaps are zero, it is not that of the arrival: points whose damage grew
+    unload along their secants, gaps open or close. Which ones is read off a state a trifle ahead.
     """
-    if state.load == 0.0 or towards > state.opening:
+    heading = float(np.sign(goal - state.opening))
+    if heading == state.heading and state.opening != 0.0:
         return state
-    model.factorise(state.u_n, state.k_q * (1 + 1e-9))
+    trifle = TRIFLE * (goal - state.opening)
+    guess = state.u_n + trifle * state.rate_n, state.load + trifle * state.slope
+    control = opening_control(model, state.opening + trifle)
+    ahead = find_equilibrium(model, control, *guess, state.k_q, state.peak * model.norm(model.load_n))
+    model.factorise(ahead.u_n if ahead.converged else state.u_n, state.k_q)
     rate_n, slope = tangent_of_path(model)
-    return replace(state, rate_n=rate_n, slope=slope)
+    return replace(state, rate_n=rate_n, slope=slope, heading=heading)
+
+
+def separated(model: Model, before: State, state: State, goal: float) -> bool:
+    """Whether a step on which damage grew has left nothing that carries, nor will by the end of the branch.
+
+    Unloading to zero is none: no damage grows there, and the secants bring the load back.
+    """
+    grew_q = state.k_q > np.maximum(before.k_q, model.law.g_peak)
+    gain = max(0.0, state.heading * state.slope) * abs(goal - state.opening)
+    carried = abs(state.load) + gain
+    return goal > state.opening and carried < SEPARATED * state.peak and bool(model.norm(grew_q.astype(float)) > 0)

@@ -11,7 +11,7 @@ from mpi4py import MPI
 from fem_reference.assembled import owned
 from fem_reference.fields import field_sampler
 from fem_reference.model import build_model
-from fem_reference.path import Failure, path
+from fem_reference.path import Failure, Separation, path
 from fem_reference.problem import Problem
 from fem_reference.state import row_of
 
@@ -27,6 +27,8 @@ class Solution:
     elements: int
     rejected_steps: int
     status: str  # "complete", or "stopped: <cause and what to do>"
+    ending: str  # "separated at opening ...", or nothing to say
+    condition: float  # of the tangents; 0 where it was not looked at
     snapshots: tuple[dict, ...]
 
 
@@ -50,11 +52,14 @@ def solve_dcb(
     rows: list[dict[str, float]] = []
     snapshots: list[dict | None] = []
     wanted = sorted(problem.snapshot_openings)
-    status, rejected = "complete", 0
+    status, ending, rejected = "complete", "", 0
     for point in path(model):
         if isinstance(point, Failure):
             rejected += 1
             status = f"stopped: {point.reason}" if point.final else status
+            continue
+        if isinstance(point, Separation):
+            ending = f"separated at opening {point.opening:.6g}"
             continue
         with phase("assembly"):
             rows.append(row_of(model, point))
@@ -69,5 +74,7 @@ def solve_dcb(
         elements=2 * problem.elements * problem.elements_across,
         rejected_steps=rejected,
         status=status,
+        ending=ending,
+        condition=0.0,
         snapshots=tuple(s for s in snapshots if s is not None),
     )

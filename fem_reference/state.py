@@ -16,7 +16,8 @@ from fem_reference.supports import dofs_at
 class State:
     """Converged displacements and load, with the history that they leave behind.
 
-    ``rate_n`` = du/d(opening) and ``slope`` = d load/d(opening) of the path on arriving here; ``work`` is external.
+    ``rate_n`` = du/d(opening) and ``slope`` = d load/d(opening) of the path on arriving here, ``heading`` the sign in
+    which the opening changes; ``peak`` is the largest load so far, ``work`` is external.
     """
 
     u_n: np.ndarray
@@ -26,6 +27,8 @@ class State:
     g_q: np.ndarray
     rate_n: np.ndarray
     slope: float
+    heading: float
+    peak: float
     work: float
     iterations: int
 
@@ -42,14 +45,16 @@ def row_of(model: Model, state: State) -> dict[str, float]:
     return {
         "opening": state.opening,
         "load": state.load,
-        "crack_length": crack_length(model, state),
+        "crack_length": foremost(model, state, model.law.g_open),
         "stored_energy": bulk + cohesive + contact,
         "dissipated_energy": dissipated,
         "external_work": state.work,
         "newton_iterations": state.iterations,
         "load_slope": state.slope,
+        "heading": state.heading,
         "tip_opening": opening_at(model, model.problem.precrack),
         "end_opening": opening_at(model, model.problem.length),
+        "damage_front": foremost(model, state, model.law.g_peak),
         "face_slope_top": model.dot(model.slope_n * on_upper_n, state.u_n),
         "face_slope_bottom": model.dot(model.slope_n * ~on_upper_n, state.u_n),
         "face_energy": face,
@@ -89,16 +94,16 @@ def opening_at(model: Model, X: float) -> float:
     return model.comm.allreduce(jump)
 
 
-def crack_length(model: Model, state: State) -> float:
-    """Distance from the loaded end to the foremost point that has been fully open, linear between its points."""
+def foremost(model: Model, state: State, gap: float) -> float:
+    """Distance from the loaded end to the foremost point that was ever open by ``gap``, linear between the points."""
     X_q, k_q = ordered_along(model, state.k_q)
-    open_q = np.flatnonzero(k_q >= model.law.g_open)
+    open_q = np.flatnonzero(k_q >= gap)
     if not open_q.size:
         return model.problem.precrack
     last = open_q[-1]
     if last == X_q.size - 1:
         return model.problem.length
-    share = (k_q[last] - model.law.g_open) / (k_q[last] - k_q[last + 1])
+    share = (k_q[last] - gap) / (k_q[last] - k_q[last + 1])
     return float(X_q[last] + share * (X_q[last + 1] - X_q[last]))
 
 

@@ -14,7 +14,8 @@ from mpi4py import MPI
 
 from fem_reference.law import Law
 from fem_reference.model import build_model
-from fem_reference.newton import OpeningControl, find_equilibrium
+from fem_reference.control import opening_control
+from fem_reference.newton import find_equilibrium
 from fem_reference.path import path
 from fem_reference.problem import Problem
 from fem_reference.solve import solve_dcb
@@ -125,7 +126,7 @@ def test_newton_converges_quadratically_between_kinks():
     start = list(path(model))[-1]
     move = 0.8 - start.opening
     guess = start.u_n + move * start.rate_n, start.load + move * start.slope
-    attempt = find_equilibrium(model, OpeningControl(0.8), *guess, start.k_q, 0.0)
+    attempt = find_equilibrium(model, opening_control(model, 0.8), *guess, start.k_q, 0.0)
     residuals = np.array(attempt.residuals)
     print("residuals of one step over the load:", ", ".join(f"{r:.1e}" for r in residuals))
     assert attempt.converged
