@@ -75,6 +75,7 @@ def parser() -> argparse.ArgumentParser:
 
 def _solve(options: argparse.Namespace) -> int:
     from verify.methods import NotRun, require
+    from verify.process_zone import warnings
     from verify.run import mpi_rank, mpi_size, run
     from verify.scene import load_scene
 
@@ -90,6 +91,9 @@ def _solve(options: argparse.Namespace) -> int:
     except NotRun as error:
         return _not_run(error)
     _folder(options.out)
+    if not quiet:
+        for warning in warnings(scene, options.method):
+            _say(f"debond: {warning}")
     result, checks = _watched(run, scene, options, quiet)
     if not quiet:
         _print_result(result, checks, options.out)

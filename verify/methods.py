@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from importlib.util import find_spec
+from types import ModuleType
 from typing import Any
 
 from verify.effects import simulated
@@ -158,28 +159,23 @@ def _iga_keys(scene: Scene, method: str) -> dict[str, Any]:
     }
 
 
-def _iga(scene: Scene, method: str, on_step: OnStep) -> Result:
-    return (_iga_peel if scene.specimen.kind == "peel" else _iga_dcb)(scene, method, on_step)
+def iga_problem(scene: Scene, method: str) -> tuple[ModuleType, Any]:
+    """The module of ``iga`` that solves a scene, and the problem that it is given."""
+    if scene.specimen.kind == "peel":
+        from iga import peel
 
-
-def _iga_dcb(scene: Scene, method: str, on_step: OnStep) -> Result:
+        specimen = scene.specimen.model_dump(exclude={"kind", "width", "plane"})
+        materials = {"strip": elastic_constants(scene.strip), "substrate": elastic_constants(scene.substrate)}
+        return peel, peel.Problem(**specimen, **materials, **_common_keys(scene, method), **_iga_keys(scene, method))
     from iga import dcb
 
+    return dcb, dcb.Problem(**_taken(dcb.Problem, problem_keys(scene, method) | _iga_keys(scene, method)))
+
+
+def _iga(scene: Scene, method: str, on_step: OnStep) -> Result:
+    solver, problem = iga_problem(scene, method)
     watch = Stopwatch()
-    keys = problem_keys(scene, method) | _iga_keys(scene, method)
-    return _result(
-        method, dcb.solve(dcb.Problem(**_taken(dcb.Problem, keys)), on_step=on_step, phase=watch.phase), watch
-    )
-
-
-def _iga_peel(scene: Scene, method: str, on_step: OnStep) -> Result:
-    from iga import peel
-
-    watch = Stopwatch()
-    specimen = scene.specimen.model_dump(exclude={"kind", "width", "plane"})
-    materials = {"strip": elastic_constants(scene.strip), "substrate": elastic_constants(scene.substrate)}
-    problem = peel.Problem(**specimen, **materials, **_common_keys(scene, method), **_iga_keys(scene, method))
-    return _result(method, peel.solve(problem, on_step=on_step, phase=watch.phase), watch)
+    return _result(method, solver.solve(problem, on_step=on_step, phase=watch.phase), watch)
 
 
 def _taken(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from verify import __version__
+from verify import __version__, process_zone
 from verify.checks import run_checks
 from verify.effects import simulated
 from verify.folder import CurveWriter, write_fields, write_json
@@ -148,6 +148,7 @@ def summary(scene: Scene, result: Result, checks: tuple[Check, ...]) -> dict[str
         "seconds": dict(result.seconds or dict.fromkeys((*PHASES, "other", "total"), 0.0)),
         "peak_memory_mb": result.peak_memory_mb,
         "effects": simulated(scene, result.method),
+        "process_zone": process_zone.summary(scene, result),
         "checks": {c.name: _verdict(c) for c in checks},
         "versions": versions(),
         "machine": machine(),

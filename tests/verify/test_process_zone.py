@@ -1,0 +1,126 @@
+"""Length of the process zone: its formulas against other routes, elements counted in it, warnings, measurement."""
+
+import numpy as np
+import pytest
+
+from verify.methods import iga_problem
+from verify.process_zone import (
+    CANTILEVER,
+    bulk_length,
+    element_length,
+    expected,
+    measured,
+    slender_factor,
+    slender_length,
+    summary,
+    warnings,
+)
+from verify.result import Result
+from verify.scene import load_scene
+from verify.specimen import Orthotropic
+
+
+def test_without_an_elastic_part_the_zone_is_that_of_the_cantilever():
+    assert slender_factor(1e12) == pytest.approx(CANTILEVER, rel=1e-3)
+    assert np.cosh(CANTILEVER) * np.cos(CANTILEVER) == pytest.approx(-1.0, rel=1e-12)
+    factors = [slender_factor(d) for d in (1.0001, 1.01, 2.0, 12.5, 500.0, 1e6)]
+    assert all(a < b for a, b in zip(factors, factors[1:], strict=False)) and factors[-1] < CANTILEVER
+
+
+def test_a_long_beam_on_the_law_has_a_zone_of_the_length_that_the_formula_says():
+    """By collocation on the whole of softening and elastic part, with no closed form."""
+    from scipy.integrate import solve_bvp
+
+    ductility, g_max = 12.5, 1.0 / 12.5
+    k4 = (ductility - 1.0) / 4.0
+
+    def right(s, y, x):  # both parts on s in [0, 1]: the softening one is x long, the elastic one 12
+        soft = np.stack([y[1], y[2], y[3], y[0] - 1.0]) * x[0]
+        elastic = np.stack([-y[5], -y[6], -y[7], 4.0 * k4 * y[4]]) * 12.0
+        return np.concatenate([soft, elastic])
+
+    def ends(a, b, x):
+        return np.array([*(a[:4] - a[4:]), a[0] - g_max, b[0] - 1.0, b[3], b[4], b[5]])
+
+    s = np.linspace(0, 1, 200)
+    guess = np.zeros((8, 200))
+    guess[0], guess[4] = g_max + (1 - g_max) * s**2, g_max * np.exp(-12 * s)
+    found = solve_bvp(right, ends, s, guess, p=[1.0], tol=1e-8, max_nodes=20000)
+    assert found.success and found.p[0] == pytest.approx(slender_factor(ductility), rel=1e-6)
+
+
+@pytest.mark.parametrize(("name", "length"), [("dcb-czm1", 0.9), ("dcb-czm2", 0.7)])
+def test_zones_of_the_paper(name, length):
+    zone = expected(load_scene(name), "nurbs")
+    assert zone.length == zone.slender == pytest.approx(length, rel=0.05)
+    assert zone.bulk > 100 * zone.slender and zone.resolved
+
+
+def test_the_modulus_of_a_bulky_body():
+    scene, law = load_scene("dcb-czm1"), load_scene("dcb-czm1").interface
+    assert bulk_length(scene) == pytest.approx(120e3 * law.toughness / law.strength**2)
+    strain = scene.model_copy(update={"specimen": scene.specimen.model_copy(update={"plane": "strain"})})
+    assert bulk_length(strain) == pytest.approx(bulk_length(scene) / (1 - 0.2**2))
+    isotropic = Orthotropic(E1=120e3, E2=120e3, G12=50e3, nu12=0.2)
+    assert bulk_length(scene.model_copy(update={"material": isotropic})) == pytest.approx(bulk_length(scene))
+    fibres = Orthotropic(E1=120e3, E2=8e3, G12=5e3, nu12=0.3)
+    ply = scene.model_copy(update={"material": fibres})
+    # Sih, Paris, Irwin 1965, in the engineering constants
+    modulus = (2 * 120e3 * 8e3 / (np.sqrt(120 / 8) - 0.3 + 120 / 10)) ** 0.5
+    assert bulk_length(ply) == pytest.approx(modulus * law.toughness / law.strength**2)
+    assert slender_length(ply) == pytest.approx(slender_length(scene))
+
+
+@pytest.mark.parametrize("method", ["nurbs", "lagrange"])
+@pytest.mark.parametrize("rule", ["gauss", "lumped"])
+def test_elements_are_those_of_the_mesh_maker(method, rule):
+    scene = load_scene("dcb-czm1", [f'discretization.interface_rule="{rule}"'])
+    solver, problem = iga_problem(scene, method)
+    mesh = solver.build(problem).meshes[0]
+    x = np.unique(np.round(mesh.P_AI[:, 0], 9)) if method == "lagrange" else None
+    if method == "lagrange":  # nodes: three an element
+        assert element_length(scene, method) == pytest.approx(3 * np.diff(x[x > 4.0]).max())
+    bonded = 10.0 / element_length(scene, method)
+    assert bonded == pytest.approx(round(bonded), rel=1e-9) and 0 < bonded < mesh.elements
+
+
+@pytest.mark.parametrize("method", ["beam", "lefm"])
+def test_methods_without_a_mesh_have_nothing_to_warn_of(method):
+    scene = load_scene("dcb-czm1", ["interface.strength=60"])
+    assert np.isnan(element_length(scene, method)) and warnings(scene, method) == ()
+
+
+def test_a_mesh_that_is_too_coarse_is_warned_of_and_the_one_advised_is_not():
+    coarse = load_scene("dcb-czm2", ["discretization.dofs=280"])
+    (text,) = warnings(coarse, "nurbs")
+    assert text.startswith("process zone 0.73 mm < element 0.77 mm: ") and "discretization.dofs = 890" in text
+    assert warnings(load_scene("dcb-czm2", ["discretization.dofs=890"]), "nurbs") == ()
+    (text,) = warnings(load_scene("dcb-czm2", ["discretization.dofs=600"]), "nurbs")
+    assert "spans 2.3 elements of 0.32 mm, fewer than 3" in text
+    strong = load_scene("dcb-czm2", ["interface.strength=60"])
+    assert "dolfinx.elements = " in warnings(strong, "dolfinx")[0]
+    assert "mm" not in warnings(coarse.model_copy(update={"units": "consistent units"}), "nurbs")[0]
+
+
+def test_the_printed_peel_test_has_a_zone_far_below_any_element():
+    pytest.importorskip("iga.peel")
+    (text,) = warnings(load_scene("peel-as-printed"), "nurbs")
+    assert text.startswith("process zone 0.014 mm < element 0.")
+    assert warnings(load_scene("peel-120"), "nurbs") == ()
+
+
+def test_measured_over_the_steps_at_which_a_crack_runs():
+    crack = np.array([4.0, 4.0, 4.5, 5.0, 5.5, 6.0, 6.5])
+    front = np.array([4.0, 4.6, 5.4, 6.0, 6.4, 7.0, 7.0])
+    steps = {"opening": np.arange(7.0), "load": np.ones(7), "crack_length": crack, "damage_front": front}
+    assert measured(Result("nurbs", steps)) == pytest.approx(0.9)
+    assert np.isnan(measured(Result("nurbs", {name: v[:2] for name, v in steps.items()})))
+    assert np.isnan(measured(Result("nurbs", {name: v for name, v in steps.items() if name != "damage_front"})))
+    found = summary(load_scene("dcb-czm1"), Result("nurbs", steps))
+    assert found["measured_elements"] / found["elements"] == pytest.approx(0.9 / found["estimate"])
+
+
+def test_a_scene_without_a_mesh_is_left_to_the_solver():
+    scene = load_scene("dcb-czm1")
+    few = scene.model_copy(update={"discretization": scene.discretization.model_copy(update={"dofs": 8})})
+    assert warnings(few, "nurbs") == ()
