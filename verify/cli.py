@@ -61,6 +61,11 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--out", type=Path, metavar="DIR", help="default: debond-out/SCENE-METHOD")
     sub.add_argument("--fields", action="store_true", help="keep fields of a few steps in fields.npz")
 
+    sub = command("hard", _hard, "The cases on which cohesive codes stop or go wrong.", "hard coarse-czm2 --jobs 2")
+    sub.add_argument("names", nargs="*", metavar="NAME", help="hard cases; default: all")
+    sub.add_argument("--out", type=Path, default=Path("debond-hard"), metavar="DIR", help="default: debond-hard")
+    sub.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help="cases at a time")
+
     sub = command("compare", _compare, "Two load-opening curves.", "compare mine.csv debond-out/dcb-czm1-nurbs")
     sub.add_argument("a", metavar="A", type=Path, help="CSV file or folder of a run")
     sub.add_argument("b", metavar="B", type=Path, help="what A is held against")
@@ -165,6 +170,15 @@ def _verify(options: argparse.Namespace) -> int:
         raise Refusal("\n".join(wrong))
     _folder(options.out)
     return 0 if verify(scenes, options.out, options.jobs, options.full) else FAILED
+
+
+def _hard(options: argparse.Namespace) -> int:
+    from verify.hard.cases import chosen
+    from verify.hard.suite import hard
+
+    cases = chosen(options.names)
+    _folder(options.out)
+    return 0 if hard(cases, options.out, options.jobs) else FAILED
 
 
 def _compare(options: argparse.Namespace) -> int:

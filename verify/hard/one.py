@@ -1,0 +1,132 @@
+"""One case on one basis: run all variants, judge them, leave a verdict."""
+
+from __future__ import annotations
+
+import json
+import sys
+import traceback
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from verify.folder import write_json
+from verify.hard.case import Case, Finding, Number, Trial, Trials
+from verify.hard.cases import CASES
+from verify.hard.criteria import common, ledger
+from verify.methods import Unsuitable, solve
+from verify.result import Result, steps_from_rows
+from verify.run import Solver, run
+from verify.verdict import Check
+
+
+@dataclass(frozen=True)
+class Line:
+    """One run in the verdict: what the matrix sums up."""
+
+    name: str
+    status: str
+    steps: int
+    rejected: int
+    ledger: float
+    condition: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a case showed on a basis."""
+
+    case: str
+    basis: str
+    runs: tuple[Line, ...]
+    checks: tuple[Check, ...]
+    numbers: tuple[Number, ...]
+
+    @property
+    def passed(self) -> bool:
+        return bool(self.checks) and all(check.passed for check in self.checks)
+
+    @property
+    def completed(self) -> int:
+        return sum(line.status.startswith("complete") for line in self.runs)
+
+
+def run_case(case: Case, basis: str, out: Path, solver: Solver = solve) -> Verdict:
+    """Run every variant of a case into ``out``/case/basis/variant and write ``verdict.json`` beside them."""
+    folder = out / case.name / basis
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "verdict.json").unlink(missing_ok=True)
+    trials = {}
+    for variant in case.variants():
+        trials[variant.name] = Trial(variant, _run(variant.scene, basis, folder / variant.name, solver))
+        print(f"{case.name} {basis} {variant.name}: {_ending(trials[variant.name].result)}", flush=True)
+    findings = list(judged(case, trials))
+    verdict = Verdict(
+        case.name,
+        basis,
+        tuple(_line(trial) for trial in trials.values()),
+        tuple(found for found in findings if isinstance(found, Check)),
+        tuple(found for found in findings if isinstance(found, Number)),
+    )
+    write_json(folder / "verdict.json", asdict(verdict))
+    return verdict
+
+
+def judged(case: Case, trials: Trials) -> Iterator[Finding]:
+    """All findings; a criterion that cannot even be computed is one that fails."""
+    for trial in trials.values():
+        yield from common(trial, case.may_stop)
+    try:
+        yield from list(case.judge(trials))
+    except Exception as error:
+        traceback.print_exc()
+        yield Check("judged", "all", float("nan"), 0.0, "exact", f"Cannot be judged: {type(error).__name__}: {error}")
+
+
+def read_verdict(folder: Path) -> Verdict:
+    """The verdict in the folder of a case and basis."""
+    known = json.loads((folder / "verdict.json").read_text())
+
+    def read(kind: type, key: str) -> tuple[Any, ...]:
+        records = ({name: np.nan if v is None else v for name, v in record.items()} for record in known[key])
+        return tuple(kind(**record) for record in records)
+
+    return Verdict(known["case"], known["basis"], read(Line, "runs"), read(Check, "checks"), read(Number, "numbers"))
+
+
+def _run(scene, basis: str, folder: Path, solver: Solver) -> Result:
+    """A run; one that is refused, for a mesh too coarse or a specimen not known, is a run without a step."""
+    try:
+        return run(scene, basis, folder, keep_fields=False, solver=solver)[0]
+    except Unsuitable as error:
+        return Result(basis, steps_from_rows([]), f"stopped: {error}")
+
+
+def _line(trial: Trial) -> Line:
+    result = trial.result
+    return Line(
+        trial.name,
+        _ending(result),
+        max(result.load.size - 1, 0),
+        result.rejected_steps,
+        ledger(result) if result.load.size > 1 else float("nan"),
+        result.condition,
+        (result.seconds or {}).get("total", 0.0),
+    )
+
+
+def _ending(result: Result) -> str:
+    return ", ".join(filter(None, (result.status, result.ending)))
+
+
+def main(arguments: Sequence[str]) -> int:
+    """``python -m verify.hard.one CASE BASIS DIR``."""
+    name, basis, out = arguments
+    return 0 if run_case(CASES[name], basis, Path(out)).passed else 1
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))

@@ -1,0 +1,151 @@
+"""Load programmes: few steps and many, back and forth, to the very end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from verify.hard.case import Case, Finding, Number, Trial, Trials, Variant, variant
+from verify.hard.criteria import distance
+from verify.verdict import Check
+
+
+def _big_steps() -> Sequence[Variant]:
+    return [
+        variant(f"steps-{n}", "dcb-czm1", f"discretization.steps={n}", "discretization.dofs=800") for n in (5, 5000)
+    ]
+
+
+def _judge_big_steps(trials: Trials) -> Iterator[Finding]:
+    away = distance(trials["steps-5"].result, trials["steps-5000"].result)
+    yield Check("same-curve", "steps-5", away, 0.002, "regression", "The envelope is that of 5000 steps.")
+
+
+_CLOSING = -0.1
+
+
+def _unload() -> Sequence[Variant]:
+    mesh = "discretization.dofs=800"
+    return [
+        variant(f"{name}-{kinematics}", "dcb-czm1", f"effects.kinematics={kinematics}", f"load.opening={way}", mesh)
+        for kinematics in ("linear", "finite")
+        for name, way in (
+            ("monotone", "3.0"),
+            ("to-zero", "[1.5, 0.0, 1.5, 3.0]"),
+            ("closing", f"[1.5, {_CLOSING}, 1.5, 3.0]"),
+        )
+    ]
+
+
+def _judge_unload(trials: Trials) -> Iterator[Finding]:
+    for name, trial in trials.items():
+        if name.startswith("monotone"):
+            continue
+        down, up = legs(trial)
+        if down.size < 2 or up.size < 2:
+            yield Check("legs", name, float("nan"), 0.0, "exact", "All legs of the programme were run.")
+            continue
+        linear = name.endswith("linear")
+        yield _secant(trial, down, linear)
+        yield from _penetration(trial) if name.startswith("closing") else ()
+        back = trial.result.load[up[-1]] / trial.result.load[down[0]] - 1.0
+        yield Check("return", name, back, 1e-6, "exact", "Reloaded to where it unloaded, the load is what it was.")
+        monotone = trials[f"monotone-{'linear' if linear else 'finite'}"].result
+        away = distance(trial.result, monotone)
+        yield Check("same-envelope", name, away, 0.002, "regression", "The envelope is that of the monotone programme.")
+
+
+def legs(trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+    """Steps of the leg that unloads and of the one that reloads to where it began, both ends included."""
+    d = trial.result.opening
+    top, low = trial.scene.load.opening[:2]
+    scale = 1e-9 * max(trial.scene.load.opening)
+    at_top, at_low = np.flatnonzero(np.abs(d - top) <= scale), np.flatnonzero(np.abs(d - low) <= scale)
+    at_low = at_low[at_low > at_top[0]] if at_top.size else at_low[:0]
+    again = at_top[at_top > at_low[0]] if at_low.size else at_top[:0]
+    if not again.size:
+        return np.zeros(0, dtype=int), np.zeros(0, dtype=int)
+    turn = at_top[at_top < at_low[0]][-1]
+    return np.arange(turn, at_low[0] + 1), np.arange(at_low[0], again[0] + 1)
+
+
+def _secant(trial: Trial, down: np.ndarray, linear: bool) -> Finding:
+    """Frozen damage makes a linear specimen positively homogeneous, contact included; a finite one only when closed."""
+    d, P = trial.result.opening[down], trial.result.load[down]
+    open_ = d >= 0.0
+    deviation = float(np.max(np.abs(P[open_] / P[0] - d[open_] / d[0])))
+    if linear:
+        return Check("secant", trial.name, deviation, 1e-6, "exact", "It unloads along the secant to the origin.")
+    at_zero = abs(float(np.interp(0.0, d[::-1], P[::-1]) / P[0]))
+    return Check("secant", trial.name, at_zero, 1e-3, "exact", "It unloads to the origin.")
+
+
+def _penetration(trial: Trial) -> Iterator[Finding]:
+    """Closed by -P at the distance a, the arms press on each other like a beam on an elastic foundation.
+
+    Both arms on springs of ``penalty`` between them: k = 2 w penalty an arm, beta = (k / (4 E I))^(1/4), penetration
+    2 (2 beta P / k) (1 + beta a) (Hetenyi 1946, Beams on Elastic Foundation, semi-infinite beam).
+    """
+    scene, steps = trial.scene, trial.result.steps
+    if "tip_opening" not in steps:
+        return
+    body, young = scene.specimen, scene.material.young
+    k = 2.0 * body.width * scene.interface.penalty
+    beta = (k / (4.0 * young * body.width * body.arm_thickness**3 / 12.0)) ** 0.25
+    at = int(np.argmin(steps["opening"]))
+    wanted = 4.0 * beta * abs(steps["load"][at]) / k * (1.0 + beta * body.precrack)
+    found = -float(steps["tip_opening"][at])
+    yield Number("penetration", trial.name, found / wanted, "Penetration over that of a beam on the contact penalty.")
+    meaning = "Closed, the arms pass through each other by no more than twice what p / penalty says."
+    yield Check("contact", trial.name, found / (2.0 * wanted), 1.0, "analytical", meaning)
+
+
+def _reversals() -> Sequence[Variant]:
+    tiny = "[0.5, 0.499999999, 1.0, 0.999999, 1.5, 1.499, 2.0]"
+    return [
+        variant(f"reversals-{basis}", "dcb-czm1", f"load.opening={way}", "discretization.dofs=480")
+        for basis, way in (("none", "2.0"), ("tiny", tiny))
+    ]
+
+
+def _judge_reversals(trials: Trials) -> Iterator[Finding]:
+    away = distance(trials["reversals-tiny"].result, trials["reversals-none"].result)
+    yield Check("same-envelope", "tiny", away, 0.002, "regression", "Reversals of no size change nothing.")
+
+
+def _separation() -> Sequence[Variant]:
+    return [
+        variant("dcb", "dcb-czm1", "load.opening=8.0", "discretization.dofs=800"),
+        variant("peel", "peel-60", "specimen.bond_length=20.0", "load.opening=20.0", "discretization.dofs=1200"),
+    ]
+
+
+def _judge_separation(trials: Trials) -> Iterator[Finding]:
+    for name, trial in trials.items():
+        body, result = trial.scene.specimen, trial.result
+        said = result.complete and result.ending.startswith("separated")
+        yield Check("separated", name, 0.0 if said else 1.0, 0.0, "exact", "The run ends by itself and says separated.")
+        if result.load.size < 2:
+            continue
+        left = abs(result.load[-1]) / np.max(np.abs(result.load))
+        yield Check("no-load", name, left, 0.01, "exact", "Nothing is carried any more, over the peak load.")
+        bond = body.bond_length if body.kind == "peel" else body.length - body.precrack
+        whole = trial.scene.interface.toughness * body.width * bond
+        lost = result.steps["dissipated_energy"][-1] / whole - 1.0
+        yield Check(
+            "all-dissipated", name, lost, 0.01, "exact", "The whole bond was paid for: dissipated over G_Ic w l."
+        )
+
+
+CASES = (
+    Case("big-steps", "The whole programme in 5 requested steps, and in 5000.", _big_steps, _judge_big_steps),
+    Case("unload-reload", "The crack closes, presses, and opens again.", _unload, _judge_unload),
+    Case("tiny-reversals", "The programme turns back by a billionth and goes on.", _reversals, _judge_reversals),
+    Case(
+        "full-separation",
+        "The crack runs through the whole specimen, snapping back to no load.",
+        _separation,
+        _judge_separation,
+    ),
+)

@@ -1,0 +1,128 @@
+"""Strong and brittle interfaces: process zones shorter than an element, and the limit that they tend to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from verify.curve import PROPAGATION, load_at, peak
+from verify.hard.case import Case, Finding, Number, Trial, Trials, Variant, variant
+from verify.hard.criteria import smooth
+from verify.methods import solve
+from verify.process_zone import warnings
+from verify.result import Result
+from verify.verdict import Check
+
+
+def _coarse() -> Sequence[Variant]:
+    return [variant("d0-280", "dcb-czm2", "discretization.dofs=280")]
+
+
+def _under_resolved() -> Sequence[Variant]:
+    sizes = (10, 20, 40)
+    return [variant(f"strength-{p}", "dcb-czm1", f"interface.strength={p}.0", "discretization.dofs=280") for p in sizes]
+
+
+def _judge_under_resolved(trials: Trials) -> Iterator[Finding]:
+    for name, trial in trials.items():
+        cost = cost_of_crack(trial.result) / (trial.scene.interface.toughness * trial.scene.specimen.width)
+        meaning = "Energy that a new area of crack costs, over G_Ic, less 1."
+        yield Check("crack-cost", name, cost - 1.0, 0.02, "exact", meaning)
+        yield warned(trial)
+
+
+def cost_of_crack(result: Result) -> float:
+    """Dissipated energy by new crack length: the slope of the line through all steps at which the crack runs.
+
+    Points soften one after the other where a zone is shorter than their distance. What the one at the front has
+    dissipated so far is no new crack yet; it comes and goes with every point, and leaves the slope as it is.
+    """
+    crack, lost = result.steps["crack_length"], result.steps["dissipated_energy"]
+    running = crack > crack[0] * (1 + 1e-9)
+    if np.unique(crack[running]).size < 3:
+        return np.nan
+    return float(np.polyfit(crack[running], lost[running], 1)[0])
+
+
+def warned(trial: Trial) -> Check:
+    """Whether the user is told before the run that the mesh is too coarse for the process zone."""
+    silent = 0.0 if warnings(trial.scene, trial.result.method) else 1.0
+    return Check("warned", trial.name, silent, 0.0, "exact", "An under-resolved process zone is announced.")
+
+
+#: Strength and unknowns with three NURBS elements or more in the process zone.
+_LIMIT = ((4, 800), (8, 1200), (15, 1600), (30, 2200), (60, 3000))
+
+
+def _toward_lefm() -> Sequence[Variant]:
+    plain = ("effects.kinematics=linear", "effects.symmetry=true")
+    return [
+        variant(f"strength-{p}", "dcb-czm1", *plain, f"interface.strength={p}.0", f"discretization.dofs={dofs}")
+        for p, dofs in _LIMIT
+    ]
+
+
+def _judge_toward_lefm(trials: Trials) -> Iterator[Finding]:
+    """On the propagation branch: before it the curves differ by what the strength is there for."""
+    limit = solve(next(iter(trials.values())).scene, "lefm")
+    begin, end = PROPAGATION * peak((limit.opening, limit.load))[0], limit.opening[-1]
+    grid = np.linspace(begin, end, 400)
+    wanted = load_at((limit.opening, limit.load), grid)
+    away = []
+    for name, trial in trials.items():
+        ratio = load_at(smooth(trial.result), grid) / wanted - 1.0
+        away.append(float(np.sqrt(np.mean(ratio**2))))
+        yield Number("distance", name, away[-1], "Distance to corrected beam theory on the propagation branch (RMS).")
+    ratios = np.divide(away[1:], away[:-1])
+    meaning = "Largest ratio of two successive distances to corrected beam theory: each strength comes closer."
+    yield Check("monotone", "all", float(np.max(ratios)), 1.0, "analytical", meaning)
+
+
+def _brittle() -> Sequence[Variant]:
+    ratios = (1.01, 1e4)
+    return [
+        variant(f"ductility-{r:g}", "dcb-czm1", f"interface.ductility={r}", "discretization.dofs=800") for r in ratios
+    ]
+
+
+def _as_printed() -> Sequence[Variant]:
+    return [variant("mpa", "peel-as-printed")]
+
+
+def _judge_as_printed(trials: Trials) -> Iterator[Finding]:
+    for trial in trials.values():
+        status = trial.result.status
+        fine = trial.result.complete or (status.startswith("stopped: process zone") and trial.result.load.size > 1)
+        meaning = "The run completes, or stops and says that the process zone is shorter than an element."
+        yield Check("honest-end", trial.name, 0.0 if fine else 1.0, 0.0, "exact", meaning)
+        yield warned(trial)
+
+
+CASES = (
+    Case(
+        "coarse-czm2",
+        "The mesh only just resolves the process zone: the load-opening path snaps back at every element.",
+        _coarse,
+    ),
+    Case(
+        "under-resolved",
+        "The process zone is a half, a quarter and a tenth of an element long.",
+        _under_resolved,
+        _judge_under_resolved,
+    ),
+    Case(
+        "toward-lefm",
+        "Stronger and stronger interfaces on meshes that resolve them tend to fracture mechanics.",
+        _toward_lefm,
+        _judge_toward_lefm,
+    ),
+    Case("brittle-ratio", "Softening that is almost vertical, and an initial slope that is.", _brittle),
+    Case(
+        "peel-as-printed",
+        "The strength is above the modulus and the process zone a fiftieth of an element.",
+        _as_printed,
+        _judge_as_printed,
+        may_stop=True,
+    ),
+)
