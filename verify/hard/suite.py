@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import Event
 
+import numpy as np
+
 from verify.hard.case import BASES, Case
 from verify.hard.one import Verdict, read_verdict
 from verify.progress import Progress
