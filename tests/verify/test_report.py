@@ -82,7 +82,15 @@ def made_up(method: str, wobble: float, total: float, dofs: int, elements: int) 
     snapshots = tuple(snapshot(o, tip, elements, 10 * wobble) for o, tip in places) if elements else ()
     shares = {"mesh": 0.02, "basis": 0.05, "assembly": 0.4, "factor": 0.35, "solve": 0.1, "other": 0.08}
     times = {name: share * total for name, share in shares.items()} | {"total": total}
-    return Result(method, curve(wobble), "complete", dofs, 2 * elements, 0, snapshots, times, 180.0)
+    return Result(
+        method,
+        curve(wobble),
+        dofs=dofs,
+        elements=2 * elements,
+        snapshots=snapshots,
+        seconds=times,
+        peak_memory_mb=180.0,
+    )
 
 
 def limit() -> Result:
@@ -227,6 +235,20 @@ def test_summary_comes_first_and_lefm_has_no_error(whole: tuple[str, Page]) -> N
     )
     assert parsed.text.index(f"NURBS: load within {distance} of DOLFINx") < parsed.text.index("What was solved")
     assert parsed.text.count("limit, not compared") == 4 and "LEFM limit: load" not in parsed.text
+
+
+def test_process_zone_is_counted_in_elements_and_marked_where_they_are_too_few(tmp_path: Path) -> None:
+    given = scene_report()
+    crack = 4 + 2 * np.linspace(0, 1, 121)
+    found = given.runs[0].result
+    steps = found.steps | {"crack_length": crack, "damage_front": crack + 0.9}
+    coarse = replace(found, steps=steps, dofs=280)
+    runs = (replace(given.runs[0], result=coarse, label="coarse"), replace(given.runs[0], label="fine"), given.runs[3])
+    text, parsed = page(tmp_path, replace(given, runs=runs))
+    table = re.search(r'<table class="zones">.*?</table>', text, re.DOTALL)[0]
+    assert table.count("fewer than 3 elements") == 1 and table.count("fine enough") == 1
+    assert "coarse 0.77 mm 0.89 mm 1.2 0.9 mm 1.2 " in re.sub(r"\s+", " ", Page(table).text)
+    assert "cohesive beam" not in table  # it has no mesh
 
 
 def test_failing_check_is_marked(tmp_path: Path) -> None:

@@ -1,0 +1,58 @@
+"""The process zone run by run: estimated before, measured after, in lengths and in elements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+from verify import process_zone
+from verify.methods import WITH_DOFS
+from verify.report.entry import Entry
+from verify.report.text import Units, number, quantity
+from verify.scene import Scene
+
+UNKNOWN = "–"
+
+
+@dataclass(frozen=True)
+class ZoneRow:
+    """A line of the table; ``resolved`` by the estimate."""
+
+    entry: Entry
+    element: str
+    estimate: str
+    elements: str
+    measured: str
+    measured_elements: str
+    resolved: bool
+
+
+def rows(scene: Scene, found: Sequence[Entry]) -> tuple[ZoneRow, ...]:
+    """One for each run with a mesh along the interface."""
+    lines = (_row(scene, entry) for entry in found if entry.agreement is not None)
+    return tuple(line for line in lines if line is not None)
+
+
+def _row(scene: Scene, entry: Entry) -> ZoneRow | None:
+    zone = process_zone.expected(_as_run(scene, entry), entry.method)
+    if not isfinite(zone.element):
+        return None
+    length, unit = process_zone.measured(entry.result), Units.of(scene.units).length
+    return ZoneRow(
+        entry,
+        element=quantity(zone.element, unit, 2),
+        estimate=quantity(zone.length, unit, 2),
+        elements=number(zone.elements, 2),
+        measured=quantity(length, unit, 2) if isfinite(length) else UNKNOWN,
+        measured_elements=number(length / zone.element, 2) if isfinite(length) else UNKNOWN,
+        resolved=zone.resolved,
+    )
+
+
+def _as_run(scene: Scene, entry: Entry) -> Scene:
+    """The scene with the unknowns that the run had: the page shows several meshes of one scene."""
+    if entry.method not in WITH_DOFS:
+        return scene
+    mesh = scene.discretization.model_copy(update={"dofs": entry.result.dofs})
+    return scene.model_copy(update={"discretization": mesh})
