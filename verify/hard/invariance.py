@@ -26,8 +26,12 @@ _FORCE_AND_LENGTH = {
     "penalty": (1, -3),
 }
 
-#: Sizes of a newton and a millimetre in other units.
-_UNITS = {"n-mm": (1.0, 1.0), "n-m": (1.0, 1e-3), "kn-in": (1e-3, 1.0 / 25.4)}
+#: Sizes of a newton and a millimetre in other units, and their label.
+_UNITS = {
+    "n-mm": (1.0, 1.0, "N, mm, MPa"),
+    "n-m": (1.0, 1e-3, "N, m, Pa"),
+    "kn-in": (1e-3, 1.0 / 25.4, "kN, in, kN/in2"),
+}
 
 
 def every_number(scene: Scene, change: Callable[[str, float], float]) -> Scene:
@@ -43,14 +47,14 @@ def every_number(scene: Scene, change: Callable[[str, float], float]) -> Scene:
     return parse_scene({key: part for key, part in walk("", scene.model_dump()).items() if part is not None})
 
 
-def in_units(scene: Scene, force: float, length: float) -> Scene:
+def in_units(scene: Scene, force: float, length: float, label: str) -> Scene:
     """The scene in units in which a newton is ``force`` and a millimetre ``length``."""
 
     def convert(key: str, value: float) -> float:
         forces, lengths = _FORCE_AND_LENGTH.get(key, (0, 0))
         return value * force**forces * length**lengths
 
-    return every_number(scene, convert)
+    return every_number(scene, convert).model_copy(update={"units": label})
 
 
 def _units() -> Sequence[Variant]:
@@ -59,7 +63,7 @@ def _units() -> Sequence[Variant]:
 
 
 def _judge_units(trials: Trials) -> Iterator[Finding]:
-    for name, (force, length) in list(_UNITS.items())[1:]:
+    for name, (force, length, _) in list(_UNITS.items())[1:]:
         away = difference(trials[name].result, trials["n-mm"].result, 1.0 / length, 1.0 / force)
         yield Check("same-curve", name, away, 1e-9, "exact", "The curve does not know the units.")
 
