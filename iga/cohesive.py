@@ -38,6 +38,11 @@ class BilinearLaw:
         """Initial slope p_max / g_max."""
         return self.strength / self.g_max
 
+    @property
+    def dissipation_rate(self) -> float:
+        """Energy dissipated per area and increase of the largest opening, (p - p' k) / 2, while softening."""
+        return 0.5 * self.strength * self.g_u / (self.g_u - self.g_max)
+
     def envelope(self, k: np.ndarray) -> np.ndarray:
         """Traction on first loading to the opening k >= 0."""
         softening = self.strength * (self.g_u - k) / (self.g_u - self.g_max)

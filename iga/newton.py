@@ -1,7 +1,7 @@
 """Newton on the bordered system: displacements and load together, closed by one scalar control equation.
 
-Equilibrium ``internal(u) = load f`` is bordered by the control; one factorisation serves both right-hand sides. A
-further control is one more function like `opening_control`.
+Equilibrium ``internal(u) = load f`` is bordered by the control; one factorisation serves both right-hand sides (Batoz
+and Dhatt 1979).
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.banded import BandLU
+from iga.control import Control
 from iga.system import Phase, Response, State, System, factorise, respond, rounding
 
-#: Value of a control at a state with its response, and its gradient with respect to u (n_dof,).
-Control = Callable[[State, Response], tuple[float, np.ndarray]]
+#: Part of the work along a step that may be left, and the attempts to find its length.
+SLACK, SEARCHES = 0.05, 12
 
 
 @dataclass(frozen=True)
@@ -24,64 +25,94 @@ class Newton:
 
     Far ahead of a crack the gaps alternate in sign while they decay below rounding: deciding there anew in every
     iteration sets penalty against cohesion for ever. So contact is settled once the residual is below ``settle``; what
-    a point could be wrong by is then below that, too.
+    a point could be wrong by is then below that, too. A search whose residual has not come below the best one for
+    ``patience`` iterations goes round in circles, as the softening front does between two of its points, and ends.
     """
 
     tolerance: float = 5e-12
     settle: float = 1e-8
     iterations: int = 25
-    halvings: int = 5
+    patience: int = 6
+
+    @property
+    def searching(self) -> Newton:
+        """Limits where every step is measured; the work falls then, the residual need not."""
+        return replace(self, iterations=3 * self.iterations, patience=4 * self.patience)
 
 
 DEFAULT = Newton()
+#: For a state at which hundreds of points decide at once.
+PATIENT = Newton(iterations=100, patience=20)
 
 
-def opening_control(system: System) -> Control:
-    """Mean opening of the loaded faces."""
+@dataclass(frozen=True)
+class Equilibrium:
+    """A converged state, the response to it, and the relative residual norms on the way."""
 
-    def control(state: State, response: Response) -> tuple[float, np.ndarray]:
-        return float(system.load_d @ state.u_d), system.load_d
-
-    return control
-
-
-def gap_control(system: System, point: int) -> Control:
-    """Gap at one quadrature point of the interface."""
-
-    def control(state: State, response: Response) -> tuple[float, np.ndarray]:
-        return float(response.contact.g_q[point]), response.contact.row(point, system.n_dof)
-
-    return control
+    state: State
+    response: Response
+    residuals: tuple[float, ...]
 
 
 def equilibrium(
     system: System, trial: State, control: Control, target: float, change: float, newton: Newton, phase: Phase
-) -> tuple[State, Response, tuple[float, ...]] | None:
-    """Equilibrium near a trial state at which the control has its ``target`` value.
+) -> Equilibrium | None:
+    """Equilibrium near a trial state at which the control has its ``target`` value; None where Newton finds none.
+
+    Full steps first: arms that turn need them, for a step of pure rotation stretches them to second order, and the
+    next one takes that away. Only where they lead nowhere is each step measured by the work that is left along it.
 
     Parameters
     ----------
     trial : prediction; its history is that of the last converged state and stays so.
     change : by how much the control changes in this step, for the tolerance on it.
-
-    Returns
-    -------
-    State, response to it, and the relative residual norms on the way; None where Newton does not converge.
     """
+    spent: tuple[float, ...] = ()
+    for advance, limits in ((_full, newton), (_searched, newton.searching)):
+        found, residuals = _iterate(system, trial, control, target, change, limits, phase, advance)
+        spent += residuals
+        if found is not None:
+            return Equilibrium(*found, spent)
+    return None
+
+
+def _iterate(
+    system: System,
+    trial: State,
+    control: Control,
+    target: float,
+    change: float,
+    newton: Newton,
+    phase: Phase,
+    advance: Callable,
+) -> tuple[tuple[State, Response] | None, tuple[float, ...]]:
+    """The converged state with its response, or None, and the residual norms on the way."""
     trial, response, norm = _evaluate(system, trial, True, phase)
     residuals = [norm]
     while not (_balanced(system, trial, response, norm, newton) and _met(control(trial, response)[0], target, change)):
-        if len(residuals) > newton.iterations or not np.isfinite(norm):
-            return None
+        if _hopeless(residuals, newton):
+            return None, tuple(residuals)
         with phase("factor"):
             lu = factorise(response)
         if lu is None:
-            return None
+            return None, tuple(residuals)
         with phase("solve"):
-            du_d, d_load = _correction(system, trial, response, lu, control, target)
-        trial, response, norm = _search(system, trial, du_d, d_load, norm, newton, phase)
+            move = _correction(system, trial, response, lu, control, target)
+        decide = norm > newton.settle
+
+        def at(s: float, trial=trial, move=move, decide=decide) -> tuple[State, Response, float]:
+            moved = replace(trial, u_d=trial.u_d + s * move[0], load=trial.load + s * move[1])
+            return _evaluate(system, moved, decide, phase)
+
+        trial, response, norm = advance(system, at, move[0], (trial, response, norm))
         residuals.append(norm)
-    return trial, response, tuple(residuals)
+    return (trial, response), tuple(residuals)
+
+
+def residual_norm(system: System, load: float, response: Response) -> float:
+    """Norm of the residual of the free unknowns relative to the forces that the elements hold against each other."""
+    r_d = np.where(system.free_d, response.internal_d - load * system.load_d, 0.0)
+    return float(np.linalg.norm(r_d)) / (response.scale or 1.0)
 
 
 def _balanced(system: System, trial: State, response: Response, norm: float, newton: Newton) -> bool:
@@ -96,6 +127,13 @@ def _met(value: float, target: float, change: float) -> bool:
     return abs(value - target) <= max(1e-6 * abs(change), 1e-12 * abs(target))
 
 
+def _hopeless(residuals: list[float], newton: Newton) -> bool:
+    if len(residuals) > newton.iterations or not np.isfinite(residuals[-1]):
+        return True
+    best = int(np.argmin(residuals))
+    return len(residuals) - 1 - best > newton.patience
+
+
 def _evaluate(system: System, trial: State, decide: bool, phase: Phase) -> tuple[State, Response, float]:
     """Response to a trial state, and that state with the contact it found, from which the next search starts."""
     with phase("assembly"):
@@ -104,34 +142,44 @@ def _evaluate(system: System, trial: State, decide: bool, phase: Phase) -> tuple
     return found, response, residual_norm(system, trial.load, response)
 
 
-def residual_norm(system: System, load: float, response: Response) -> float:
-    """Norm of the residual of the free unknowns relative to the forces that the elements hold against each other."""
-    r_d = np.where(system.free_d, response.internal_d - load * system.load_d, 0.0)
-    return float(np.linalg.norm(r_d)) / (response.scale or 1.0)
-
-
 def _correction(
     system: System, trial: State, response: Response, lu: BandLU, control: Control, target: float
 ) -> tuple[np.ndarray, float]:
     """Bordered step: ``du = v + z d_load`` with K v = -r, K z = f, and d_load from the linearised control."""
     residual_d = response.internal_d - trial.load * system.load_d
     v, z = lu.solve(np.stack([-residual_d, system.load_d], -1)).T
-    value, a_d = control(trial, response)
-    d_load = (target - value - a_d @ v) / (a_d @ z)
+    value, a_d, a_load = control(trial, response)
+    d_load = (target - value - a_d @ v) / (a_d @ z + a_load)
     return v + d_load * z, float(d_load)
 
 
-def _search(
-    system: System, trial: State, du_d: np.ndarray, d_load: float, norm: float, newton: Newton, phase: Phase
-) -> tuple[State, Response, float]:
-    """Full Newton step, or the best of a few halved ones where the full one makes the residual grow."""
-    best = None
-    for halving in range(newton.halvings + 1):
-        fraction = 0.5**halving
-        candidate = replace(trial, u_d=trial.u_d + fraction * du_d, load=trial.load + fraction * d_load)
-        candidate, response, reached = _evaluate(system, candidate, norm > newton.settle, phase)
-        if best is None or reached < best[2]:
-            best = (candidate, response, reached)
-        if reached < norm:
+def _full(system: System, at: Callable, du_d: np.ndarray, before: tuple) -> tuple[State, Response, float]:
+    return at(1.0)
+
+
+def _searched(system: System, at: Callable, du_d: np.ndarray, before: tuple) -> tuple[State, Response, float]:
+    """The Newton step shortened to where little work is left along it, by bisection and false position in turn.
+
+    Where bulk and interface stiffen, as in contact, the work ``du . r`` changes sign where the energy is lowest along
+    the step (Crisfield 1991, ch. 9).
+    """
+    start = _work(system, du_d, before)
+    best = at(1.0)
+    low, high = (0.0, start), (1.0, _work(system, du_d, best))
+    if start >= 0.0 or high[1] <= 0.0:
+        return best
+    work = high[1]
+    for attempt in range(SEARCHES):
+        if 0.5 * start <= work <= -SLACK * start:
             break
+        falsi = low[0] + (high[0] - low[0]) * low[1] / (low[1] - high[1])
+        s = falsi if attempt % 2 == 0 else 0.5 * (low[0] + high[0])
+        best = at(s)
+        work = _work(system, du_d, best)
+        low, high = ((s, work), high) if work < 0.0 else (low, (s, work))
     return best
+
+
+def _work(system: System, du_d: np.ndarray, at: tuple[State, Response, float]) -> float:
+    state, response, _ = at
+    return float(du_d @ np.where(system.free_d, response.internal_d - state.load * system.load_d, 0.0))

@@ -1,7 +1,8 @@
-"""The equilibrium path: tangent predictor, choice of the control, step length, programme.
+"""The equilibrium path: predictor along the tangent, choice of the control, step length, programme, end.
 
 While damage grows the opening of the cohesive front is prescribed, so that the path is followed through snap-backs;
-otherwise the opening of the specimen is.
+otherwise the opening of the specimen is. Where a step fails, the next one ends at the next kink of the law: from kink
+to kink a path with a piecewise linear law has no surprises.
 """
 
 from __future__ import annotations
@@ -11,33 +12,50 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from iga.newton import DEFAULT, Control, Newton, equilibrium, gap_control, opening_control
+from iga.control import Control, gap_control, opening_control
+from iga.events import next_event
+from iga.newton import DEFAULT, PATIENT, Newton, equilibrium
 from iga.quadrature import gauss
-from iga.system import Phase, Response, State, System, factorise, respond, untimed
+from iga.system import Phase, Response, State, System, respond, untimed
+from iga.tangent import Tangent, tangent
 
-#: Attempts at the contact of a tangent that leaves a state, and the gap, in units of g_max, that counts as none.
-CONTACT, NO_GAP = 30, 1e-6
+#: Largest step of the front in parts of g_u; smallest step in parts of the largest; how far a step may leave the
+#: balance of energy open, in parts of the work that it does.
+FRONT, SMALLEST = 0.25, 1.0 / 4096
+#: A specimen has separated when its load, and all that the rest of the programme could bring back, is below this part
+#: of the peak.
+SEPARATED = 1e-4
+#: A state as good as the one where the path departs is this part of the opening, or of g_max, ahead.
+TRIFLE = 1e-6
 
 
 @dataclass(frozen=True)
 class Point:
-    """A converged point of the path, its history committed.
+    """A converged point of the path, its history committed, and the tangent on which the path leaves it.
 
-    ``slope`` is d load / d opening and ``du_d`` is du / d opening along the path, from the tangent at this very point;
+    ``slope`` is d load / d opening there and ``heading`` the sign of the change of the opening along the path;
     ``external_work`` is the integral of the load over the opening along the path.
-    ``residuals`` are the norms that Newton went through, relative to the scale of the forces; ``heading`` is the sign
-    of the change of the opening along the path.
+    ``residuals`` are the norms that Newton went through, relative to the scale of the forces.
     """
 
     state: State
     response: Response
     opening: float
-    slope: float
-    du_d: np.ndarray
+    tangent: Tangent
     external_work: float
-    iterations: int
     residuals: tuple[float, ...]
-    heading: float = 1.0
+
+    @property
+    def slope(self) -> float:
+        return self.tangent.slope
+
+    @property
+    def heading(self) -> float:
+        return self.tangent.heading
+
+    @property
+    def iterations(self) -> int:
+        return len(self.residuals)
 
 
 @dataclass(frozen=True)
@@ -52,13 +70,34 @@ class End:
     separated: bool = False
 
 
-def front(system: System, point: Point) -> int | None:
-    """The most open quadrature point whose damage is growing: the front of the crack."""
-    law, g_q = system.interface.law, point.response.contact.g_q
-    k_q = point.state.k_q
-    alive = np.where((k_q > law.g_max) & (k_q < law.g_u) & (g_q >= (1.0 - 1e-9) * k_q), g_q, -np.inf)
-    most = int(np.argmax(alive))
-    return most if alive[most] > 0.0 else None
+@dataclass(frozen=True)
+class Step:
+    """What is asked of a step: the control, its change, and whether the step ends on the goal."""
+
+    control: Control
+    change: float
+    exact: bool = False
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Step length: ``step`` of the opening now and at most; ``careful`` steps end at the kinks of the law."""
+
+    largest: float
+    step: float
+    careful: bool = False
+
+    @property
+    def fraction(self) -> float:
+        return self.step / self.largest
+
+    def slower(self) -> Pace:
+        return replace(self, step=self.step if not self.careful else 0.5 * self.step, careful=True)
+
+    def after(self, moved: float) -> Pace:
+        """The next step where one has converged and has moved the opening by ``moved``."""
+        step = min(2.0 * self.step, self.largest)
+        return Pace(self.largest, step, self.careful and self.step < self.largest)
 
 
 def follow(
@@ -69,103 +108,140 @@ def follow(
     Parameters
     ----------
     programme : openings to be reached one after the other, from zero.
-    steps : number of steps asked for over the whole programme; one that fails is halved, down to 1/1024, and grows
-        again afterwards.
+    steps : number of steps asked for over the whole programme; one that fails is made to end at the next kink of the
+        law, then halved, down to 1/4096, and grows again afterwards.
     """
     largest = float(np.sum(np.abs(np.diff([0.0, *programme])))) / steps
-    step, rejected = largest, 0
-    heading = float(np.sign(programme[0]))
-    point = _departing(system, system.start(), heading, phase)
+    pace, rejected, peak = Pace(largest, largest), 0, 0.0
+    reach = float(np.max(np.abs(programme)))
+    direction = float(np.sign(programme[0]))
+    point = _departing(system, system.start(), direction, 0.0, phase)
+    if point is None:
+        raise ValueError("the system is singular: the supports or the interface do not hold the bodies")
     yield point
-    for goal in programme:
-        if heading * (goal - point.opening) < 0.0:
-            heading = -heading
-            turned = _departing(system, point.state, heading, phase)
-            point = replace(turned, external_work=point.external_work)
-        loading = heading > 0.0
+    for goal in by_way_of_zero(programme):
+        if direction * (goal - point.opening) < 0.0 or point.opening == 0.0:
+            direction = float(np.sign(goal - point.opening))
+            point = _departing(system, point.state, direction, point.external_work, phase) or point
         while point.opening != goal:
-            control, change, exact = _choose(system, point, goal, step, step / largest, loading)
-            reached = _advance(system, point, control, change, newton, phase)
-            if reached is not None and loading and reached.opening > goal and not exact:
-                exact = True
-                reached = _advance(system, point, opening_control(system), goal - point.opening, newton, phase)
-            if reached is not None:
-                moved = abs(reached.opening - point.opening)
-                point = replace(reached, opening=goal) if exact else reached
-                yield point
-                step = min(step * min(max(largest / (moved or largest), 0.5), 2.0), largest)
+            asked = _ask(system, point, goal, pace, direction)
+            reached = _advance(system, point, asked, direction, newton, phase)
+            if reached is not None and direction * (reached.opening - goal) > 0.0 and not asked.exact:
+                asked = Step(opening_control(system), goal - point.opening, exact=True)
+                reached = _advance(system, point, asked, direction, newton, phase)
+            if reached is None:
+                rejected, pace = rejected + 1, pace.slower()
+                if pace.fraction < SMALLEST:
+                    yield End(_advice(point.opening), rejected)
+                    return
                 continue
-            rejected, step = rejected + 1, 0.5 * step
-            if step < largest / 1024:
-                yield End(_advice(point.opening), rejected)
+            pace = pace.after(abs(reached.opening - point.opening))
+            point = replace(reached, opening=goal) if asked.exact else reached
+            yield point
+            peak = max(peak, abs(point.state.load))
+            if direction > 0.0 and point.opening > 0.0 and _separated(system, point, reach, peak):
+                yield End("complete", rejected, separated=True)
                 return
     yield End("complete", rejected)
 
 
-def _choose(
-    system: System, point: Point, goal: float, step: float, fraction: float, loading: bool
-) -> tuple[Control, float, bool]:
-    """Control of the next step, the change asked of it, and whether it ends exactly on the goal.
+def by_way_of_zero(programme: Sequence[float]) -> tuple[float, ...]:
+    """The programme with a stop wherever it passes through zero: there all points of an unloaded interface touch."""
+    way, here = [], 0.0
+    for goal in programme:
+        way += [0.0, goal] if here * goal < 0.0 else [goal]
+        here = goal
+    return tuple(way)
 
-    The front moves on by at most a quarter of g_u, and by no more than changes the opening by ``step``.
+
+def _ask(system: System, point: Point, goal: float, pace: Pace, direction: float) -> Step:
+    """Control of the next step and the change asked of it.
+
+    The front moves on by at most a quarter of g_u, and by no more than changes the opening by a step.
     """
-    left, q = goal - point.opening, front(system, point) if loading else None
-    if q is None or 0.0 < left < step and fraction == 1.0:
-        exact = abs(left) < 1.001 * step
-        return opening_control(system), left if exact else np.copysign(step, left), exact
-    gap_rate = float(point.response.contact.rates(point.du_d)[q])
-    change = min(0.25 * fraction * system.interface.law.g_u, abs(gap_rate) * step)
-    return gap_control(system, q), change, False
+    law, path = system.interface.law, point.tangent
+    left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
+    k_q, g_q = point.state.k_q, point.response.contact.g_q
+    event = next_event(law, g_q, k_q, path.rate_q) if direction > 0.0 else None
+    if not np.any(path.growing_q):
+        change = np.copysign(min(pace.step, abs(left)), left)
+        if event is not None and event.away * abs(opening_rate) < abs(change):
+            return Step(gap_control(system, event.q), min(pace.fraction * 2, 1.0) * event.change)
+        exact = abs(left) < 1.001 * pace.step
+        return Step(opening_control(system), left if exact else change, exact)
+    if 0.0 < direction * left < pace.step and pace.fraction == 1.0 and path.heading == direction:
+        return Step(opening_control(system), left, exact=True)
+    q = int(np.argmax(np.where(path.growing_q, g_q, -np.inf)))
+    way = min(FRONT * pace.fraction * law.g_u, pace.step * abs(path.rate_q[q] / opening_rate))
+    if pace.careful and event is not None and event.away * abs(path.rate_q[q]) < way:
+        return Step(gap_control(system, event.q), event.change)
+    return Step(gap_control(system, q), np.copysign(way, path.rate_q[q]))
 
 
-def _departing(system: System, state: State, direction: float, phase: Phase) -> Point:
-    """A converged state with the tangent of the path that leaves it for larger (+1) or smaller (-1) openings.
+def _separated(system: System, point: Point, reach: float, peak: float) -> bool:
+    """Most of the bond is broken, and nothing is left that carries: no load, and none that the path is to bring."""
+    interface = system.interface
+    broken = float(interface.dA_q @ (point.state.k_q >= interface.law.g_u)) / float(interface.dA_q.sum())
+    small = SEPARATED * peak
+    falling = point.tangent.d_load < 0.0 or abs(point.slope) * reach <= small
+    return broken > 0.5 and abs(point.state.load) <= small and falling
 
-    Points that set out to unload do so along their secants, for which a history larger by a rounding is enough. Where a
-    gap is zero, as all are before anything moves, its rate alone shows whether it will close: contact is set by the
-    rates until it stays.
+
+def _departing(system: System, state: State, direction: float, work: float, phase: Phase) -> Point | None:
+    """A converged state at which the programme sets out or turns round.
+
+    Where many points touch at once their rates alone may not sort them out. Then a state a trifle ahead does, which
+    a patient search finds.
     """
-    tiny = NO_GAP * system.interface.law.g_max
-    held = replace(state, k_q=state.k_q * (1.0 + 1e-12)) if direction < 0.0 else state
-    for _ in range(CONTACT):
+    opening = float(system.load_d @ state.u_d)
+    for ahead in (False, True):
         with phase("assembly"):
-            response = respond(system, held, decide=False)
-        point = _point(system, replace(state, closed_q=held.closed_q), response, (), phase)
-        if point is None:
-            raise ValueError("the system is singular: the supports or the interface do not hold the bodies")
-        touch = response.contact
-        rates_q = direction * touch.rates(point.du_d)
-        closed_q = np.where(np.abs(touch.g_q) <= tiny, rates_q < 0.0, touch.g_q < 0.0)
-        if np.array_equal(closed_q, held.closed_q):
+            response = respond(system, state, decide=False)
+        found = tangent(system, state, response, direction, phase, turning=not ahead)
+        if found is None:
+            return None
+        start = Point(replace(state, closed_q=found.closed_q), response, opening, found, work, ())
+        if found.agreed or ahead:
             break
-        held = replace(held, closed_q=closed_q)
-    return point
+        trifle = direction * TRIFLE * max(abs(opening), system.interface.law.g_max)
+        rate = float(system.load_d @ found.du_d)
+        moved = replace(
+            start.state,
+            u_d=state.u_d + trifle / rate * found.du_d,
+            load=state.load + trifle / rate * found.d_load,
+        )
+        tried = equilibrium(system, moved, opening_control(system), opening + trifle, trifle, PATIENT, phase)
+        if tried is not None:
+            state = replace(state, closed_q=tried.state.closed_q)
+    return start
 
 
-def _advance(
-    system: System, point: Point, control: Control, change: float, newton: Newton, phase: Phase
-) -> Point | None:
+def _advance(system: System, point: Point, asked: Step, direction: float, newton: Newton, phase: Phase) -> Point | None:
     """One step from the tangent predictor, or None; nothing is committed before it has converged."""
-    value, a_d = control(point.state, point.response)
-    d_opening = change / float(a_d @ point.du_d)
-    old = point.state
-    trial = replace(old, u_d=old.u_d + d_opening * point.du_d, load=old.load + d_opening * point.slope)
-    found = equilibrium(system, trial, control, value + change, change, newton, phase)
+    old, path, control = point.state, point.tangent, asked.control
+    value, a_d, a_load = control(old, point.response)
+    rate = float(a_d @ path.du_d) + a_load * path.d_load
+    away = asked.change / rate
+    trial = replace(old, u_d=old.u_d + away * path.du_d, load=old.load + away * path.d_load)
+    found = equilibrium(system, trial, control, value + asked.change, asked.change, newton, phase)
     if found is None:
         return None
-    trial, response, residuals = found
-    state = replace(trial, k_q=response.k_q, scale=max(old.scale, response.scale))
-    reached = _point(system, state, response, residuals, phase)
-    if reached is None:
+    state = replace(found.state, k_q=found.response.k_q, scale=max(old.scale, found.response.scale))
+    leaving = tangent(system, state, found.response, direction, phase)
+    if leaving is None:
         return None
-    rates = (1.0 / float(a_d @ point.du_d), 1.0 / float(control(trial, response)[1] @ reached.du_d))
-    return replace(reached, external_work=point.external_work + _work(point, reached, change, rates))
+    opening = float(system.load_d @ state.u_d)
+    reached = Point(state, found.response, opening, leaving, 0.0, found.residuals)
+    _, b_d, b_load = control(state, found.response)
+    end_rate = float(b_d @ leaving.du_d) + b_load * leaving.d_load
+    work = _work(system, point, reached, asked.change / rate, asked.change / end_rate)
+    return replace(reached, external_work=point.external_work + work)
 
 
-def _work(start: Point, end: Point, change: float, rates: tuple[float, float]) -> float:
+def _work(system: System, start: Point, end: Point, away: float, back: float) -> float:
     """Integral of the load over the opening along one step, both cubic Hermite curves over the controlled quantity.
 
-    ``change`` is the step of that quantity and ``rates`` the derivative of the opening by it at both ends. Unlike a
+    ``away`` and ``back`` are the lengths of the tangents at both ends that change that quantity by the step. Unlike a
     rule over the opening it holds where the path turns back. Its error is of fourth order; three Gauss points
     integrate it exactly.
     """
@@ -174,30 +250,16 @@ def _work(start: Point, end: Point, change: float, rates: tuple[float, float]) -
     slopes = np.stack([s * (1 - s) ** 2, s * s * (s - 1)])
     d_values = np.stack([6 * s * (s - 1), 6 * s * (1 - s)])
     d_slopes = np.stack([(1 - s) * (1 - 3 * s), s * (3 * s - 2)])
-    d_opening = change * np.array(rates)
-    load = np.array([start.state.load, end.state.load]) @ values + d_opening * [start.slope, end.slope] @ slopes
-    d_opening_ds = np.array([start.opening, end.opening]) @ d_values + d_opening @ d_slopes
-    return float(np.sum(w * load * d_opening_ds))
-
-
-def _point(
-    system: System, state: State, response: Response, residuals: tuple[float, ...], phase: Phase
-) -> Point | None:
-    """The converged point with its exact path tangent ``K du = f d_load``, scaled to a unit change of the opening."""
-    with phase("factor"):
-        lu = factorise(response)
-    if lu is None:
-        return None
-    with phase("solve"):
-        z_d = lu.solve(system.load_d[:, None])[:, 0]
-    slope = 1.0 / float(system.load_d @ z_d)
-    opening = float(system.load_d @ state.u_d)
-    return Point(state, response, opening, slope, slope * z_d, 0.0, len(residuals), residuals)
+    loads = np.array([away * start.tangent.d_load, back * end.tangent.d_load])
+    openings = np.array([away * (system.load_d @ start.tangent.du_d), back * (system.load_d @ end.tangent.du_d)])
+    load = np.array([start.state.load, end.state.load]) @ values + loads @ slopes
+    d_opening = np.array([start.opening, end.opening]) @ d_values + openings @ d_slopes
+    return float(np.sum(w * load * d_opening))
 
 
 def _advice(opening: float) -> str:
     return (
-        f"stopped: Newton did not converge beyond opening {opening:.6g} even with a step 1024 times smaller; "
+        f"stopped: Newton did not converge beyond opening {opening:.6g} even with a step 4096 times smaller; "
         "refine the mesh along the crack (discretization.dofs), take more interface points "
         "(discretization.interface_points) or lower interface.strength"
     )

@@ -1,0 +1,34 @@
+"""Kinks of the law on the way: which point reaches one next when the path goes on along its tangent."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from iga.cohesive import BilinearLaw
+
+#: How far beyond a kink a step that ends at one goes, in parts of the softening range g_u - g_max.
+BEYOND = 1e-3
+
+
+@dataclass(frozen=True)
+class Event:
+    """Point ``q`` reaches its next kink ``away`` lengths of the tangent on; ``change`` of its gap leads just beyond."""
+
+    q: int
+    change: float
+    away: float
+
+
+def next_event(law: BilinearLaw, g_q: np.ndarray, k_q: np.ndarray, rate_q: np.ndarray) -> Event | None:
+    """The first kink on opening: at the strength, at the return to the envelope, at the end of softening."""
+    hair = BEYOND * (law.g_u - law.g_max)
+    soft_q = (k_q > law.g_max) & (g_q >= (1.0 - 1e-9) * k_q)
+    kink_q = np.where(soft_q, law.g_u, np.maximum(k_q, law.g_max))
+    coming_q = (k_q < law.g_u) & (rate_q > 0.0)
+    if not np.any(coming_q):
+        return None
+    away_q = np.where(coming_q, (kink_q - g_q) / np.where(coming_q, rate_q, 1.0), np.inf)
+    q = int(np.argmin(away_q))
+    return Event(q, float(kink_q[q] - g_q[q]) + hair, float(away_q[q]))

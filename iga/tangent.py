@@ -1,0 +1,97 @@
+"""The tangent of the path that leaves a converged state: which points load, which unload, which touch.
+
+At such a state many points stand on a kink of the law: those on the envelope go on along it or turn into their secant,
+and those without a gap open or close. Which, their own rates must say: the tangent is the solution of a
+complementarity problem, found by going through sets of points until rates and set agree.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from iga.system import Phase, Response, State, System, factorise, respond
+
+#: Attempts at the set of points, the gap, in units of g_max, that counts as none, and the part of the largest rate
+#: that counts as rounding.
+ATTEMPTS, NO_GAP, NO_RATE = 30, 1e-6, 1e-9
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """Direction of the path ``(du_d, d_load)``, of any length, forward.
+
+    ``slope`` is d load / d opening, ``heading`` the sign of the change of the opening, ``rate_q`` (n_q,) the rates of
+    the gaps, and ``growing_q`` the points whose damage grows. ``closed_q`` is the contact; whether the rates agree with
+    it and with ``growing_q``, ``agreed`` says.
+    """
+
+    du_d: np.ndarray
+    d_load: float
+    slope: float
+    heading: float
+    rate_q: np.ndarray
+    growing_q: np.ndarray
+    closed_q: np.ndarray
+    agreed: bool = False
+
+
+def on_envelope(system: System, state: State, g_q: np.ndarray) -> np.ndarray:
+    """Points that soften: their damage grows as soon as they open any further."""
+    law, k_q = system.interface.law, state.k_q
+    return (k_q > law.g_max) & (k_q < law.g_u) & (g_q >= (1.0 - 1e-9) * k_q)
+
+
+def tangent(
+    system: System, state: State, response: Response, direction: float, phase: Phase, turning: bool = False
+) -> Tangent | None:
+    """Tangent of the path at a converged state; None where the matrix is singular.
+
+    Parameters
+    ----------
+    response : to this very state; its tangent matrix is used as it is where all its points agree with it, and is
+        overwritten.
+    direction : +1 where the programme opens the specimen, -1 where it closes it. Damage cannot heal: while it grows
+        the path goes forward where energy is dissipated, whatever the opening does there.
+    turning : the programme has turned round at this state, or begins: nothing is known of the points.
+    """
+    law, g_q = system.interface.law, response.contact.g_q
+    soft_q = on_envelope(system, state, g_q)
+    growing_q = soft_q if direction > 0.0 or not law.irreversible else np.zeros_like(soft_q)
+    flat_q = np.abs(g_q) <= NO_GAP * law.g_max
+    closed_q = state.closed_q
+    found = None
+    for attempt in range(ATTEMPTS):
+        if attempt > 0 or turning:
+            # a history larger by a rounding is enough to be on the secant
+            k_q = np.where(soft_q & ~growing_q, state.k_q * (1.0 + 1e-12), state.k_q)
+            with phase("assembly"):
+                response = respond(system, replace(state, k_q=k_q, closed_q=closed_q), decide=False)
+        found = _along(system, response, direction, growing_q, phase)
+        if found is None:
+            return None
+        least = NO_RATE * float(np.max(np.abs(found.rate_q), initial=0.0))
+        agreeing_q = soft_q & (found.rate_q > np.where(growing_q, -least, least)) if law.irreversible else soft_q
+        touching_q = np.where(flat_q & turning, found.rate_q < 0.0, closed_q)
+        if np.array_equal(agreeing_q, growing_q) and np.array_equal(touching_q, closed_q):
+            return replace(found, agreed=True)
+        growing_q, closed_q = agreeing_q, touching_q
+    return found
+
+
+def _along(system: System, response: Response, direction: float, growing_q: np.ndarray, phase: Phase) -> Tangent | None:
+    """Solution of ``K du = f d_load`` for one set of points, turned forward."""
+    with phase("factor"):
+        lu = factorise(response)
+    if lu is None:
+        return None
+    with phase("solve"):
+        z_d = lu.solve(system.load_d[:, None])[:, 0]
+    compliance = float(system.load_d @ z_d)
+    rate_q = response.contact.rates(z_d)
+    growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
+    dissipating = growth != 0.0 and (direction > 0.0 or not system.interface.law.irreversible)
+    sign = direction * float(np.sign(growth if dissipating else compliance))
+    heading = sign * float(np.sign(compliance))
+    return Tangent(sign * z_d, sign, 1.0 / compliance, heading, sign * rate_q, growing_q, response.closed_q)
