@@ -142,10 +142,10 @@ class System:
     def spring_entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rows, columns and values that the springs add to the tangent."""
         parts = [np.zeros((3, 0))]
-        for a_d, stiffness in zip(self.springs_rd, self.spring_r, strict=True):
+        for a_d, k in zip(self.springs_rd, self.spring_r, strict=True):
             held = np.flatnonzero(a_d)
             row, column = np.repeat(held, held.size), np.tile(held, held.size)
-            parts.append(np.stack([row, column, stiffness * a_d[row] * a_d[column]]))
+            parts.append(np.stack([row, column, k * a_d[row] * a_d[column]]))
         row, column, value = np.concatenate(parts, axis=1)
         return row.astype(int), column.astype(int), value
 

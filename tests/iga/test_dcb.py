@@ -47,8 +47,9 @@ def test_the_whole_programme_is_run_and_the_first_row_is_zero(short):
     assert all(
         value == 0.0
         for name, value in short.rows[0].items()
-        if name not in ("crack_length", "load_slope", "newton_iterations", "load_moment")
+        if name not in ("crack_length", "damage_front", "heading", "load_slope", "newton_iterations", "load_moment")
     )
+    assert short.rows[0]["damage_front"] == CZM1.precrack and short.rows[0]["heading"] == 1.0
     assert short.dofs <= 800 and short.dofs > 0.95 * 800
 
 

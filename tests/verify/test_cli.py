@@ -99,16 +99,16 @@ def test_bad_input_is_refused_before_any_work(line: str, folder: Path, capsys: p
 
 
 def test_the_smallest_mesh_is_the_one_that_the_solver_takes() -> None:
-    from iga.dcb import Problem, arm_mesh
+    from iga.dcb import Problem, arm_meshes
     from verify.scene import load_scene
 
     for method in methods.WITH_DOFS:
         for degree in (1, 2, 3, 4, 5):
             keys = methods.problem_keys(load_scene("dcb-czm1"), method)
             least = methods.least_dofs(method, degree)
-            arm_mesh(Problem(basis=method, degree=degree, dofs=least, **keys), 0.0)
+            arm_meshes(Problem(basis=method, degree=degree, dofs=least, **keys))
             with pytest.raises(ValueError, match="unknowns"):
-                arm_mesh(Problem(basis=method, degree=degree, dofs=least - 1, **keys), 0.0)
+                arm_meshes(Problem(basis=method, degree=degree, dofs=least - 1, **keys))
 
 
 @pytest.mark.parametrize("command", ["", "verify", "solve", "compare", "scenes", "doctor", "test"])

@@ -1,0 +1,90 @@
+"""One body: its mesh in place, element bases, loaded and free faces, elasticity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from iga.basis import BlockBasis, block_basis, chain_basis
+from iga.extraction import Mesh
+from iga.pose import Pose
+from iga.quadrature import gauss, square
+from iga.surface import Surface, surface
+from iga.system import Solid
+
+
+@dataclass(frozen=True)
+class Body:
+    """A mesh in place whose control points are numbered from ``first`` on in the whole model.
+
+    ``faces`` holds the basis on its ends "left" and "right", as they were before the specimen was put in place.
+    """
+
+    mesh: Mesh
+    first: int
+    solids: tuple[Solid, ...]
+    faces: Mapping[str, tuple[BlockBasis, ...]]
+    D: np.ndarray
+
+    @property
+    def points(self) -> slice:
+        """Its control points."""
+        return slice(self.first, self.first + len(self.mesh.P_AI))
+
+    def surface(self, name: str) -> Surface:
+        return surface(self.mesh, self.mesh.chains[name], self.first)
+
+
+def bodies(
+    meshes: tuple[Mesh, ...], elasticity: tuple[np.ndarray, ...], pose: Pose, width: float, smooth: bool
+) -> tuple[Body, ...]:
+    """Bodies in place, numbered one after the other, from meshes and elasticity matrices in the specimen's own frame.
+
+    ``smooth`` says that the basis is more than continuous along the specimen: then p Gauss points that way (two at
+    least) keep the order (Ciarlet 1978, sec. 4.1); on C^0 elements they would leave spurious modes.
+    """
+    first = np.cumsum([0] + [len(mesh.P_AI) for mesh in meshes])
+    return tuple(
+        _body(pose.placed(mesh), int(start), pose.turned(D), width, smooth)
+        for mesh, start, D in zip(meshes, first[:-1], elasticity, strict=True)
+    )
+
+
+def _body(mesh: Mesh, first: int, D: np.ndarray, width: float, smooth: bool) -> Body:
+    solids = []
+    for block in mesh.blocks:
+        p, q = block.degrees
+        rules = gauss(max(p, 2) if smooth else p + 1), gauss(q + 1)
+        solids.append(Solid(_numbered(block_basis(mesh, block, *square(*rules), width), first), D))
+    through = gauss(max(block.degrees[1] for block in mesh.blocks) + 1)
+    faces = {
+        name: tuple(_numbered(basis, first) for basis in chain_basis(mesh, mesh.chains[name], *through))
+        for name in ("left", "right")
+    }
+    return Body(mesh, first, tuple(solids), faces, D)
+
+
+def _numbered(basis: BlockBasis, first: int) -> BlockBasis:
+    return replace(basis, conn_ea=basis.conn_ea + first)
+
+
+def face_length(face: tuple[BlockBasis, ...]) -> float:
+    return sum(float(basis.dV_eq.sum()) for basis in face)
+
+
+def mean_row(face: tuple[BlockBasis, ...], direction_i: np.ndarray, n_dof: int) -> np.ndarray:
+    """Row (n_dof,) that gives the mean displacement of a face in one direction."""
+    row_Ai = np.zeros((n_dof // 2, 2))
+    for basis in face:
+        weights_ea = np.einsum("eqa,eq->ea", basis.N_eqa, basis.dV_eq)
+        np.add.at(row_Ai, basis.conn_ea, weights_ea[..., None] * direction_i)
+    return row_Ai.ravel() / face_length(face)
+
+
+def point_row(A: int, direction_i: np.ndarray, n_dof: int) -> np.ndarray:
+    """Row (n_dof,) that gives the displacement of one control point in one direction."""
+    row_Ai = np.zeros((n_dof // 2, 2))
+    row_Ai[A] = direction_i
+    return row_Ai.ravel()

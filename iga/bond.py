@@ -1,0 +1,89 @@
+"""The bonded part of the interface between two bodies: quadrature points of the slave on the surface of the master."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from iga.body import Body
+from iga.interface import Interface
+from iga.lumped import lumped
+from iga.problem import Debonding
+from iga.quadrature import gauss, lobatto
+from iga.surface import Surface
+
+RULES = {"gauss": gauss, "lobatto": lobatto}
+
+#: Surface by which each body, upper and lower, meets the other.
+FACING = ("bottom", "top")
+
+
+def bond(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float]) -> Interface:
+    """Interface over the ``extent`` (from, to) in the specimen's own coordinate along it; one body meets its mirror."""
+    if problem.interface_rule == "lumped":
+        return lumped(_interface(problem, bodies, *_everywhere(problem, bodies, extent, gauss(problem.degree + 1))))
+    rule = RULES[problem.interface_rule](problem.interface_points)
+    return _interface(problem, bodies, *_everywhere(problem, bodies, extent, rule))
+
+
+def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float]) -> Interface:
+    """Points at the two ends of the bond, in the order of ``extent``."""
+    c_q, xi_q, w_q = _everywhere(problem, bodies, extent, lobatto(2))
+    X_q = problem.pose.own(_interface(problem, bodies, c_q, xi_q, w_q).X_qi)[:, 0]
+    ends = [int(np.argmin(np.abs(X_q - X))) for X in extent]
+    return _interface(problem, bodies, c_q[ends], xi_q[ends], w_q[ends])
+
+
+def _everywhere(
+    problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float], rule: tuple[np.ndarray, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Sides c_q, parameters xi_q and weights w_q (n_q,) of a rule on every bonded side of the slave."""
+    face, P_AI = _slave(problem, bodies), control_points(bodies)
+    (middle,) = face.coefficients(np.arange(face.sides), np.full(face.sides, 0.5), 0)
+    X_c = problem.pose.own(np.einsum("cb,cbi->ci", middle, face.bezier_points(P_AI)))[:, 0]
+    bonded = np.flatnonzero((X_c > min(extent)) & (X_c < max(extent)))
+    xi, w = rule
+    return np.repeat(bonded, len(xi)), np.tile(xi, len(bonded)), np.tile(w, len(bonded))
+
+
+def _interface(
+    problem: Debonding, bodies: tuple[Body, ...], c_q: np.ndarray, xi_q: np.ndarray, w_q: np.ndarray
+) -> Interface:
+    face, P_AI, alone = _slave(problem, bodies), control_points(bodies), len(bodies) == 1
+    r0, r1 = face.coefficients(c_q, xi_q, 1)
+    X_qi, tangent_qi = (np.einsum("qb,qbi->qi", r, face.bezier_points(P_AI)[c_q]) for r in (r0, r1))
+    return Interface(
+        N_qa=face.functions(c_q, r0),
+        conn_qa=face.conn_ca[c_q],
+        dA_q=np.linalg.norm(tangent_qi, axis=1) * w_q * problem.width,
+        X_qi=X_qi,
+        P_AI=P_AI,
+        law=problem.law,
+        master=None if alone else _facing(bodies, 1 - slave_number(problem, bodies)),
+        mirror_i=problem.pose.axes_kI[1] if alone else None,
+        frozen=problem.kinematics == "linear",
+    )
+
+
+def control_points(bodies: tuple[Body, ...]) -> np.ndarray:
+    """Control points (n_A, 2) of the whole model, in place."""
+    return np.concatenate([body.mesh.P_AI for body in bodies])
+
+
+def slave_number(problem: Debonding, bodies: tuple[Body, ...]) -> int:
+    """0 where the upper body's points are projected, 1 where the lower one's are.
+
+    Raises
+    ------
+    ValueError : the problem names neither.
+    """
+    if problem.slave not in ("upper", "lower"):
+        raise ValueError(f'slave must be "upper" or "lower", got {problem.slave!r}')
+    return int(problem.slave == "lower" and len(bodies) > 1)
+
+
+def _slave(problem: Debonding, bodies: tuple[Body, ...]) -> Surface:
+    return _facing(bodies, slave_number(problem, bodies))
+
+
+def _facing(bodies: tuple[Body, ...], number: int) -> Surface:
+    return bodies[number].surface(FACING[number])

@@ -1,0 +1,60 @@
+"""Element boundaries along a specimen, and rectangles of either basis on them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from iga.bspline import open_knots
+from iga.extraction import Mesh
+from iga.lagrange import lagrange_rectangle
+from iga.nurbs import nurbs_rectangle
+
+#: Elements beyond the bond only bend; they may be this much longer than those on the crack path.
+COARSENING = 4.0
+
+
+def columns(basis: str, degree: int, elements: int) -> int:
+    """Functions of one direction.
+
+    Raises
+    ------
+    ValueError : the basis is unknown.
+    """
+    if basis not in ("nurbs", "lagrange"):
+        raise ValueError(f'basis must be "nurbs" or "lagrange", got {basis!r}')
+    return elements + degree if basis == "nurbs" else elements * degree + 1
+
+
+def rectangle(basis: str, degree: int, breaks_s: np.ndarray, breaks_t: np.ndarray) -> Mesh:
+    """The rectangle of elements with boundaries at ``breaks_s`` x ``breaks_t``."""
+    if basis == "lagrange":
+        return lagrange_rectangle(breaks_s, breaks_t, degree)
+    return nurbs_rectangle(open_knots(breaks_s, degree), open_knots(breaks_t, degree))
+
+
+def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:
+    """The largest number from ``least`` on whose mesh has no more unknowns than aimed at.
+
+    Raises
+    ------
+    ValueError : even the least one has more.
+    """
+    if unknowns(least) > aim:
+        raise ValueError(f"a mesh of this basis and degree needs at least {unknowns(least)} unknowns, got {aim}")
+    number = least
+    while unknowns(number + 1) <= aim:
+        number += 1
+    return number
+
+
+def part(elements: float, least: int = 1) -> int:
+    """A number of elements from a wish."""
+    return max(round(elements), least)
+
+
+def pieces(*parts: tuple[float, float, int]) -> np.ndarray:
+    """Element boundaries of neighbouring pieces (start, end, equal elements); an empty piece is left out."""
+    breaks = [np.linspace(start, end, n + 1)[:-1] for start, end, n in parts if end > start]
+    return np.concatenate([*breaks, [parts[-1][1]]])

@@ -1,0 +1,53 @@
+"""What every debonding problem states, whatever its specimen: interface, kinematics, programme, mesh, pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from iga.cohesive import BilinearLaw
+from iga.pose import Pose
+
+
+@dataclass(frozen=True, kw_only=True)
+class Debonding:
+    """Common part of a problem in plain numbers, any consistent units.
+
+    ``opening`` is the programme of the loaded faces' mean displacement. ``steps`` is the number of steps asked for over
+    the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed at, never exceeded.
+
+    ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
+    body, "upper" or "lower", whose points are projected. The specimen is reflected X -> -X where ``mirror`` is set,
+    then turned by ``angle`` degrees counter-clockwise, then moved by ``shift``, with its supports and its load; what is
+    read from it is told in its own terms, wherever it lies.
+    """
+
+    strength: float
+    toughness: float
+    ductility: float
+    penalty: float
+    opening: tuple[float, ...]
+    width: float = 1.0
+    plane: str = "stress"
+    contact: bool = True
+    irreversible: bool = True
+    kinematics: str = "finite"
+    basis: str = "nurbs"
+    degree: int = 3
+    dofs: int = 1956
+    mismatch: float = 1.0
+    slave: str = "upper"
+    interface_rule: str = "gauss"
+    interface_points: int = 2
+    steps: int | None = 150
+    snapshot_openings: tuple[float, ...] = ()
+    angle: float = 0.0
+    mirror: bool = False
+    shift: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def law(self) -> BilinearLaw:
+        return BilinearLaw(self.strength, self.toughness, self.ductility, self.penalty, self.contact, self.irreversible)
+
+    @property
+    def pose(self) -> Pose:
+        return Pose(self.angle, self.mirror, self.shift)

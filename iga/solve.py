@@ -1,0 +1,84 @@
+"""From a discrete specimen to its rows: the path followed, read and summed up; the same for every specimen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from iga.banded import condition
+from iga.fields import snapshot
+from iga.observe import row
+from iga.path import End, Point, follow
+from iga.problem import Debonding
+from iga.specimen import Specimen
+from iga.system import Phase, respond
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What a run leaves: a row a converged step (see `iga.observe`), snapshots (see `iga.fields`), and how it ended.
+
+    ``ending`` tells a specimen that came apart; ``condition`` is the larger condition number of the tangents at the
+    first and at the last converged point.
+    """
+
+    rows: tuple[Mapping[str, float], ...]
+    dofs: int
+    elements: int
+    rejected_steps: int
+    status: str
+    snapshots: tuple[Mapping[str, object], ...]
+    ending: str = ""
+    condition: float = 0.0
+
+
+def run(
+    problem: Debonding, specimen: Specimen, on_step: Callable[[Mapping[str, float]], None] | None, phase: Phase
+) -> Solution:
+    """Follow the programme of a problem; ``on_step`` is called with the row of every converged step, as it comes."""
+    rows: list[dict[str, float]] = []
+    snapshots: list[dict[str, object]] = []
+    wanted = sorted(problem.snapshot_openings)
+    worst, point, end = 0.0, None, End("complete", 0)
+    for item in follow(specimen.system, by_way_of(problem.opening, wanted), problem.steps, phase=phase):
+        if isinstance(item, End):
+            end = item
+            continue
+        if point is None:
+            worst = _condition(specimen, item, phase)
+        point = item
+        rows.append(row(specimen, point))
+        if on_step is not None:
+            on_step(rows[-1])
+        if wanted and point.opening >= wanted[0]:
+            wanted = [opening for opening in wanted if opening > point.opening]
+            snapshots.append(snapshot(specimen, point))
+    return Solution(
+        rows=tuple(rows),
+        dofs=specimen.system.n_dof,
+        elements=sum(mesh.elements for mesh in specimen.meshes),
+        rejected_steps=end.rejected,
+        status=end.status,
+        snapshots=tuple(snapshots),
+        ending=f"separated at opening {point.opening:.6g}" if end.separated else "",
+        condition=max(worst, _condition(specimen, point, phase)),
+    )
+
+
+def by_way_of(programme: Sequence[float], stops: Sequence[float]) -> tuple[float, ...]:
+    """The programme with a stop at each of ``stops`` (increasing) where it first comes by."""
+    way, left, here = [], list(stops), 0.0
+    for goal in programme:
+        while left and here < left[0] < goal:
+            way.append(left.pop(0))
+        way.append(goal)
+        here = goal
+    return tuple(way)
+
+
+def _condition(specimen: Specimen, point: Point, phase: Phase) -> float:
+    """Condition number of the tangent at a converged point; its own matrix has been factorised away."""
+    with phase("assembly"):
+        response = respond(specimen.system, point.state, decide=False)
+    with phase("factor"):
+        return condition(response.band, response.tangent)

@@ -1,0 +1,43 @@
+"""A discrete specimen: its system and what it takes to read it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from iga.body import Body
+from iga.extraction import Mesh
+from iga.interface import Interface
+from iga.pose import Pose
+from iga.system import System
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """A system and what it takes to read it: bodies (upper first), pose, and which ends count for what.
+
+    ``loaded`` names the end, "left" or "right", at which the dead load pulls each body; "" where it does not.
+    Distances along the specimen are counted from the plane ``loaded_at`` of the first of them; the bond begins at the
+    distance ``free_length``. ``energy_faces`` (body, end, sign) are those whose strain energy enters the J-integral.
+    ``probe`` has two points, on the tip of the bond and on its far end. ``copies`` is 2 where one body stands for both.
+    """
+
+    system: System
+    bodies: tuple[Body, ...]
+    pose: Pose
+    loaded: tuple[str, ...]
+    loaded_at: float
+    free_length: float
+    energy_faces: tuple[tuple[int, str, float], ...]
+    upper_is_slave: bool
+    copies: float
+    probe: Interface
+
+    @property
+    def meshes(self) -> tuple[Mesh, ...]:
+        return tuple(body.mesh for body in self.bodies)
+
+    def distance(self, X: np.ndarray) -> np.ndarray:
+        """Distance (...,) of places (..., 2) from the loaded end, along the specimen."""
+        return np.abs(self.pose.own(X)[..., 0] - self.loaded_at)
