@@ -20,6 +20,7 @@ from verify.crosschecks import cross_checks, peak_load
 from verify.folder import read_result
 from verify.methods import METHODS, WITH_DOFS, NotRun, require
 from verify.progress import Progress
+from verify.quadrature_study import Study, finding, study
 from verify.refusal import Refusal
 from verify.result import Result
 from verify.run import machine, versions
@@ -73,17 +74,19 @@ def verify(scenes: Sequence[tuple[str, Scene]], out: Path, jobs: int, full: bool
     ----------
     scenes : each with the name or path that it was loaded from
     jobs : runs at a time
-    full : finer and coarser meshes as well
+    full : finer and coarser meshes as well, and the study of the interface rules
     """
     plan = [job for source, scene in scenes for job in planned(source, scene, full)]
     outcomes = {outcome.job: outcome for outcome in run_all(plan, out, jobs)}
     reports = tuple(
         scene_report(scene, [outcomes[job] for job in plan if job.scene is scene], out) for _, scene in scenes
     )
-    page = out / "report.html"
-    _write_report(reports, page)
+    page, quadrature = out / "report.html", study() if full else None
+    _write_report(reports, page, quadrature)
     checks = [(report.scene.name, check) for report in reports for check in report.checks]
     print("\n".join([*overview(reports), *sequences(reports), *failures(checks)]))
+    if quadrature is not None:
+        print(finding(quadrature))
     passed = sum(check.passed for _, check in checks)
     print(f"{passed} of {len(checks)} checks hold: {page}")
     return passed == len(checks)
@@ -228,11 +231,11 @@ def _in_short(outcome: Outcome) -> str:
     return f"{result.status}, peak load {result.load.max(initial=0.0):.5g}, {seconds:.1f} s"
 
 
-def _write_report(reports: tuple[SceneReport, ...], page: Path) -> None:
+def _write_report(reports: tuple[SceneReport, ...], page: Path, quadrature: Study | None) -> None:
     """The page; without the packages that it needs the checks are still worth printing."""
     try:
         from verify.report import write
     except ImportError as error:
         print(f"debond: no report: {error.name} is missing; pip install 'debond[report]'", file=sys.stderr)
         return
-    write(reports, page, environment())
+    write(reports, page, environment(), quadrature)

@@ -8,6 +8,8 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from verify.quadrature_study import Study
+from verify.report import study
 from verify.report.section import section
 from verify.report.style import custom_properties
 from verify.report.summary import summarise
@@ -19,7 +21,9 @@ __all__ = ["write"]
 _HERE = Path(__file__).parent
 
 
-def write(reports: tuple[SceneReport, ...], path: Path, environment: Mapping[str, str]) -> None:
+def write(
+    reports: tuple[SceneReport, ...], path: Path, environment: Mapping[str, str], quadrature: Study | None = None
+) -> None:
     """Write the page.
 
     Parameters
@@ -27,6 +31,7 @@ def write(reports: tuple[SceneReport, ...], path: Path, environment: Mapping[str
     reports : one for each scene, in the order of the page
     path : the HTML file; its folder is made
     environment : what to print about versions and machine, name to value
+    quadrature : the study of the interface rules, where it was made
     """
     sections = tuple(section(report, f"scene-{i + 1}") for i, report in enumerate(reports))
     jinja = Environment(
@@ -41,6 +46,7 @@ def write(reports: tuple[SceneReport, ...], path: Path, environment: Mapping[str
     page = jinja.get_template("page.html.j2").render(
         sections=sections,
         summary=summarise(sections),
+        quadrature=None if quadrature is None else study.section(quadrature, "quadrature"),
         environment=dict(environment),
         light=Markup(custom_properties(dark=False)),
         dark=Markup(custom_properties(dark=True)),
