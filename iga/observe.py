@@ -63,9 +63,9 @@ def reach(specimen: Specimen, k_q: np.ndarray, limit: float) -> float:
     if beyond.size == 0:
         return specimen.free_length
     last = beyond[-1]
-    if last == len(k) - 1:
-        return float(s[last])
-    return float(s[last] + (s[last + 1] - s[last]) * (k[last] - limit) / (k[last] - k[last + 1]))
+    onward = 0.0 if last == len(k) - 1 else (s[last + 1] - s[last]) * (k[last] - limit) / (k[last] - k[last + 1])
+    # control points as points: those of splines reach back over the tip of the bond
+    return max(float(s[last] + onward), specimen.free_length)
 
 
 def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
