@@ -95,7 +95,7 @@ def finding(found: Study) -> str:
         )
         numbers = f"{gauss:.0%} with 2 Gauss points, {lobatto:.0%} with 4 Lobatto points, {lumped:.0%} lumped"
         words.append(f"with {name} {numbers}: lumping {'cures' if lumped < 0.1 * gauss else 'does not cure'} it")
-    return f"At ductility {ductility:g} the traction oscillates by parts of the strength, {'; '.join(words)}"
+    return f"Traction oscillation relative to the strength at ductility {ductility:g}: {'; '.join(words)}"
 
 
 #: Which snapshot is drawn: at half of the opening the peak traction has just left the precrack.
