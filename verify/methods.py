@@ -165,8 +165,8 @@ def iga_problem(scene: Scene, method: str) -> tuple[ModuleType, Any]:
         from iga import peel
 
         specimen = scene.specimen.model_dump(exclude={"kind", "width", "plane"})
-        materials = {"strip": elastic_constants(scene.strip), "substrate": elastic_constants(scene.substrate)}
-        return peel, peel.Problem(**specimen, **materials, **_common_keys(scene, method), **_iga_keys(scene, method))
+        moduli = {name: peel.Moduli(**elastic_constants(getattr(scene, name))) for name in ("strip", "substrate")}
+        return peel, peel.Problem(**specimen, **moduli, **_common_keys(scene, method), **_iga_keys(scene, method))
     from iga import dcb
 
     return dcb, dcb.Problem(**_taken(dcb.Problem, problem_keys(scene, method) | _iga_keys(scene, method)))
