@@ -39,7 +39,9 @@ def lumped(interface: Interface) -> Interface:
     w_A, n_Ai = _areas(interface, start.n_qi)
     A = _in_order(interface.conn_qa)
     if np.any(w_A[A] <= 0.0):
-        raise ValueError('interface_rule "lumped": a control point has no positive area; use "gauss" or "lobatto"')
+        raise ValueError(
+            'interface_rule must be "gauss" or "lobatto" where a control point has no positive area, got "lumped"'
+        )
     return replace(
         interface,
         N_qa=np.ones((len(A), 1)),
@@ -82,8 +84,8 @@ def _twins(interface: Interface, start: Contact, A: np.ndarray) -> np.ndarray:
         same = np.allclose(slave_qA, master_qA, rtol=0.0, atol=SAME)
     if not same:
         raise ValueError(
-            'interface_rule "lumped" joins the control points of the two bodies one to one and needs meshes that match '
-            f'along the interface, got {len(A)} control points on {len(B)}; use "gauss" or "lobatto"'
+            'interface_rule must be "gauss" or "lobatto" on meshes that do not match along the interface '
+            f'({len(A)} control points on {len(B)}), got "lumped", which joins them one to one'
         )
     return twin
 

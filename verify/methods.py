@@ -85,8 +85,19 @@ def require(scene: Scene, method: str) -> None:
     if mesh.dofs < least:
         text = f"must be >= {least} for {method} of degree {mesh.degree}, got {mesh.dofs}"
         raise Unsuitable(f"discretization.dofs: {text}")
+    if mesh.interface_rule == "lumped" and method in WITH_DOFS:
+        _require_twins(scene, method)
     if method in ("beam", "lefm") and any(b <= a for a, b in zip((0.0, *programme), programme, strict=False)):
         raise Unsuitable(f"load.opening: must only increase for the method {method}, got {list(programme)}")
+
+
+def _require_twins(scene: Scene, method: str) -> None:
+    """Lumping joins control points one to one; whether they are there only the meshes can tell."""
+    solver, problem = iga_problem(scene, method)
+    try:
+        solver.build(problem)
+    except ValueError as error:
+        raise Unsuitable(f"discretization.interface_rule: {str(error).removeprefix('interface_rule ')}") from None
 
 
 def least_dofs(method: str, degree: int) -> int:

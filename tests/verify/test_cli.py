@@ -45,6 +45,9 @@ REFUSED = {
     "solve dcb-czm1 --method beam --set load.opening=[1.0,0.5]": (
         "load.opening: must only increase for the method beam, got [1.0, 0.5]"
     ),
+    "solve dcb-czm1 --set discretization.interface_rule='lumped' --set discretization.mismatch=2": (
+        'discretization.interface_rule: must be "gauss" or "lobatto" on meshes that do not match along the interface'
+    ),
     "solve dcb-czm1 --method lefm --out a-file": "--out: must be a folder that can be written to, got 'a-file'",
     "solve dcb-czm1 --colour red": "--colour",
     "solve peel-120 --method beam": "specimen.kind: must be \"dcb\" for beam, got 'peel' (peel: not available yet)",
