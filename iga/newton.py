@@ -25,12 +25,14 @@ class Newton:
 
     Far ahead of a crack the gaps alternate in sign while they decay below rounding: deciding there anew in every
     iteration sets penalty against cohesion for ever. So contact is settled once the residual is below ``settle``; what
-    a point could be wrong by is then below that, too. A search whose residual has not come below the best one for
-    ``patience`` iterations goes round in circles, as the softening front does between two of its points, and ends.
+    a point could be wrong by is then below that, too. What rounding leaves is only asked below ``rough``. A search
+    whose residual has not come below the best one for ``patience`` iterations goes round in circles, as the softening
+    front does between two of its points, and ends.
     """
 
     tolerance: float = 5e-12
     settle: float = 1e-8
+    rough: float = 1e-6
     iterations: int = 25
     patience: int = 6
 
@@ -89,7 +91,10 @@ def _iterate(
     """The converged state with its response, or None, and the residual norms on the way."""
     trial, response, norm = _evaluate(system, trial, True, phase)
     residuals = [norm]
-    while not (_balanced(system, trial, response, norm, newton) and _met(control(trial, response)[0], target, change)):
+    while True:
+        floor = _floor(system, trial, response, newton) if norm < newton.rough else newton.tolerance
+        if norm <= floor and _met(control(trial, response)[0], target, change):
+            return (trial, response), tuple(residuals)
         if _hopeless(residuals, newton):
             return None, tuple(residuals)
         with phase("factor"):
@@ -98,7 +103,7 @@ def _iterate(
             return None, tuple(residuals)
         with phase("solve"):
             move = _correction(system, trial, response, lu, control, target)
-        decide = norm > newton.settle
+        decide = norm > max(newton.settle, 10.0 * floor)
 
         def at(s: float, trial=trial, move=move, decide=decide) -> tuple[State, Response, float]:
             moved = replace(trial, u_d=trial.u_d + s * move[0], load=trial.load + s * move[1])
@@ -106,7 +111,6 @@ def _iterate(
 
         trial, response, norm = advance(system, at, move[0], (trial, response, norm))
         residuals.append(norm)
-    return (trial, response), tuple(residuals)
 
 
 def residual_norm(system: System, load: float, response: Response) -> float:
@@ -115,11 +119,11 @@ def residual_norm(system: System, load: float, response: Response) -> float:
     return float(np.linalg.norm(r_d)) / (response.scale or 1.0)
 
 
-def _balanced(system: System, trial: State, response: Response, norm: float, newton: Newton) -> bool:
-    """Below the tolerance, or below what rounding leaves where elements are so thin that this is more."""
-    if norm > newton.settle:
-        return False
-    return norm <= newton.tolerance or norm * response.scale <= rounding(system, trial.u_d)
+def _floor(system: System, trial: State, response: Response, newton: Newton) -> float:
+    """Relative residual norm that counts as none: the tolerance, or what rounding leaves where that is more."""
+    if response.scale == 0.0:
+        return newton.tolerance
+    return max(newton.tolerance, rounding(system, trial.u_d) / response.scale)
 
 
 def _met(value: float, target: float, change: float) -> bool:
