@@ -54,10 +54,11 @@ class Peel(Section):
     @field_validator("bond_length")
     @classmethod
     def _both_bodies_are_there(cls, bond_length: float, info: ValidationInfo) -> float:
-        for key in ("strip_length", "substrate_length"):
-            limit = info.data.get(key)
-            if limit is not None and bond_length > limit:
-                raise refuse(f"<= specimen.{key} = {limit:g}", ((), bond_length))
+        strip, substrate = (info.data.get(key) for key in ("strip_length", "substrate_length"))
+        if strip is not None and bond_length >= strip:
+            raise refuse(f"< specimen.strip_length = {strip:g}", ((), bond_length))
+        if substrate is not None and bond_length > substrate:
+            raise refuse(f"<= specimen.substrate_length = {substrate:g}", ((), bond_length))
         return bond_length
 
     @property

@@ -101,7 +101,7 @@ BROKEN = {
 #: the same for a peel
 BROKEN_PEEL = {
     "specimen.bond_length=130.0": "specimen.bond_length: must be <= specimen.substrate_length = 120, got 130",
-    "specimen.strip_length=100.0": "specimen.bond_length: must be <= specimen.strip_length = 100, got 120",
+    "specimen.strip_length=120.0": "specimen.bond_length: must be < specimen.strip_length = 120, got 120",
     "specimen.precrack=4.0": (
         "specimen.precrack: is not a key of a scene, got 4.0; the keys here are kind, strip_length, strip_thickness, "
         "substrate_length, substrate_thickness, bond_length, width, plane"
