@@ -1,0 +1,161 @@
+"""The peel test: a strip bonded on a clamped substrate, its free end pulled up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from iga.body import Body, bodies, mean_row
+from iga.bond import bond, control_points, probe, slave_number
+from iga.extraction import Mesh
+from iga.grading import COARSENING, columns, largest, part, pieces, rectangle
+from iga.material import orthotropic
+from iga.pose import Pose
+from iga.problem import Debonding
+from iga.solve import Solution, run
+from iga.specimen import Specimen
+from iga.system import Phase, System, joined, untimed
+
+#: Layers of the substrate: at most so many, each this much thicker than the one above, and the top one no thinner than
+#: such a part of the length of its elements.
+LAYERS, THICKENING, FLATTEST = 3, 2.0, 0.5
+
+
+@dataclass(frozen=True)
+class Moduli:
+    """Elastic constants, axis 1 along the specimen."""
+
+    E1: float
+    E2: float
+    G12: float
+    nu12: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem(Debonding):
+    """A peel test in its own frame.
+
+    Strip (above) and substrate (below) meet on Y = 0 with their left ends flush on X = 0, and are bonded for X from 0
+    to ``bond_length``. The opening is the mean displacement across the specimen of the strip's right end, which
+    carries the load.
+    """
+
+    strip_length: float
+    strip_thickness: float
+    substrate_length: float
+    substrate_thickness: float
+    bond_length: float
+    strip: Moduli
+    substrate: Moduli
+
+
+def meshes(problem: Problem) -> tuple[Mesh, Mesh]:
+    """Strip and substrate: equal elements along the bond, longer ones beyond it, thin layers on top of the substrate.
+
+    Raises
+    ------
+    ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or the bond is longer than a body.
+    """
+    if not 0.0 < problem.bond_length < problem.strip_length or problem.bond_length > problem.substrate_length:
+        raise ValueError(f"bond_length must be > 0, < strip_length and <= substrate_length, got {problem.bond_length}")
+    end, depth = problem.bond_length, problem.substrate_thickness
+    for layers in range(LAYERS, 0, -1):
+        tops = np.concatenate([[0.0], np.cumsum(THICKENING ** np.arange(layers))])
+        try:
+            (bonded, beyond), (below, rest) = _elements(problem, layers)
+        except ValueError:
+            if layers == 1:
+                raise
+            continue
+        if tops[1] / tops[-1] * depth >= FLATTEST * end / below:
+            break
+    strip = pieces((0.0, end, bonded), (end, problem.strip_length, beyond))
+    substrate = pieces((0.0, end, below), (end, problem.substrate_length, rest))
+    through = np.array([0.0, problem.strip_thickness])
+    return (
+        rectangle(problem.basis, problem.degree, strip, through),
+        rectangle(problem.basis, problem.degree, substrate, -depth * tops[::-1] / tops[-1]),
+    )
+
+
+def _elements(problem: Problem, layers: int) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Elements on and beyond the bond, of strip and substrate; what is left of the unknowns goes to the overhang."""
+    basis, p = problem.basis, problem.degree
+    over, rest = (end - problem.bond_length for end in (problem.strip_length, problem.substrate_length))
+
+    def numbers(along: int) -> tuple[tuple[int, int], tuple[int, int]]:
+        length = COARSENING * problem.bond_length / along
+        beyond = part(rest / length / problem.mismatch) if rest > 0.0 else 0
+        return (along, part(over / length)), (part(along / problem.mismatch), beyond)
+
+    def unknowns(along: int) -> int:
+        strip, substrate = (columns(basis, p, sum(pair)) for pair in numbers(along))
+        return 2 * ((p + 1) * strip + columns(basis, p, layers) * substrate)
+
+    along = largest(unknowns, 2, problem.dofs)
+    (bonded, beyond), below = numbers(along)
+    an_element = 2 * (p + 1) * (1 if basis == "nurbs" else p)
+    return (bonded, beyond + (problem.dofs - unknowns(along)) // an_element), below
+
+
+def build(problem: Problem, phase: Phase = untimed) -> Specimen:
+    """Discrete system of a problem with all that is needed to read results from its states."""
+    with phase("mesh"):
+        both = meshes(problem)
+    with phase("basis"):
+        pose, extent = problem.pose, (problem.bond_length, 0.0)
+        moduli = (problem.strip, problem.substrate)
+        D = tuple(orthotropic(m.E1, m.E2, m.G12, m.nu12, problem.plane) for m in moduli)
+        strip, substrate = pair = bodies(both, D, pose, problem.width, problem.basis == "nurbs")
+        P_AI = control_points(pair)
+        springs_rd, spring_r = _support(problem, strip, pose, P_AI.size)
+        system = System(
+            solids=joined([solid for body in pair for solid in body.solids]),
+            interface=bond(problem, pair, extent),
+            kinematics=problem.kinematics,
+            load_d=mean_row(strip.faces["right"], pose.axes_kI[1], P_AI.size),
+            free_d=_free(substrate, P_AI.size),
+            x_d=np.repeat(pose.own(P_AI)[:, 0], 2),
+            springs_rd=springs_rd,
+            spring_r=spring_r,
+        )
+        return Specimen(
+            system=system,
+            bodies=pair,
+            pose=pose,
+            loaded=("right", ""),
+            loaded_at=problem.strip_length,
+            free_length=problem.strip_length - problem.bond_length,
+            energy_faces=((0, "right", 1.0), (1, "right", 1.0), (0, "left", -1.0), (1, "left", -1.0)),
+            upper_is_slave=slave_number(problem, pair) == 0,
+            copies=1.0,
+            probe=probe(problem, pair, extent),
+        )
+
+
+def solve(
+    problem: Problem, on_step: Callable[[Mapping[str, float]], None] | None = None, phase: Phase = untimed
+) -> Solution:
+    """Solve a peel test; parameters, result and refusals as those of `iga.dcb.solve`."""
+    return run(problem, build(problem, phase), on_step, phase)
+
+
+def _free(substrate: Body, n_dof: int) -> np.ndarray:
+    """The base of the substrate is clamped."""
+    free_Ai = np.ones((n_dof // 2, 2), dtype=bool)
+    free_Ai[substrate.surface("bottom").conn_ca] = False
+    return free_Ai.ravel()
+
+
+def _support(problem: Problem, strip: Body, pose: Pose, n_dof: int) -> tuple[np.ndarray, np.ndarray]:
+    """Row (1, n_dof) and stiffness (1,) of the spring that keeps the strip from sliding along the substrate.
+
+    An interface without friction does not. The spring holds the mean of the strip's left end and carries what the
+    tractions amount to lengthwise: nothing in linear kinematics, where they stay across the specimen, and in finite
+    kinematics as much as the master's surface tilts where they pull.
+    """
+    row_d = mean_row(strip.faces["left"], pose.axes_kI[0], n_dof)
+    stiffness = problem.strip.E1 * problem.strip_thickness * problem.width / problem.strip_length
+    return row_d[None], np.array([stiffness])
