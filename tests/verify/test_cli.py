@@ -114,7 +114,7 @@ def test_the_smallest_mesh_is_the_one_that_the_solver_takes() -> None:
                 arm_meshes(Problem(basis=method, degree=degree, dofs=least - 1, **keys))
 
 
-@pytest.mark.parametrize("command", ["", "verify", "solve", "compare", "scenes", "doctor", "test"])
+@pytest.mark.parametrize("command", ["", "verify", "solve", "hard", "compare", "scenes", "doctor", "test"])
 def test_help_has_an_example(command: str, capsys: pytest.CaptureFixture) -> None:
     assert exit_code([*command.split(), "--help"]) == 0
     assert f"example: debond {command}" in capsys.readouterr().out
