@@ -13,7 +13,7 @@ from verify.verdict import Check
 
 def _slender() -> Sequence[Variant]:
     body = ("specimen.length=200.0", "specimen.precrack=180.0", "interface.toughness=0.001", "interface.strength=1.0")
-    return [variant("1-1000", "dcb-czm1", *body, "load.opening=90.0", "discretization.dofs=2000")]
+    return [variant("1-1000", "dcb-czm1", *body, "load.opening=90.0", "discretization.dofs=2400")]
 
 
 def _judge_slender(trials: Trials) -> Iterator[Finding]:
@@ -26,7 +26,7 @@ def _judge_slender(trials: Trials) -> Iterator[Finding]:
 def _incompressible() -> Sequence[Variant]:
     body = ("specimen.plane=strain", "material.poisson=0.4999")
     return [
-        variant("coarse", "dcb-czm1", *body, "discretization.dofs=800"),
+        variant("coarse", "dcb-czm1", *body, "discretization.dofs=1200"),
         variant("fine", "dcb-czm1", *body, "discretization.dofs=2400", "load.opening=0.1"),
     ]
 

@@ -12,9 +12,7 @@ from verify.verdict import Check
 
 
 def _big_steps() -> Sequence[Variant]:
-    return [
-        variant(f"steps-{n}", "dcb-czm1", f"discretization.steps={n}", "effects.symmetry=true") for n in (5, 5000)
-    ]
+    return [variant(f"steps-{n}", "dcb-czm1", f"discretization.steps={n}", "effects.symmetry=true") for n in (5, 5000)]
 
 
 def _judge_big_steps(trials: Trials) -> Iterator[Finding]:
