@@ -16,6 +16,23 @@ from iga.cohesive import BilinearLaw
 from iga.projection import Pairing, closest_points, nearest_samples
 from iga.surface import Surface, normal
 
+#: Part of the model's size within which surfaces count as touching where nothing has moved.
+TOUCHING = 1e-9
+
+
+@dataclass(frozen=True)
+class Home:
+    """Where the slave points lie on the master before anything moves.
+
+    ``c_q`` sides, ``N_qb`` (n_q, n_b) master functions and ``Y_qi`` positions there, in local coordinates; ``apart_qi``
+    (n_q, 2) from there to the slave point, nothing where the surfaces touch.
+    """
+
+    c_q: np.ndarray
+    N_qb: np.ndarray
+    Y_qi: np.ndarray
+    apart_qi: np.ndarray
+
 
 @dataclass(frozen=True)
 class Interface:
@@ -55,6 +72,17 @@ class Interface:
     def local_AI(self) -> np.ndarray:
         """Control points seen from one of them: wherever the specimen lies, its coordinates are no larger than it."""
         return self.P_AI - self.P_AI[0]
+
+    @cached_property
+    def home(self) -> Home:
+        """Reference places on the master; only where there is one."""
+        pairing = pair(self)
+        (r,) = self.master.coefficients(pairing.c_q, pairing.xi_q, 0)
+        N_qb = self.master.functions(pairing.c_q, r)
+        Y_qi = (N_qb[:, None] @ self.local_AI[self.master.conn_ca[pairing.c_q]])[:, 0]
+        apart_qi = self.at_slave(self.local_AI) - Y_qi
+        touching = np.linalg.norm(apart_qi, axis=1) < TOUCHING * np.ptp(self.local_AI, axis=0).max()
+        return Home(pairing.c_q, N_qb, Y_qi, np.where(touching[:, None], 0.0, apart_qi))
 
     def at_slave(self, v_Ai: np.ndarray) -> np.ndarray:
         """A field of the control points (n_A, 2) at the slave points (n_q, 2)."""
@@ -110,8 +138,9 @@ def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Con
     t_qi, t_xi_qi = ((r[:, None] @ Q_qbi)[:, 0] for r in (r1, r2))
     n_qi = normal(t_qi, master.outward)
     conn_qa = np.concatenate([interface.conn_qa, master.conn_ca[pairing.c_q]], axis=1)
-    D_qa = np.concatenate([interface.N_qa, -master.functions(pairing.c_q, r0)], axis=1)
-    g_q = np.sum(_jump(interface, D_qa, conn_qa, u_Ai) * n_qi, -1)
+    M_qb = master.functions(pairing.c_q, r0)
+    D_qa = np.concatenate([interface.N_qa, -M_qb], axis=1)
+    g_q = np.sum((_slid(interface, pairing.c_q, M_qb) + _jump(D_qa, u_Ai[conn_qa])) * n_qi, -1)
     G_qd = _along(D_qa, n_qi)
     if interface.frozen:
         return Contact(pairing, g_q, n_qi, pairing.on_q, conn_qa, G_qd[:, None])
@@ -177,16 +206,23 @@ def _known(interface: Interface, u_d: np.ndarray) -> Contact:
     return Contact(None, g_q, n_qi, np.ones(interface.points, dtype=bool), conn_qa, _along(D_qa, n_qi)[:, None])
 
 
-def _jump(interface: Interface, D_qa: np.ndarray, conn_qa: np.ndarray, u_Ai: np.ndarray) -> np.ndarray:
-    """Slave minus master (n_q, 2), with the rounding of the jump and not of the positions.
+def _jump(D_qa: np.ndarray, u_qai: np.ndarray) -> np.ndarray:
+    """Jump of the displacements (n_q, 2), rounded as the differences between neighbours and not as the displacements.
 
-    A penalty multiplies every bit that is lost here. So positions and displacements are taken apart, and both from
-    their values at the last control point of a row; the functions D_qa of a row sum to zero.
+    A penalty multiplies every bit that is lost. The functions of a row, slave minus master, sum to zero.
     """
-    z_Ai = np.concatenate([interface.local_AI, u_Ai], axis=1)
-    z_qai = z_Ai[conn_qa]
-    jump_qi = (D_qa[:, None] @ (z_qai - z_qai[:, -1:]))[:, 0]
-    return jump_qi[:, :2] + jump_qi[:, 2:]
+    return (D_qa[:, None] @ (u_qai - u_qai[:, -1:]))[:, 0]
+
+
+def _slid(interface: Interface, c_q: np.ndarray, M_qb: np.ndarray) -> np.ndarray:
+    """Slave minus master (n_q, 2) in the reference configuration, as far as the projection has moved from its home.
+
+    That it is nothing at home is no matter of rounding: bodies that touch before anything moves have no gap.
+    """
+    home, X_qbi = interface.home, interface.local_AI[interface.master.conn_ca[c_q]]
+    origin_qi, same = X_qbi[:, -1], c_q == home.c_q
+    moved_qi = (np.where(same[:, None], home.N_qb - M_qb, -M_qb)[:, None] @ (X_qbi - origin_qi[:, None]))[:, 0]
+    return moved_qi + np.where(same[:, None], 0.0, home.Y_qi - origin_qi) + home.apart_qi
 
 
 def _along(N_qa: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
