@@ -24,9 +24,9 @@ _CLOSING = -0.1
 
 
 def _unload() -> Sequence[Variant]:
-    mesh = "discretization.dofs=800"
+    mesh = ("interface.penalty=1e3", "discretization.dofs=1200")  # soft enough for the mesh to see how it gives way
     return [
-        variant(f"{name}-{kinematics}", "dcb-czm1", f"effects.kinematics={kinematics}", f"load.opening={way}", mesh)
+        variant(f"{name}-{kinematics}", "dcb-czm1", f"effects.kinematics={kinematics}", f"load.opening={way}", *mesh)
         for kinematics in ("linear", "finite")
         for name, way in (
             ("monotone", "3.0"),
@@ -94,9 +94,8 @@ def _penetration(trial: Trial) -> Iterator[Finding]:
     at = int(np.argmin(steps["opening"]))
     wanted = 4.0 * beta * abs(steps["load"][at]) / k * (1.0 + beta * body.precrack)
     found = -float(steps["tip_opening"][at])
-    yield Number("penetration", trial.name, found / wanted, "Penetration over that of a beam on the contact penalty.")
-    meaning = "Closed, the arms pass through each other by no more than twice what p / penalty says."
-    yield Check("contact", trial.name, found / (2.0 * wanted), 1.0, "analytical", meaning)
+    meaning = "Closed, the arms pass through each other by p / penalty, p that of a beam on springs: over it, less 1."
+    yield Check("contact", trial.name, found / wanted - 1.0, 0.1, "analytical", meaning)
 
 
 def _reversals() -> Sequence[Variant]:
@@ -114,7 +113,7 @@ def _judge_reversals(trials: Trials) -> Iterator[Finding]:
 
 def _separation() -> Sequence[Variant]:
     return [
-        variant("dcb", "dcb-czm1", "load.opening=8.0", "discretization.dofs=800"),
+        variant("dcb", "dcb-czm1", "load.opening=8.0", "discretization.dofs=1200"),
         variant("peel", "peel-60", "specimen.bond_length=20.0", "load.opening=20.0", "discretization.dofs=1200"),
     ]
 
@@ -131,9 +130,9 @@ def _judge_separation(trials: Trials) -> Iterator[Finding]:
         bond = body.bond_length if body.kind == "peel" else body.length - body.precrack
         whole = trial.scene.interface.toughness * body.width * bond
         lost = result.steps["dissipated_energy"][-1] / whole - 1.0
-        yield Check(
-            "all-dissipated", name, lost, 0.01, "exact", "The whole bond was paid for: dissipated over G_Ic w l."
-        )
+        hinge = 1.0 / result.snapshots[0].s_q.size
+        meaning = "The whole bond was paid for, but for one point, on which the bodies turn without any load."
+        yield Check("all-dissipated", name, lost, 0.01 + hinge, "exact", meaning)
 
 
 CASES = (
