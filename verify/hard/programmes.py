@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from verify.hard.case import Case, Finding, Number, Trial, Trials, Variant, variant
+from verify.hard.case import Case, Finding, Trial, Trials, Variant, variant
 from verify.hard.criteria import distance
 from verify.verdict import Check
 
