@@ -7,6 +7,7 @@ import platform
 import sys
 import traceback
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NoReturn
@@ -60,7 +61,7 @@ def run(
             on_step(row)
 
     try:
-        result = solver(scene, method, record)
+        result = _explained(scene, solver(scene, method, record))
     except KeyboardInterrupt:
         _finish(folder, scene, _stopped(method, rows, "interrupted"), keep_fields)
         raise
@@ -74,6 +75,15 @@ def run(
     finally:
         writer.close()
     return result, _finish(folder, scene, result, keep_fields)
+
+
+def _explained(scene: Scene, result: Result) -> Result:
+    """A path that stops on a mesh too coarse for its process zone says so first: no step is small enough for that."""
+    warning = next(iter(process_zone.warnings(scene, result.method)), "")
+    if result.complete or not warning:
+        return result
+    zone, _, _ = warning.partition(":")
+    return replace(result, status=f"stopped: {zone}; {result.status.removeprefix('stopped: ')}")
 
 
 def _silent(scene: Scene, method: str, solver: Solver) -> Result:

@@ -112,6 +112,16 @@ def test_ending_and_condition_are_read_back(scene: Scene, tmp_path: Path) -> Non
     assert next(check for check in checks if check.name == "completed").passed
 
 
+def test_a_path_that_stops_on_an_unresolved_zone_says_so(scene: Scene, tmp_path: Path) -> None:
+    def solver(scene: Scene, method: str, on_step) -> Result:
+        return replace(stub(scene, method, on_step), status="stopped: Newton did not converge")
+
+    assert run(scene, "nurbs", tmp_path, solver=solver)[0].status == "stopped: Newton did not converge"
+    coarse = load_scene("dcb-czm1-linear", ["interface.strength=40.0", "discretization.dofs=280"])
+    status = run(coarse, "nurbs", tmp_path, solver=solver)[0].status
+    assert status.startswith("stopped: process zone 0.2") and status.endswith("; Newton did not converge")
+
+
 def test_fields_are_kept_only_when_asked_for(scene: Scene, tmp_path: Path) -> None:
     run(scene, "nurbs", tmp_path, solver=stub)
     assert not (tmp_path / "fields.npz").exists()

@@ -95,7 +95,7 @@ def _brittle() -> Sequence[Variant]:
 
 
 def _as_printed() -> Sequence[Variant]:
-    return [variant("mpa", "peel-as-printed")]
+    return [variant("mpa", "peel-as-printed", "discretization.dofs=1200")]
 
 
 def _judge_as_printed(trials: Trials) -> Iterator[Finding]:
