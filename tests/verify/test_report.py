@@ -251,6 +251,15 @@ def test_process_zone_is_counted_in_elements_and_marked_where_they_are_too_few(t
     assert "cohesive beam" not in table  # it has no mesh
 
 
+def test_says_how_a_run_ended_and_where_lumped_interface_points_are(tmp_path: Path) -> None:
+    given = scene_report()
+    whole = replace(given.runs[0].result, ending="separated at opening 5.2")
+    mesh = given.scene.discretization.model_copy(update={"interface_rule": "lumped"})
+    scene = given.scene.model_copy(update={"discretization": mesh})
+    _, parsed = page(tmp_path, replace(changed(given, "nurbs", result=whole), scene=scene))
+    assert "complete, separated at opening 5.2" in parsed.text and "lumped at the control points" in parsed.text
+
+
 def test_failing_check_is_marked(tmp_path: Path) -> None:
     given = replace(scene_report(), runs=scene_report().runs[0:4:3])
     bad = Check("peak", "nurbs / dolfinx", 0.07, 0.005, "cross-code", "Two codes find the same peak.")

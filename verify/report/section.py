@@ -186,7 +186,7 @@ def _run_row(entry: Entry, scene: Scene) -> RunRow:
     own = not entry.is_reference and entry.method != "lefm"
     return RunRow(
         entry,
-        status=result.status,
+        status=", ".join(filter(None, (result.status, result.ending))),
         modelled=effects,
         error=compared,
         oscillation=percent(found.oscillation) if own else "–",

@@ -13,6 +13,7 @@ from verify.effects import simulated
 
 if TYPE_CHECKING:
     from verify.scene import Scene
+    from verify.schema import Discretization
 
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 NO_VALUE = "no value"
@@ -176,11 +177,17 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         ("interface", "contact penalty", quantity(law.penalty, units.stiffness)),
         ("isogeometric mesh", "degree", str(mesh.degree)),
         ("isogeometric mesh", "target unknowns", str(mesh.dofs)),
-        ("isogeometric mesh", "interface points", f"{mesh.interface_points} per element, {mesh.interface_rule}"),
+        ("isogeometric mesh", "interface points", _points(mesh)),
         ("DOLFINx mesh", "degree", str(scene.dolfinx.degree)),
         ("DOLFINx mesh", "elements along", str(scene.dolfinx.elements)),
     ]
     return rows
+
+
+def _points(mesh: Discretization) -> str:
+    if mesh.interface_rule == "lumped":
+        return "lumped at the control points"
+    return f"{mesh.interface_points} per element, {mesh.interface_rule}"
 
 
 def _moduli(scene: Scene, units: Units) -> list[tuple[str, float, str]]:
