@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from iga.observe import Specimen
+from iga.specimen import Specimen
 from iga.surface import Surface, surface
 
 
