@@ -10,7 +10,7 @@ import numpy as np
 from iga.body import Body, bodies, mean_row, point_row
 from iga.bond import bond, control_points, probe, slave_number
 from iga.extraction import Mesh
-from iga.grading import COARSENING, columns, largest, part, pieces, rectangle
+from iga.grading import COARSENING, columns, largest, part, pieces, rectangle, unequal
 from iga.material import orthotropic
 from iga.pose import Pose
 from iga.problem import Debonding
@@ -66,12 +66,12 @@ def arm_meshes(problem: Problem) -> tuple[Mesh, ...]:
 
 
 def arm_elements(problem: Problem, elements: int) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Elements before and along the bond of the upper arm, which has so many, and of the lower one."""
+    """Elements before and along the bond of the upper and of the lower arm; the finer one has so many in all."""
     bond_length = problem.length - problem.precrack
     before = part(elements * problem.precrack / (problem.precrack + COARSENING * bond_length))
     before = min(before, elements - 1)
-    along = elements - before
-    return (before, along), (part(before / problem.mismatch), part(along / problem.mismatch))
+    (before_upper, before_lower), (upper, lower) = (unequal(n, problem.mismatch) for n in (before, elements - before))
+    return (before_upper, upper), (before_lower, lower)
 
 
 def build(problem: Problem, phase: Phase = untimed) -> Specimen:

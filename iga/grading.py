@@ -49,9 +49,17 @@ def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:
     return number
 
 
-def part(elements: float, least: int = 1) -> int:
-    """A number of elements from a wish."""
-    return max(round(elements), least)
+def part(elements: float) -> int:
+    """A number of elements from a wish: one at least."""
+    return max(round(elements), 1)
+
+
+def unequal(elements: int, mismatch: float) -> tuple[int, int]:
+    """Elements of the upper and the lower body on one length; the finer one has so many.
+
+    ``mismatch`` is the element length of the lower body over that of the upper one.
+    """
+    return (elements, part(elements / mismatch)) if mismatch >= 1.0 else (part(elements * mismatch), elements)
 
 
 def pieces(*parts: tuple[float, float, int]) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 from iga.body import Body, bodies, mean_row
 from iga.bond import bond, control_points, probe, slave_number
 from iga.extraction import Mesh
-from iga.grading import COARSENING, columns, largest, part, pieces, rectangle
+from iga.grading import COARSENING, columns, largest, part, pieces, rectangle, unequal
 from iga.material import orthotropic
 from iga.pose import Pose
 from iga.problem import Debonding
@@ -86,9 +86,9 @@ def _elements(problem: Problem, layers: int) -> tuple[tuple[int, int], tuple[int
     over, rest = (end - problem.bond_length for end in (problem.strip_length, problem.substrate_length))
 
     def numbers(along: int) -> tuple[tuple[int, int], tuple[int, int]]:
-        length = COARSENING * problem.bond_length / along
-        beyond = part(rest / length / problem.mismatch) if rest > 0.0 else 0
-        return (along, part(over / length)), (part(along / problem.mismatch), beyond)
+        upper, lower = unequal(along, problem.mismatch)
+        coarse = COARSENING * problem.bond_length
+        return (upper, part(over * upper / coarse)), (lower, part(rest * lower / coarse) if rest > 0.0 else 0)
 
     def unknowns(along: int) -> int:
         strip, substrate = (columns(basis, p, sum(pair)) for pair in numbers(along))
