@@ -1,8 +1,9 @@
 """What is prescribed of a step: one linear functional of the displacements, and which one is the best to prescribe.
 
 The loop around it is this project's own. PETSc's arc-length type (SNESNEWTONAL) measures a step by the norm of all
-displacements, which a crack hardly moves, and walks through all its increments in one call, so that no history can be
-committed between them.
+displacements, which a crack hardly moves: with 28 quadratic elements, p_max = 10 and a reversible bond it had come to
+opening 0.97 of 3 after 4000 iterations, where the front leads to the end in about 400; and it takes all increments in
+one call, so that no history can be committed between them.
 """
 
 from __future__ import annotations
@@ -15,9 +16,7 @@ from fem_reference.model import Model
 from fem_reference.state import State
 
 #: A point of the front opens by this part of g_u in one step, at most.
-FRONT_STEP = 0.25
-#: A front that is to open by less than this part of its largest step leaves the opening in control.
-CALM = 0.5
+FRONT_STEP = 0.125
 #: Damage is expected to grow where it would within this many steps.
 LOOKAHEAD = 2.0
 
@@ -42,7 +41,7 @@ def opening_control(model: Model, opening: float) -> Control:
 class Front:
     """The most open point of the bond whose damage grows, or soon will.
 
-    ``gap`` is what it has, ``missing`` what it needs before damage grows, ``rate`` its change by the way of the opening.
+    ``gap`` is what it has, ``missing`` what it needs before damage grows, ``rate`` its change over that of the opening.
     """
 
     place: Place
@@ -57,7 +56,7 @@ class Front:
 
     def calm(self, model: Model, reach: float, part: float) -> bool:
         """Whether damage grows so slowly that the opening may be prescribed as well."""
-        return self.missing == 0.0 and abs(self.rate) * reach < CALM * part * FRONT_STEP * model.law.g_open
+        return self.missing == 0.0 and abs(self.rate) * reach < part * FRONT_STEP * model.law.g_open
 
     def control(self, model: Model, reach: float, part: float) -> Control:
         """The gap of the front is prescribed: it grows steadily even where the specimen has to close for it."""

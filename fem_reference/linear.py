@@ -62,6 +62,17 @@ def without_zeros(A: PETSc.Mat) -> PETSc.Mat:
     return PETSc.Mat().createAIJ(A.getSizes(), csr=(starts, columns[kept], values[kept]), comm=A.comm)
 
 
+def outer(row_n: np.ndarray, A: PETSc.Mat) -> PETSc.Mat:
+    """Sparse matrix of the products of a functional's few entries, laid out like ``A``."""
+    first, _ = A.getOwnershipRange()
+    own = np.flatnonzero(row_n)
+    everywhere = A.comm.tompi4py().allgather((first + own, row_n[own]))
+    columns, entries = (np.concatenate(parts) for parts in zip(*everywhere, strict=True))
+    starts = np.concatenate([[0], np.cumsum(columns.size * (row_n != 0))]).astype(PETSc.IntType)
+    csr = starts, np.tile(columns, own.size).astype(PETSc.IntType), np.outer(row_n[own], entries).ravel()
+    return PETSc.Mat().createAIJ(A.getSizes(), csr=csr, comm=A.comm)
+
+
 def widened(A: PETSc.Mat, other: PETSc.Mat) -> PETSc.Mat:
     """A matrix of zeros with the entries of both patterns and the local numbering of ``A``."""
     both = A.copy()

@@ -16,10 +16,10 @@ from fem_reference.bond import Bond
 from fem_reference.dolfinx_api import add_block_matrix, compile_forms, create_block_matrix
 from fem_reference.forms import WeakForm, displacements, weak_form
 from fem_reference.law import Law
-from fem_reference.linear import Factorisation, widened, without_zeros
+from fem_reference.linear import Factorisation, outer, widened, without_zeros
 from fem_reference.mesh import TwoBodies, two_bodies
 from fem_reference.problem import Problem
-from fem_reference.supports import supports
+from fem_reference.supports import supports, tie
 
 Phase = Callable[[str], AbstractContextManager]
 
@@ -44,10 +44,12 @@ class Model:
     face_energy: fem.Form
     bcs: tuple[fem.DirichletBC, ...]
     free_n: np.ndarray  # 1 where free, 0 where supported
+    tie_n: np.ndarray  # elongation of the spring between the arms times the root of its stiffness
     load_n: np.ndarray
     slope_n: np.ndarray  # mean du_y/dX of the faces, upper and lower, as functionals
     X_nI: np.ndarray  # (n, 2) reference position of the node of each unknown
     X_q: np.ndarray
+    tie_matrix: PETSc.Mat  # the spring's
     bulk_matrix: PETSc.Mat
     tangent_matrix: PETSc.Mat
     factorisation: Factorisation
@@ -96,7 +98,9 @@ class Model:
     def residual(self, u_n: np.ndarray, load: float, k_q: np.ndarray) -> np.ndarray:
         """Internal minus external forces; zero where supported."""
         with self.phase("assembly"):
-            return self.free_n * (self.bond_force(u_n, k_q) + self.bulk_force(u_n) - load * self.load_n)
+            tie_force_n = self.dot(self.tie_n, u_n) * self.tie_n
+            inside_n = self.bond_force(u_n, k_q) + self.bulk_force(u_n) + tie_force_n
+            return self.free_n * (inside_n - load * self.load_n)
 
     def tangent(self, u_n: np.ndarray, k_q: np.ndarray) -> PETSc.Mat:
         """Derivative of the residual by the displacements, 1 on the diagonal where held; valid until the next call."""
@@ -120,10 +124,11 @@ class Model:
             return self.factorisation.solve(force_n)
 
     def assemble_bulk(self, u_n: np.ndarray) -> None:
-        """The arms' part of the tangent; with linear kinematics it never changes."""
+        """The part of the arms and of their tie in the tangent; with linear kinematics it never changes."""
         self.displace(u_n)
         self.bulk_matrix.zeroEntries()
         add_block_matrix(self.bulk_matrix, self.bulk, self.bcs)
+        self.bulk_matrix.axpy(1.0, self.tie_matrix, PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
 
 
 def build_model(problem: Problem, phase: Phase, comm: MPI.Intracomm) -> Model:
@@ -137,12 +142,15 @@ def build_model(problem: Problem, phase: Phase, comm: MPI.Intracomm) -> Model:
         internal, load, slope = (_vector(blocks, weak) for blocks in (weak.internal, weak.load, weak.slope))
         energy, face_energy = compile_forms([weak.energy, weak.face_energy], weak.maps)
     bcs, free_n = supports(problem, bodies, displacement)
+    tie_n = tie(problem, bodies, displacement)
     with phase("assembly"):
         bond, X_q = _bond(problem, weak, free_n)
         narrow = create_block_matrix(bulk)
         add_block_matrix(narrow, bulk, bcs)
-        bulk_matrix = widened(narrow, bond.product)
+        tie_matrix = outer(tie_n, narrow)
+        bulk_matrix = widened(widened(narrow, bond.product), tie_matrix)
         add_block_matrix(bulk_matrix, bulk, bcs)
+        bulk_matrix.axpy(1.0, tie_matrix, PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
         tangent_matrix = bulk_matrix.copy()
     return Model(
         problem=problem,
@@ -156,10 +164,12 @@ def build_model(problem: Problem, phase: Phase, comm: MPI.Intracomm) -> Model:
         face_energy=face_energy,
         bcs=bcs,
         free_n=free_n,
+        tie_n=tie_n,
         load_n=load.assemble(),
         slope_n=slope.assemble(),
         X_nI=np.concatenate([_node_positions(u) for u in displacement]),
         X_q=X_q,
+        tie_matrix=tie_matrix,
         bulk_matrix=bulk_matrix,
         tangent_matrix=tangent_matrix,
         factorisation=Factorisation(tangent_matrix),

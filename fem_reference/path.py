@@ -19,7 +19,7 @@ MAX_HALVINGS = 12
 #: Steps towards one goal after which a path that does not arrive is given up.
 MAX_STEPS = 20_000
 #: A specimen has separated when its load has fallen to this part of the peak while damage grew.
-SEPARATED = 1e-4
+SEPARATED = 1e-3
 #: A step that ends within this part of an increment before the goal is drawn out to the goal.
 NEAR = 0.01
 #: How far ahead the direction of a path that sets out is read off, as a part of the way to the goal.
@@ -63,9 +63,7 @@ def path(model: Model) -> Iterator[State | Failure | Separation]:
             return
 
 
-def reach(
-    model: Model, state: State, lines: np.ndarray
-) -> Generator[State | Failure | Separation, None, State | None]:
+def reach(model: Model, state: State, lines: np.ndarray) -> Generator[State | Failure | Separation, None, State | None]:
     """Converged states along a branch; returns the last one, or None where the path ends before its goal.
 
     Steps that fail are halved and grow again afterwards.
@@ -98,8 +96,8 @@ def reach(
 def advance(model: Model, state: State, lines: np.ndarray, part: float) -> State | Failure:
     """One step: to the next line of the branch, or as far as the front is to be led where damage grows fast.
 
-    An opening can be met by two states, before and after a snap-back. A step over which the front has gone further
-    than it may has missed the path between them, and is taken again by the front.
+    An opening can be met by two states, before and after a snap-back. A step over which the front has gone much
+    further than it may has missed the path between them, and is taken again by the front.
     """
     goal, reach = float(lines[-1]), part * abs(lines[1] - lines[0])
     front, ahead = front_of(model, state, reach), goal > state.opening
@@ -124,8 +122,8 @@ def next_line(opening: float, lines: np.ndarray, reach: float) -> float:
 
 
 def skipped(model: Model, front: Front, reached: State, part: float) -> bool:
-    """Whether the front has opened by more than the largest step of it."""
-    return abs(at(model, front.place, reached.g_q) - front.gap) > part * FRONT_STEP * model.law.g_open
+    """Whether the front has opened by far more than its largest step."""
+    return abs(at(model, front.place, reached.g_q) - front.gap) > 2 * part * FRONT_STEP * model.law.g_open
 
 
 def lead(model: Model, state: State, control: Control, lines: np.ndarray) -> State | Failure:

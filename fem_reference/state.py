@@ -89,7 +89,7 @@ def opening_at(model: Model, X: float) -> float:
     """Normal gap at a vertex of the interface, of the displacements last put into the forms."""
     jump = 0.0
     for u, body, sign in zip(model.displacement, (model.bodies.upper, model.bodies.lower), (1.0, -1.0), strict=True):
-        dofs = dofs_at(u, body.mesh, model.problem, X, 1)
+        dofs = dofs_at(u, body.mesh, model.problem, (X, 0.0), 1)
         jump += sign * float(np.sum(u.x.array[dofs[dofs < owned(u)]]))
     return model.comm.allreduce(jump)
 

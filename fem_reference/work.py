@@ -6,9 +6,7 @@ import numpy as np
 
 #: Integrals of h_i dh_j/ds over 0 <= s <= 1 for the cubic Hermite polynomials h of (value at 0, value at 1, slope at 0,
 #: slope at 1); by parts, the matrix plus its transpose is the outer product of the end values.
-HERMITE = (
-    np.array([[-30, 30, 6, -6], [-30, 30, -6, 6], [-6, 6, 0, -1], [6, -6, 1, 0]]) / 60.0
-)
+HERMITE = np.array([[-30, 30, 6, -6], [-30, 30, -6, 6], [-6, 6, 0, -1], [6, -6, 1, 0]]) / 60.0
 
 
 def work_along(

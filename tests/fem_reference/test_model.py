@@ -111,6 +111,19 @@ def test_supports_hold_one_point_an_arm(finite):
         assert np.array_equal(y.array, x.array)
 
 
+def test_the_tie_alone_holds_the_rotation(finite):
+    """About the hinge the specimen turns as a whole: nothing but the spring between the far corners resists."""
+    turn_n = displacement(finite, lambda X, Y, up: (-Y, X - SMALL.length))
+    A = finite.tangent(0 * turn_n, 0 * finite.X_q)
+    x, y = A.createVecs()
+    x.array[:] = turn_n
+    A.mult(x, y)
+    spring = SMALL.E1 * SMALL.width * (2 * SMALL.arm_thickness) ** 2
+    assert turn_n @ y.array == pytest.approx(spring, rel=1e-9)
+    force_n = finite.residual(1e-9 * turn_n, 0.0, 0 * finite.X_q)
+    assert np.linalg.norm(force_n - 1e-9 * y.array) < 1e-6 * np.linalg.norm(1e-9 * y.array)
+
+
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
 def test_patch_of_uniform_strain_has_forces_on_its_boundary_only(kinematics):
     model = small(kinematics=kinematics)
