@@ -163,7 +163,7 @@ def _iga_keys(scene: Scene, method: str) -> dict[str, Any]:
         "interface_points": mesh.interface_points,
         "mismatch": mesh.mismatch,
         "slave": mesh.slave,
-        "steps": mesh.steps,
+        "steps": None if mesh.steps == "auto" else mesh.steps,
         "angle": pose.angle,
         "mirror": pose.mirror,
         "shift": pose.shift,
