@@ -21,6 +21,9 @@ from iga.system import Phase, System, joined, untimed
 #: Stiffness of a tie that hardly gives, relative to the modulus times the width: that of the stiffest elements.
 TIE = 10.0
 
+#: Elements on the bond that are so few that each counts.
+FEW = 7
+
 
 @dataclass(frozen=True, kw_only=True)
 class Problem(Debonding):
@@ -44,24 +47,28 @@ class Problem(Debonding):
 def arm_meshes(problem: Problem) -> tuple[Mesh, ...]:
     """The arms, upper first, one element thick: equal elements along the bond, longer ones before it.
 
-    An element boundary lies at the end of the precrack. The model of one arm gets half of ``dofs``.
+    An element boundary lies at the end of the precrack. The model of one arm gets half of ``dofs``. A mesh with `FEW`
+    elements on the bond is quadratic through the arms, all that bending needs, and spends the rest along them.
 
     Raises
     ------
     ValueError : ``dofs`` is too small for a mesh, or the basis is unknown.
     """
-    p, basis = problem.degree, problem.basis
+    p, q, basis = problem.degree, problem.degree, problem.basis
 
     def unknowns(elements: int) -> int:
         upper, lower = (sum(pair) for pair in arm_elements(problem, elements))
-        return 2 * (p + 1) * (columns(basis, p, upper) + columns(basis, p, lower))
+        return 2 * (q + 1) * (columns(basis, p, upper) + columns(basis, p, lower))
 
     both = arm_elements(problem, largest(unknowns, 2, problem.dofs))
+    if q > 2 and min(along for _, along in both) <= FEW:
+        q = 2
+        both = arm_elements(problem, largest(unknowns, 2, problem.dofs))
     meshes = []
     for (before, along), bottom in zip(both, (0.0, -problem.arm_thickness), strict=True):
         breaks = pieces((0.0, problem.precrack, before), (problem.precrack, problem.length, along))
         through = bottom + problem.arm_thickness * np.linspace(0.0, 1.0, 2)
-        meshes.append(rectangle(basis, p, breaks, through))
+        meshes.append(rectangle(basis, (p, q), breaks, through))
     return tuple(meshes[:1] if problem.symmetry else meshes)
 
 

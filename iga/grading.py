@@ -27,11 +27,11 @@ def columns(basis: str, degree: int, elements: int) -> int:
     return elements + degree if basis == "nurbs" else elements * degree + 1
 
 
-def rectangle(basis: str, degree: int, breaks_s: np.ndarray, breaks_t: np.ndarray) -> Mesh:
-    """The rectangle of elements with boundaries at ``breaks_s`` x ``breaks_t``."""
+def rectangle(basis: str, degrees: tuple[int, int], breaks_s: np.ndarray, breaks_t: np.ndarray) -> Mesh:
+    """The rectangle of elements with boundaries at ``breaks_s`` x ``breaks_t``, of these degrees."""
     if basis == "lagrange":
-        return lagrange_rectangle(breaks_s, breaks_t, degree)
-    return nurbs_rectangle(open_knots(breaks_s, degree), open_knots(breaks_t, degree))
+        return lagrange_rectangle(breaks_s, breaks_t, *degrees)
+    return nurbs_rectangle(*(open_knots(breaks, p) for breaks, p in zip((breaks_s, breaks_t), degrees, strict=True)))
 
 
 def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:

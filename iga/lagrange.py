@@ -16,15 +16,20 @@ def lagrange_extraction(degree: int) -> np.ndarray:
     return np.linalg.inv(bernstein(degree, np.linspace(0.0, 1.0, degree + 1))).T
 
 
-def lagrange_rectangle(breaks_s: np.ndarray, breaks_t: np.ndarray, degree: int) -> Mesh:
-    """Rectangle of Lagrange elements of one degree with element boundaries at ``breaks_s`` x ``breaks_t``."""
-    x_s, conn_s = _nodes(np.asarray(breaks_s, dtype=float), degree)
-    x_t, conn_t = _nodes(np.asarray(breaks_t, dtype=float), degree)
-    C = lagrange_extraction(degree)
-    C_s, C_t = (np.broadcast_to(C, (len(conn), *C.shape)) for conn in (conn_s, conn_t))
+def lagrange_rectangle(breaks_s: np.ndarray, breaks_t: np.ndarray, degree: int, degree_t: int | None = None) -> Mesh:
+    """Rectangle of Lagrange elements with boundaries at ``breaks_s`` x ``breaks_t``, ``degree`` in both directions.
+
+    ``degree_t`` is the degree of the second direction where it is another.
+    """
+    degrees = (degree, degree_t or degree)
+    (x_s, conn_s, C_s), (x_t, conn_t, C_t) = (
+        (x, conn, np.broadcast_to(lagrange_extraction(p), (len(conn), p + 1, p + 1)))
+        for p, breaks in zip(degrees, (breaks_s, breaks_t), strict=True)
+        for x, conn in [_nodes(np.asarray(breaks, dtype=float), p)]
+    )
     y, x = np.meshgrid(x_t, x_s, indexing="ij")
     P_AI = np.stack([x.ravel(), y.ravel()], -1)
-    return tensor_mesh((degree, degree), C_s, conn_s, C_t, conn_t, P_AI, np.ones(len(P_AI)))
+    return tensor_mesh(degrees, C_s, conn_s, C_t, conn_t, P_AI, np.ones(len(P_AI)))
 
 
 def _nodes(breaks: np.ndarray, degree: int) -> tuple[np.ndarray, np.ndarray]:

@@ -75,8 +75,8 @@ def meshes(problem: Problem) -> tuple[Mesh, Mesh]:
     substrate = pieces((0.0, end, below), (end, problem.substrate_length, rest))
     through = np.array([0.0, problem.strip_thickness])
     return (
-        rectangle(problem.basis, problem.degree, strip, through),
-        rectangle(problem.basis, problem.degree, substrate, -depth * tops[::-1] / tops[-1]),
+        rectangle(problem.basis, (problem.degree,) * 2, strip, through),
+        rectangle(problem.basis, (problem.degree,) * 2, substrate, -depth * tops[::-1] / tops[-1]),
     )
 
 
