@@ -10,7 +10,7 @@ import numpy as np
 from iga.basis import BlockBasis
 from iga.body import Body, face_length
 from iga.bulk import gradient
-from iga.interface import contact, pair
+from iga.interface import contact
 from iga.kinematics import KINEMATICS
 from iga.path import Point
 from iga.specimen import Specimen
@@ -70,7 +70,7 @@ def reach(specimen: Specimen, k_q: np.ndarray, limit: float) -> float:
 
 def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
     """Gaps at the tip of the bond and at its far end."""
-    g_q = contact(specimen.probe, point.state.u_d, pair(specimen.probe)).g_q
+    g_q = contact(specimen.probe, point.state.u_d, specimen.probe_at_rest).g_q
     return float(g_q[0]), float(g_q[-1])
 
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from iga.body import Body
 from iga.extraction import Mesh
-from iga.interface import Interface
+from iga.interface import Interface, pair
 from iga.pose import Pose
+from iga.projection import Pairing
 from iga.system import System
 
 
@@ -37,6 +39,11 @@ class Specimen:
     @property
     def meshes(self) -> tuple[Mesh, ...]:
         return tuple(body.mesh for body in self.bodies)
+
+    @cached_property
+    def probe_at_rest(self) -> Pairing | None:
+        """Where the points of the probe meet the master before anything moves: the start of every search."""
+        return pair(self.probe)
 
     def distance(self, X: np.ndarray) -> np.ndarray:
         """Distance (...,) of places (..., 2) from the loaded end, along the specimen."""
