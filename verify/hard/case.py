@@ -76,6 +76,10 @@ class Case:
     may_stop: bool = False
 
 
+#: One arm on a mesh that resolves the process zone of ``dcb-czm1`` with either basis, at the price of a coarse one.
+FINE = ("effects.symmetry=true", "discretization.dofs=4000")
+
+
 def variant(name: str, scene: str, *overrides: str) -> Variant:
     """A packaged scene with some of its keys replaced, named after what it shows."""
     return Variant(name, load_scene(scene, overrides))

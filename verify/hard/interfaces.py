@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from verify.curve import oscillation
-from verify.hard.case import Case, Finding, Number, Trials, Variant, variant
+from verify.hard.case import FINE, Case, Finding, Number, Trials, Variant, variant
 from verify.hard.criteria import distance, smooth
 from verify.methods import solve
 from verify.result import Result
@@ -15,8 +15,7 @@ from verify.verdict import Check
 
 
 def _penalties() -> Sequence[Variant]:
-    arm = "effects.symmetry=true"
-    return [variant(f"penalty-1e{n}", "dcb-czm1", f"interface.penalty=1e{n}", arm) for n in range(2, 11)]
+    return [variant(f"penalty-1e{n}", "dcb-czm1", f"interface.penalty=1e{n}", *FINE) for n in range(2, 11)]
 
 
 def _judge_penalties(trials: Trials) -> Iterator[Finding]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.checks import law_of
 from verify.curve import PROPAGATION, load_at, peak
-from verify.hard.case import Case, Finding, Number, Trial, Trials, Variant, variant
+from verify.hard.case import FINE, Case, Finding, Number, Trial, Trials, Variant, variant
 from verify.hard.criteria import smooth
 from verify.methods import solve
 from verify.process_zone import warnings
@@ -93,8 +93,7 @@ def _judge_toward_lefm(trials: Trials) -> Iterator[Finding]:
 
 
 def _brittle() -> Sequence[Variant]:
-    arm = "effects.symmetry=true"
-    return [variant(f"ductility-{r:g}", "dcb-czm1", f"interface.ductility={r}", arm) for r in (1.01, 1e4)]
+    return [variant(f"ductility-{r:g}", "dcb-czm1", f"interface.ductility={r}", *FINE) for r in (1.01, 1e4)]
 
 
 def _as_printed() -> Sequence[Variant]:
