@@ -32,7 +32,7 @@ ROWS = (
 )  # fmt: skip
 
 #: A third of the cases, the fast ones; --slow runs all of them.
-FAST = ("coarse-czm2", "brittle-ratio", "unload-reload", "units", "pose", "tiny-reversals", "short-ligament")
+FAST = ("coarse-czm2", "full-separation", "unload-reload", "units", "pose", "tiny-reversals", "short-ligament")
 
 
 def fake_rows(opening: float, n: int = 30) -> list[dict[str, float]]:
