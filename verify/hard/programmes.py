@@ -12,7 +12,8 @@ from verify.verdict import Check
 
 
 def _big_steps() -> Sequence[Variant]:
-    return [variant(f"steps-{n}", "dcb-czm1", f"discretization.steps={n}", "effects.symmetry=true") for n in (5, 5000)]
+    keys = (*FINE, "effects.kinematics=linear")
+    return [variant(f"steps-{n}", "dcb-czm1", f"discretization.steps={n}", *keys) for n in (5, 5000)]
 
 
 def _judge_big_steps(trials: Trials) -> Iterator[Finding]:
