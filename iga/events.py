@@ -8,7 +8,7 @@ import numpy as np
 
 from iga.cohesive import BilinearLaw
 
-#: How far beyond a kink a step that ends at one goes, in parts of the softening range g_u - g_max.
+#: How far beyond a kink a step that ends at one goes, in parts of g_max or g_u - g_max, whichever is less.
 BEYOND = 1e-3
 
 
@@ -23,7 +23,7 @@ class Event:
 
 def next_event(law: BilinearLaw, g_q: np.ndarray, k_q: np.ndarray, rate_q: np.ndarray) -> Event | None:
     """The first kink on opening: at the strength, at the return to the envelope, at the end of softening."""
-    hair = BEYOND * (law.g_u - law.g_max)
+    hair = BEYOND * min(law.g_max, law.g_u - law.g_max)
     soft_q = (k_q > law.g_max) & (g_q >= (1.0 - 1e-9) * k_q)
     kink_q = np.where(soft_q, law.g_u, np.maximum(k_q, law.g_max))
     coming_q = (k_q < law.g_u) & (rate_q > 0.0)

@@ -123,7 +123,7 @@ def _floor(system: System, trial: State, response: Response, newton: Newton) -> 
     """Relative residual norm that counts as none: the tolerance, or what rounding leaves where that is more."""
     if response.scale == 0.0:
         return newton.tolerance
-    return max(newton.tolerance, rounding(system, trial.u_d) / response.scale)
+    return max(newton.tolerance, rounding(system, trial.u_d, response) / response.scale)
 
 
 def _met(value: float, target: float, change: float) -> bool:

@@ -14,6 +14,7 @@ from iga.interface import contact
 from iga.kinematics import KINEMATICS
 from iga.path import Point
 from iga.specimen import Specimen
+from iga.system import energies
 
 
 def row(specimen: Specimen, point: Point) -> dict[str, float]:
@@ -22,9 +23,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
     ``reaction_x`` and ``reaction_y`` are the sums of what the springs carry that hold the rigid motions.
     """
     system, state, response = specimen.system, point.state, point.response
-    cohesive, contact_energy, dissipated = (
-        float(system.interface.dA_q @ e) for e in system.interface.law.energies(response.contact.g_q, state.k_q)
-    )
+    bulk_energy, cohesive, contact_energy, dissipated = energies(system, state, response)
     held_Ai = (system.spring_forces(state.u_d) @ system.springs_rd).reshape(-1, 2)
     reaction_x, reaction_y = specimen.pose.components(held_Ai.sum(0))
     tip, end = openings(specimen, point)
@@ -33,7 +32,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         "opening": point.opening,
         "load": state.load,
         "crack_length": reach(specimen, state.k_q, system.interface.law.g_u),
-        "stored_energy": response.bulk_energy + cohesive + contact_energy,
+        "stored_energy": bulk_energy + cohesive + contact_energy,
         "dissipated_energy": dissipated,
         "external_work": point.external_work,
         "newton_iterations": point.iterations,
@@ -48,7 +47,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         **_balance(specimen, point, held_Ai),
         "reaction_x": float(reaction_x),
         "reaction_y": float(reaction_y),
-        "bulk_energy": response.bulk_energy,
+        "bulk_energy": bulk_energy,
         "cohesive_energy": cohesive,
         "contact_energy": contact_energy,
     }

@@ -14,17 +14,24 @@ import numpy as np
 
 from iga.control import Control, gap_control, opening_control
 from iga.events import next_event
+from iga.landing import landed
 from iga.newton import DEFAULT, PATIENT, Newton, equilibrium
 from iga.quadrature import gauss
-from iga.system import Phase, Response, State, System, respond, untimed
+from iga.system import Phase, Response, State, System, energies, respond, untimed
 from iga.tangent import Tangent, tangent
 
-#: Largest step of the front in parts of g_u; smallest step in parts of the largest; how far a step may leave the
-#: balance of energy open, in parts of the work that it does.
-FRONT, SMALLEST = 0.25, 1.0 / 4096
+#: Largest step of the front in parts of g_u, where steps are counted and where they are chosen by accuracy; smallest
+#: step in parts of the largest.
+FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.25, 0.5, 1.0 / 4096
+#: How far a step may leave the balance of energy open, in parts of the largest work so far: one that leaps over a part
+#: of the path does by more.
+LEAK = 1e-3
+#: Steps chosen by accuracy: the first one in parts of the programme, and by how much of the peak the load may leave
+#: the tangent of a step.
+FIRST, BEND = 1.0 / 30.0, 0.01
 #: A specimen has separated when its load, and all that the rest of the programme could bring back, is below this part
 #: of the peak.
-SEPARATED = 1e-4
+SEPARATED = 1e-3
 #: A state as good as the one where the path departs is this part of the opening, or of g_max, ahead.
 TRIFLE = 1e-6
 
@@ -34,7 +41,8 @@ class Point:
     """A converged point of the path, its history committed, and the tangent on which the path leaves it.
 
     ``slope`` is d load / d opening there and ``heading`` the sign of the change of the opening along the path;
-    ``external_work`` is the integral of the load over the opening along the path.
+    ``external_work`` is the integral of the load over the opening along the path, ``energy`` what is stored and
+    dissipated.
     ``residuals`` are the norms that Newton went through, relative to the scale of the forces.
     """
 
@@ -43,6 +51,7 @@ class Point:
     opening: float
     tangent: Tangent
     external_work: float
+    energy: float
     residuals: tuple[float, ...]
 
     @property
@@ -81,39 +90,56 @@ class Step:
 
 @dataclass(frozen=True)
 class Pace:
-    """Step length: ``step`` of the opening now and at most; ``careful`` steps end at the kinks of the law."""
+    """Step length: ``step`` of the opening and ``front``, in parts of g_u, of the cohesive front, both times ``cut``.
+
+    ``careful`` steps end at the kinks of the law. ``by_accuracy``: the steps are not counted but as long as the curve
+    allows, and end where a point breaks.
+    """
 
     largest: float
     step: float
+    by_accuracy: bool = False
     careful: bool = False
+    cut: float = 1.0
 
     @property
-    def fraction(self) -> float:
-        return self.step / self.largest
+    def front(self) -> float:
+        return self.cut * (FRONT_BY_ACCURACY if self.by_accuracy else FRONT)
+
+    @property
+    def length(self) -> float:
+        return self.cut * self.step
 
     def slower(self) -> Pace:
-        return replace(self, step=self.step if not self.careful else 0.5 * self.step, careful=True)
+        return replace(self, careful=True, cut=0.5 * self.cut if self.careful else self.cut)
 
-    def after(self, moved: float) -> Pace:
-        """The next step where one has converged and has moved the opening by ``moved``."""
-        step = min(2.0 * self.step, self.largest)
-        return Pace(self.largest, step, self.careful and self.step < self.largest)
+    def after(self, start: Point, end: Point, peak: float) -> Pace:
+        """The next step where one from ``start`` to ``end`` has converged."""
+        moved = abs(end.opening - start.opening)
+        if self.careful:
+            return replace(self, careful=self.cut < 1.0, cut=min(2.0 * self.cut, 1.0))
+        if not self.by_accuracy:
+            return self
+        bend = abs(end.state.load - start.state.load - start.slope * (end.opening - start.opening)) / (BEND * peak)
+        grown = moved * float(np.clip(bend**-0.5 if bend > 0.0 else 2.0, 0.5, 2.0))
+        return replace(self, step=float(np.clip(grown, SMALLEST * self.largest, self.largest)))
 
 
 def follow(
-    system: System, programme: Sequence[float], steps: int, newton: Newton = DEFAULT, phase: Phase = untimed
+    system: System, programme: Sequence[float], steps: int | None, newton: Newton = DEFAULT, phase: Phase = untimed
 ) -> Iterator[Point | End]:
     """Walk through a programme of openings; yields every converged `Point` and, last, the `End`.
 
     Parameters
     ----------
     programme : openings to be reached one after the other, from zero.
-    steps : number of steps asked for over the whole programme; one that fails is made to end at the next kink of the
-        law, then halved, down to 1/4096, and grows again afterwards.
+    steps : number of steps asked for over the whole programme; None lets the path choose them, few and by accuracy.
+        A step that fails is made to end at the next kink of the law, then halved, down to 1/4096, and grows again
+        afterwards.
     """
-    largest = float(np.sum(np.abs(np.diff([0.0, *programme])))) / steps
-    pace, rejected, peak = Pace(largest, largest), 0, 0.0
-    reach = float(np.max(np.abs(programme)))
+    whole, reach = float(np.sum(np.abs(np.diff([0.0, *programme])))), float(np.max(np.abs(programme)))
+    pace = Pace(whole / steps, whole / steps) if steps else Pace(0.25 * whole, FIRST * whole, by_accuracy=True)
+    rejected, peak, most = 0, 0.0, 0.0
     direction = float(np.sign(programme[0]))
     point = _departing(system, system.start(), direction, 0.0, phase)
     if point is None:
@@ -125,20 +151,20 @@ def follow(
             point = _departing(system, point.state, direction, point.external_work, phase) or point
         while point.opening != goal:
             asked = _ask(system, point, goal, pace, direction)
-            reached = _advance(system, point, asked, direction, newton, phase)
+            reached = _advance(system, point, asked, direction, pace, newton, phase)
             if reached is not None and direction * (reached.opening - goal) > 0.0 and not asked.exact:
                 asked = Step(opening_control(system), goal - point.opening, exact=True)
-                reached = _advance(system, point, asked, direction, newton, phase)
-            if reached is None:
+                reached = _advance(system, point, asked, direction, pace, newton, phase)
+            if reached is None or _leaks(point, reached, most):
                 rejected, pace = rejected + 1, pace.slower()
-                if pace.fraction < SMALLEST:
+                if pace.cut < SMALLEST:
                     yield End(_advice(point.opening), rejected)
                     return
                 continue
-            pace = pace.after(abs(reached.opening - point.opening))
+            peak, most = max(peak, abs(reached.state.load)), max(most, abs(reached.external_work))
+            pace = pace.after(point, reached, peak)
             point = replace(reached, opening=goal) if asked.exact else reached
             yield point
-            peak = max(peak, abs(point.state.load))
             if direction > 0.0 and point.opening > 0.0 and _separated(system, point, reach, peak):
                 yield End("complete", rejected, separated=True)
                 return
@@ -164,15 +190,15 @@ def _ask(system: System, point: Point, goal: float, pace: Pace, direction: float
     k_q, g_q = point.state.k_q, point.response.contact.g_q
     event = next_event(law, g_q, k_q, path.rate_q) if direction > 0.0 else None
     if not np.any(path.growing_q):
-        change = np.copysign(min(pace.step, abs(left)), left)
+        change = np.copysign(min(pace.length, abs(left)), left)
         if event is not None and event.away * abs(opening_rate) < abs(change):
-            return Step(gap_control(system, event.q), min(pace.fraction * 2, 1.0) * event.change)
-        exact = abs(left) < 1.001 * pace.step
+            return Step(gap_control(system, event.q), event.change)
+        exact = abs(left) < 1.001 * pace.length
         return Step(opening_control(system), left if exact else change, exact)
-    if 0.0 < direction * left < pace.step and pace.fraction == 1.0 and path.heading == direction:
+    if 0.0 < direction * left < pace.step and not pace.careful and path.heading == direction:
         return Step(opening_control(system), left, exact=True)
     q = int(np.argmax(np.where(path.growing_q, g_q, -np.inf)))
-    way = min(FRONT * pace.fraction * law.g_u, pace.step * abs(path.rate_q[q] / opening_rate))
+    way = min(pace.front * law.g_u, pace.length * abs(path.rate_q[q] / opening_rate))
     if pace.careful and event is not None and event.away * abs(path.rate_q[q]) < way:
         return Step(gap_control(system, event.q), event.change)
     return Step(gap_control(system, q), np.copysign(way, path.rate_q[q]))
@@ -200,7 +226,8 @@ def _departing(system: System, state: State, direction: float, work: float, phas
         found = tangent(system, state, response, direction, phase, turning=not ahead)
         if found is None:
             return None
-        start = Point(replace(state, closed_q=found.closed_q), response, opening, found, work, ())
+        energy = sum(energies(system, state, response))
+        start = Point(replace(state, closed_q=found.closed_q), response, opening, found, work, energy, ())
         if found.agreed or ahead:
             break
         trifle = direction * TRIFLE * max(abs(opening), system.interface.law.g_max)
@@ -216,7 +243,15 @@ def _departing(system: System, state: State, direction: float, work: float, phas
     return start
 
 
-def _advance(system: System, point: Point, asked: Step, direction: float, newton: Newton, phase: Phase) -> Point | None:
+def _leaks(start: Point, end: Point, most: float) -> bool:
+    """Whether the work of a step is not what its energies say: it did not go along the path."""
+    work = end.external_work - start.external_work
+    return abs(work - (end.energy - start.energy)) > LEAK * max(most, abs(end.external_work))
+
+
+def _advance(
+    system: System, point: Point, asked: Step, direction: float, pace: Pace, newton: Newton, phase: Phase
+) -> Point | None:
     """One step from the tangent predictor, or None; nothing is committed before it has converged."""
     old, path, control = point.state, point.tangent, asked.control
     value, a_d, a_load = control(old, point.response)
@@ -226,16 +261,32 @@ def _advance(system: System, point: Point, asked: Step, direction: float, newton
     found = equilibrium(system, trial, control, value + asked.change, asked.change, newton, phase)
     if found is None:
         return None
+    kink = None
+    if pace.by_accuracy and not pace.careful and not asked.exact:
+        found, kink = landed(system, old, found, newton, phase)
     state = replace(found.state, k_q=found.response.k_q, scale=max(old.scale, found.response.scale))
-    leaving = tangent(system, state, found.response, direction, phase)
+    leaving = tangent(system, state, found.response, direction, phase, kink=kink)
     if leaving is None:
         return None
     opening = float(system.load_d @ state.u_d)
-    reached = Point(state, found.response, opening, leaving, 0.0, found.residuals)
-    _, b_d, b_load = control(state, found.response)
+    energy = sum(energies(system, state, found.response))
+    reached = Point(state, found.response, opening, leaving, 0.0, energy, found.residuals)
+    value_there, b_d, b_load = control(state, found.response)
     end_rate = float(b_d @ leaving.du_d) + b_load * leaving.d_load
-    work = _work(system, point, reached, asked.change / rate, asked.change / end_rate)
+    change = value_there - value
+    straight = (
+        pace.by_accuracy and not pace.careful and point.heading == leaving.heading == np.sign(opening - point.opening)
+    )
+    work = (
+        _straight_work(point, reached) if straight else _work(system, point, reached, change / rate, change / end_rate)
+    )
     return replace(reached, external_work=point.external_work + work)
+
+
+def _straight_work(start: Point, end: Point) -> float:
+    """Integral of the load over the opening along a step that does not turn round, from its slopes."""
+    move = end.opening - start.opening
+    return 0.5 * move * (start.state.load + end.state.load) + move**2 / 12.0 * (start.slope - end.slope)
 
 
 def _work(system: System, start: Point, end: Point, away: float, back: float) -> float:

@@ -22,6 +22,7 @@ from iga.bulk import (
     stiffness_entries,
 )
 from iga.interface import Contact, Interface, contact, dofs, forces, pair, stiffness, traction
+from iga.interface import rounding as interface_rounding
 from iga.kinematics import KINEMATICS
 from iga.projection import Pairing
 
@@ -225,6 +226,14 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     return Response(internal_d, scale, bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, pattern.band)
 
 
+def energies(system: System, state: State, response: Response) -> tuple[float, float, float, float]:
+    """Energy stored in the bulk, in cohesion and in contact, and dissipated, at a state with its history committed."""
+    interface = system.interface
+    shares = interface.law.energies(response.contact.g_q, state.k_q)
+    cohesive, contact_energy, dissipated = (float(interface.dA_q @ share_q) for share_q in shares)
+    return response.bulk_energy, cohesive, contact_energy, dissipated
+
+
 def factorise(response: Response) -> BandLU | None:
     """LU of the tangent, which it overwrites; None where the tangent is exactly singular."""
     return factor(response.band, response.tangent)
@@ -244,13 +253,17 @@ def joined(solids: list[Solid]) -> tuple[Solid, ...]:
     )
 
 
-def rounding(system: System, u_d: np.ndarray) -> float:
-    """Norm of what rounding of the displacements does to the forces: long thin elements are stiff across."""
+def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
+    """Norm of what rounding of the displacements does to the forces.
+
+    Long thin elements are stiff across, and so is contact.
+    """
     squares = (
         np.sum((size_e * np.abs(relative(solid.basis.conn_ea, u_d.reshape(-1, 2))).max((1, 2))) ** 2)
         for size_e, solid in zip(system.stiffest, system.solids, strict=True)
     )
-    return float(10.0 * np.finfo(float).eps * np.sqrt(sum(squares)))
+    touching = interface_rounding(system.interface, u_d, np.abs(response.dp_q))
+    return float(np.hypot(10.0 * np.finfo(float).eps * np.sqrt(sum(squares)), touching))
 
 
 def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, list[np.ndarray]]:

@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from iga.banded import BandLU
+from iga.landing import Kink
 from iga.system import Phase, Response, State, System, factorise, respond
 
 #: Attempts at the set of points, the gap, in units of g_max, that counts as none, and the part of the largest rate
@@ -44,7 +46,13 @@ def on_envelope(system: System, state: State, g_q: np.ndarray) -> np.ndarray:
 
 
 def tangent(
-    system: System, state: State, response: Response, direction: float, phase: Phase, turning: bool = False
+    system: System,
+    state: State,
+    response: Response,
+    direction: float,
+    phase: Phase,
+    turning: bool = False,
+    kink: Kink | None = None,
 ) -> Tangent | None:
     """Tangent of the path at a converged state; None where the matrix is singular.
 
@@ -55,6 +63,7 @@ def tangent(
     direction : +1 where the programme opens the specimen, -1 where it closes it. Damage cannot heal: while it grows
         the path goes forward where energy is dissipated, whatever the opening does there.
     turning : the programme has turned round at this state, or begins: nothing is known of the points.
+    kink : the one that the state stands on; unless the path turns round there, ``slope`` is the mean of both sides.
     """
     law, g_q = system.interface.law, response.contact.g_q
     soft_q = on_envelope(system, state, g_q)
@@ -68,7 +77,7 @@ def tangent(
             k_q = np.where(soft_q & ~growing_q, state.k_q * (1.0 + 1e-12), state.k_q)
             with phase("assembly"):
                 response = respond(system, replace(state, k_q=k_q, closed_q=closed_q), decide=False)
-        found = _along(system, response, direction, growing_q, phase)
+        found = _along(system, response, direction, growing_q, kink, phase)
         if found is None:
             return None
         least = NO_RATE * float(np.max(np.abs(found.rate_q), initial=0.0))
@@ -80,7 +89,9 @@ def tangent(
     return found
 
 
-def _along(system: System, response: Response, direction: float, growing_q: np.ndarray, phase: Phase) -> Tangent | None:
+def _along(
+    system: System, response: Response, direction: float, growing_q: np.ndarray, kink: Kink | None, phase: Phase
+) -> Tangent | None:
     """Solution of ``K du = f d_load`` for one set of points, turned forward."""
     with phase("factor"):
         lu = factorise(response)
@@ -88,10 +99,20 @@ def _along(system: System, response: Response, direction: float, growing_q: np.n
         return None
     with phase("solve"):
         z_d = lu.solve(system.load_d[:, None])[:, 0]
-    compliance = float(system.load_d @ z_d)
+        compliance = float(system.load_d @ z_d)
+        before = compliance if kink is None else float(system.load_d @ _before(system, response, kink, lu, z_d))
+    slope = 0.5 * (1.0 / compliance + 1.0 / before) if before * compliance > 0.0 else 1.0 / compliance
     rate_q = response.contact.rates(z_d)
     growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
     dissipating = growth != 0.0 and (direction > 0.0 or not system.interface.law.irreversible)
     sign = direction * float(np.sign(growth if dissipating else compliance))
     heading = sign * float(np.sign(compliance))
-    return Tangent(sign * z_d, sign, 1.0 / compliance, heading, sign * rate_q, growing_q, response.closed_q)
+    return Tangent(sign * z_d, sign, slope, heading, sign * rate_q, growing_q, response.closed_q)
+
+
+def _before(system: System, response: Response, kink: Kink, lu: BandLU, z_d: np.ndarray) -> np.ndarray:
+    """Solution with the tangent just before a kink: one point less stiff by its jump (Sherman and Morrison 1950)."""
+    g_d = response.contact.row(kink.q, system.n_dof)
+    y_d = lu.solve(g_d[:, None])[:, 0]
+    weight = -kink.jump * system.interface.dA_q[kink.q]
+    return z_d - y_d * (weight * float(g_d @ z_d) / (1.0 + weight * float(g_d @ y_d)))

@@ -1,0 +1,49 @@
+"""Steps that end at a kink of the law, so that few of them draw a smooth curve.
+
+The load over the opening is a chain of short arcs, one for every quadrature point that breaks, and the slope jumps
+between them by as much as it is itself: the exact slope somewhere on an arc says little of the curve. A step that ends
+where a point breaks, and tells the mean of the exact slopes before and after, is always at the same place of the chain.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from iga.control import gap_control
+from iga.newton import Equilibrium, Newton, equilibrium
+from iga.system import Phase, State, System
+
+#: How far beyond the kink a step ends, in parts of its gap.
+BEYOND = 1e-9
+
+
+@dataclass(frozen=True)
+class Kink:
+    """Point ``q`` stands on a kink of its law: the slope of the traction has just changed by ``jump``."""
+
+    q: int
+    jump: float
+
+
+def landed(
+    system: System, old: State, found: Equilibrium, newton: Newton, phase: Phase
+) -> tuple[Equilibrium, Kink | None]:
+    """The equilibrium moved to the nearest kink: where a point breaks or, as long as none has, passes its strength.
+
+    ``old`` is the state before the step. Where there is no such kink, or no equilibrium at it, the equilibrium stays.
+    """
+    law, g_q = system.interface.law, found.response.contact.g_q
+    broken = bool(np.any(g_q >= law.g_u))
+    gap = law.g_u if broken else law.g_max
+    softening = -law.strength / (law.g_u - law.g_max)
+    q = int(np.argmin(np.where(g_q > old.k_q, np.abs(g_q - gap), np.inf)))
+    target = gap * (1.0 + BEYOND)
+    if not np.any(g_q >= gap) or old.k_q[q] >= gap or g_q[q] == target:
+        return found, None
+    there = equilibrium(system, found.state, gap_control(system, q), target, target - g_q[q], newton, phase)
+    if there is None or there.response.contact.g_q[q] < gap:
+        return found, None
+    there = Equilibrium(there.state, there.response, found.residuals + there.residuals)
+    return there, Kink(q, -softening if broken else softening - law.stiffness)
