@@ -263,7 +263,7 @@ def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
         for size_e, solid in zip(system.stiffest, system.solids, strict=True)
     )
     touching = interface_rounding(system.interface, u_d, np.abs(response.dp_q))
-    return float(np.hypot(10.0 * np.finfo(float).eps * np.sqrt(sum(squares)), touching))
+    return float(np.hypot(40.0 * np.finfo(float).eps * np.sqrt(sum(squares)), touching))
 
 
 def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, list[np.ndarray]]:

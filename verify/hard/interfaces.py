@@ -15,18 +15,26 @@ from verify.verdict import Check
 
 
 def _penalties() -> Sequence[Variant]:
-    return [variant(f"penalty-1e{n}", "dcb-czm1", f"interface.penalty=1e{n}", *FINE) for n in range(2, 11)]
+    """All of them where a run costs little, and the extremes, which are hardest to solve, in finite kinematics."""
+    fine = (*FINE, "effects.kinematics=linear")
+    sweep = [variant(f"penalty-1e{n}", "dcb-czm1", f"interface.penalty=1e{n}", *fine) for n in range(2, 11)]
+    coarse = "discretization.dofs=280"
+    return sweep + [variant(f"finite-1e{n}", "dcb-czm1", f"interface.penalty=1e{n}", coarse) for n in (2, 6, 8, 10)]
 
 
 def _judge_penalties(trials: Trials) -> Iterator[Finding]:
-    stiffest = trials["penalty-1e10"].result
+    """Contact of 1e4 still gives way by as much as a beam on the same contact does, which is not for a mesh to hide."""
+    stiffest = trials["penalty-1e10"]
+    rigid = solve(stiffest.scene, "beam")
     for name, trial in trials.items():
-        away = distance(trial.result, stiffest)
-        if trial.scene.interface.penalty < 1e4:
-            yield Number("distance", name, away, "Distance to the curve of the stiffest contact.")
-        else:
-            meaning = "The curve is that of the stiffest contact."
-            yield Check("same-curve", name, away, 0.001, "regression", meaning)
+        if name.startswith("finite"):
+            continue
+        away = distance(trial.result, stiffest.result)
+        yield Number("distance", name, away, "Distance to the curve of the stiffest contact.")
+        if trial.scene.interface.penalty >= 1e4:
+            beam = distance(solve(trial.scene, "beam"), rigid)
+            meaning = "The curve is as far from that of the stiffest contact as the beam's is."
+            yield Check("same-curve", name, away - beam, 0.001, "analytical", meaning)
 
 
 def _points() -> Sequence[Variant]:
@@ -64,12 +72,12 @@ def variation(result: Result) -> float:
 def _mismatch() -> Sequence[Variant]:
     pairs = [(ratio, slave) for ratio in (1.37, 10.0) for slave in ("upper", "lower")]
     return [
-        variant("matched", "dcb-czm1", "discretization.dofs=1200"),
+        variant("matched", "dcb-czm1", "discretization.dofs=3600"),
         *(
             variant(
                 f"{ratio:g}-{slave}",
                 "dcb-czm1",
-                "discretization.dofs=1200",
+                "discretization.dofs=3600",
                 f"discretization.mismatch={ratio}",
                 f"discretization.slave={slave}",
             )
