@@ -1,0 +1,166 @@
+"""Controls: value and gradient, and that the path does not depend on which one is prescribed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from iga.control import arc_length_control, dissipation_control, gap_control, load_control, opening_control
+from iga.dcb import Problem, build
+from iga.newton import DEFAULT, equilibrium
+from iga.path import Point, follow
+from iga.system import respond, untimed
+
+E, NU = 120e3, 0.2
+CZM1 = Problem(
+    length=14.0,
+    arm_thickness=0.2,
+    precrack=4.0,
+    E1=E,
+    E2=E,
+    G12=E / (2 * (1 + NU)),
+    nu12=NU,
+    strength=4.0,
+    toughness=0.1,
+    ductility=12.5,
+    penalty=1e5,
+    opening=(1.0,),
+    dofs=400,
+)
+NAMES = ("opening", "load", "gap", "dissipation", "arc length")
+
+
+def front(point):
+    """The most open point that still softens."""
+    return int(np.argmax(np.where(point.tangent.growing_q, point.response.contact.g_q, -np.inf)))
+
+
+def control(name, system, start):
+    """A control as it would be prescribed of a step from ``start``."""
+    return {
+        "opening": lambda: opening_control(system),
+        "load": lambda: load_control(system),
+        "gap": lambda: gap_control(system, front(start)),
+        "dissipation": lambda: dissipation_control(system),
+        "arc length": lambda: arc_length_control(system, start.response, start.tangent.du_d),
+    }[name]()
+
+
+@pytest.fixture(scope="module", params=["linear", "finite"])
+def branch(request):
+    """System and two successive points on the softening branch, damage growing at several points."""
+    system = build(replace(CZM1, kinematics=request.param)).system
+    points = [p for p in follow(system, (1.0,), 40) if isinstance(p, Point)]
+    peak = int(np.argmax([p.state.load for p in points]))
+    pairs = zip(points[peak:-1], points[peak + 1 :], strict=True)
+    start, end = next(
+        (a, b)
+        for a, b in pairs
+        if a.heading > 0.0 > a.slope
+        and np.sum(a.tangent.growing_q) >= 2
+        and np.array_equal(a.tangent.growing_q, b.tangent.growing_q)
+    )
+    return system, start, end
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_gradients_are_those_of_the_values(branch, name, rng):
+    """Central differences along random directions, at a damaged state with points that soften, unload and touch."""
+    system, start, end = branch
+    trial = replace(end.state, k_q=start.state.k_q)
+    asked = control(name, system, start)
+    response = respond(system, trial, decide=False)
+    _, a_d, a_load = asked(trial, response)
+    growing_q = (response.contact.g_q > start.state.k_q) & (response.contact.g_q > system.interface.law.g_max)
+    assert np.sum(growing_q) >= 2 and np.any(response.contact.g_q < 0.0), "nothing to be learnt from this state"
+
+    def value(s, v_d, v_load):
+        moved = replace(trial, u_d=trial.u_d + s * v_d, load=trial.load + s * v_load)
+        return asked(moved, respond(system, moved, decide=False))[0]
+
+    s = 1e-6 * system.interface.law.g_max
+    for v_load in rng.standard_normal(5):
+        v_d = rng.standard_normal(system.n_dof)
+        difference = (value(s, v_d, v_load) - value(-s, v_d, v_load)) / (2.0 * s)
+        scale = np.abs(a_d) @ np.abs(v_d) + abs(a_load * v_load)
+        assert difference == pytest.approx(a_d @ v_d + a_load * v_load, abs=1e-6 * scale), name
+
+
+#: How far apart two solutions may lie: in finite kinematics the last step is quadratic and leaves nothing; in linear
+#: kinematics the predictor is a solution as it is, and what the tolerance on the residual allows remains.
+SAME = {"linear": 1e-8, "finite": 1e-9}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_control_leads_to_the_same_next_point(branch, name):
+    system, start, end = branch
+    asked, path, same = control(name, system, start), start.tangent, SAME[system.kinematics]
+    before, a_d, a_load = asked(start.state, respond(system, start.state, decide=False))
+    there = replace(end.state, k_q=start.state.k_q)
+    target = asked(there, respond(system, there, decide=False))[0]
+    away = (target - before) / (a_d @ path.du_d + a_load * path.d_load)
+    trial = replace(start.state, u_d=start.state.u_d + away * path.du_d, load=start.state.load + away * path.d_load)
+    found = equilibrium(system, trial, asked, target, target - before, DEFAULT, untimed)
+    assert found is not None
+    size = np.linalg.norm(end.state.u_d)
+    assert np.linalg.norm(end.state.u_d - start.state.u_d) > 0.01 * size, "no step at all"
+    difference = np.linalg.norm(found.state.u_d - end.state.u_d) / size
+    print(f"{name}: {difference:.1e}, load {found.state.load / end.state.load - 1.0:.1e}")
+    assert difference < same and found.state.load == pytest.approx(end.state.load, rel=same)
+    assert np.allclose(found.response.k_q, end.state.k_q, rtol=0.0, atol=10.0 * same * end.state.k_q.max())
+
+
+def test_dissipation_is_that_of_the_ledger(branch):
+    """Value at a converged state: what the law has dissipated, at most the toughness of what is damaged."""
+    system, start, end = branch
+    interface = system.interface
+    value = dissipation_control(system)(end.state, respond(system, end.state, decide=False))[0]
+    broken = float(interface.dA_q @ (end.state.k_q >= interface.law.g_u))
+    damaged = float(interface.dA_q @ (end.state.k_q > interface.law.g_max))
+    assert interface.law.toughness * broken < value < interface.law.toughness * damaged
+
+
+def test_arc_length_counts_no_point_that_is_broken(branch):
+    """Half of the points taken for broken: the value is blind to their gaps, and only to theirs."""
+    system, start, end = branch
+    touch, broken_q = end.response.contact, np.arange(system.interface.points) < system.interface.points // 2
+    half = replace(start.response, k_q=np.where(broken_q, 2.0 * system.interface.law.g_u, start.state.k_q))
+    asked = arc_length_control(system, half, start.tangent.du_d)
+
+    def value(opened_q):
+        moved = replace(end.response, contact=replace(touch, g_q=touch.g_q + np.where(opened_q, 1.0, 0.0)))
+        return asked(end.state, moved)[0]
+
+    here = asked(end.state, end.response)[0]
+    assert value(broken_q) == here and value(~broken_q) != here
+
+
+def curve(problem):
+    points = [p for p in follow(build(problem).system, problem.opening, 60) if isinstance(p, Point)]
+    return np.array([(p.opening, p.state.load, p.slope, p.external_work) for p in points])
+
+
+def test_the_path_is_the_same_in_other_units():
+    """Snap-backs and all, point by point: millimetres become metres, newtons kilonewtons."""
+    m, kN = 1e-3, 1e-3
+    problem = replace(CZM1, strength=6.0, dofs=280, opening=(0.9,), basis="lagrange")
+    other = replace(
+        problem,
+        length=14 * m,
+        arm_thickness=0.2 * m,
+        precrack=4 * m,
+        width=m,
+        E1=E * kN / m**2,
+        E2=E * kN / m**2,
+        G12=problem.G12 * kN / m**2,
+        strength=6.0 * kN / m**2,
+        toughness=0.1 * kN / m,
+        penalty=1e5 * kN / m**3,
+        opening=(0.9 * m,),
+    )
+    first, second = curve(problem), curve(other) / np.array([m, kN, kN / m, kN * m])
+    assert np.any(np.diff(first[:, 0]) < 0.0) and len(first) == len(second)
+    size = np.abs(first).max(0)
+    print(f"units: largest change {np.max(np.abs(second - first) / size, axis=0)}")
+    assert np.all(np.abs(second - first)[:, [0, 1, 3]] < 1e-9 * size[[0, 1, 3]])
+    assert np.allclose(second[:, 2], first[:, 2], rtol=1e-6)
