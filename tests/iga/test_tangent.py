@@ -1,0 +1,165 @@
+"""The tangent of the path against what the path does next, and which way is forward."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from iga.control import gap_control, opening_control
+from iga.dcb import Problem, build
+from iga.newton import DEFAULT, equilibrium
+from iga.path import Point, follow
+from iga.system import energies, respond, untimed
+from iga.tangent import on_envelope, tangent
+
+E, NU = 120e3, 0.2
+SNAPPING = Problem(
+    length=14.0,
+    arm_thickness=0.2,
+    precrack=4.0,
+    E1=E,
+    E2=E,
+    G12=E / (2 * (1 + NU)),
+    nu12=NU,
+    strength=6.0,
+    toughness=0.1,
+    ductility=12.5,
+    penalty=1e5,
+    opening=(1.0,),
+    dofs=280,
+)
+
+
+def points_of(system, programme, steps=60):
+    return [p for p in follow(system, programme, steps) if isinstance(p, Point)]
+
+
+@pytest.fixture(scope="module", params=[("nurbs", "finite"), ("lagrange", "finite"), ("lagrange", "linear")])
+def snapping(request):
+    """A system whose path snaps back, and its points."""
+    basis, kinematics = request.param
+    system = build(replace(SNAPPING, basis=basis, kinematics=kinematics)).system
+    return system, points_of(system, (1.0,))
+
+
+def beside(system, point, control, change):
+    """The converged state so near to a point that the path between them is straight, or None."""
+    path, (value, a_d, a_load) = point.tangent, control(point.state, point.response)
+    away = change / (a_d @ path.du_d + a_load * path.d_load)
+    trial = replace(
+        point.state,
+        u_d=point.state.u_d + away * path.du_d,
+        load=point.state.load + away * path.d_load,
+    )
+    return equilibrium(system, trial, control, value + change, change, DEFAULT, untimed)
+
+
+def fastest(point):
+    """The point of the interface that opens fastest of those whose damage grows."""
+    return int(np.argmax(np.where(point.tangent.growing_q, point.tangent.rate_q, -np.inf)))
+
+
+def growing(points):
+    return [p for p in points if np.any(p.tangent.growing_q)]
+
+
+def test_the_tangent_is_the_difference_quotient_of_two_converged_points(snapping):
+    """All points with growing damage, snap-backs among them: direction, slope, and the rates of the gaps."""
+    system, points = snapping
+    worst, tried = 0.0, 0
+    for point in growing(points):
+        path = point.tangent
+        q = fastest(point)
+        near = beside(system, point, gap_control(system, q), 1e-6 * system.interface.law.g_u)
+        assert near is not None
+        du_d, d_load = near.state.u_d - point.state.u_d, near.state.load - point.state.load
+        scale = 1e-6 * system.interface.law.g_u / path.rate_q[q]
+        assert np.linalg.norm(du_d - scale * path.du_d) < 1e-3 * np.linalg.norm(du_d)
+        assert d_load == pytest.approx(scale * path.d_load, rel=1e-3)
+        assert d_load / float(system.load_d @ du_d) == pytest.approx(path.slope, rel=1e-3)
+        rates = (near.response.contact.g_q - point.response.contact.g_q) / scale
+        worst = max(worst, float(np.max(np.abs(rates - path.rate_q)) / np.max(np.abs(rates))))
+        tried += 1
+    print(f"{tried} tangents, rates of the gaps within {worst:.1e}")
+    assert tried > 20 and worst < 1e-3
+
+
+def test_on_a_snap_back_damage_grows_while_the_opening_falls(snapping):
+    """Forward is where energy is dissipated, whatever the opening does there."""
+    system, points = snapping
+    back = [(a, b) for a, b in zip(points[:-1], points[1:], strict=True) if a.heading < 0.0 and b.heading < 0.0]
+    assert back, "no snap-back"
+    for start, end in back:
+        path = start.tangent
+        assert float(system.load_d @ path.du_d) < 0.0 and path.slope > 0.0 and path.d_load < 0.0
+        assert np.any(path.growing_q) and np.all(path.rate_q[path.growing_q] > 0.0)
+        assert end.opening < start.opening
+        spent = [energies(system, p.state, p.response)[3] for p in (start, end)]
+        assert spent[1] > spent[0]
+
+
+def test_heading_is_the_sign_of_the_opening_rate(snapping):
+    system, points = snapping
+    assert {p.heading for p in points} == {1.0, -1.0}
+    assert all(p.heading == np.sign(system.load_d @ p.tangent.du_d) for p in points)
+    assert all(p.slope == pytest.approx(p.tangent.d_load / (system.load_d @ p.tangent.du_d), rel=1e-9) for p in points)
+
+
+def test_points_whose_rates_disagree_go_down_their_secants():
+    """Of all points on the envelope those soften that go on opening, and no others; what the path does next says so.
+
+    So strong an interface on so few elements that a part of the zone closes again while another opens.
+    """
+    problem = replace(SNAPPING, strength=20.0, basis="lagrange", interface_points=4, kinematics="linear")
+    system = build(problem).system
+    points, turned = growing(points_of(system, (1.0,))), 0
+    for point in points:
+        path, least = point.tangent, 1e-9 * np.max(np.abs(point.tangent.rate_q))
+        soft_q = on_envelope(system, point.state, point.response.contact.g_q)
+        assert path.agreed
+        assert np.all(path.rate_q[path.growing_q] > 0.0) and np.all(path.rate_q[soft_q & ~path.growing_q] <= least)
+        assert not np.any(path.growing_q & ~soft_q)
+        if not np.array_equal(soft_q, path.growing_q):
+            turned += 1
+            q, step = fastest(point), 1e-6 * system.interface.law.g_u
+            near = beside(system, point, gap_control(system, q), step)
+            grown_q = near.response.k_q > point.state.k_q
+            assert np.array_equal(grown_q & soft_q, path.growing_q)
+            assert near.state.load - point.state.load == pytest.approx(step / path.rate_q[q] * path.d_load, rel=1e-6)
+    assert turned > 0, "nowhere anything to be sorted out"
+
+
+def test_at_a_turning_point_every_point_is_on_its_secant():
+    """Linear kinematics without contact: the way back is straight to the origin."""
+    system = build(replace(SNAPPING, strength=4.0, dofs=400, kinematics="linear", contact=False)).system
+    top = points_of(system, (0.7,))[-1]
+    assert np.sum(top.tangent.growing_q) >= 2 and top.slope < 0.0
+    back = tangent(system, top.state, respond(system, top.state, decide=False), -1.0, untimed, turning=True)
+    assert back.agreed and back.heading == -1.0 and not np.any(back.growing_q)
+    assert back.slope == pytest.approx(top.state.load / top.opening, rel=1e-8)
+    assert np.linalg.norm(back.du_d / back.d_load - top.state.u_d / top.state.load) < 1e-7 * np.linalg.norm(
+        top.state.u_d / top.state.load
+    )
+
+
+def test_at_a_turning_point_the_way_back_is_the_difference_quotient():
+    """Finite kinematics and contact."""
+    system = build(replace(SNAPPING, strength=4.0, dofs=400)).system
+    top = points_of(system, (0.7,))[-1]
+    back = tangent(system, top.state, respond(system, top.state, decide=False), -1.0, untimed, turning=True)
+    turned = replace(top, tangent=back)
+    near = beside(system, turned, opening_control(system), -1e-5)
+    assert back.slope == pytest.approx((near.state.load - top.state.load) / -1e-5, rel=1e-4)
+    assert np.array_equal(near.response.k_q, top.state.k_q), "damage grows on the way back"
+
+
+def test_a_reversible_law_goes_back_on_its_own_curve():
+    system = build(replace(SNAPPING, strength=4.0, dofs=800, irreversible=False)).system
+    stops = (0.3, 0.6, 0.8, 0.6, 0.3)
+    points = points_of(system, stops, steps=40)
+    there, back = ([p for p in points if p.opening == stop] for stop in (0.3, 0.6))
+    assert points[-1].opening == 0.3 and all(len(pair) == 2 for pair in (there, back))
+    assert back[0].slope < 0.0 or back[0].state.load > 0.9 * max(p.state.load for p in points), "still elastic"
+    for out, again in (there, back):
+        assert again.state.load == pytest.approx(out.state.load, rel=1e-9)
+        assert again.heading == -1.0 and again.slope == pytest.approx(out.slope, rel=1e-6)
