@@ -14,16 +14,15 @@ BEYOND = 1e-3
 
 @dataclass(frozen=True)
 class Event:
-    """Point ``q`` reaches its next kink ``away`` lengths of the tangent on; ``change`` of its gap leads just beyond."""
+    """Point ``q`` reaches its next kink ``away`` lengths of the tangent on, and is just beyond it at ``beyond``."""
 
     q: int
-    change: float
     away: float
+    beyond: float
 
 
 def next_event(law: BilinearLaw, g_q: np.ndarray, k_q: np.ndarray, rate_q: np.ndarray) -> Event | None:
     """The first kink on opening: at the strength, at the return to the envelope, at the end of softening."""
-    hair = BEYOND * min(law.g_max, law.g_u - law.g_max)
     soft_q = (k_q > law.g_max) & (g_q >= (1.0 - 1e-9) * k_q)
     kink_q = np.where(soft_q, law.g_u, np.maximum(k_q, law.g_max))
     coming_q = (k_q < law.g_u) & (rate_q > 0.0)
@@ -31,4 +30,5 @@ def next_event(law: BilinearLaw, g_q: np.ndarray, k_q: np.ndarray, rate_q: np.nd
         return None
     away_q = np.where(coming_q, (kink_q - g_q) / np.where(coming_q, rate_q, 1.0), np.inf)
     q = int(np.argmin(away_q))
-    return Event(q, float(kink_q[q] - g_q[q]) + hair, float(away_q[q]))
+    hair = BEYOND * min(law.g_max, law.g_u - law.g_max)
+    return Event(q, float(away_q[q]), float(away_q[q] + hair / rate_q[q]))

@@ -103,6 +103,8 @@ def _iterate(
             return None, tuple(residuals)
         with phase("solve"):
             move = _correction(system, trial, response, lu, control, target)
+        if move is None:
+            return None, tuple(residuals)
         decide = norm > max(newton.settle, 10.0 * floor)
 
         def at(s: float, trial=trial, move=move, decide=decide) -> tuple[State, Response, float]:
@@ -148,13 +150,19 @@ def _evaluate(system: System, trial: State, decide: bool, phase: Phase) -> tuple
 
 def _correction(
     system: System, trial: State, response: Response, lu: BandLU, control: Control, target: float
-) -> tuple[np.ndarray, float]:
-    """Bordered step: ``du = v + z d_load`` with K v = -r, K z = f, and d_load from the linearised control."""
+) -> tuple[np.ndarray, float] | None:
+    """Bordered step: ``du = v + z d_load`` with K v = -r, K z = f, and d_load from the linearised control.
+
+    None where the control does not feel the load.
+    """
     residual_d = response.internal_d - trial.load * system.load_d
     v, z = lu.solve(np.stack([-residual_d, system.load_d], -1)).T
     value, a_d, a_load = control(trial, response)
-    d_load = (target - value - a_d @ v) / (a_d @ z + a_load)
-    return v + d_load * z, float(d_load)
+    grip = float(a_d @ z) + a_load
+    if grip == 0.0:
+        return None
+    d_load = (target - value - float(a_d @ v)) / grip
+    return v + d_load * z, d_load
 
 
 def _full(system: System, at: Callable, du_d: np.ndarray, before: tuple) -> tuple[State, Response, float]:

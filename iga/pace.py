@@ -1,0 +1,120 @@
+"""How long the next step is, and by what it is controlled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from iga.control import Control, arc_length_control, dissipation_control, gap_control, opening_control
+from iga.events import next_event
+from iga.point import Point
+from iga.system import System
+
+#: Largest step of the front in parts of g_u, where steps are counted and where they are chosen by accuracy; smallest
+#: step in parts of the one asked for.
+FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.25, 0.5, 1.0 / 4096
+#: Steps chosen by accuracy: the first and the largest one in parts of the programme, and by how much of the peak the
+#: load may leave the tangent of a step.
+FIRST, LARGEST, BEND = 1.0 / 30.0, 0.25, 0.01
+#: What a step that has failed is tried with, in this order, before it is halved.
+CAREFUL = ("front", "dissipation", "arc length")
+
+
+@dataclass(frozen=True)
+class Step:
+    """What is asked of a step: the control, the length of the tangent it goes, and whether it ends on the goal."""
+
+    control: Control
+    away: float
+    exact: bool = False
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Step length: ``step`` of the opening, at most ``largest``, and a part of g_u at the cohesive front.
+
+    ``by_accuracy``: the steps are not counted but as long as the curve allows, and end where a point breaks.
+    ``attempt`` counts how often the next one has failed: careful steps end at the kinks of the law; they change the
+    control, and then their length.
+    """
+
+    largest: float
+    step: float
+    by_accuracy: bool = False
+    attempt: int = 0
+
+    @property
+    def careful(self) -> bool:
+        return self.attempt > 0
+
+    @property
+    def level(self) -> int:
+        """How often the step has been halved."""
+        return max(self.attempt - 1, 0) // len(CAREFUL)
+
+    @property
+    def control(self) -> str:
+        return CAREFUL[max(self.attempt - 1, 0) % len(CAREFUL)]
+
+    @property
+    def exhausted(self) -> bool:
+        return 0.5**self.level < SMALLEST
+
+    @property
+    def length(self) -> float:
+        return 0.5**self.level * self.step
+
+    @property
+    def front(self) -> float:
+        return 0.5**self.level * (FRONT_BY_ACCURACY if self.by_accuracy else FRONT)
+
+    def slower(self) -> Pace:
+        return replace(self, attempt=self.attempt + 1)
+
+    def after(self, start: Point, end: Point, peak: float) -> Pace:
+        """The next step where one from ``start`` to ``end`` has converged."""
+        if self.careful:
+            return replace(self, attempt=1 + len(CAREFUL) * (self.level - 1) if self.level else 0)
+        if not self.by_accuracy:
+            return self
+        moved = end.opening - start.opening
+        bend = abs(end.state.load - start.state.load - start.slope * moved) / (BEND * peak)
+        grown = abs(moved) * float(np.clip(bend**-0.5 if bend > 0.0 else 2.0, 0.5, 2.0))
+        return replace(self, step=float(np.clip(grown, SMALLEST * self.largest, self.largest)))
+
+
+def paced(programme: np.ndarray, steps: int | None) -> Pace:
+    """The pace at which a programme begins."""
+    whole = float(np.sum(np.abs(np.diff(programme, prepend=0.0))))
+    return Pace(whole / steps, whole / steps) if steps else Pace(LARGEST * whole, FIRST * whole, by_accuracy=True)
+
+
+def next_step(system: System, point: Point, goal: float, pace: Pace, direction: float) -> Step:
+    """Control and length of the next step.
+
+    While damage grows the front is led: it moves on by a part of g_u, and by no more than changes the opening by a
+    step. Otherwise the opening is, up to where damage begins.
+    """
+    law, path = system.interface.law, point.tangent
+    left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
+    g_q = point.response.contact.g_q
+    event = next_event(law, g_q, point.state.k_q, path.rate_q) if direction > 0.0 else None
+    if not np.any(path.growing_q):
+        exact = abs(left) < 1.001 * pace.length
+        away = (left if exact else np.copysign(pace.length, left)) / opening_rate
+        if event is not None and event.away < away:
+            return Step(gap_control(system, event.q), event.beyond)
+        return Step(opening_control(system), away, exact)
+    if 0.0 < direction * left < pace.step and not pace.careful and path.heading == direction:
+        return Step(opening_control(system), left / opening_rate, exact=True)
+    q = int(np.argmax(np.where(path.growing_q, g_q, -np.inf)))
+    away = min(pace.front * law.g_u / abs(path.rate_q[q]), pace.length / abs(opening_rate))
+    if pace.careful and event is not None and event.away < away:
+        q, away = event.q, event.beyond
+    controls = {
+        "front": gap_control(system, q),
+        "dissipation": dissipation_control(system),
+        "arc length": arc_length_control(system, point.response, path.du_d),
+    }
+    return Step(controls[pace.control], away)

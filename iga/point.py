@@ -1,0 +1,51 @@
+"""What a path is made of: converged points, and how it ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from iga.system import Response, State
+from iga.tangent import Tangent
+
+
+@dataclass(frozen=True)
+class Point:
+    """A converged point of the path, its history committed, and the tangent on which the path leaves it.
+
+    ``slope`` is d load / d opening there and ``heading`` the sign of the change of the opening along the path;
+    ``external_work`` is the integral of the load over the opening along the path, ``energy`` what is stored and
+    dissipated.
+    ``residuals`` are the norms that Newton went through, relative to the scale of the forces.
+    """
+
+    state: State
+    response: Response
+    opening: float
+    tangent: Tangent
+    external_work: float
+    energy: float
+    residuals: tuple[float, ...]
+
+    @property
+    def slope(self) -> float:
+        return self.tangent.slope
+
+    @property
+    def heading(self) -> float:
+        return self.tangent.heading
+
+    @property
+    def iterations(self) -> int:
+        return len(self.residuals)
+
+
+@dataclass(frozen=True)
+class End:
+    """How a path ended: ``complete`` or ``stopped: <cause and what to do>``, and how many steps were taken back.
+
+    ``separated``: the specimen came apart before the programme was over, which is a complete path, too.
+    """
+
+    status: str
+    rejected: int
+    separated: bool = False
