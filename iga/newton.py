@@ -32,7 +32,7 @@ class Newton:
 
     tolerance: float = 5e-12
     settle: float = 1e-8
-    rough: float = 1e-6
+    rough: float = 1e-4
     iterations: int = 25
     patience: int = 6
 

@@ -13,10 +13,12 @@ from iga.system import System
 
 #: Largest step of the front in parts of g_u, where steps are counted and where they are chosen by accuracy; smallest
 #: step in parts of the one asked for.
-FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.25, 0.5, 1.0 / 4096
+FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.125, 0.5, 1.0 / 4096
 #: Steps chosen by accuracy: the first and the largest one in parts of the programme, and by how much of the peak the
 #: load may leave the tangent of a step.
 FIRST, LARGEST, BEND = 1.0 / 30.0, 0.25, 0.01
+#: Fewer steps than these would not draw the curve: what is asked for is then a least number of steps.
+FEWEST = 40
 #: What a step that has failed is tried with, in this order, before it is halved.
 CAREFUL = ("front", "dissipation", "arc length")
 
@@ -87,7 +89,10 @@ class Pace:
 def paced(programme: np.ndarray, steps: int | None) -> Pace:
     """The pace at which a programme begins."""
     whole = float(np.sum(np.abs(np.diff(programme, prepend=0.0))))
-    return Pace(whole / steps, whole / steps) if steps else Pace(LARGEST * whole, FIRST * whole, by_accuracy=True)
+    asked = whole / steps if steps else np.inf
+    if steps and steps >= FEWEST:
+        return Pace(asked, asked)
+    return Pace(min(LARGEST * whole, asked), min(FIRST * whole, asked), by_accuracy=True)
 
 
 def next_step(system: System, point: Point, goal: float, pace: Pace, direction: float) -> Step:

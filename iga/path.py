@@ -35,9 +35,9 @@ def follow(
     Parameters
     ----------
     programme : openings to be reached one after the other, from zero.
-    steps : number of steps asked for over the whole programme; None lets the path choose them, few and by accuracy.
-        A step that fails is made to end at the next kink of the law, then halved, down to 1/4096, and grows again
-        afterwards.
+    steps : number of steps asked for over the whole programme; None lets the path choose them, few and by accuracy,
+        and so does a number too small to draw the curve. A step that fails is made to end at the next kink of the law,
+        then tried with other controls, then halved, down to 1/4096, and grows again afterwards.
     """
     pace, reach = paced(np.array(programme), steps), float(np.max(np.abs(programme)))
     rejected, peak, most = 0, 0.0, 0.0

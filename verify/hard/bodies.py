@@ -72,8 +72,8 @@ def _short_ligament() -> Sequence[Variant]:
 
 def _degrees() -> Sequence[Variant]:
     return [
-        variant(f"degree-{p}", "dcb-czm1", f"discretization.degree={p}", "discretization.dofs=640")
-        for p in (1, 2, 4, 5)
+        variant(f"degree-{p}", "dcb-czm1", f"discretization.degree={p}", f"discretization.dofs={dofs}")
+        for p, dofs in ((1, 640), (2, 1600), (4, 640), (5, 640))
     ]
 
 

@@ -35,11 +35,13 @@ def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
     if deviation is None:
         return
     elements = zone_elements(trial)
-    if elements >= ENOUGH:
+    bends = trial.scene.discretization.degree > 1
+    if elements >= ENOUGH and bends:
         meaning = "The J-integral is the area under the law, at every step."
         yield Check("j-integral", name, deviation, J_TOLERANCE, "exact", meaning)
     else:
-        meaning = f"Deviation of the J-integral; it measures the mesh, {elements:.2g} elements in the process zone."
+        why = f"{elements:.2g} elements in the process zone" if bends else "of linear elements, which lock in bending"
+        meaning = f"Deviation of the J-integral; it measures the mesh, {why}."
         yield Number("j-deviation", name, deviation, meaning)
 
 
