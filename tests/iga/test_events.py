@@ -31,8 +31,8 @@ def test_the_next_kink_of_one_point(gap, history, kink):
     found = event((gap, history, 2.0))
     assert found.q == 0
     assert found.away == pytest.approx((kink - gap) / 2.0, rel=1e-12)
-    assert found.change == pytest.approx(kink - gap + HAIR, rel=1e-12)
-    assert gap + found.change > kink, "a step that ends there must have passed the kink"
+    assert found.beyond == pytest.approx((kink - gap + HAIR) / 2.0, rel=1e-12)
+    assert gap + 2.0 * found.beyond > kink, "a step that ends there must have passed the kink"
 
 
 def test_the_nearest_along_the_path_comes_first_and_not_the_nearest_gap():
@@ -60,4 +60,4 @@ def test_the_hair_beyond_is_small_against_both_branches():
     """Nearly brittle: the softening branch is far shorter than the elastic one."""
     brittle = BilinearLaw(strength=4.0, toughness=0.1, ductility=1.01, penalty=1e5)
     found = next_event(brittle, np.array([0.0]), np.array([0.0]), np.array([1.0]))
-    assert brittle.g_max < found.change < brittle.g_max + 0.01 * (brittle.g_u - brittle.g_max)
+    assert brittle.g_max < found.beyond < brittle.g_max + 0.01 * (brittle.g_u - brittle.g_max)

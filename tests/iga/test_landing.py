@@ -110,10 +110,19 @@ def test_the_slope_at_a_kink_is_the_mean_of_those_before_and_after(kinks):
 
 
 @pytest.mark.xfail(strict=True, reason="where the slope changes its sign, the one behind the kink is told alone")
-def test_so_it_is_where_the_load_turns_and_the_opening_does_not(kinks):
-    turning = [
-        (slope, *sides[:, 0]) for slope, sides in kinks if sides[0, 0] * sides[1, 0] < 0.0 < sides[0, 1] * sides[1, 1]
-    ]
-    assert turning
-    for slope, before, after in turning:
-        assert slope == pytest.approx(0.5 * (before + after), abs=1e-5 * max(abs(before), abs(after)))
+def test_so_it_is_where_the_load_turns_and_the_opening_does_not():
+    """A coarser mesh: the load falls until a point breaks, and rises after; the opening grows all the while."""
+    system = build(replace(CZM1, dofs=800)).system
+    *points, _ = follow(system, (1.0,), None)
+    law, errors = system.interface.law, []
+    for start, end in zip(points[:-1], points[1:], strict=True):
+        kink = kink_of(law, start, end)
+        if kink is None:
+            continue
+        (before, opening_before), (after, opening_after) = one_sided(system, start, end, *kink)
+        if before * after < 0.0 < opening_before * opening_after:
+            errors.append(abs(end.slope - 0.5 * (before + after)) / max(abs(before), abs(after)))
+    print(f"load turns at {len(errors)} kinks, mean of the slopes met within {errors}")
+    if not errors:
+        pytest.fail("no such kink")
+    assert max(errors) < 1e-5
