@@ -93,7 +93,9 @@ def _iterate(
     residuals = [norm]
     while True:
         floor = _floor(system, trial, response, newton) if norm < newton.rough else newton.tolerance
-        if norm <= floor and _met(control(trial, response)[0], target, change):
+        stays = len(residuals) > 1 and norm > 0.25 * residuals[-2]
+        met = _met(control(trial, response)[0], target, change)
+        if met and norm <= (floor if stays else newton.tolerance):
             return (trial, response), tuple(residuals)
         if _hopeless(residuals, newton):
             return None, tuple(residuals)
@@ -105,7 +107,7 @@ def _iterate(
             move = _correction(system, trial, response, lu, control, target)
         if move is None:
             return None, tuple(residuals)
-        decide = norm > max(newton.settle, 10.0 * floor)
+        decide = not met or norm > max(newton.settle, 10.0 * floor)
 
         def at(s: float, trial=trial, move=move, decide=decide) -> tuple[State, Response, float]:
             moved = replace(trial, u_d=trial.u_d + s * move[0], load=trial.load + s * move[1])
@@ -122,7 +124,7 @@ def residual_norm(system: System, load: float, response: Response) -> float:
 
 
 def _floor(system: System, trial: State, response: Response, newton: Newton) -> float:
-    """Relative residual norm that counts as none: the tolerance, or what rounding leaves where that is more."""
+    """Relative residual norm that counts as none once it stays: what rounding leaves where the tolerance is less."""
     if response.scale == 0.0:
         return newton.tolerance
     return max(newton.tolerance, rounding(system, trial.u_d, response) / response.scale)

@@ -25,6 +25,8 @@ from iga.work import leaks, step_work, straight_work
 SEPARATED = 1e-3
 #: A state as good as the one where the path departs is this part of the opening, or of g_max, ahead.
 TRIFLE = 1e-6
+#: An opening that is this part of the one before is none.
+HOME = 1e-9
 
 
 def follow(
@@ -140,16 +142,22 @@ def _advance(
     by_kinks, kink = pace.by_accuracy and not pace.careful, None
     if by_kinks and not asked.exact:
         found, kink = landed(system, old, found, newton, phase)
-    state = replace(found.state, k_q=found.response.k_q, scale=max(old.scale, found.response.scale))
-    leaving = tangent(system, state, found.response, direction, phase, kink=kink)
+    state, response = found.state, found.response
+    opening = float(system.load_d @ state.u_d)
+    if asked.exact and abs(opening) <= HOME * abs(point.opening):
+        # nothing has a gap here whose sign means anything: contact is what it was on the way
+        state = replace(state, closed_q=old.closed_q)
+        response = respond(system, replace(state, k_q=old.k_q), decide=False)
+    state = replace(state, k_q=response.k_q, scale=max(old.scale, response.scale))
+    leaving = tangent(system, state, response, direction, phase, kink=kink)
     if leaving is None:
         return None
-    opening, energy = float(system.load_d @ state.u_d), sum(energies(system, state, found.response))
-    reached = Point(state, found.response, opening, leaving, 0.0, energy, found.residuals)
+    energy = sum(energies(system, state, response))
+    reached = Point(state, response, opening, leaving, 0.0, energy, found.residuals)
     if by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
         work = straight_work(point, reached)
     else:
-        there, b_d, b_load = control(state, found.response)
+        there, b_d, b_load = control(state, response)
         end_rate = float(b_d @ leaving.du_d) + b_load * leaving.d_load
         work = step_work(system, point, reached, (there - value) / rate, (there - value) / end_rate)
     return replace(reached, external_work=point.external_work + work)

@@ -36,6 +36,8 @@ def untimed(_name: str) -> AbstractContextManager:
 
 #: Part of the largest forces met so far by which a residual is judged where the present ones are smaller yet.
 UNLOADED = 1e-3
+#: Part of the forces in play below which a point of the interface neither opens nor closes.
+NOTHING = 1e-13
 
 
 @dataclass(frozen=True)
@@ -210,7 +212,8 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     linear = system.kinematics == "linear"
     internal_d, scale, bulk_energy, parts = (_linear_bulk if linear else _finite_bulk)(system, trial.u_d)
     touch = contact(system.interface, trial.u_d, trial.pairing)
-    closed_q = touch.g_q < 0.0 if decide else trial.closed_q
+    scale = max(scale, UNLOADED * trial.scale)
+    closed_q = _closed(system, touch, trial, scale) if decide else trial.closed_q
     p_q, dp_q, k_q = traction(system.interface, touch, trial.k_q, closed_q)
     internal_d += forces(system.interface, touch, p_q, system.n_dof)
     internal_d -= system.spring_forces(trial.u_d) @ system.springs_rd
@@ -222,8 +225,15 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     tangent = np.bincount(pattern.positions, values, pattern.band.size)
     if linear:
         tangent += system.linear_band
-    scale = max(scale, UNLOADED * trial.scale)
     return Response(internal_d, scale, bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, pattern.band)
+
+
+def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.ndarray:
+    """Points with a negative gap; where the gap is worth no force, as they were: its sign is rounding."""
+    interface = system.interface
+    stiffest = max(interface.law.penalty, interface.law.stiffness)
+    nothing_q = np.abs(touch.g_q) * stiffest * interface.dA_q <= NOTHING * scale
+    return np.where(nothing_q, trial.closed_q, touch.g_q < 0.0)
 
 
 def energies(system: System, state: State, response: Response) -> tuple[float, float, float, float]:

@@ -63,7 +63,7 @@ def tangent(
     direction : +1 where the programme opens the specimen, -1 where it closes it. Damage cannot heal: while it grows
         the path goes forward where energy is dissipated, whatever the opening does there.
     turning : the programme has turned round at this state, or begins: nothing is known of the points.
-    kink : the one that the state stands on; unless the path turns round there, ``slope`` is the mean of both sides.
+    kink : the one that the state stands on; ``slope`` is the mean of both sides where these have one sign.
     """
     law, g_q = system.interface.law, response.contact.g_q
     soft_q = on_envelope(system, state, g_q)

@@ -101,17 +101,15 @@ def test_stiff_contact_is_found_where_full_steps_go_round_in_circles(kinematics,
     found = search()
     assert found is not None and found.residuals[-1] <= PATIENT.tolerance
     response = respond(system, found.state, decide=True)
-    # so close to the unloaded state a penalty like this multiplies the rounding of the gaps
-    assert residual_norm(system, found.state.load, response) < PATIENT.rough, "gaps and contact disagree"
+    # two points for one control point: so stiff a contact shares its forces among them as it likes, and the balance
+    # hardly knows
+    assert residual_norm(system, found.state.load, response) < 1e-3, "gaps and contact disagree"
     assert 0 < np.sum(found.state.closed_q) < found.state.closed_q.size
     monkeypatch.setattr(iga.newton, "_searched", iga.newton._full)
     assert search() is None, "full steps do as well: this test has nothing to say"
 
 
-UNDECIDED = pytest.mark.xfail(strict=True, reason="contact is frozen where the start is an equilibrium already")
-
-
-@pytest.mark.parametrize("kinematics", [pytest.param("linear", marks=UNDECIDED), "finite"])
+@pytest.mark.parametrize("kinematics", ["linear", "finite"])
 def test_contact_is_decided_on_the_way_from_one_equilibrium_to_another(kinematics):
     """The search starts on an equilibrium: no residual, but the control is not met, and points open and close."""
     system = build(replace(CZM1, kinematics=kinematics)).system
