@@ -70,11 +70,12 @@ def test_the_tangent_is_the_difference_quotient_of_two_converged_points(snapping
     for point in growing(points):
         path = point.tangent
         q = fastest(point)
-        near = beside(system, point, gap_control(system, q), 1e-5 * system.interface.law.g_u)
+        near = beside(system, point, gap_control(system, q), 1e-4 * system.interface.law.g_u)
         assert near is not None
         du_d, d_load = near.state.u_d - point.state.u_d, near.state.load - point.state.load
-        scale = 1e-5 * system.interface.law.g_u / path.rate_q[q]
-        assert np.linalg.norm(du_d - scale * path.du_d) < 1e-3 * np.linalg.norm(du_d)
+        scale = 1e-4 * system.interface.law.g_u / path.rate_q[q]
+        unsure = 1e-8 * np.linalg.norm(point.state.u_d)  # what the tolerance on the balance leaves of an open arm
+        assert np.linalg.norm(du_d - scale * path.du_d) < 1e-3 * np.linalg.norm(du_d) + unsure
         assert d_load == pytest.approx(scale * path.d_load, rel=1e-3)
         assert d_load / float(system.load_d @ du_d) == pytest.approx(path.slope, rel=1e-3)
         rates = (near.response.contact.g_q - point.response.contact.g_q) / scale
