@@ -86,3 +86,20 @@ def test_time_and_where_it_goes(tmp_path):
 def test_the_readme_names_every_method():
     readme = (Path(__file__).parents[2] / "README.md").read_text()
     assert set(re.findall(r"^\| `(\w+)` \|", readme, re.M)) == {"nurbs", "lagrange", "dolfinx", "beam", "lefm"}
+
+
+@pytest.mark.parametrize("kinematics", ["linear", "finite"])
+def test_both_codes_unload_with_the_same_stiffness(kinematics):
+    """The slope on the way from opening 1.5 back to zero, where damage is frozen: within 0.3 %."""
+    if not dolfinx_installed():
+        pytest.skip("DOLFINx is not installed")
+    scene = load_scene("dcb-czm1", [f"effects.kinematics={kinematics}", "load.opening=[1.5, 0.0]"])
+    at, slopes = np.linspace(0.1, 1.4, 20), {}
+    for method in ("nurbs", "dolfinx"):
+        result = solve(scene, method)
+        turn = int(np.argmax(result.opening))
+        down, slope = result.opening[turn + 1 :][::-1], result.steps["load_slope"][turn + 1 :][::-1]
+        slopes[method] = np.interp(at, down, slope)
+    apart = float(np.max(np.abs(slopes["nurbs"] / slopes["dolfinx"] - 1)))
+    print(f"{kinematics}: unloading slopes differ by {apart:.4%}")
+    assert apart <= 0.003
