@@ -11,8 +11,8 @@ from iga.basis import BlockBasis, block_basis, chain_basis
 from iga.extraction import Mesh
 from iga.pose import Pose
 from iga.quadrature import gauss, square
+from iga.solid import Solid
 from iga.surface import Surface, surface
-from iga.system import Solid
 
 
 @dataclass(frozen=True)

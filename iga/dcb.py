@@ -14,9 +14,10 @@ from iga.grading import COARSENING, columns, largest, part, pieces, rectangle, u
 from iga.material import orthotropic
 from iga.pose import Pose
 from iga.problem import Debonding
+from iga.solid import joined
 from iga.solve import Solution, run
 from iga.specimen import Specimen
-from iga.system import Phase, System, joined, untimed
+from iga.system import Phase, System, untimed
 
 #: Stiffness of a tie that hardly gives, relative to the modulus times the width: that of the stiffest elements.
 TIE = 10.0

@@ -14,9 +14,10 @@ from iga.grading import COARSENING, columns, largest, part, pieces, rectangle, u
 from iga.material import orthotropic
 from iga.pose import Pose
 from iga.problem import Debonding
+from iga.solid import joined
 from iga.solve import Solution, run
 from iga.specimen import Specimen
-from iga.system import Phase, System, joined, untimed
+from iga.system import Phase, System, untimed
 
 #: Layers of the substrate: at most so many, each this much thicker than the one above, and the top one no thinner than
 #: such a part of the length of its elements.

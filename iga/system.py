@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from iga.banded import Band, BandLU, factor, number
-from iga.basis import BlockBasis
 from iga.bulk import (
     all_entries,
     element_forces,
@@ -25,6 +24,7 @@ from iga.interface import Contact, Interface, contact, dofs, forces, pair, stiff
 from iga.interface import rounding as interface_rounding
 from iga.kinematics import KINEMATICS
 from iga.projection import Pairing
+from iga.solid import Solid
 
 #: Times the phases of a run ("mesh", "basis", "assembly", "factor", "solve"); whoever calls brings the clock.
 Phase = Callable[[str], AbstractContextManager]
@@ -38,14 +38,6 @@ def untimed(_name: str) -> AbstractContextManager:
 UNLOADED = 1e-3
 #: Part of the forces in play below which a point of the interface neither opens nor closes.
 NOTHING = 1e-13
-
-
-@dataclass(frozen=True)
-class Solid:
-    """One block of elements with one material: basis at the quadrature points and elasticity matrix D (3, 3)."""
-
-    basis: BlockBasis
-    D: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -247,20 +239,6 @@ def energies(system: System, state: State, response: Response) -> tuple[float, f
 def factorise(response: Response) -> BandLU | None:
     """LU of the tangent, which it overwrites; None where the tangent is exactly singular."""
     return factor(response.band, response.tangent)
-
-
-def joined(solids: list[Solid]) -> tuple[Solid, ...]:
-    """Blocks of one shape and one material taken together: fewer and longer array operations."""
-    groups: dict[tuple, list[Solid]] = {}
-    for solid in solids:
-        groups.setdefault((solid.basis.N_eqa.shape[1:], solid.D.tobytes()), []).append(solid)
-    return tuple(
-        Solid(
-            BlockBasis(*(np.concatenate([getattr(s.basis, f.name) for s in group]) for f in fields(BlockBasis))),
-            group[0].D,
-        )
-        for group in groups.values()
-    )
 
 
 def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
