@@ -4,29 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from specimens import PAPER, E
 
 from iga.control import arc_length_control, dissipation_control, gap_control, load_control, opening_control
-from iga.dcb import Problem, build
+from iga.dcb import build
 from iga.newton import DEFAULT, equilibrium
 from iga.path import Point, follow
 from iga.system import respond, untimed
 
-E, NU = 120e3, 0.2
-CZM1 = Problem(
-    length=14.0,
-    arm_thickness=0.2,
-    precrack=4.0,
-    E1=E,
-    E2=E,
-    G12=E / (2 * (1 + NU)),
-    nu12=NU,
-    strength=4.0,
-    toughness=0.1,
-    ductility=12.5,
-    penalty=1e5,
-    opening=(1.0,),
-    dofs=400,
-)
+CZM1 = replace(PAPER, dofs=400)
 NAMES = ("opening", "load", "gap", "dissipation", "arc length")
 
 

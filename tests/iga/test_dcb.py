@@ -4,29 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from specimens import PAPER, E
 
 from iga.cohesive import BilinearLaw
 from iga.control import opening_control
-from iga.dcb import Problem, build, solve
+from iga.dcb import build, solve
 from iga.newton import DEFAULT, Newton, equilibrium
 from iga.path import Point, follow
 from iga.system import untimed
 
-E, NU = 120e3, 0.2
-CZM1 = Problem(
-    length=14.0,
-    arm_thickness=0.2,
-    precrack=4.0,
-    E1=E,
-    E2=E,
-    G12=E / (2 * (1 + NU)),
-    nu12=NU,
-    strength=4.0,
-    toughness=0.1,
-    ductility=12.5,
-    penalty=1e5,
-    opening=(3.0,),
-)
+CZM1 = replace(PAPER, opening=(3.0,), dofs=1956)
 SHORT = replace(CZM1, opening=(1.0,), dofs=800, steps=40)
 
 

@@ -4,30 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from specimens import PAPER
 
 from iga.control import gap_control
-from iga.dcb import Problem, build
+from iga.dcb import build
 from iga.newton import DEFAULT, equilibrium
 from iga.path import End, follow
 from iga.system import untimed
 
-E, NU = 120e3, 0.2
-CZM1 = Problem(
-    length=14.0,
-    arm_thickness=0.2,
-    precrack=4.0,
-    E1=E,
-    E2=E,
-    G12=E / (2 * (1 + NU)),
-    nu12=NU,
-    strength=4.0,
-    toughness=0.1,
-    ductility=12.5,
-    penalty=1e5,
-    opening=(1.2,),
-    dofs=1956,
-    steps=None,
-)
+CZM1 = replace(PAPER, opening=(1.2,), dofs=1956, steps=None)
 
 
 #: Half the change of the gap, in parts of the kink, over which one-sided slopes are taken.

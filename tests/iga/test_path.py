@@ -7,30 +7,16 @@ import pytest
 from scipy.interpolate import CubicHermiteSpline
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import spsolve
+from specimens import PAPER
 
 import iga.work
-from iga.dcb import Problem, build
+from iga.dcb import build
 from iga.interface import dofs
 from iga.newton import DEFAULT, Newton, residual_norm
 from iga.path import End, follow
 from iga.system import energies, respond
 
-E, NU = 120e3, 0.2
-CZM1 = Problem(
-    length=14.0,
-    arm_thickness=0.2,
-    precrack=4.0,
-    E1=E,
-    E2=E,
-    G12=E / (2 * (1 + NU)),
-    nu12=NU,
-    strength=4.0,
-    toughness=0.1,
-    ductility=12.5,
-    penalty=1e5,
-    opening=(3.0,),
-    dofs=280,
-)
+CZM1 = replace(PAPER, opening=(3.0,))
 BOTH = [("nurbs", "finite"), ("lagrange", "linear")]
 #: Defects that are known; their tests fail as soon as they are gone.
 

@@ -4,30 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from specimens import PAPER
 
 from iga.control import gap_control, opening_control
-from iga.dcb import Problem, build
+from iga.dcb import build
 from iga.newton import DEFAULT, equilibrium
 from iga.path import Point, follow
 from iga.system import energies, respond, untimed
 from iga.tangent import on_envelope, tangent
 
-E, NU = 120e3, 0.2
-SNAPPING = Problem(
-    length=14.0,
-    arm_thickness=0.2,
-    precrack=4.0,
-    E1=E,
-    E2=E,
-    G12=E / (2 * (1 + NU)),
-    nu12=NU,
-    strength=6.0,
-    toughness=0.1,
-    ductility=12.5,
-    penalty=1e5,
-    opening=(1.0,),
-    dofs=280,
-)
+SNAPPING = replace(PAPER, strength=6.0)
 
 
 def points_of(system, programme, steps=60):
