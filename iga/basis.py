@@ -67,12 +67,14 @@ def block_basis(
 
 
 def chain_basis(mesh: Mesh, chain: Chain, points_q: np.ndarray, weights_q: np.ndarray) -> tuple[BlockBasis, ...]:
-    """Basis on the sides of a chain at the points (n_q,) of a rule on [0, 1], one entry a block; ``dV`` are lengths."""
-    direction, value = SIDES[chain.side]
-    square_q = np.insert(points_q[:, None], direction, value, axis=1)
+    """Basis on the sides of a chain at the points (n_q,) of a rule on [0, 1], each with its length for ``dV``.
+
+    One entry for every block and side that the chain has, points along the side's own parameter.
+    """
     bases = []
-    for number in np.unique(chain.block_c):
-        block, e = mesh.blocks[number], chain.element_c[chain.block_c == number]
+    for here, number, side in chain.parts():
+        (direction, value), block, e = SIDES[side], mesh.blocks[number], chain.element_c[here]
+        square_q = np.insert(points_q[:, None], direction, value, axis=1)
         part = ElementBlock(block.degrees, block.C_eab[e], block.conn_ea[e])
         basis = block_basis(mesh, part, square_q, np.ones(len(points_q)))
         _, dN_param = _rational(mesh, part.C_eab, part.conn_ea, part.degrees, square_q)

@@ -6,13 +6,16 @@ lies beyond (basis, assembly, interface) knows nothing else of a mesh.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 #: Element sides, named as in the Rhino plug-in's files: (fixed direction, its value).
 SIDES = {"LEFT": (0, 0.0), "RIGHT": (0, 1.0), "BOTTOM": (1, 0.0), "TOP": (1, 1.0)}
+
+#: On which hand the element lies, seen along the side's own parameter: +1 to the left, -1 to the right.
+HANDS = {"LEFT": -1.0, "RIGHT": 1.0, "BOTTOM": 1.0, "TOP": -1.0}
 
 
 @dataclass(frozen=True)
@@ -29,14 +32,29 @@ class ElementBlock:
 
 @dataclass(frozen=True)
 class Chain:
-    """An ordered chain of element sides, walked with the body on a fixed hand.
+    """An ordered chain of element sides, walked with the body on one hand.
 
-    ``block_c``, ``element_c`` (n_c,) say which element, ``side`` which of its sides (one for the whole chain).
+    ``block_c``, ``element_c`` (n_c,) say which element and ``side_c`` (n_c,) which of its sides, by name in `SIDES`.
+    ``outward`` is +1 where the body lies to the left of the walking direction, -1 where to the right.
     """
 
-    side: str
     block_c: np.ndarray
     element_c: np.ndarray
+    side_c: np.ndarray
+    outward: float
+
+    @property
+    def reversed_c(self) -> np.ndarray:
+        """Which sides (n_c,) are walked against their own parameter."""
+        return np.array([HANDS[side] != self.outward for side in self.side_c], dtype=bool)
+
+    def parts(self) -> Iterator[tuple[np.ndarray, int, str]]:
+        """Places in the chain that share a block and a side, with that block and side."""
+        for number in np.unique(self.block_c):
+            for side in SIDES:
+                here = np.flatnonzero((self.block_c == number) & (self.side_c == side))
+                if here.size:
+                    yield here, int(number), side
 
 
 @dataclass(frozen=True)
@@ -58,6 +76,11 @@ class Mesh:
     @property
     def elements(self) -> int:
         return sum(len(block.conn_ea) for block in self.blocks)
+
+
+def one_sided(side: str, block_c: np.ndarray, element_c: np.ndarray) -> Chain:
+    """Chain of the same side of all its elements, in the order of the side's own parameter."""
+    return Chain(block_c, element_c, np.full(len(element_c), side), HANDS[side])
 
 
 def tensor_mesh(
@@ -83,5 +106,5 @@ def tensor_mesh(
     conn = (conn_t[:, None, :, None] * n_s + conn_s[None, :, None, :]).reshape(e_t * e_s, -1)
     number = np.arange(e_t * e_s).reshape(e_t, e_s)
     strips = {"LEFT": number[:, 0], "RIGHT": number[:, -1], "BOTTOM": number[0], "TOP": number[-1]}
-    chains = {side.lower(): Chain(side, np.zeros_like(e), e) for side, e in strips.items()}
+    chains = {side.lower(): one_sided(side, np.zeros_like(e), e) for side, e in strips.items()}
     return Mesh(P_AI, w_A, (ElementBlock((p, q), C, conn),), chains)

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from iga.extraction import SIDES, Chain, ElementBlock, Mesh
+from iga.extraction import Chain, ElementBlock, Mesh
 from iga.kinematics import elasticity_tensor
 
 #: Sides of an element seen from the other end.
@@ -64,10 +64,13 @@ def from_behind(mesh: Mesh) -> Mesh:
         p, q = block.degrees
         back = np.arange((p + 1) * (q + 1)).reshape(q + 1, p + 1)[:, ::-1].ravel()
         blocks.append(ElementBlock(block.degrees, block.C_eab[:, :, back], block.conn_ea))
-    chains = {}
-    for name, chain in mesh.chains.items():
-        fixed = SIDES[chain.side][0]
-        order = slice(None) if fixed == 0 else slice(None, None, -1)
-        side = SEEN_FROM_BEHIND.get(chain.side, chain.side)
-        chains[name] = Chain(side, chain.block_c[order], chain.element_c[order])
+    chains = {
+        name: Chain(
+            chain.block_c[::-1],
+            chain.element_c[::-1],
+            np.array([SEEN_FROM_BEHIND.get(side, side) for side in chain.side_c[::-1]]),
+            chain.outward,
+        )
+        for name, chain in mesh.chains.items()
+    }
     return replace(mesh, blocks=tuple(blocks), chains=chains)

@@ -67,25 +67,24 @@ def surface(mesh: Mesh, chain: Chain, first: int) -> Surface:
     ------
     ValueError : sides of different degrees in one chain, or a side on which not p + 1 functions live.
     """
-    direction, value = SIDES[chain.side]
-    degrees = {mesh.blocks[b].degrees[1 - direction] for b in np.unique(chain.block_c)}
+    degrees = {mesh.blocks[b].degrees[1 - SIDES[side][0]] for _, b, side in chain.parts()}
     if len(degrees) != 1:
         raise ValueError(f"a surface needs sides of one degree, got degrees {sorted(degrees)}")
     p = degrees.pop()
     n_c = len(chain.element_c)
     C_cab, conn_ca = np.empty((n_c, p + 1, p + 1)), np.empty((n_c, p + 1), dtype=int)
-    for number in np.unique(chain.block_c):
-        here = np.flatnonzero(chain.block_c == number)
-        block = mesh.blocks[number]
-        trace_cab = block.C_eab[chain.element_c[here]][:, :, _on_side(block.degrees, direction, value)]
+    for here, number, side in chain.parts():
+        block, e = mesh.blocks[number], chain.element_c[here]
+        trace_cab = block.C_eab[e][:, :, _on_side(block.degrees, *SIDES[side])]
         alive = np.any(trace_cab != 0.0, axis=2)
         if not np.all(alive.sum(1) == p + 1):
             raise ValueError(f"a side of degree {p} must carry {p + 1} functions, got {sorted(set(alive.sum(1)))}")
         row, a = np.nonzero(alive)
-        conn_ca[here] = block.conn_ea[chain.element_c[here]][row, a].reshape(-1, p + 1)
+        conn_ca[here] = block.conn_ea[e][row, a].reshape(-1, p + 1)
         C_cab[here] = trace_cab[row, a].reshape(-1, p + 1, p + 1) * mesh.w_A[conn_ca[here]][..., None]
-    outward = 1.0 if chain.side in ("BOTTOM", "RIGHT") else -1.0
-    return Surface(p, C_cab, conn_ca + first, C_cab.sum(1), outward)
+    turned = chain.reversed_c
+    C_cab[turned] = C_cab[turned][:, :, ::-1]
+    return Surface(p, C_cab, conn_ca + first, C_cab.sum(1), chain.outward)
 
 
 def normal(tangent_qi: np.ndarray, outward: float) -> np.ndarray:

@@ -205,7 +205,8 @@ def test_a_surface_must_have_one_degree():
         lagrange_rectangle(np.linspace(0, 1, 2), np.array([0.0, 1.0]), 2),
         lagrange_rectangle(np.linspace(0, 1, 2), np.array([0.0, 1.0]), 3),
     )
-    chain = replace(a.chains["top"], block_c=np.array([0, 1]), element_c=np.array([0, 0]))
+    sides = np.array(["TOP", "TOP"])
+    chain = replace(a.chains["top"], block_c=np.array([0, 1]), element_c=np.array([0, 0]), side_c=sides)
     both = Mesh(np.concatenate([a.P_AI, b.P_AI]), np.ones(len(a.P_AI) + len(b.P_AI)), (*a.blocks, *b.blocks))
     with pytest.raises(ValueError, match="one degree"):
         surface(both, chain, 0)
