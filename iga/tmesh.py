@@ -1,0 +1,224 @@
+"""The index T-mesh of a bicubic T-spline: two knot lists and the unit edges that are drawn between them.
+
+Everything that makes a T-spline is read off here: anchors, local knot vectors, T-junctions and their extensions
+(Sederberg, Zheng, Bakenov, Nasri 2003; Scott, Li, Sederberg, Hughes 2012).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+#: Degree of the functions, knots on either side of an anchor, and index lines outside of the domain on every side.
+DEGREE, HALF, FRAME = 3, 2, 2
+
+
+class NotSuitable(ValueError):
+    """A T-mesh whose extensions cross: its functions need not add up to one, nor be independent."""
+
+
+@dataclass(frozen=True)
+class TMesh:
+    """An index T-mesh.
+
+    ``knots_i`` (m_s,) and ``knots_j`` (m_t,) are the global knots, their ends four times. ``across_ij``
+    (m_s - 1, m_t) says where the unit edge from (i, j) to (i + 1, j) is drawn, ``up_ij`` (m_s, m_t - 1) where the one
+    from (i, j) to (i, j + 1) is. The domain lies within the third lines from each side; the two beyond them are the
+    frame, which is drawn in full and continues every line that reaches it.
+
+    Raises
+    ------
+    ValueError : arrays that do not fit, knots that fall or whose ends are not fourfold, a frame with gaps, or a line
+        that ends in a corner or in nothing.
+    """
+
+    knots_i: np.ndarray
+    knots_j: np.ndarray
+    across_ij: np.ndarray
+    up_ij: np.ndarray
+
+    def __post_init__(self) -> None:
+        for knots, along, name in ((self.knots_i, self.across_ij, "s"), (self.knots_j, self.up_ij.T, "t")):
+            _check_knots(knots, name)
+            if len(along) != len(knots) - 1:
+                raise ValueError(f"{len(knots)} knots in {name} ask for {len(knots) - 1} unit edges, got {len(along)}")
+        if self.across_ij.shape[1] != len(self.knots_j) or self.up_ij.shape[0] != len(self.knots_i):
+            raise ValueError(f"edges {self.across_ij.shape} and {self.up_ij.shape} are not of one mesh")
+        for along, name in ((self.across_ij, "horizontal"), (self.up_ij.T, "vertical")):
+            _check_frame(along, name)
+        _check_ends(self)
+
+    @property
+    def transposed(self) -> TMesh:
+        """The same mesh with its directions exchanged."""
+        return TMesh(self.knots_j, self.knots_i, self.up_ij.T, self.across_ij.T)
+
+    @cached_property
+    def crossed_ij(self) -> np.ndarray:
+        """Points (m_s, m_t) of a vertical line: where a horizontal ray is stopped."""
+        return _touched(self.up_ij.T).T
+
+    @cached_property
+    def levelled_ij(self) -> np.ndarray:
+        """Points (m_s, m_t) of a horizontal line."""
+        return _touched(self.across_ij)
+
+    @cached_property
+    def anchors(self) -> np.ndarray:
+        """Indices (n_A, 2) of the vertices in the domain, each the anchor of one function; i runs fastest."""
+        inside = self.crossed_ij & self.levelled_ij
+        return np.argwhere(inside[FRAME:-FRAME, FRAME:-FRAME].T)[:, ::-1] + FRAME
+
+    def local_indices(self) -> tuple[np.ndarray, np.ndarray]:
+        """Indices (n_A, 5) of every anchor's knots along s and along t: its own and two that its rays meet each way."""
+        i, j = self.anchors.T
+        across = _neighbours(self.crossed_ij, i, j)
+        up = _neighbours(self.levelled_ij.T, j, i)
+        return across, up
+
+    @cached_property
+    def local_knots(self) -> tuple[np.ndarray, np.ndarray]:
+        """Local knot vectors (n_A, 5) along s and along t."""
+        across, up = self.local_indices()
+        return self.knots_i[across], self.knots_j[up]
+
+    @cached_property
+    def junctions(self) -> np.ndarray:
+        """T-junctions (n_T, 3): indices i, j and the missing edge, 0 right, 1 left, 2 up, 3 down."""
+        edges = self._edges_ijk
+        inside = np.zeros(edges.shape[:2], dtype=bool)
+        inside[FRAME:-FRAME, FRAME:-FRAME] = True
+        three = (edges.sum(2) == 3) & inside
+        i, j = np.nonzero(three)
+        return np.stack([i, j, np.argmin(edges[i, j], axis=1)], -1)
+
+    def extensions(self) -> tuple[np.ndarray, np.ndarray]:
+        """Extensions (n, 3) of the T-junctions, horizontal ones (i0, i1, j) and vertical ones (j0, j1, i).
+
+        Two lines on towards the missing edge and one back (degree 3; Li, Scott 2013).
+        """
+        i, j, missing = self.junctions.T
+        level, upright = missing < 2, missing >= 2
+        return (
+            _reach(self.crossed_ij, i[level], j[level], missing[level] == 0),
+            _reach(self.levelled_ij.T, j[upright], i[upright], missing[upright] == 2),
+        )
+
+    def crossings(self) -> np.ndarray:
+        """Points (n, 2), in knot values, where a horizontal extension meets a vertical one, ends included."""
+        level, upright = self.extensions()
+        shape = len(self.knots_i), len(self.knots_j)
+        met = _painted(level, shape, ends=True) & _painted(upright, shape[::-1], ends=True).T
+        i, j = np.nonzero(met)
+        return np.stack([self.knots_i[i], self.knots_j[j]], -1)
+
+    @property
+    def suitable(self) -> bool:
+        """Analysis-suitable: no two extensions meet (Scott, Li, Sederberg, Hughes 2012; Li, Scott 2013)."""
+        return len(self.crossings()) == 0
+
+    def extended(self) -> tuple[np.ndarray, np.ndarray]:
+        """Unit edges with the extensions drawn in, ``across_ij`` and ``up_ij``."""
+        level, upright = self.extensions()
+        m_s, m_t = len(self.knots_i), len(self.knots_j)
+        across = _painted(level, (m_s, m_t), ends=False)[:-1] | self.across_ij
+        up = _painted(upright, (m_t, m_s), ends=False)[:-1].T | self.up_ij
+        return across, up
+
+    @cached_property
+    def _edges_ijk(self) -> np.ndarray:
+        """Edges (m_s, m_t, 4) that leave each point to the right, left, up and down."""
+        m_s, m_t = len(self.knots_i), len(self.knots_j)
+        edges = np.zeros((m_s, m_t, 4), dtype=bool)
+        edges[:-1, :, 0], edges[1:, :, 1] = self.across_ij, self.across_ij
+        edges[:, :-1, 2], edges[:, 1:, 3] = self.up_ij, self.up_ij
+        return edges
+
+
+def require_suitable(mesh: TMesh) -> None:
+    """Refuse a T-mesh that is not analysis-suitable.
+
+    Raises
+    ------
+    NotSuitable : names the first crossing by its coordinates.
+    """
+    crossings = mesh.crossings()
+    if len(crossings):
+        s, t = crossings[0]
+        more = f" and {len(crossings) - 1} more" if len(crossings) > 1 else ""
+        raise NotSuitable(
+            f"the T-mesh is not analysis-suitable: extensions of T-junctions meet at ({s:.6g}, {t:.6g}){more}; "
+            "prolong one of the two lines to the next one"
+        )
+
+
+def _check_knots(knots: np.ndarray, name: str) -> None:
+    values, count = np.unique(knots, return_counts=True)
+    if not np.all(np.isfinite(knots)) or np.any(np.diff(knots) < 0.0):
+        raise ValueError(f"knots in {name} must be finite and not fall")
+    if len(values) < 2 or count[0] != DEGREE + 1 or count[-1] != DEGREE + 1:
+        raise ValueError(f"the end knots in {name} must be there {DEGREE + 1} times, got {count[0]} and {count[-1]}")
+    if np.any(count[1:-1] > DEGREE):
+        raise ValueError(f"inner knots in {name} may be there {DEGREE} times at most, got {count[1:-1].max()}")
+
+
+def _check_frame(along: np.ndarray, name: str) -> None:
+    """Lines run in full along the frame, and through it; ``along`` has its first axis along them."""
+    if not np.all(along[:, : FRAME + 1]) or not np.all(along[:, -FRAME - 1 :]):
+        raise ValueError(f"the {name} lines of the frame must be drawn in full")
+    for outer, inner, first in ((along[0], along[1], along[2]), (along[-1], along[-2], along[-3])):
+        if np.any(outer != inner) or np.any(first & ~inner):
+            raise ValueError(f"a {name} line that reaches the frame must go through it")
+
+
+def _check_ends(mesh: TMesh) -> None:
+    """Inside, lines end on other lines: no dangling ends, no corners."""
+    right, left, up, down = np.moveaxis(mesh._edges_ijk[1:-1, 1:-1], 2, 0)
+    for ends, other, direction in ((right ^ left, up & down, "horizontal"), (up ^ down, right & left, "vertical")):
+        loose = np.argwhere(ends & ~other) + 1
+        if len(loose):
+            s, t = mesh.knots_i[loose[0, 0]], mesh.knots_j[loose[0, 1]]
+            raise ValueError(
+                f"a {direction} line of the T-mesh ends at ({s:.6g}, {t:.6g}), where no other runs through"
+            )
+
+
+def _touched(along: np.ndarray) -> np.ndarray:
+    """Points of lines whose unit edges run along the first axis."""
+    points = np.zeros((along.shape[0] + 1, along.shape[1]), dtype=bool)
+    points[:-1] |= along
+    points[1:] |= along
+    return points
+
+
+def _stops(hit: np.ndarray, step: int) -> np.ndarray:
+    """For every point the next one along the first axis that is ``hit``, forwards (+1) or backwards (-1)."""
+    hit = hit[::step]
+    number = np.where(hit, np.arange(len(hit))[:, None], len(hit) - 1)
+    ahead = np.minimum.accumulate(number[::-1])[::-1]
+    beyond = np.concatenate([ahead[1:], ahead[-1:]])
+    return beyond if step == 1 else (len(hit) - 1 - beyond)[::-1]
+
+
+def _neighbours(hit: np.ndarray, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """Indices (n, 5) of the points (i, j) and of the two hits on either side of them along the first axis."""
+    ahead, back = _stops(hit, 1), _stops(hit, -1)
+    right, left = ahead[i, j], back[i, j]
+    return np.stack([back[left, j], left, i, right, ahead[right, j]], -1)
+
+
+def _reach(hit: np.ndarray, i: np.ndarray, j: np.ndarray, forwards: np.ndarray) -> np.ndarray:
+    """Extensions (n, 3) from, to, line: two hits on in the one direction and one back."""
+    left2, left, _, right, right2 = _neighbours(hit, i, j).T
+    return np.stack([np.where(forwards, left, left2), np.where(forwards, right2, right), j], -1)
+
+
+def _painted(spans: np.ndarray, shape: tuple[int, int], ends: bool) -> np.ndarray:
+    """Points (m, n) covered by spans (from, to, line); the last point of each only where ``ends``."""
+    change = np.zeros((shape[0] + 1, shape[1]), dtype=int)
+    start, end, line = spans.T
+    np.add.at(change, (start, line), 1)
+    np.add.at(change, (end + int(ends), line), -1)
+    return np.cumsum(change, axis=0)[:-1] > 0

@@ -1,0 +1,173 @@
+"""T-splines through the seam: Bezier elements and extraction operators of a T-mesh.
+
+On every Bezier element a function is the product of two cubic pieces, whose Bernstein coefficients are their blossoms
+at the ends of the span (Scott, Borden, Verhoosel, Sederberg, Hughes 2011).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from iga.bernstein import tensor
+from iga.extraction import ElementBlock, Mesh, one_sided
+from iga.tmesh import DEGREE, FRAME, TMesh, require_suitable
+
+
+def tspline_mesh(mesh: TMesh, P_AI: np.ndarray, w_A: np.ndarray | None = None) -> Mesh:
+    """The T-spline of a T-mesh, its functions in the order of ``mesh.anchors``.
+
+    Parameters
+    ----------
+    mesh : analysis-suitable T-mesh with n_A anchors.
+    P_AI : (n_A, 2) control points, not homogeneous.
+    w_A : (n_A,) positive weights; all one if left out.
+
+    Raises
+    ------
+    NotSuitable : extensions cross; the message has the coordinates.
+    ValueError : a number of control points other than that of the anchors, or a weight that is not positive.
+    """
+    require_suitable(mesh)
+    return unchecked_mesh(mesh, P_AI, w_A)
+
+
+def unchecked_mesh(mesh: TMesh, P_AI: np.ndarray, w_A: np.ndarray | None = None) -> Mesh:
+    """The same for any T-mesh; the functions of one that is not analysis-suitable need not add up to one."""
+    n_A = len(mesh.anchors)
+    w_A = np.ones(n_A) if w_A is None else np.asarray(w_A, dtype=float)
+    if P_AI.shape != (n_A, 2) or w_A.shape != (n_A,):
+        raise ValueError(f"the T-mesh asks for {n_A} control points and weights, got {len(P_AI)} and {w_A.size}")
+    if not np.all(w_A > 0):
+        raise ValueError(f"weights must be > 0, the smallest is {w_A.min()}")
+    box_ek = bezier_elements(mesh)
+    e_n, A_n = _supported(mesh, box_ek)
+    C_nb = _extraction(mesh, box_ek[e_n], A_n)
+    count_e = np.bincount(e_n, minlength=len(box_ek))
+    start_e = np.cumsum(count_e) - count_e
+    blocks, place_e, block_e = [], np.zeros(len(box_ek), dtype=int), np.zeros(len(box_ek), dtype=int)
+    for n_a in np.unique(count_e):
+        e = np.flatnonzero(count_e == n_a)
+        rows = start_e[e][:, None] + np.arange(n_a)
+        place_e[e], block_e[e] = np.arange(len(e)), len(blocks)
+        blocks.append(ElementBlock((DEGREE, DEGREE), C_nb[rows], A_n[rows]))
+    chains = {}
+    for side, e in _sides(mesh, box_ek).items():
+        chains[side.lower()] = one_sided(side, block_e[e], place_e[e])
+    return Mesh(P_AI, w_A, tuple(blocks), chains)
+
+
+def tspline_rectangle(mesh: TMesh) -> Mesh:
+    """The rectangle that the knots span, mapped by the identity: control points at the local Greville abscissae."""
+    return tspline_mesh(mesh, greville(mesh))
+
+
+def greville(mesh: TMesh) -> np.ndarray:
+    """Control points (n_A, 2) of the identity map: means of the inner local knots (Beirao da Veiga et al. 2013)."""
+    return np.stack([knots[:, 1:-1].mean(1) for knots in mesh.local_knots], -1)
+
+
+def bezier_elements(mesh: TMesh) -> np.ndarray:
+    """Index boxes (n_e, 4) i0, i1, j0, j1 of the faces with area, extensions drawn in; i runs fastest.
+
+    Raises
+    ------
+    ValueError : a face that is no rectangle.
+    """
+    across, up = mesh.extended()
+    across, up = across[FRAME:-FRAME, FRAME:-FRAME], up[FRAME:-FRAME, FRAME:-FRAME]
+    corner = np.argwhere((up[:-1] & across[:, :-1]).T)[:, ::-1]
+    i, j = corner.T
+    end_i, end_j = _next_line(up)[i, j], _next_line(across.T)[j, i]
+    _check_rectangles(across, up, i, end_i, j, end_j)
+    box = np.stack([i, end_i, j, end_j], -1) + FRAME
+    has_area = (mesh.knots_i[box[:, 1]] > mesh.knots_i[box[:, 0]]) & (mesh.knots_j[box[:, 3]] > mesh.knots_j[box[:, 2]])
+    return box[has_area]
+
+
+def blossoms(knots_n5: np.ndarray, start_n: np.ndarray, end_n: np.ndarray) -> np.ndarray:
+    """Bernstein coefficients (n, 4) of cubic B-splines with knots (n, 5) on spans [start, end] within one knot span.
+
+    The recursion of Cox and de Boor with another argument at each level is the blossom of a piece; coefficient b is
+    its value at the start 3 - b times and at the end b times (Ramshaw 1989).
+    """
+    middle_n = 0.5 * (start_n + end_n)
+    piece_nj = ((knots_n5[:, :-1] <= middle_n[:, None]) & (middle_n[:, None] < knots_n5[:, 1:])).astype(float)
+    out_nb = np.empty((len(knots_n5), DEGREE + 1))
+    for b in range(DEGREE + 1):
+        N_nj = piece_nj
+        for r in range(1, DEGREE + 1):
+            x_n1 = (end_n if r <= b else start_n)[:, None]
+            length_nj = knots_n5[:, r:] - knots_n5[:, :-r]
+            inverse_nj = np.divide(1.0, length_nj, out=np.zeros_like(length_nj), where=length_nj > 0.0)
+            rise_nj = (x_n1 - knots_n5[:, :-r]) * inverse_nj
+            fall_nj = (knots_n5[:, r:] - x_n1) * inverse_nj
+            N_nj = rise_nj[:, :-1] * N_nj[:, :-1] + fall_nj[:, 1:] * N_nj[:, 1:]
+        out_nb[:, b] = N_nj[:, 0]
+    return out_nb
+
+
+def _next_line(along: np.ndarray) -> np.ndarray:
+    """For each unit cell the next line beyond it along the first axis; ``along`` (m, n) are edges across that axis."""
+    number = np.where(along, np.arange(len(along))[:, None], len(along))
+    return np.minimum.accumulate(number[::-1])[::-1][1:]
+
+
+def _check_rectangles(across: np.ndarray, up: np.ndarray, i0, i1, j0, j1) -> None:
+    """Boxes that start at every lower left corner cover all cells, and no edge lies within one."""
+    cells = int(np.sum((i1 - i0) * (j1 - j0)))
+    within = _counted(up, i0 + 1, i1, j0, j1) + _counted(across, i0, i1, j0 + 1, j1)
+    if cells != (up.shape[0] - 1) * up.shape[1] or np.any(within):
+        raise ValueError("the T-mesh has a face that is no rectangle")
+
+
+def _counted(edges: np.ndarray, i0, i1, j0, j1) -> np.ndarray:
+    """Number of edges in index boxes, by a summed-area table."""
+    table = np.zeros((edges.shape[0] + 1, edges.shape[1] + 1), dtype=int)
+    table[1:, 1:] = edges.cumsum(0).cumsum(1)
+    return table[i1, j1] - table[i0, j1] - table[i1, j0] + table[i0, j0]
+
+
+def _supported(mesh: TMesh, box_ek: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """All pairs (n,) of an element and a function that lives on it, sorted by element and then by function.
+
+    Elements are sorted by rows; in each row that a function spans those of its columns are one run.
+    """
+    across, up = mesh.local_indices()
+    m = len(mesh.knots_i)
+    key_e = box_ek[:, 2] * m + box_ek[:, 0]
+    order = np.argsort(key_e)
+    first, rows = up[:, 0], up[:, -1] - up[:, 0]
+    A_r = np.repeat(np.arange(len(rows)), rows)
+    row_r = first[A_r] + _counting(rows)
+    low = np.searchsorted(key_e[order], row_r * m + across[A_r, 0])
+    high = np.searchsorted(key_e[order], row_r * m + across[A_r, -1])
+    A_n = np.repeat(A_r, high - low)
+    e_n = order[np.repeat(low, high - low) + _counting(high - low)]
+    sort = np.lexsort((A_n, e_n))
+    return e_n[sort], A_n[sort]
+
+
+def _counting(lengths: np.ndarray) -> np.ndarray:
+    """0 .. n-1 for each of some lengths, one after the other."""
+    return np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths)
+
+
+def _extraction(mesh: TMesh, box_nk: np.ndarray, A_n: np.ndarray) -> np.ndarray:
+    """Rows (n, 16) of the functions A_n on their elements."""
+    (s, t), (i0, i1, j0, j1) = mesh.local_knots, box_nk.T
+    return tensor(
+        blossoms(s[A_n], mesh.knots_i[i0], mesh.knots_i[i1]), blossoms(t[A_n], mesh.knots_j[j0], mesh.knots_j[j1])
+    )
+
+
+def _sides(mesh: TMesh, box_ek: np.ndarray) -> dict[str, np.ndarray]:
+    """Elements along each side of the domain, in the order of the side's own parameter."""
+    s0, s1 = mesh.knots_i[box_ek[:, :2]].T
+    t0, t1 = mesh.knots_j[box_ek[:, 2:]].T
+    at = {
+        "LEFT": (s0 == mesh.knots_i[0], t0),
+        "RIGHT": (s1 == mesh.knots_i[-1], t0),
+        "BOTTOM": (t0 == mesh.knots_j[0], s0),
+        "TOP": (t1 == mesh.knots_j[-1], s0),
+    }
+    return {side: np.flatnonzero(here)[np.argsort(along[here])] for side, (here, along) in at.items()}
