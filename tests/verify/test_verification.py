@@ -13,12 +13,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify import methods, verification
+from verify import jobs, methods, verification
 from verify.cli import main
+from verify.jobs import Job
 from verify.result import Result
 from verify.scene import Scene, load_scene
 from verify.verdict import Check, Run, SceneReport
-from verify.verification import Job, planned, sequences, verify
+from verify.verification import planned, sequences, verify
 
 LINEAR = "dcb-czm1-linear"
 
@@ -83,7 +84,7 @@ def test_a_crash_costs_one_run_and_fails(
 def test_a_killed_process_is_named_by_its_signal(
     scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(verification, "_call", lambda command, log, running: -11)
+    monkeypatch.setattr(jobs, "_call", lambda command, log, running: -11)
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
     assert reports[0].runs[0].left_out == "failed: signal 11"
@@ -94,7 +95,7 @@ def test_an_earlier_result_does_not_pass_for_a_crashed_run(
 ) -> None:
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert verify([(LINEAR, scene)], tmp_path, jobs=1)
-    monkeypatch.setattr(verification, "_call", lambda command, log, running: -9)
+    monkeypatch.setattr(jobs, "_call", lambda command, log, running: -9)
     assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
 
 
