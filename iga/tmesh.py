@@ -26,7 +26,7 @@ class TMesh:
     ``knots_i`` (m_s,) and ``knots_j`` (m_t,) are the global knots, their ends four times. ``across_ij``
     (m_s - 1, m_t) says where the unit edge from (i, j) to (i + 1, j) is drawn, ``up_ij`` (m_s, m_t - 1) where the one
     from (i, j) to (i, j + 1) is. The domain lies within the third lines from each side; the two beyond them are the
-    frame, which is drawn in full and continues every line that reaches it.
+    frame, which continues every line that reaches it. The four lines of an end knot are drawn in full.
 
     Raises
     ------
@@ -166,8 +166,8 @@ def _check_knots(knots: np.ndarray, name: str) -> None:
 
 def _check_frame(along: np.ndarray, name: str) -> None:
     """Lines run in full along the frame, and through it; ``along`` has its first axis along them."""
-    if not np.all(along[:, : FRAME + 1]) or not np.all(along[:, -FRAME - 1 :]):
-        raise ValueError(f"the {name} lines of the frame must be drawn in full")
+    if not np.all(along[:, : DEGREE + 1]) or not np.all(along[:, -DEGREE - 1 :]):
+        raise ValueError(f"the {name} lines of the end knots must be drawn in full")
     for outer, inner, first in ((along[0], along[1], along[2]), (along[-1], along[-2], along[-3])):
         if np.any(outer != inner) or np.any(first & ~inner):
             raise ValueError(f"a {name} line that reaches the frame must go through it")

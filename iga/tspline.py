@@ -6,11 +6,23 @@ at the ends of the span (Scott, Borden, Verhoosel, Sederberg, Hughes 2011).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from iga.bernstein import tensor
 from iga.extraction import ElementBlock, Mesh, one_sided
 from iga.tmesh import DEGREE, FRAME, TMesh, require_suitable
+
+
+@dataclass(frozen=True)
+class Extraction:
+    """Bezier elements of a T-mesh: index boxes ``box_ek`` (n_e, 4) i0, i1, j0, j1, and where each is in the blocks."""
+
+    box_ek: np.ndarray
+    blocks: tuple[ElementBlock, ...]
+    block_e: np.ndarray
+    place_e: np.ndarray
 
 
 def tspline_mesh(mesh: TMesh, P_AI: np.ndarray, w_A: np.ndarray | None = None) -> Mesh:
@@ -39,21 +51,28 @@ def unchecked_mesh(mesh: TMesh, P_AI: np.ndarray, w_A: np.ndarray | None = None)
         raise ValueError(f"the T-mesh asks for {n_A} control points and weights, got {len(P_AI)} and {w_A.size}")
     if not np.all(w_A > 0):
         raise ValueError(f"weights must be > 0, the smallest is {w_A.min()}")
+    found = extracted(mesh)
+    chains = {
+        side.lower(): one_sided(side, found.block_e[e], found.place_e[e])
+        for side, e in _sides(mesh, found.box_ek).items()
+    }
+    return Mesh(P_AI, w_A, found.blocks, chains)
+
+
+def extracted(mesh: TMesh) -> Extraction:
+    """Bezier elements, grouped by their number of functions."""
     box_ek = bezier_elements(mesh)
     e_n, A_n = _supported(mesh, box_ek)
     C_nb = _extraction(mesh, box_ek[e_n], A_n)
     count_e = np.bincount(e_n, minlength=len(box_ek))
     start_e = np.cumsum(count_e) - count_e
-    blocks, place_e, block_e = [], np.zeros(len(box_ek), dtype=int), np.zeros(len(box_ek), dtype=int)
+    blocks, block_e, place_e = [], np.zeros(len(box_ek), dtype=int), np.zeros(len(box_ek), dtype=int)
     for n_a in np.unique(count_e):
         e = np.flatnonzero(count_e == n_a)
         rows = start_e[e][:, None] + np.arange(n_a)
-        place_e[e], block_e[e] = np.arange(len(e)), len(blocks)
+        block_e[e], place_e[e] = len(blocks), np.arange(len(e))
         blocks.append(ElementBlock((DEGREE, DEGREE), C_nb[rows], A_n[rows]))
-    chains = {}
-    for side, e in _sides(mesh, box_ek).items():
-        chains[side.lower()] = one_sided(side, block_e[e], place_e[e])
-    return Mesh(P_AI, w_A, tuple(blocks), chains)
+    return Extraction(box_ek, tuple(blocks), block_e, place_e)
 
 
 def tspline_rectangle(mesh: TMesh) -> Mesh:
