@@ -13,6 +13,10 @@ from verify.convergence import assess
 from verify.crosschecks import cross_checks, peak_load
 from verify.jobs import Job, Outcome, run_all
 from verify.methods import METHODS, WITH_DOFS
+from verify.paper import plan as figures
+from verify.paper import statements
+from verify.paper.study import Study as Figures
+from verify.paper.study import measured
 from verify.quadrature_study import Study, finding, study
 from verify.run import machine, versions
 from verify.schema import Scene
@@ -29,19 +33,23 @@ def verify(scenes: Sequence[tuple[str, Scene]], out: Path, jobs: int, full: bool
     ----------
     scenes : each with the name or path that it was loaded from
     jobs : runs at a time
-    full : finer and coarser meshes as well, and the study of the interface rules
+    full : finer and coarser meshes as well, the study of the interface rules, and the figures of the paper
     """
     plan = [job for source, scene in scenes for job in planned(source, scene, full)]
-    outcomes = {outcome.job: outcome for outcome in run_all(plan, out, jobs)}
+    more = figures.planned(scenes) if full else figures.planned(())
+    outcomes = {outcome.job: outcome for outcome in run_all(list(dict.fromkeys([*plan, *more.jobs])), out, jobs)}
     reports = tuple(
         scene_report(scene, [outcomes[job] for job in plan if job.scene is scene], out) for _, scene in scenes
     )
     page, quadrature = out / "report.html", study() if full else None
-    _write_report(reports, page, quadrature)
+    paper = measured(more, outcomes) if full else None
+    _write_report(reports, page, quadrature, paper)
     checks = [(report.scene.name, check) for report in reports for check in report.checks]
     print("\n".join([*overview(reports), *sequences(reports), *failures(checks)]))
     if quadrature is not None:
         print(finding(quadrature))
+    if paper is not None:
+        print("\n".join(statements.lines(paper)))
     passed = sum(check.passed for _, check in checks)
     print(f"{passed} of {len(checks)} checks hold: {page}")
     return passed == len(checks)
@@ -52,7 +60,7 @@ def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
     for method in METHODS:
         yield Job(source, scene, method, method)
     if full:
-        yield Job(source, scene, "dolfinx", "dolfinx-p3", ("dolfinx.degree=3",))
+        yield figures.cubic(source, scene)
         for parts in (2, 4):
             dofs = scene.discretization.dofs // parts
             yield Job(source, scene, "nurbs", f"nurbs-{dofs}", (f"discretization.dofs={dofs}",))
@@ -108,11 +116,13 @@ def _as_run(outcome: Outcome, out: Path) -> Run:
     return Run(label, job.method, result, outcome.left_out, folder, shlex.join(["debond", *job.command(out)]))
 
 
-def _write_report(reports: tuple[SceneReport, ...], page: Path, quadrature: Study | None) -> None:
+def _write_report(
+    reports: tuple[SceneReport, ...], page: Path, quadrature: Study | None, paper: Figures | None
+) -> None:
     """The page; without the packages that it needs the checks are still worth printing."""
     try:
         from verify.report import write
     except ImportError as error:
         print(f"debond: no report: {error.name} is missing; pip install 'debond[report]'", file=sys.stderr)
         return
-    write(reports, page, environment(), quadrature)
+    write(reports, page, environment(), quadrature, paper)

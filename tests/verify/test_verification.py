@@ -28,7 +28,7 @@ LINEAR = "dcb-czm1-linear"
 def reports(monkeypatch: pytest.MonkeyPatch) -> list[SceneReport]:
     """What the report would have been written from."""
     seen: list[SceneReport] = []
-    monkeypatch.setattr(verification, "_write_report", lambda reports, page, quadrature: seen.extend(reports))
+    monkeypatch.setattr(verification, "_write_report", lambda reports, *studies: seen.extend(reports))
     return seen
 
 

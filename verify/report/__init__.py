@@ -8,8 +8,9 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from verify.paper.study import Study as Figures
 from verify.quadrature_study import Study
-from verify.report import study
+from verify.report import paper_section, study
 from verify.report.section import section
 from verify.report.style import custom_properties
 from verify.report.summary import summarise
@@ -22,7 +23,11 @@ _HERE = Path(__file__).parent
 
 
 def write(
-    reports: tuple[SceneReport, ...], path: Path, environment: Mapping[str, str], quadrature: Study | None = None
+    reports: tuple[SceneReport, ...],
+    path: Path,
+    environment: Mapping[str, str],
+    quadrature: Study | None = None,
+    paper: Figures | None = None,
 ) -> None:
     """Write the page.
 
@@ -32,6 +37,7 @@ def write(
     path : the HTML file; its folder is made
     environment : what to print about versions and machine, name to value
     quadrature : the study of the interface rules, where it was made
+    paper : the runs behind the figures of the paper, where they were made
     """
     sections = tuple(section(report, f"scene-{i + 1}") for i, report in enumerate(reports))
     jinja = Environment(
@@ -47,6 +53,7 @@ def write(
         sections=sections,
         summary=summarise(sections),
         quadrature=None if quadrature is None else study.section(quadrature, "quadrature"),
+        paper=None if paper is None else paper_section.section(paper, "figures"),
         environment=dict(environment),
         light=Markup(custom_properties(dark=False)),
         dark=Markup(custom_properties(dark=True)),

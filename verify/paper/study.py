@@ -1,0 +1,172 @@
+"""What came of the runs behind Figures 6, 7 and 8, measured against a converged curve of the same law."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cached_property
+from math import isfinite, nan
+
+import numpy as np
+
+from verify import lefm
+from verify.curve import Curve, curve_error, oscillation, peak
+from verify.jobs import Job, Outcome
+from verify.methods import axial_modulus, elastic_constants, problem_keys
+from verify.paper.plan import LAWS, Case, Plan
+from verify.process_zone import expected
+from verify.result import Result
+from verify.scene import load_scene
+from verify.schema import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """The finer of two fine runs of a law; ``error`` and ``oscillation`` are those of the coarser one against it."""
+
+    label: str
+    result: Result
+    error: float
+    oscillation: float
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """One run of the figures; what cannot be measured, as of a run that stopped, is NaN.
+
+    error : relative L2 distance of the load to the reference
+    oscillation : RMS of load / reference - 1 on the propagation branch, mean removed
+    variation : total variation of the load there beyond that of a monotone curve, relative to it
+    peak : largest load over that of the reference, minus 1
+    """
+
+    case: Case
+    result: Result | None
+    status: str
+    error: float = nan
+    oscillation: float = nan
+    variation: float = nan
+    peak: float = nan
+
+    @property
+    def complete(self) -> bool:
+        return self.result is not None and self.result.complete
+
+    @property
+    def drawable(self) -> bool:
+        return self.result is not None and self.result.opening.size > 1
+
+    @property
+    def seconds(self) -> float:
+        return float(((self.result and self.result.seconds) or {}).get("total", nan))
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """All trials, with what they are held against by law, and how many elements span a zone (basis, law, unknowns)."""
+
+    scenes: Mapping[str, Scene]
+    trials: tuple[Trial, ...]
+    references: Mapping[str, Reference]
+    limits: Mapping[str, Curve]
+    zones: Mapping[tuple[str, str, int], float]
+
+    @property
+    def left_out(self) -> str:
+        """Why there is nothing in it, where there is nothing."""
+        return "" if self.trials else f"left out: none of its scenes ({', '.join(LAWS)}) is among those given"
+
+    def trial(self, case: Case) -> Trial | None:
+        return self._by_case.get(case)
+
+    def values(self, name: str) -> tuple:
+        """The different values of a field of the cases: ``study.values("points")``."""
+        return tuple(dict.fromkeys(getattr(trial.case, name) for trial in self.trials))
+
+    @cached_property
+    def _by_case(self) -> dict[Case, Trial]:
+        return {trial.case: trial for trial in self.trials}
+
+
+def measured(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Study:
+    """The study of a plan whose jobs are done."""
+    scenes = dict(plan.scenes)
+    found = {law: reference(outcomes[coarse], outcomes[fine]) for law, coarse, fine in plan.references}
+    references = {law: one for law, one in found.items() if one is not None}
+    zones = {
+        (case.basis, case.law, case.dofs): expected(load_scene(case.law, case.overrides), case.basis).elements
+        for case, _ in plan.cases
+        if case.of_the_paper
+    }
+    trials = tuple(trial(case, outcomes[job], references.get(case.law)) for case, job in plan.cases)
+    return Study(scenes, trials, references, {law: limit(scene) for law, scene in scenes.items()}, zones)
+
+
+def reference(coarse: Outcome, fine: Outcome) -> Reference | None:
+    """What the two fine runs of a law give; nothing where one of them did not come to its end."""
+    before, result = coarse.result, fine.result
+    if before is None or result is None or not (before.complete and result.complete):
+        return None
+    name = "cubic DOLFINx elements" if fine.job.method == "dolfinx" else "NURBS on one arm"
+    return Reference(
+        f"{name}, {result.dofs} unknowns",
+        result,
+        curve_error(curve(before), curve(result)),
+        oscillation(curve(before), curve(result))["rms"],
+    )
+
+
+def trial(case: Case, outcome: Outcome, against: Reference | None) -> Trial:
+    """Measure one run; one that stopped, or that has nothing to be held against, only keeps its status."""
+    result = outcome.result
+    if result is None:
+        return Trial(case, None, outcome.left_out)
+    if against is None or not result.complete:
+        return Trial(case, result, result.status)
+    wave = oscillation(curve(result), curve(against.result))
+    return Trial(
+        case,
+        result,
+        result.status,
+        error=curve_error(curve(result), curve(against.result)),
+        oscillation=wave["rms"],
+        variation=wave["excess_variation"],
+        peak=_peak(result) / _peak(against.result) - 1.0,
+    )
+
+
+def curve(result: Result) -> Curve:
+    """The converged points as they are.
+
+    Between them the exact slopes would tell no more: a step ends anywhere in the passage of the front through an
+    element, and the slope there has the ripple of that passage, which a step of the load does not show.
+    """
+    return result.opening, result.load
+
+
+def limit(scene: Scene) -> Curve:
+    """LEFM by simple beam theory, the curve that the paper draws."""
+    constants, keys = elastic_constants(scene.material), problem_keys(scene, "lefm")
+    taken = {field.name for field in fields(lefm.LefmProblem)} & set(keys)
+    problem = lefm.LefmProblem(
+        young=axial_modulus(scene),
+        transverse=constants["E2"],
+        shear=constants["G12"],
+        theory="simple",
+        **{name: keys[name] for name in taken},
+    )
+    rows = lefm.solve(problem).rows
+    return tuple(np.array([row[name] for row in rows]) for name in ("opening", "load"))
+
+
+def distance(one: Trial | None, other: Trial | None) -> float:
+    """Relative L2 distance of the curves of two trials; NaN where one of them did not come to its end."""
+    if one is None or other is None or not (one.complete and other.complete):
+        return nan
+    return curve_error(curve(one.result), curve(other.result))
+
+
+def _peak(result: Result) -> float:
+    slope = result.steps.get("load_slope")
+    usable = slope is not None and all(isfinite(value) for value in slope)
+    return peak(curve(result), slope if usable else None)[1]
