@@ -110,7 +110,7 @@ class TMesh:
         """Points (n, 2), in knot values, where a horizontal extension meets a vertical one, ends included."""
         level, upright = self.extensions()
         shape = len(self.knots_i), len(self.knots_j)
-        met = _painted(level, shape, ends=True) & _painted(upright, shape[::-1], ends=True).T
+        met = painted(level, shape, ends=True) & painted(upright, shape[::-1], ends=True).T
         i, j = np.nonzero(met)
         return np.stack([self.knots_i[i], self.knots_j[j]], -1)
 
@@ -123,8 +123,8 @@ class TMesh:
         """Unit edges with the extensions drawn in, ``across_ij`` and ``up_ij``."""
         level, upright = self.extensions()
         m_s, m_t = len(self.knots_i), len(self.knots_j)
-        across = _painted(level, (m_s, m_t), ends=False)[:-1] | self.across_ij
-        up = _painted(upright, (m_t, m_s), ends=False)[:-1].T | self.up_ij
+        across = painted(level, (m_s, m_t), ends=False)[:-1] | self.across_ij
+        up = painted(upright, (m_t, m_s), ends=False)[:-1].T | self.up_ij
         return across, up
 
     @cached_property
@@ -215,7 +215,7 @@ def _reach(hit: np.ndarray, i: np.ndarray, j: np.ndarray, forwards: np.ndarray) 
     return np.stack([np.where(forwards, left, left2), np.where(forwards, right2, right), j], -1)
 
 
-def _painted(spans: np.ndarray, shape: tuple[int, int], ends: bool) -> np.ndarray:
+def painted(spans: np.ndarray, shape: tuple[int, int], ends: bool) -> np.ndarray:
     """Points (m, n) covered by spans (from, to, line); the last point of each only where ``ends``."""
     change = np.zeros((shape[0] + 1, shape[1]), dtype=int)
     start, end, line = spans.T

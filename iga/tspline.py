@@ -92,15 +92,12 @@ def bezier_elements(mesh: TMesh) -> np.ndarray:
     ------
     ValueError : a face that is no rectangle.
     """
-    across, up = mesh.extended()
-    across, up = across[FRAME:-FRAME, FRAME:-FRAME], up[FRAME:-FRAME, FRAME:-FRAME]
-    corner = np.argwhere((up[:-1] & across[:, :-1]).T)[:, ::-1]
-    i, j = corner.T
-    end_i, end_j = _next_line(up)[i, j], _next_line(across.T)[j, i]
-    _check_rectangles(across, up, i, end_i, j, end_j)
-    box = np.stack([i, end_i, j, end_j], -1) + FRAME
-    has_area = (mesh.knots_i[box[:, 1]] > mesh.knots_i[box[:, 0]]) & (mesh.knots_j[box[:, 3]] > mesh.knots_j[box[:, 2]])
-    return box[has_area]
+    return _faces(mesh, *mesh.extended())
+
+
+def faces(mesh: TMesh) -> np.ndarray:
+    """The same for the T-mesh as it is, without extensions."""
+    return _faces(mesh, mesh.across_ij, mesh.up_ij)
 
 
 def blossoms(knots_n5: np.ndarray, start_n: np.ndarray, end_n: np.ndarray) -> np.ndarray:
@@ -123,6 +120,18 @@ def blossoms(knots_n5: np.ndarray, start_n: np.ndarray, end_n: np.ndarray) -> np
             N_nj = rise_nj[:, :-1] * N_nj[:, :-1] + fall_nj[:, 1:] * N_nj[:, 1:]
         out_nb[:, b] = N_nj[:, 0]
     return out_nb
+
+
+def _faces(mesh: TMesh, across: np.ndarray, up: np.ndarray) -> np.ndarray:
+    """Index boxes (n, 4) of the faces with area between unit edges."""
+    across, up = across[FRAME:-FRAME, FRAME:-FRAME], up[FRAME:-FRAME, FRAME:-FRAME]
+    corner = np.argwhere((up[:-1] & across[:, :-1]).T)[:, ::-1]
+    i, j = corner.T
+    end_i, end_j = _next_line(up)[i, j], _next_line(across.T)[j, i]
+    _check_rectangles(across, up, i, end_i, j, end_j)
+    box = np.stack([i, end_i, j, end_j], -1) + FRAME
+    has_area = (mesh.knots_i[box[:, 1]] > mesh.knots_i[box[:, 0]]) & (mesh.knots_j[box[:, 3]] > mesh.knots_j[box[:, 2]])
+    return box[has_area]
 
 
 def _next_line(along: np.ndarray) -> np.ndarray:
