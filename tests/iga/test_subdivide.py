@@ -1,0 +1,179 @@
+"""Refinement of extracted meshes: same geometry, a larger space, hanging nodes cut through, chains carried over."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tmeshes import half_fine
+
+from iga.basis import block_basis, chain_basis
+from iga.bernstein import bernstein
+from iga.bspline import KnotVector, open_knots
+from iga.cells import whole_cells
+from iga.conform import conforming
+from iga.extraction import Chain, ElementBlock, Mesh
+from iga.nurbs import nurbs_mesh, nurbs_rectangle
+from iga.outline import outline
+from iga.polygon import polygon_mesh
+from iga.quadrature import gauss, square
+from iga.subdivide import bezier_refined
+from iga.tspline import tspline_rectangle
+
+
+def area(mesh):
+    rule = square(gauss(14), gauss(14))
+    return sum(np.sum(block_basis(mesh, block, *rule).dV_eq) for block in mesh.blocks)
+
+
+def length(mesh, name):
+    return sum(np.sum(part.dV_eq) for part in chain_basis(mesh, mesh.chains[name], *gauss(14)))
+
+
+def annulus(n=3):
+    """A quarter of a ring from radius 1 to 2, exact: a quadratic rational arc."""
+    kv_s, kv_t = open_knots(np.linspace(0, 1, 2), 2), open_knots(np.linspace(0, 1, n + 1), 2)
+    radius = 1.0 + kv_t.greville
+    arc, w = np.array([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), np.array([1.0, np.sqrt(0.5), 1.0])
+    P = radius[:, None, None] * arc[::-1]
+    return nurbs_mesh(kv_s, kv_t, P.reshape(-1, 2), np.tile(w, len(radius)))
+
+
+def samples(mesh, refined, rng, n=200):
+    """Values at the same points of the cells before and after, of a random field on the mesh."""
+    cells = conforming(mesh).halved()
+    c, xi = rng.integers(0, refined.elements, n), rng.random((n, 2))
+    before = cells.points(c, xi)[1]
+    block = refined.blocks[0]
+    B = np.einsum("nj,ni->nji", bernstein(block.degrees[1], xi[:, 1]), bernstein(block.degrees[0], xi[:, 0]))
+    wB = B.reshape(n, -1) * refined.w_A[block.conn_ea[c]]
+    after = np.einsum("nb,nbI->nI", wB, refined.P_AI[block.conn_ea[c]]) / wB.sum(1, keepdims=True)
+    return before, after
+
+
+def two_degrees(kink=0.0):
+    """A bicubic square beside a biquartic one, joined C0; a kink of the second side leaves its ends and middle."""
+    cubic = nurbs_rectangle(open_knots(np.array([0.0, 1.0]), 3), open_knots(np.array([0.0, 1.0]), 3))
+    elevated = np.linalg.inv(bernstein(4, np.linspace(0, 1, 5))) @ bernstein(3, np.linspace(0, 1, 5))  # (5, 4)
+    elevated[1], elevated[3] = elevated[1] + kink * np.eye(4)[2], elevated[3] - kink * np.eye(4)[2]
+    trace = 4 * np.arange(4) + 3
+    P, n = [cubic.P_AI], 16
+    conn, C = list(trace), np.zeros((4 + 20, 25))
+    C[:4, ::5] = elevated.T
+    for row, (j, i) in enumerate(np.ndindex(5, 4)):
+        P.append([[1 + (i + 1) / 4, j / 4]])
+        conn.append(n)
+        C[4 + row, 5 * j + i + 1] = 1.0
+        n += 1
+    left = cubic.blocks[0]
+    right = ElementBlock((4, 4), C[None], np.array(conn)[None])
+    chain = Chain(np.array([0, 1]), np.array([0, 0]), np.array(["BOTTOM", "BOTTOM"]), 1.0)
+    return Mesh(np.concatenate(P), np.ones(n), (left, right), {"bottom": chain})
+
+
+MESHES = {
+    "nurbs": lambda: nurbs_rectangle(
+        KnotVector(3, np.array([0, 0, 0, 0, 1, 2, 2, 2, 5, 5, 5, 5.0])), open_knots(np.array([0, 0.2, 1]), 3)
+    ),
+    "annulus": annulus,
+    "pentagon": lambda: polygon_mesh(5, 3),
+    "t-spline": lambda: tspline_rectangle(half_fine(4)),
+    "two degrees": two_degrees,
+}
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_the_geometry_stays_and_with_it_every_field(name, rng):
+    """Random control points and weights are a random field: that it is met exactly is that the spaces are nested."""
+    mesh = MESHES[name]()
+    refined = bezier_refined(mesh)
+    assert area(refined) == pytest.approx(area(mesh), rel=1e-13)
+    for chain in mesh.chains:
+        assert length(refined, chain) == pytest.approx(length(mesh, chain), rel=1e-13)
+    field = replace(mesh, P_AI=mesh.P_AI + 0.02 * rng.standard_normal(mesh.P_AI.shape))
+    field = replace(field, w_A=mesh.w_A * rng.uniform(0.5, 2.0, mesh.w_A.shape))
+    before, after = samples(field, bezier_refined(field), rng)
+    assert np.max(np.abs(before - after)) < 1e-13
+    degree = max(max(block.degrees) for block in mesh.blocks)
+    assert refined.blocks[0].degrees == (degree, degree)
+
+
+@pytest.mark.parametrize("n", [2, 4, 8])
+def test_hanging_nodes_are_cut_through(n):
+    """The lines of the lower half go on to the top."""
+    mesh = tspline_rectangle(half_fine(n))
+    found = conforming(mesh)
+    full = 2 * n * (n + n // 2)
+    assert len(found.block_c) == full and np.count_nonzero(found.lonely_ck) == 2 * (2 * n + n + n // 2)
+    assert (mesh.elements < full) == (n > 4), "the extensions alone reach two rows up"
+
+
+def test_hanging_nodes_of_different_levels():
+    """Long elements beside short ones, over two rows: 1 : 3 : 6."""
+    mesh = _rows_of(np.array([1, 3, 6]))
+    assert whole_cells(mesh).lonely_ck.sum() > 2 * 3 + 1 + 6
+    cells = conforming(mesh)
+    assert len(cells.block_c) == 18 and cells.lonely_ck.sum() == 2 * 6 + 2 * 3
+    assert [len(chain.side_c) for chain in outline(mesh)] == [1 + 6 + 2 * 3]
+    assert area(bezier_refined(mesh, 0)) == pytest.approx(3.0, rel=1e-14)
+
+
+def _rows_of(counts):
+    """Rows of linear elements on the span of the first one's functions: constant and linear along the row."""
+    C, conn = [], []
+    P = np.array([(x, y) for y in range(len(counts) + 1) for x in (0.0, 1.0)])
+    for y, count in enumerate(counts):
+        for e in range(count):
+            ends = np.array([e, e + 1.0]) / count
+            along = np.stack([1 - ends, ends])  # functions x Bernstein
+            C.append(np.kron(np.eye(2), along))
+            conn.append(2 * y + np.arange(4))
+    return Mesh(P, np.ones(len(P)), (ElementBlock((1, 1), np.array(C), np.array(conn)),))
+
+
+def test_times_quarters_the_elements_and_shares_points():
+    mesh = polygon_mesh(3, 2)
+    for times in (0, 1, 2):
+        refined = bezier_refined(mesh, times)
+        n = 2 * 2**times
+        assert refined.elements == 3 * n**2
+        assert len(refined.P_AI) == 3 * (3 * n) * (3 * n) + 3 * (3 * n) + 1
+
+
+def test_a_crack_is_not_healed():
+    """Two squares that touch: apart while they have control points of their own, one where they share them."""
+    one = nurbs_rectangle(open_knots(np.array([0.0, 1.0]), 3), open_knots(np.array([0.0, 1.0]), 3))
+    P = np.concatenate([one.P_AI, one.P_AI + [1.0, 0.0]])
+    block = one.blocks[0]
+    C, conn = np.concatenate([block.C_eab] * 2), np.concatenate([block.conn_ea, block.conn_ea + 16])
+    apart = Mesh(P, np.ones(32), (ElementBlock((3, 3), C, conn),))
+    joined = conn.copy()
+    joined[1, ::4] = conn[0, 3::4]
+    together = replace(apart, blocks=(ElementBlock((3, 3), C, joined),))
+    assert [len(chain.side_c) for chain in outline(apart)] == [4, 4]
+    assert [len(chain.side_c) for chain in outline(together)] == [6]
+    assert len(bezier_refined(apart).P_AI) == 2 * 49 and len(bezier_refined(together).P_AI) == 2 * 49 - 7
+
+
+def test_chains_keep_their_order():
+    """A closed outline, walked against some sides' own parameters, stays one walk."""
+    mesh = bezier_refined(polygon_mesh(5, 2))
+    for name, sides in (("boundary", 40), ("edge-2", 8)):
+        chain = mesh.chains[name]
+        block = mesh.blocks[0]
+        corner = {"BOTTOM": (0, 3), "RIGHT": (3, 15), "TOP": (15, 12), "LEFT": (12, 0)}
+        walk = np.array([block.conn_ea[e, list(corner[s])] for e, s in zip(chain.element_c, chain.side_c, strict=True)])
+        assert len(walk) == sides and np.array_equal(walk[1:, 0], walk[:-1, 1])
+        assert (walk[0, 0] == walk[-1, 1]) == (name == "boundary")
+
+
+def test_the_outline_of_a_polygon_is_its_boundary():
+    mesh = polygon_mesh(6, 2)
+    (found,), known = outline(mesh), mesh.chains["boundary"]
+    assert len(found.side_c) == len(known.side_c) == 24 and found.outward == known.outward
+    both = [set(zip(c.block_c, c.element_c, c.side_c, strict=True)) for c in (found, known)]
+    assert both[0] == both[1]
+
+
+def test_neighbours_that_disagree_are_refused():
+    with pytest.raises(ValueError, match=r"must agree on their common side, element 0 of block [01] misses"):
+        bezier_refined(two_degrees(kink=0.05))
