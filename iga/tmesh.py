@@ -74,8 +74,8 @@ class TMesh:
     def local_indices(self) -> tuple[np.ndarray, np.ndarray]:
         """Indices (n_A, 5) of every anchor's knots along s and along t: its own and two that its rays meet each way."""
         i, j = self.anchors.T
-        across = _neighbours(self.crossed_ij, i, j)
-        up = _neighbours(self.levelled_ij.T, j, i)
+        across = neighbours(self.crossed_ij, i, j)
+        up = neighbours(self.levelled_ij.T, j, i)
         return across, up
 
     @cached_property
@@ -87,12 +87,10 @@ class TMesh:
     @cached_property
     def junctions(self) -> np.ndarray:
         """T-junctions (n_T, 3): indices i, j and the missing edge, 0 right, 1 left, 2 up, 3 down."""
-        edges = self._edges_ijk
-        inside = np.zeros(edges.shape[:2], dtype=bool)
-        inside[FRAME:-FRAME, FRAME:-FRAME] = True
-        three = (edges.sum(2) == 3) & inside
-        i, j = np.nonzero(three)
-        return np.stack([i, j, np.argmin(edges[i, j], axis=1)], -1)
+        i, j = self.anchors.T
+        edges = self._edges(i, j)
+        three = edges.sum(1) == 3
+        return np.stack([i, j, np.argmin(edges, axis=1)], -1)[three]
 
     def extensions(self) -> tuple[np.ndarray, np.ndarray]:
         """Extensions (n, 3) of the T-junctions, horizontal ones (i0, i1, j) and vertical ones (j0, j1, i).
@@ -127,14 +125,9 @@ class TMesh:
         up = painted(upright, (m_t, m_s), ends=False)[:-1].T | self.up_ij
         return across, up
 
-    @cached_property
-    def _edges_ijk(self) -> np.ndarray:
-        """Edges (m_s, m_t, 4) that leave each point to the right, left, up and down."""
-        m_s, m_t = len(self.knots_i), len(self.knots_j)
-        edges = np.zeros((m_s, m_t, 4), dtype=bool)
-        edges[:-1, :, 0], edges[1:, :, 1] = self.across_ij, self.across_ij
-        edges[:, :-1, 2], edges[:, 1:, 3] = self.up_ij, self.up_ij
-        return edges
+    def _edges(self, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+        """Whether edges (n, 4) leave inner points to the right, left, up and down."""
+        return np.stack([self.across_ij[i, j], self.across_ij[i - 1, j], self.up_ij[i, j], self.up_ij[i, j - 1]], -1)
 
 
 def require_suitable(mesh: TMesh) -> None:
@@ -175,7 +168,8 @@ def _check_frame(along: np.ndarray, name: str) -> None:
 
 def _check_ends(mesh: TMesh) -> None:
     """Inside, lines end on other lines: no dangling ends, no corners."""
-    right, left, up, down = np.moveaxis(mesh._edges_ijk[1:-1, 1:-1], 2, 0)
+    right, left = mesh.across_ij[1:, 1:-1], mesh.across_ij[:-1, 1:-1]
+    up, down = mesh.up_ij[1:-1, 1:], mesh.up_ij[1:-1, :-1]
     for ends, other, direction in ((right ^ left, up & down, "horizontal"), (up ^ down, right & left, "vertical")):
         loose = np.argwhere(ends & ~other) + 1
         if len(loose):
@@ -193,32 +187,29 @@ def _touched(along: np.ndarray) -> np.ndarray:
     return points
 
 
-def _stops(hit: np.ndarray, step: int) -> np.ndarray:
-    """For every point the next one along the first axis that is ``hit``, forwards (+1) or backwards (-1)."""
-    hit = hit[::step]
-    number = np.where(hit, np.arange(len(hit))[:, None], len(hit) - 1)
-    ahead = np.minimum.accumulate(number[::-1])[::-1]
-    beyond = np.concatenate([ahead[1:], ahead[-1:]])
-    return beyond if step == 1 else (len(hit) - 1 - beyond)[::-1]
-
-
-def _neighbours(hit: np.ndarray, i: np.ndarray, j: np.ndarray) -> np.ndarray:
-    """Indices (n, 5) of the points (i, j) and of the two hits on either side of them along the first axis."""
-    ahead, back = _stops(hit, 1), _stops(hit, -1)
-    right, left = ahead[i, j], back[i, j]
-    return np.stack([back[left, j], left, i, right, ahead[right, j]], -1)
+def neighbours(hit: np.ndarray, i: np.ndarray, j: np.ndarray, reach: int = HALF) -> np.ndarray:
+    """Indices (n, 2 reach + 1) of hit points (i, j) and of the next hits on either side along the first axis."""
+    length = hit.shape[0]
+    place = np.flatnonzero(hit.T)
+    rank = np.searchsorted(place, j * length + i)
+    return place[rank[:, None] + np.arange(-reach, reach + 1)] - (j * length)[:, None]
 
 
 def _reach(hit: np.ndarray, i: np.ndarray, j: np.ndarray, forwards: np.ndarray) -> np.ndarray:
     """Extensions (n, 3) from, to, line: two hits on in the one direction and one back."""
-    left2, left, _, right, right2 = _neighbours(hit, i, j).T
+    left2, left, _, right, right2 = neighbours(hit, i, j).T
     return np.stack([np.where(forwards, left, left2), np.where(forwards, right2, right), j], -1)
 
 
 def painted(spans: np.ndarray, shape: tuple[int, int], ends: bool) -> np.ndarray:
     """Points (m, n) covered by spans (from, to, line); the last point of each only where ``ends``."""
-    change = np.zeros((shape[0] + 1, shape[1]), dtype=int)
     start, end, line = spans.T
-    np.add.at(change, (start, line), 1)
-    np.add.at(change, (end + int(ends), line), -1)
-    return np.cumsum(change, axis=0)[:-1] > 0
+    length = end - start + int(ends)
+    points = np.zeros(shape, dtype=bool)
+    points[np.repeat(start, length) + counting(length), np.repeat(line, length)] = True
+    return points
+
+
+def counting(lengths: np.ndarray) -> np.ndarray:
+    """0 .. n-1 for each of some lengths, one after the other."""
+    return np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths)

@@ -12,7 +12,7 @@ import numpy as np
 
 from iga.bernstein import tensor
 from iga.extraction import ElementBlock, Mesh, one_sided
-from iga.tmesh import DEGREE, FRAME, TMesh, require_suitable
+from iga.tmesh import DEGREE, FRAME, TMesh, counting, neighbours, painted, require_suitable
 
 
 @dataclass(frozen=True)
@@ -127,32 +127,24 @@ def _faces(mesh: TMesh, across: np.ndarray, up: np.ndarray) -> np.ndarray:
     across, up = across[FRAME:-FRAME, FRAME:-FRAME], up[FRAME:-FRAME, FRAME:-FRAME]
     corner = np.argwhere((up[:-1] & across[:, :-1]).T)[:, ::-1]
     i, j = corner.T
-    end_i, end_j = _next_line(up)[i, j], _next_line(across.T)[j, i]
+    end_i, end_j = neighbours(up, i, j, 1)[:, 2], neighbours(across.T, j, i, 1)[:, 2]
     _check_rectangles(across, up, i, end_i, j, end_j)
     box = np.stack([i, end_i, j, end_j], -1) + FRAME
     has_area = (mesh.knots_i[box[:, 1]] > mesh.knots_i[box[:, 0]]) & (mesh.knots_j[box[:, 3]] > mesh.knots_j[box[:, 2]])
     return box[has_area]
 
 
-def _next_line(along: np.ndarray) -> np.ndarray:
-    """For each unit cell the next line beyond it along the first axis; ``along`` (m, n) are edges across that axis."""
-    number = np.where(along, np.arange(len(along))[:, None], len(along))
-    return np.minimum.accumulate(number[::-1])[::-1][1:]
-
-
 def _check_rectangles(across: np.ndarray, up: np.ndarray, i0, i1, j0, j1) -> None:
-    """Boxes that start at every lower left corner cover all cells, and no edge lies within one."""
+    """Boxes that start at every lower left corner have all cells between them, and their sides are all edges."""
     cells = int(np.sum((i1 - i0) * (j1 - j0)))
-    within = _counted(up, i0 + 1, i1, j0, j1) + _counted(across, i0, i1, j0 + 1, j1)
-    if cells != (up.shape[0] - 1) * up.shape[1] or np.any(within):
+    left = painted(np.stack([j0, j1, i0], -1), up.T.shape, ends=False).T
+    bottom = painted(np.stack([i0, i1, j0], -1), across.shape, ends=False)
+    if (
+        cells != (up.shape[0] - 1) * up.shape[1]
+        or np.any(left[:-1] != up[:-1])
+        or np.any(bottom[:, :-1] != across[:, :-1])
+    ):
         raise ValueError("the T-mesh has a face that is no rectangle")
-
-
-def _counted(edges: np.ndarray, i0, i1, j0, j1) -> np.ndarray:
-    """Number of edges in index boxes, by a summed-area table."""
-    table = np.zeros((edges.shape[0] + 1, edges.shape[1] + 1), dtype=int)
-    table[1:, 1:] = edges.cumsum(0).cumsum(1)
-    return table[i1, j1] - table[i0, j1] - table[i1, j0] + table[i0, j0]
 
 
 def _supported(mesh: TMesh, box_ek: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -166,18 +158,13 @@ def _supported(mesh: TMesh, box_ek: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     order = np.argsort(key_e)
     first, rows = up[:, 0], up[:, -1] - up[:, 0]
     A_r = np.repeat(np.arange(len(rows)), rows)
-    row_r = first[A_r] + _counting(rows)
+    row_r = first[A_r] + counting(rows)
     low = np.searchsorted(key_e[order], row_r * m + across[A_r, 0])
     high = np.searchsorted(key_e[order], row_r * m + across[A_r, -1])
     A_n = np.repeat(A_r, high - low)
-    e_n = order[np.repeat(low, high - low) + _counting(high - low)]
+    e_n = order[np.repeat(low, high - low) + counting(high - low)]
     sort = np.lexsort((A_n, e_n))
     return e_n[sort], A_n[sort]
-
-
-def _counting(lengths: np.ndarray) -> np.ndarray:
-    """0 .. n-1 for each of some lengths, one after the other."""
-    return np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths)
 
 
 def _extraction(mesh: TMesh, box_nk: np.ndarray, A_n: np.ndarray) -> np.ndarray:
