@@ -50,7 +50,7 @@ def parser() -> argparse.ArgumentParser:
     sub = command("verify", _verify, "Every method on every scene, all checks, one report.", "verify dcb-czm1 --jobs 2")
     sub.add_argument("scenes", nargs="*", metavar="SCENE", help="packaged name or file; default: those for all methods")
     sub.add_argument("--out", type=Path, default=Path("debond-report"), metavar="DIR", help="default: debond-report")
-    finer = "finer meshes as well, with observed order and uncertainty, and interface rules"
+    finer = "finer meshes as well, with observed order and uncertainty, interface rules, and the figures of the paper"
     sub.add_argument("--full", action="store_true", help=finer)
     sub.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help="runs at a time")
 

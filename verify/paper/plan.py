@@ -46,9 +46,13 @@ class Case:
             f"interface.penalty={self.penalty!r}",
         )
 
+    @property
+    def variant(self) -> str:
+        """Folder of the run in that of its scene."""
+        return f"figures/{self.basis}-{self.dofs}-{self.points}-points-penalty-{self.penalty:g}"
+
     def job(self, scene: Scene) -> Job:
-        variant = f"figures/{self.basis}-{self.dofs}-{self.points}-points-{self.penalty:.0e}"
-        return Job(self.law, scene, self.basis, variant, self.overrides, fields=False)
+        return Job(self.law, scene, self.basis, self.variant, self.overrides, fields=False)
 
 
 @dataclass(frozen=True)

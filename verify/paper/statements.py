@@ -17,6 +17,9 @@ from verify.process_zone import ENOUGH
 #: What is seen in a figure: curves whose relative L2 distance is below this lie within the width of a drawn line.
 VISIBLE = 0.01
 
+#: Source of what is expected of a finer mesh, whoever computes on it.
+REFINEMENT = "convergence"
+
 NAMES = {"tspline": "T-splines", "nurbs": "NURBS", "lagrange": "Lagrange elements"}
 
 #: Measure of a trial -> its name, and what a basis is that has less of it.
@@ -36,12 +39,13 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Statement:
-    """One statement, and every comparison of runs that it can be held against."""
+    """One statement, and every comparison of runs that it can be held against; ``source`` says who expects it."""
 
     text: str
     measure: str
     unit: Unit
     comparisons: tuple[Comparison, ...]
+    source: str = "the paper"
 
     @property
     def decided(self) -> tuple[Comparison, ...]:
@@ -188,6 +192,7 @@ def _refinement(study: Study, measure: str) -> Statement:
             for case in _cases(study, dofs=fine)
             if case.of_the_paper and fine > coarse
         ),
+        REFINEMENT,
     )
 
 
@@ -199,6 +204,7 @@ def _coincide(study: Study) -> Statement:
         "curve distance",
         "fraction",
         tuple(Comparison(_where(case, "basis", "law"), error, _below(error)) for case, error in found),
+        REFINEMENT,
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 
-from verify.curve import envelope
+from verify.curve import PROPAGATION, envelope, load_at, peak
 from verify.paper.plan import LAWS, Case
 from verify.paper.study import Study, Trial, curve
 from verify.report.style import HALF, METHOD_NAMES, THIRD, Line, Panel, colour, drawing, line, panel, to_svg
@@ -44,6 +44,9 @@ def _figures(study: Study, key: str) -> Iterator[FigureGroup]:
         ]
         title = f"Figure {6 + n}: load against opening with {dofs} unknowns"
         yield FigureGroup(title, _LOAD_NOTE, tuple(panels))
+    apart = [_deviation(study, law, meshes[-1], f"{key}-deviation-{law}") for law in study.references]
+    if apart:
+        yield FigureGroup(f"Apart from the converged curve with {meshes[-1]} unknowns", _DEVIATION_NOTE, tuple(apart))
     if len(points) > 1:
         panels = [
             _sweep(study, Case(basis, law, meshes[0]), f"{key}-points-{law}-{basis}")
@@ -52,13 +55,21 @@ def _figures(study: Study, key: str) -> Iterator[FigureGroup]:
         ]
         span = f"{min(points)} to {max(points)}"
         yield FigureGroup(f"Figure 8: {span} interface points, {meshes[0]} unknowns", _SWEEP_NOTE, tuple(panels))
-        measures = [_against_points(study, measure, f"{key}-{measure}") for measure in _MEASURES]
+        measures = [
+            _against_points(study, law, measure, f"{key}-{law}-{measure}")
+            for law in study.scenes
+            for measure in _MEASURES
+        ]
         yield FigureGroup("Error and oscillation against the number of points", _POINTS_NOTE, tuple(measures))
 
 
 _LOAD_NOTE = (
     "Heavy: what a test in displacement control would show of the path. Thin: the path itself, through its snap-backs. "
     "Broad and grey: the converged curve. Dashed: LEFM, simple beam theory. A cross marks where a run stopped."
+)
+_DEVIATION_NOTE = (
+    "Deviation of the load on the propagation branch. The band around zero is what a coarser mesh of the converged "
+    "curve differs from it: below that nothing is said."
 )
 _SWEEP_NOTE = "Envelopes of the paths, darker with more points, over the converged curve (broad and grey)."
 _POINTS_NOTE = "Solid: the finer mesh. Dashed: the coarser one. A run that stopped leaves a gap."
@@ -101,9 +112,31 @@ def _sweep(study: Study, case: Case, key: str) -> Panel:
     return Panel(svg, f"{name}.", "third")
 
 
-def _against_points(study: Study, measure: str, key: str) -> Panel:
-    """One measure of every basis on both meshes; the law with more of it to show, the last one."""
-    law, meshes, points = study.values("law")[-1], sorted(study.values("dofs")), study.values("points")
+def _deviation(study: Study, law: str, dofs: int, key: str) -> Panel:
+    """load / reference - 1 of all bases."""
+    units, known = Units.of(study.scenes[law].units), study.references[law]
+    reference = curve(known.result)
+    openings = np.linspace(PROPAGATION * peak(reference)[0], float(np.max(reference[0])), 400)
+    with drawing():
+        figure, axes = panel(HALF, 2.8)
+        band = 100 * max(known.error, known.oscillation)
+        axes.axhspan(-band, band, color=colour("muted"), alpha=0.3, linewidth=0)
+        for basis in study.values("basis"):
+            trial = study.trial(Case(basis, law, dofs))
+            if trial is not None and trial.drawable:
+                ratio = load_at(curve(trial.result), openings) / load_at(reference, openings) - 1.0
+                axes.plot(openings, 100 * ratio, **line(basis).options(), label=METHOD_NAMES[basis])
+        axes.set(xlabel=axis("opening", units.length), ylabel="load / converged load − 1 (%)")
+        low, high = axes.get_ylim()
+        axes.set_ylim(low, high + 0.15 * (high - low))
+        axes.legend(loc="upper right", ncols=3)
+        svg = to_svg(figure, key, f"Deviation of the load from the converged curve, {LAWS[law]}, {dofs} unknowns")
+    return Panel(svg, f"{LAWS[law]}.")
+
+
+def _against_points(study: Study, law: str, measure: str, key: str) -> Panel:
+    """One measure of every basis on both meshes."""
+    meshes, points = sorted(study.values("dofs")), study.values("points")
     with drawing():
         figure, axes = panel(HALF, 2.8)
         for basis in study.values("basis"):
@@ -139,10 +172,10 @@ def _path(axes: Axes, trial: Trial | None, style: Line) -> None:
 
 
 def _frame(study: Study, case: Case, axes: Axes) -> None:
-    """The same axes for all panels of one law and mesh."""
+    """The same axes for all bases with one law on one mesh; LEFM is in them, with its peak."""
     units = Units.of(study.scenes[case.law].units)
     same = [t for t in study.trials if t.drawable and (t.case.law, t.case.dofs) == (case.law, case.dofs)]
-    loads = [curve(t.result)[1] for t in same] + [curve(r.result)[1] for r in study.references.values()]
+    loads = [curve(t.result)[1] for t in same] + [load for _, load in study.limits.values()]
     top = max((float(np.max(load)) for load in loads), default=1.0)
     end = max(study.scenes[case.law].load.opening)
     axes.set(xlim=(0, end), ylim=(min(0.0, *(float(np.min(v)) for v in loads)), 1.06 * top))

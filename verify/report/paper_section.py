@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 from math import isfinite
 
-from verify.paper.plan import LAWS, PAPER_PENALTY, PAPER_POINTS, Case
+from verify.paper.plan import LAWS, Case
 from verify.paper.statements import Statement, counted, statements
 from verify.paper.study import Study, Trial
 from verify.report.paper_figures import FigureGroup, figures
@@ -44,9 +44,9 @@ class RunRow:
     """Everything about one run."""
 
     case: str
+    folder: str
     cells: tuple[str, ...]
     status: str
-    complete: bool
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,7 @@ class PaperSection:
     runs: tuple[RunRow, ...]
     stopped: tuple[str, ...]
     figures: tuple[FigureGroup, ...]
+    example: str
 
 
 def section(study: Study, anchor: str) -> PaperSection:
@@ -79,6 +80,7 @@ def section(study: Study, anchor: str) -> PaperSection:
         tuple(_run(trial) for trial in study.trials),
         tuple(f"{_name(trial.case)}: {trial.status}" for trial in stopped),
         figures(study, anchor) if study.trials else (),
+        _command(study.trials[0].case) if study.trials else "",
     )
 
 
@@ -123,7 +125,7 @@ def _run(trial: Trial) -> RunRow:
         *((str(result.dofs), str(max(result.load.size - 1, 0)), str(result.rejected_steps)) if result else "–––"),
         seconds(trial.seconds, "–"),
     )
-    return RunRow(_name(trial.case), cells, trial.status, trial.complete)
+    return RunRow(_name(trial.case), f"{trial.case.law}/{trial.case.variant}", cells, trial.status)
 
 
 def _name(case: Case) -> str:
@@ -131,6 +133,6 @@ def _name(case: Case) -> str:
     return f"{LAWS[case.law]}, {case.dofs} unknowns, {METHOD_NAMES[case.basis]}, {case.points} points{more}"
 
 
-def setting() -> str:
-    """Points and penalty of Figures 6 and 7."""
-    return f"{PAPER_POINTS} points an element, penalty {number(PAPER_PENALTY)}"
+def _command(case: Case) -> str:
+    sets = " ".join(f"--set {override}" for override in case.overrides)
+    return f"debond solve {case.law} --method {case.basis} {sets}"
