@@ -15,7 +15,7 @@ import pytest
 
 from verify import jobs, methods, verification
 from verify.cli import main
-from verify.jobs import Job
+from verify.jobs import Job, Outcome
 from verify.result import Result
 from verify.scene import Scene, load_scene
 from verify.verdict import Check, Run, SceneReport
@@ -154,6 +154,29 @@ def test_an_interrupt_ends_all_runs(tmp_path: Path) -> None:
     assert process.returncode == 130 and "interrupted" in said and "Traceback" not in said
     with pytest.raises(ProcessLookupError):
         os.killpg(process.pid, 0)  # nobody of its session is left
+
+
+@pytest.mark.parametrize("name", [LINEAR, "dcb-czm2"])
+def test_full_makes_the_figures_of_the_paper_where_their_scenes_are_given(
+    name: str, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    """All runs in one pool, none twice; a run that nobody could make takes part in no statement and fails nothing."""
+    asked: list[Job] = []
+
+    def run_all(plan: list[Job], out: Path, jobs: int) -> list[Outcome]:
+        asked.extend(plan)
+        return [Outcome(job, None, "not run: by nobody") for job in plan]
+
+    monkeypatch.setattr(verification, "run_all", run_all)
+    monkeypatch.setattr(verification, "study", lambda: None)
+    assert verify([(name, load_scene(name))], tmp_path, jobs=1, full=True)
+    assert len(asked) == len(set(asked)) and len(asked) == len({job.folder(tmp_path) for job in asked})
+    said = capsys.readouterr().out
+    if name == LINEAR:
+        assert "left out: none of its scenes" in said and not any("figures" in job.variant for job in asked)
+    else:
+        assert sum("figures/nurbs" in job.variant for job in asked) == 28
+        assert "not tested         NURBS are closer" in said
 
 
 @pytest.mark.slow
