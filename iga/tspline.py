@@ -106,20 +106,21 @@ def blossoms(knots_n5: np.ndarray, start_n: np.ndarray, end_n: np.ndarray) -> np
     The recursion of Cox and de Boor with another argument at each level is the blossom of a piece; coefficient b is
     its value at the start 3 - b times and at the end b times (Ramshaw 1989).
     """
-    middle_n = 0.5 * (start_n + end_n)
-    piece_nj = ((knots_n5[:, :-1] <= middle_n[:, None]) & (middle_n[:, None] < knots_n5[:, 1:])).astype(float)
-    out_nb = np.empty((len(knots_n5), DEGREE + 1))
+    knots_kn, middle_n = np.ascontiguousarray(knots_n5.T), 0.5 * (start_n + end_n)
+    inverse = {}
+    for r in range(1, DEGREE + 1):
+        length_jn = knots_kn[r:] - knots_kn[:-r]
+        inverse[r] = np.divide(1.0, length_jn, out=np.zeros_like(length_jn), where=length_jn > 0.0)
+    level_0 = ((knots_kn[:-1] <= middle_n) & (middle_n < knots_kn[1:])).astype(float)
+    out_bn = np.empty((DEGREE + 1, len(middle_n)))
     for b in range(DEGREE + 1):
-        N_nj = piece_nj
+        N_jn = level_0
         for r in range(1, DEGREE + 1):
-            x_n1 = (end_n if r <= b else start_n)[:, None]
-            length_nj = knots_n5[:, r:] - knots_n5[:, :-r]
-            inverse_nj = np.divide(1.0, length_nj, out=np.zeros_like(length_nj), where=length_nj > 0.0)
-            rise_nj = (x_n1 - knots_n5[:, :-r]) * inverse_nj
-            fall_nj = (knots_n5[:, r:] - x_n1) * inverse_nj
-            N_nj = rise_nj[:, :-1] * N_nj[:, :-1] + fall_nj[:, 1:] * N_nj[:, 1:]
-        out_nb[:, b] = N_nj[:, 0]
-    return out_nb
+            x_n = end_n if r <= b else start_n
+            rise_jn, fall_jn = (x_n - knots_kn[:-r]) * inverse[r], (knots_kn[r:] - x_n) * inverse[r]
+            N_jn = rise_jn[:-1] * N_jn[:-1] + fall_jn[1:] * N_jn[1:]
+        out_bn[b] = N_jn[0]
+    return out_bn.T
 
 
 def _faces(mesh: TMesh, across: np.ndarray, up: np.ndarray) -> np.ndarray:
@@ -169,10 +170,15 @@ def _supported(mesh: TMesh, box_ek: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 def _extraction(mesh: TMesh, box_nk: np.ndarray, A_n: np.ndarray) -> np.ndarray:
     """Rows (n, 16) of the functions A_n on their elements."""
-    (s, t), (i0, i1, j0, j1) = mesh.local_knots, box_nk.T
-    return tensor(
-        blossoms(s[A_n], mesh.knots_i[i0], mesh.knots_i[i1]), blossoms(t[A_n], mesh.knots_j[j0], mesh.knots_j[j1])
-    )
+    i0, i1, j0, j1 = box_nk.T
+    s, t = mesh.local_knots
+    return tensor(_pieces(s, mesh.knots_i, A_n, i0, i1), _pieces(t, mesh.knots_j, A_n, j0, j1))
+
+
+def _pieces(local: np.ndarray, knots: np.ndarray, A_n: np.ndarray, i0: np.ndarray, i1: np.ndarray) -> np.ndarray:
+    """Bernstein coefficients (n, 4) in one direction, each computed once for all the elements that share it."""
+    _, first, same = np.unique((A_n * len(knots) + i0) * len(knots) + i1, return_index=True, return_inverse=True)
+    return blossoms(local[A_n[first]], knots[i0[first]], knots[i1[first]])[same]
 
 
 def _sides(mesh: TMesh, box_ek: np.ndarray) -> dict[str, np.ndarray]:
