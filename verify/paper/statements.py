@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
-from math import isfinite, nan
-from typing import Literal
+from math import isfinite
 
-import numpy as np
-
+from verify.paper.comparison import VISIBLE, Comparison, Statement, below, ratio, unseen
 from verify.paper.plan import LAWS, Case
-from verify.paper.study import Study, distance
+from verify.paper.study import Study
 from verify.process_zone import ENOUGH
-
-#: What is seen in a figure: curves whose relative L2 distance is below this lie within the width of a drawn line.
-VISIBLE = 0.01
 
 #: Source of what is expected of a finer mesh, whoever computes on it.
 REFINEMENT = "convergence"
@@ -24,61 +19,6 @@ NAMES = {"tspline": "T-splines", "nurbs": "NURBS", "lagrange": "Lagrange element
 
 #: Measure of a trial -> its name, and what a basis is that has less of it.
 MEASURES = {"error": ("curve distance", "closer to the converged curve"), "oscillation": ("oscillation", "smoother")}
-
-Unit = Literal["ratio", "fraction", "number"]
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """One number; ``holds`` is None where a run is missing or the reference is too coarse to tell."""
-
-    subject: str
-    value: float
-    holds: bool | None
-
-
-@dataclass(frozen=True)
-class Statement:
-    """One statement, and every comparison of runs that it can be held against; ``source`` says who expects it."""
-
-    text: str
-    measure: str
-    unit: Unit
-    comparisons: tuple[Comparison, ...]
-    source: str = "the paper"
-
-    @property
-    def decided(self) -> tuple[Comparison, ...]:
-        return tuple(c for c in self.comparisons if c.holds is not None)
-
-    @property
-    def held(self) -> int:
-        return sum(bool(c.holds) for c in self.decided)
-
-    @property
-    def verdict(self) -> str:
-        if not self.decided:
-            return "not tested"
-        if self.held == len(self.decided):
-            return "confirmed"
-        return "confirmed in part" if self.held else "not confirmed"
-
-    @property
-    def extent(self) -> str:
-        """By how much: in how many comparisons, and the median of their values with the range."""
-        values = [c.value for c in self.comparisons if isfinite(c.value)]
-        if not values:
-            return "no two runs to compare"
-        low, middle, high = (self.shown(v) for v in (min(values), float(np.median(values)), max(values)))
-        spread = f"{middle}, from {low} to {high}" if low != high else middle
-        open_ = len(self.comparisons) - len(self.decided)
-        return f"{self.held} of {len(self.decided)}{f', {open_} undecided' if open_ else ''}; {self.measure} {spread}"
-
-    def shown(self, value: float) -> str:
-        """A value in the statement's unit."""
-        if not isfinite(value):
-            return "no value"
-        return f"{100 * value:.2g} %" if self.unit == "fraction" else f"{value:.3g}"
 
 
 def statements(study: Study) -> tuple[Statement, ...]:
@@ -116,7 +56,7 @@ def _ranking(study: Study, better: str, worse: str, measure: str) -> Statement:
         f"{name} of {NAMES[worse]} over that of {NAMES[better]}",
         "ratio",
         tuple(
-            _ratio(study, case, replace(case, basis=worse), measure, _where(case, "law", "dofs"))
+            ratio(study, case, replace(case, basis=worse), measure, _where(case, "law", "dofs"))
             for case in _cases(study, basis=better)
             if case.of_the_paper
         ),
@@ -130,7 +70,7 @@ def _strength(study: Study) -> Statement:
         f"oscillation with {LAWS[strong]} over that with {LAWS[weak]}",
         "ratio",
         tuple(
-            _ratio(study, case, replace(case, law=strong), "oscillation", _where(case, "basis", "dofs"))
+            ratio(study, case, replace(case, law=strong), "oscillation", _where(case, "basis", "dofs"))
             for case in _cases(study, law=weak)
             if case.of_the_paper
         ),
@@ -145,7 +85,7 @@ def _points_help(study: Study, basis: str, measure: str) -> Statement:
         f"{name} with {few} points over that with {many}",
         "ratio",
         tuple(
-            _ratio(study, case, replace(case, points=few), measure, _where(case, "law", "dofs", "penalty"))
+            ratio(study, case, replace(case, points=few), measure, _where(case, "law", "dofs", "penalty"))
             for case in _cases(study, basis=basis, points=many)
             if many > few
         ),
@@ -159,7 +99,7 @@ def _points_idle(study: Study, basis: str) -> Statement:
         f"distance of the curve to that with {few} points",
         "fraction",
         tuple(
-            _unseen(study, case, replace(case, points=few), _where(case, "law", "dofs", "points", "penalty"))
+            unseen(study, case, replace(case, points=few), _where(case, "law", "dofs", "points", "penalty"))
             for case in _cases(study, basis=basis)
             if case.points > few
         ),
@@ -173,7 +113,7 @@ def _penalty(study: Study) -> Statement:
         f"distance of the curves with {low:g} and {high:g}",
         "fraction",
         tuple(
-            _unseen(study, case, replace(case, penalty=high), _where(case, "basis", "law", "dofs", "points"))
+            unseen(study, case, replace(case, penalty=high), _where(case, "basis", "law", "dofs", "points"))
             for case in _cases(study, penalty=low)
             if high > low
         ),
@@ -188,7 +128,7 @@ def _refinement(study: Study, measure: str) -> Statement:
         f"{name} with {coarse} over that with {fine}",
         "ratio",
         tuple(
-            _ratio(study, case, replace(case, dofs=coarse), measure, _where(case, "basis", "law"))
+            ratio(study, case, replace(case, dofs=coarse), measure, _where(case, "basis", "law"))
             for case in _cases(study, dofs=fine)
             if case.of_the_paper and fine > coarse
         ),
@@ -203,7 +143,7 @@ def _coincide(study: Study) -> Statement:
         f"With {fine} unknowns every basis draws the converged curve: less than {VISIBLE:.0%} off",
         "curve distance",
         "fraction",
-        tuple(Comparison(_where(case, "basis", "law"), error, _below(error)) for case, error in found),
+        tuple(Comparison(_where(case, "basis", "law"), error, below(error)) for case, error in found),
         REFINEMENT,
     )
 
@@ -218,26 +158,6 @@ def _zone(study: Study) -> Statement:
         "number",
         tuple(Comparison(NAMES[basis], n, bool(1.0 <= n < ENOUGH) if isfinite(n) else None) for basis, n in found),
     )
-
-
-def _ratio(study: Study, better: Case, worse: Case, measure: str, subject: str) -> Comparison:
-    """How many times more the worse one has; undecided where the difference is within the reference's own."""
-    trials = [study.trial(case) for case in (better, worse)]
-    low, high = (nan if t is None else getattr(t, measure) for t in trials)
-    if not (isfinite(low) and isfinite(high)):
-        return Comparison(subject, nan, None)
-    floor = max(getattr(study.references[case.law], measure) for case in (better, worse))
-    holds = None if abs(high - low) <= floor else high > low
-    return Comparison(subject, high / low if low > 0.0 else nan, holds)
-
-
-def _unseen(study: Study, one: Case, other: Case, subject: str) -> Comparison:
-    apart = distance(study.trial(one), study.trial(other))
-    return Comparison(subject, apart, _below(apart))
-
-
-def _below(value: float) -> bool | None:
-    return bool(value < VISIBLE) if isfinite(value) else None
 
 
 def _cases(study: Study, **fixed: object) -> Iterator[Case]:
@@ -261,10 +181,3 @@ def _where(case: Case, *names: str) -> str:
         "penalty": f"penalty {case.penalty:g}",
     }
     return ", ".join(words[name] for name in names)
-
-
-def counted(found: Sequence[Statement]) -> str:
-    """How many statements have which verdict, in a sentence without its full stop."""
-    verdicts = [s.verdict for s in found]
-    kinds = [k for k in ("confirmed", "confirmed in part", "not confirmed", "not tested") if k in verdicts]
-    return f"Of {len(found)} statements " + ", ".join(f"{verdicts.count(kind)} {kind}" for kind in kinds)

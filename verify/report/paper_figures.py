@@ -71,7 +71,7 @@ _DEVIATION_NOTE = (
     "Deviation of the load on the propagation branch. The band around zero is what a coarser mesh of the converged "
     "curve differs from it: below that nothing is said."
 )
-_SWEEP_NOTE = "Envelopes of the paths, darker with more points, over the converged curve (broad and grey)."
+_SWEEP_NOTE = "Envelopes of the paths, stronger with more points, over the converged curve (broad and grey)."
 _POINTS_NOTE = "Solid: the finer mesh. Dashed: the coarser one. A run that stopped leaves a gap."
 
 #: Measure -> label of its axis.
@@ -149,7 +149,9 @@ def _against_points(study: Study, law: str, measure: str, key: str) -> Panel:
         axes.set(xlabel="interface points an element", ylabel=_MEASURES[measure], yscale="log")
         axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.yaxis.set_minor_locator(NullLocator())
-        axes.legend(loc="best")
+        low, high = axes.get_ylim()
+        axes.set_ylim(low, high * (high / low) ** 0.15)
+        axes.legend(loc="upper right", ncols=3)
         svg = to_svg(figure, key, f"{_MEASURES[measure]} against the number of interface points, {LAWS[law]}")
     return Panel(svg, f"{LAWS[law]}.")
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from itertools import product
 from math import isfinite
 
+from verify.paper.comparison import Statement, counted
 from verify.paper.plan import LAWS, Case
-from verify.paper.statements import Statement, counted, statements
+from verify.paper.statements import statements
 from verify.paper.study import Study, Trial
 from verify.report.paper_figures import FigureGroup, figures
 from verify.report.style import METHOD_NAMES, Line, line
