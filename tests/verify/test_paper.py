@@ -13,6 +13,7 @@ import pytest
 from verify.curve import curve_error
 from verify.folder import read_columns
 from verify.jobs import Job, Outcome, run_all
+from verify.methods import WITH_DOFS
 from verify.paper import plan as plans
 from verify.paper import statements
 from verify.paper.plan import LAWS, Case, planned
@@ -52,12 +53,13 @@ def world(measures: Callable[[Case], Measures] = as_stated, zones: Mapping[str, 
         found = dict(measures(case))
         trials.append(Trial(case, made_up(found.pop("bump")), "complete", variation=0.1, peak=0.01, **found))
     scenes = {law: load_scene(law) for law in LAWS}
-    reference = Reference("a fine run", made_up(0.0), error=1e-5, oscillation=1e-5)
+    finest = {(law, p): measures(Case("tspline", law, 1956, 8, p))["bump"] for law, p in product(LAWS, PENALTIES)}
+    references = {problem: Reference("a fine run", made_up(bump), 1e-5, 1e-5) for problem, bump in finest.items()}
     elements = zones or {"tspline": 2.0, "nurbs": 1.5, "lagrange": 1.1}
     return Study(
         scenes,
         tuple(trials),
-        dict.fromkeys(LAWS, reference),
+        references,
         {law: limit(scene) for law, scene in scenes.items()},
         {(b, law, d): n for (b, n), law, d in product(elements.items(), LAWS, MESHES)},
     )
@@ -125,7 +127,7 @@ def test_the_zone_is_counted_in_elements():
 
 def test_what_the_reference_cannot_tell_is_undecided():
     study = world()
-    coarse = {law: replace(known, error=1.0) for law, known in study.references.items()}
+    coarse = {problem: replace(known, error=1.0) for problem, known in study.references.items()}
     blind = replace(study, references=coarse)
     assert verdict(blind, "T-splines are closer") == "not tested"
     assert verdict(blind, "T-splines are smoother") == "confirmed"
@@ -135,7 +137,7 @@ def stopped_in(study: Study, case: Case) -> Study:
     """The study with one run that stopped, measured as the study does."""
     scene = study.scenes[case.law]
     outcome = Outcome(case.job(scene), made_up(0.5, "stopped: no step is small enough"))
-    lost = trial(case, outcome, study.references[case.law])
+    lost = trial(case, outcome, study.references[case.problem])
     return replace(study, trials=tuple(lost if t.case == case else t for t in study.trials))
 
 
@@ -191,7 +193,7 @@ def test_without_a_scene_of_the_paper_it_says_so(tmp_path):
 def test_the_plan_is_what_the_figures_need(monkeypatch):
     scenes = [(law, load_scene(law)) for law in LAWS]
     plan = planned(scenes)
-    each = len(plans.BASES) * len(LAWS) * 2 * 7 * 2
+    each = len(WITH_DOFS) * len(LAWS) * 2 * 7 * 2
     assert len({case for case, _ in plan.cases}) == each == len({job.folder(Path()) for _, job in plan.cases})
     case, job = plan.cases[0]
     found = load_scene(job.source, job.overrides)
@@ -200,7 +202,7 @@ def test_the_plan_is_what_the_figures_need(monkeypatch):
     for installed, method in ((True, "dolfinx"), (False, "nurbs")):
         monkeypatch.setattr(plans, "dolfinx_installed", lambda installed=installed: installed)
         references = planned(scenes).references
-        assert [law for law, *_ in references] == list(LAWS)
+        assert [problem for problem, *_ in references] == list(product(LAWS, PENALTIES))
         assert all(job.method == method for _, *pair in references for job in pair)
 
 
@@ -220,7 +222,7 @@ def test_a_small_study_for_real(small):
     study, outcomes = small
     assert all(trial.complete for trial in study.trials) and len(outcomes) == 4
     two, eight = (study.trial(Case("nurbs", "dcb-czm2", 280, n)) for n in (2, 8))
-    known = study.references["dcb-czm2"]
+    known = study.references["dcb-czm2", 1e5]
     assert 0.0 < known.error < 0.005 and "NURBS on one arm" in known.label
     assert 0.005 < eight.error < two.error < 0.04 and eight.oscillation < two.oscillation
     assert abs(two.peak) < 0.02 and two.seconds > 0.0
@@ -234,7 +236,7 @@ def test_the_converged_curve_is_that_of_an_independent_code(small):
     if not file.exists():
         pytest.skip(f"the reference curve {file.name} is not at hand")
     study, _ = small
-    found, columns = study.references["dcb-czm2"], read_columns(file)
+    found, columns = study.references["dcb-czm2", 1e5], read_columns(file)
     apart = curve_error((found.result.opening, found.result.load), (columns["opening"], columns["load"]), 3.0)
     print(f"{found.label}: {apart:.3%} from {file.name}")
     assert apart < 0.002

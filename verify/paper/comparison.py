@@ -77,7 +77,7 @@ def ratio(study: Study, better: Case, worse: Case, measure: str, subject: str) -
     low, high = (nan if t is None else getattr(t, measure) for t in trials)
     if not (isfinite(low) and isfinite(high)):
         return Comparison(subject, nan, None)
-    floor = max(getattr(study.references[case.law], measure) for case in (better, worse))
+    floor = max(getattr(study.references[case.problem], measure) for case in (better, worse))
     holds = None if abs(high - low) <= floor else high > low
     return Comparison(subject, high / low if low > 0.0 else nan, holds)
 

@@ -13,14 +13,15 @@ from verify.schema import Scene
 #: Packaged scene -> its law, as the paper calls it.
 LAWS = {"dcb-czm1": "CZM 1", "dcb-czm2": "CZM 2"}
 
-#: In the order in which the paper expects them, smoothest first.
-BASES = tuple(basis for basis in ("tspline", "nurbs", "lagrange") if basis in WITH_DOFS)
-
 #: Points and penalty of Figures 6 and 7.
 PAPER_POINTS, PAPER_PENALTY = 2, 1e5
 
 #: Unknowns of the NURBS meshes that stand in where DOLFINx is missing; one arm has half of them.
 STAND_IN = (8000, 16_000)
+
+
+#: A law and a penalty: a soft contact is another problem, with a converged curve of its own.
+Problem = tuple[str, float]
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,11 @@ class Case:
     def of_the_paper(self) -> bool:
         """Whether it belongs to Figures 6 and 7."""
         return (self.points, self.penalty) == (PAPER_POINTS, PAPER_PENALTY)
+
+    @property
+    def problem(self) -> Problem:
+        """What it solves, however well."""
+        return self.law, self.penalty
 
     @property
     def overrides(self) -> tuple[str, ...]:
@@ -57,11 +63,11 @@ class Case:
 
 @dataclass(frozen=True)
 class Plan:
-    """Jobs of all cases, and for every law those of two fine meshes, the coarser first."""
+    """Jobs of all cases, and for every problem among them those of two fine meshes, the coarser first."""
 
     scenes: tuple[tuple[str, Scene], ...]
     cases: tuple[tuple[Case, Job], ...]
-    references: tuple[tuple[str, Job, Job], ...]
+    references: tuple[tuple[Problem, Job, Job], ...]
 
     @property
     def jobs(self) -> Iterator[Job]:
@@ -71,7 +77,7 @@ class Plan:
 
 def planned(
     scenes: Sequence[tuple[str, Scene]],
-    bases: Sequence[str] = BASES,
+    bases: Sequence[str] = WITH_DOFS,
     unknowns: Sequence[int] = (280, 1956),
     points: Sequence[int] = tuple(range(2, 9)),
     penalties: Sequence[float] = (1e3, 1e5),
@@ -84,24 +90,28 @@ def planned(
         for dofs, penalty, n, basis in product(unknowns, penalties, points, bases)
         for case in [Case(basis, source, dofs, n, penalty)]
     )
-    return Plan(known, cases, tuple((source, *references(source, scene)) for source, scene in known))
+    problems = tuple(
+        ((source, penalty), *references(source, scene, penalty)) for source, scene in known for penalty in penalties
+    )
+    return Plan(known, cases, problems)
 
 
-def references(source: str, scene: Scene) -> tuple[Job, Job]:
+def references(source: str, scene: Scene, penalty: float) -> tuple[Job, Job]:
     """Two fine runs, the finer one last: DOLFINx with cubic elements, or else NURBS on one arm."""
+    given = f"interface.penalty={penalty!r}"
+
+    def job(method: str, size: str, *overrides: str) -> Job:
+        return Job(source, scene, method, f"figures/{method}-{size}-penalty-{penalty:g}", overrides, fields=False)
+
     if dolfinx_installed():
-        elements = 2 * scene.dolfinx.elements
-        finer = ("dolfinx.degree=3", f"dolfinx.elements={elements}")
-        return cubic(source, scene), Job(source, scene, "dolfinx", f"dolfinx-p3-{elements}", finer, fields=False)
-    coarse, fine = (
-        Job(
-            source,
-            scene,
-            "nurbs",
-            f"figures/reference-{dofs}",
-            (f"discretization.dofs={dofs}", "effects.symmetry=true"),
-            fields=False,
+        n = scene.dolfinx.elements
+        own = cubic(source, scene) if penalty == scene.interface.penalty else None
+        coarse, fine = (
+            job("dolfinx", f"p3-{m}", given, "dolfinx.degree=3", f"dolfinx.elements={m}") for m in (n, 2 * n)
         )
+        return own or coarse, fine
+    coarse, fine = (
+        job("nurbs", f"one-arm-{dofs}", given, f"discretization.dofs={dofs}", "effects.symmetry=true")
         for dofs in STAND_IN
     )
     return coarse, fine

@@ -7,9 +7,10 @@ from dataclasses import replace
 from itertools import pairwise
 from math import isfinite
 
+from verify.curve import curve_error
 from verify.paper.comparison import VISIBLE, Comparison, Statement, below, ratio, unseen
 from verify.paper.plan import LAWS, Case
-from verify.paper.study import Study
+from verify.paper.study import Study, curve
 from verify.process_zone import ENOUGH
 
 #: Source of what is expected of a finer mesh, whoever computes on it.
@@ -107,7 +108,12 @@ def _points_idle(study: Study, basis: str) -> Statement:
 
 
 def _penalty(study: Study) -> Statement:
+    """Of every basis, and of the converged curves: what the problem itself owes to it."""
     low, high = _ends(study, "penalty")
+    converged = [
+        (law, *(study.references.get((law, penalty)) for penalty in (low, high))) for law in LAWS if high > low
+    ]
+    true = [(law, curve_error(curve(a.result), curve(b.result))) for law, a, b in converged if a and b]
     return Statement(
         f"The penalty has no visible influence: less than {VISIBLE:.0%}",
         f"distance of the curves with {low:g} and {high:g}",
@@ -116,7 +122,8 @@ def _penalty(study: Study) -> Statement:
             unseen(study, case, replace(case, penalty=high), _where(case, "basis", "law", "dofs", "points"))
             for case in _cases(study, penalty=low)
             if high > low
-        ),
+        )
+        + tuple(Comparison(f"converged curve, {LAWS[law]}", apart, below(apart)) for law, apart in true),
     )
 
 

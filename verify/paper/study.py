@@ -13,7 +13,7 @@ from verify import lefm
 from verify.curve import Curve, curve_error, oscillation, peak
 from verify.jobs import Job, Outcome
 from verify.methods import axial_modulus, elastic_constants, problem_keys
-from verify.paper.plan import LAWS, Case, Plan
+from verify.paper.plan import LAWS, Case, Plan, Problem
 from verify.process_zone import expected
 from verify.result import Result
 from verify.scene import load_scene
@@ -22,7 +22,7 @@ from verify.schema import Scene
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """The finer of two fine runs of a law; ``error`` and ``oscillation`` are those of the coarser one against it."""
+    """The finer of two fine runs; ``error`` and ``oscillation`` are those of the coarser one against it."""
 
     label: str
     result: Result
@@ -63,11 +63,16 @@ class Trial:
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """All trials, with what they are held against by law, and how many elements span a zone (basis, law, unknowns)."""
+    """All trials, with what they are held against.
+
+    references : by problem, those that are known
+    limits : LEFM by law
+    zones : how many elements span the process zone, by basis, law and unknowns
+    """
 
     scenes: Mapping[str, Scene]
     trials: tuple[Trial, ...]
-    references: Mapping[str, Reference]
+    references: Mapping[Problem, Reference]
     limits: Mapping[str, Curve]
     zones: Mapping[tuple[str, str, int], float]
 
@@ -91,19 +96,19 @@ class Study:
 def measured(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Study:
     """The study of a plan whose jobs are done."""
     scenes = dict(plan.scenes)
-    found = {law: reference(outcomes[coarse], outcomes[fine]) for law, coarse, fine in plan.references}
-    references = {law: one for law, one in found.items() if one is not None}
+    found = {problem: reference(outcomes[coarse], outcomes[fine]) for problem, coarse, fine in plan.references}
+    references = {problem: one for problem, one in found.items() if one is not None}
     zones = {
         (case.basis, case.law, case.dofs): expected(load_scene(case.law, case.overrides), case.basis).elements
         for case, _ in plan.cases
         if case.of_the_paper
     }
-    trials = tuple(trial(case, outcomes[job], references.get(case.law)) for case, job in plan.cases)
+    trials = tuple(trial(case, outcomes[job], references.get(case.problem)) for case, job in plan.cases)
     return Study(scenes, trials, references, {law: limit(scene) for law, scene in scenes.items()}, zones)
 
 
 def reference(coarse: Outcome, fine: Outcome) -> Reference | None:
-    """What the two fine runs of a law give; nothing where one of them did not come to its end."""
+    """What the two fine runs of a problem give; nothing where one of them did not come to its end."""
     before, result = coarse.result, fine.result
     if before is None or result is None or not (before.complete and result.complete):
         return None

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 
 from verify.curve import PROPAGATION, envelope, load_at, peak
-from verify.paper.plan import LAWS, Case
+from verify.paper.plan import LAWS, PAPER_PENALTY, Case
 from verify.paper.study import Study, Trial, curve
 from verify.report.style import HALF, METHOD_NAMES, THIRD, Line, Panel, colour, drawing, line, panel, to_svg
 from verify.report.text import Units, axis, percent
@@ -44,7 +44,8 @@ def _figures(study: Study, key: str) -> Iterator[FigureGroup]:
         ]
         title = f"Figure {6 + n}: load against opening with {dofs} unknowns"
         yield FigureGroup(title, _LOAD_NOTE, tuple(panels))
-    apart = [_deviation(study, law, meshes[-1], f"{key}-deviation-{law}") for law in study.references]
+    known = [law for law in study.scenes if (law, PAPER_PENALTY) in study.references]
+    apart = [_deviation(study, law, meshes[-1], f"{key}-deviation-{law}") for law in known]
     if apart:
         yield FigureGroup(f"Apart from the converged curve with {meshes[-1]} unknowns", _DEVIATION_NOTE, tuple(apart))
     if len(points) > 1:
@@ -114,7 +115,7 @@ def _sweep(study: Study, case: Case, key: str) -> Panel:
 
 def _deviation(study: Study, law: str, dofs: int, key: str) -> Panel:
     """load / reference - 1 of all bases."""
-    units, known = Units.of(study.scenes[law].units), study.references[law]
+    units, known = Units.of(study.scenes[law].units), study.references[law, PAPER_PENALTY]
     reference = curve(known.result)
     openings = np.linspace(PROPAGATION * peak(reference)[0], float(np.max(reference[0])), 400)
     with drawing():
@@ -157,7 +158,7 @@ def _against_points(study: Study, law: str, measure: str, key: str) -> Panel:
 
 
 def _background(study: Study, law: str, axes: Axes) -> None:
-    reference = study.references.get(law)
+    reference = study.references.get((law, PAPER_PENALTY))
     if reference is not None:
         axes.plot(*curve(reference.result), **REFERENCE.options())
 

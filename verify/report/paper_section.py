@@ -86,14 +86,14 @@ def section(study: Study, anchor: str) -> PaperSection:
 
 
 def _references(study: Study) -> Iterator[str]:
-    """What the converged curve of every law is, and how well it is known."""
-    for law in study.scenes:
-        known = study.references.get(law)
+    """What the converged curve of every problem is, and how well it is known."""
+    for law, penalty in product(study.scenes, study.values("penalty")):
+        known, name = study.references.get((law, penalty)), f"{LAWS[law]}, penalty {number(penalty)}"
         if known is None:
-            yield f"{LAWS[law]}: no converged curve, as one of its two fine runs did not come to its end"
+            yield f"{name}: no converged curve, as one of its two fine runs did not come to its end"
         else:
             apart = f"{percent(known.error)} from it, oscillation {percent(known.oscillation)}"
-            yield f"{LAWS[law]}: {known.label}; a coarser mesh is {apart}"
+            yield f"{name}: {known.label}; a coarser mesh is {apart}"
 
 
 def _groups(study: Study, measure: str) -> Iterator[TableGroup]:
