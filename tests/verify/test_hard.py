@@ -219,8 +219,12 @@ def test_legs_of_a_programme() -> None:
     assert all(leg.size == 0 for leg in legs(replace(trial, result=unfinished)))
 
 
+#: Two Gauss points of the element from -1 to 1.
+GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
+
+
 def test_the_area_of_a_crack_is_that_of_its_points() -> None:
-    """Two points an element: half of the bond broken, one point half way down its law."""
+    """Two points in each of two elements, 4 and 6 long: the first has broken, one of the other is half way there."""
     from verify.checks import law_of
     from verify.result import Snapshot
 
@@ -229,11 +233,12 @@ def test_the_area_of_a_crack_is_that_of_its_points() -> None:
     half = 0.5 * (law.g_peak + law.g_open)
     damage_q = np.array([1.0, 1.0, float(law.damage(half)), 0.0])
     grids = {"X_euvi": np.zeros((0, 1, 1, 2)), "u_euvi": np.zeros((0, 1, 1, 2)), "stress_euv": np.zeros((0, 1, 1))}
-    snapshot = Snapshot(3.0, 0.2, np.arange(4.0), np.zeros(4), np.zeros(4), damage_q, **grids)
+    s_q = np.concatenate([6.0 + 2.0 * GAUSS, 11.0 + 3.0 * GAUSS])
+    snapshot = Snapshot(3.0, 0.2, s_q, np.zeros(4), np.zeros(4), damage_q, **grids)
     trial = Trial(Variant("x", scene), Result("nurbs", {}, snapshots=(snapshot,)))
     area, cost = broken_area(trial)
-    assert area == pytest.approx(2.0 * 5.0)
-    assert cost == pytest.approx(0.1 * 10.0 + 5.0 * float(law.dissipated(half)), rel=1e-12)
+    assert area == pytest.approx(2.0 * 4.0)
+    assert cost == pytest.approx(0.1 * 8.0 + 2.0 * 3.0 * float(law.dissipated(half)), rel=1e-12)
 
 
 def test_an_unknown_case_is_refused_with_a_suggestion(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

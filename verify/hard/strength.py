@@ -44,10 +44,9 @@ def broken_area(trial: Trial) -> tuple[float, float]:
     their way have cost the part of the law that they have been through.
     """
     snapshot, mesh, law = trial.result.snapshots[-1], trial.scene.discretization, law_of(trial.scene)
-    _, weights = np.polynomial.legendre.leggauss(mesh.interface_points)
-    elements = snapshot.s_q.size // mesh.interface_points
-    specimen = trial.scene.specimen
-    dA_q = np.tile(weights / 2.0, elements) * specimen.width * (specimen.length - specimen.precrack) / elements
+    nodes, weights = np.polynomial.legendre.leggauss(mesh.interface_points)
+    length_e = np.ptp(snapshot.s_q.reshape(-1, nodes.size), axis=1) * 2.0 / np.ptp(nodes)
+    dA_q = np.outer(length_e, weights / 2.0).ravel() * trial.scene.specimen.width
     # d = g_u (k - g_max) / (k (g_u - g_max)) between first damage and full opening
     k_q = law.g_open * law.g_peak / (law.g_open - snapshot.damage_q * (law.g_open - law.g_peak))
     return float(dA_q @ (snapshot.damage_q >= 1.0)), float(dA_q @ law.dissipated(k_q))
