@@ -15,6 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from iga.bernstein import bernstein, tensor
+from iga.bezier import homogeneous
 from iga.extraction import Mesh
 
 #: Two points are one where all their random coordinates, which lie in [0, 1], agree to this.
@@ -66,7 +67,9 @@ class Cells:
     @cached_property
     def _bezier(self) -> tuple[np.ndarray, ...]:
         """Homogeneous Bezier points (n_e, n_b, 7) of each block: random coordinates, position, weight."""
-        return bezier_points(self.mesh, np.random.default_rng(20131).random((len(self.mesh.P_AI), 4)))
+        random = np.random.default_rng(20131).random((len(self.mesh.P_AI), 4))
+        columns = np.concatenate([random, self.mesh.P_AI], axis=1)
+        return tuple(homogeneous(columns, self.mesh.w_A, block) for block in self.mesh.blocks)
 
     @cached_property
     def corner_ck(self) -> np.ndarray:
@@ -96,12 +99,6 @@ def whole_cells(mesh: Mesh) -> Cells:
     block_c = np.repeat(np.arange(len(count)), count)
     element_c = np.concatenate([np.arange(n) for n in count])
     return Cells(mesh, block_c, element_c, np.tile([0.0, 1.0], (len(block_c), 2, 1)))
-
-
-def bezier_points(mesh: Mesh, more_Ak: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Homogeneous Bezier points (n_e, n_b, k + 3) of each block: more coordinates, position, weight."""
-    columns = np.concatenate([more_Ak, mesh.P_AI, np.ones((len(mesh.P_AI), 1))], axis=1) * mesh.w_A[:, None]
-    return tuple(block.C_eab.swapaxes(1, 2) @ columns[block.conn_ea] for block in mesh.blocks)
 
 
 def _merged(x_nk: np.ndarray) -> np.ndarray:

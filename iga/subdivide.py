@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from iga.bernstein import bernstein
-from iga.cells import SIDE_NAMES, Cells, bezier_points, whole_cells
+from iga.bezier import homogeneous
+from iga.cells import SIDE_NAMES, Cells, whole_cells
 from iga.conform import conforming
 from iga.extraction import HANDS, SIDES, Chain, ElementBlock, Mesh
 
@@ -48,13 +49,12 @@ def _homogeneous(cells: Cells, p: int) -> np.ndarray:
     xi = np.linspace(0.0, 1.0, p + 1)
     to_bezier = np.linalg.inv(bernstein(p, xi))
     Q = np.empty((len(cells.block_c), (p + 1) ** 2, 3))
-    for number, (block, points) in enumerate(
-        zip(cells.mesh.blocks, bezier_points(cells.mesh, np.empty((len(cells.mesh.P_AI), 0))), strict=True)
-    ):
+    for number, block in enumerate(cells.mesh.blocks):
         here = np.flatnonzero(cells.block_c == number)
         box = cells.box_cds[here][..., None]
         x_cdq = box[:, :, 0] * (1.0 - xi) + box[:, :, 1] * xi
         M_s, M_t = (to_bezier @ bernstein(degree, x_cdq[:, d]) for d, degree in enumerate(block.degrees))
+        points = homogeneous(cells.mesh.P_AI, cells.mesh.w_A, block)
         old = points[cells.element_c[here]].reshape(len(here), block.degrees[1] + 1, block.degrees[0] + 1, 3)
         Q[here] = np.einsum("cnj,cmi,cjik->cnmk", M_t, M_s, old, optimize=True).reshape(len(here), -1, 3)
     return Q

@@ -7,16 +7,13 @@ Sederberg 2013, sec. 3). Around an extraordinary point the result is C0 across t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from iga.extraction import Chain, ElementBlock, Mesh
-from iga.loops import loops
-
-#: Side of the element on edge k of a face, which runs from its vertex k to the next, counterclockwise.
-EDGE_SIDES = np.array(["BOTTOM", "RIGHT", "TOP", "LEFT"])
+from iga.boundary import boundary_chains
+from iga.extraction import ElementBlock, Mesh
 
 #: Bernstein indices of a bicubic element beside corner k: the inner point, and the points on edge k at its two ends.
 INNER, CORNER = (5, 6, 10, 9), (0, 3, 15, 12)
@@ -47,8 +44,9 @@ def unstructured_mesh(
     element_f = np.all(h_fs > 0, axis=1)
     _refuse_wrong_intervals(grid, h_fs, element_f)
     rows = _bezier_rows(grid, h_fs, np.flatnonzero(element_f), len(V_AI))
-    blocks, block_e, place_e = _blocks(rows)
-    return Mesh(np.asarray(V_AI, dtype=float), w_A, blocks, _outlines(grid, element_f, block_e, place_e))
+    mesh = Mesh(np.asarray(V_AI, dtype=float), w_A, _blocks(rows))
+    chains = boundary_chains(mesh)
+    return replace(mesh, chains={f"boundary-{i}" if i else "boundary": chain for i, chain in enumerate(chains)})
 
 
 @dataclass(frozen=True)
@@ -165,8 +163,8 @@ def _moved(rows: csr_array, to: np.ndarray, n: int) -> csr_array:
     return csr_array((np.ones(to.size), (to, np.arange(to.size))), shape=(n, to.size)) @ rows
 
 
-def _blocks(rows: csr_array) -> tuple[tuple[ElementBlock, ...], np.ndarray, np.ndarray]:
-    """Elements grouped by their number of functions, and the block and place (n_e,) of each."""
+def _blocks(rows: csr_array) -> tuple[ElementBlock, ...]:
+    """Elements grouped by their number of functions."""
     entries = coo_array(rows)
     alive = entries.data != 0.0
     row, column, value = entries.row[alive], entries.col[alive], entries.data[alive]
@@ -175,27 +173,13 @@ def _blocks(rows: csr_array) -> tuple[tuple[ElementBlock, ...], np.ndarray, np.n
     element, function = np.divmod(pairs, n_A)
     n_a = np.bincount(element, minlength=n_e)
     a = np.arange(pairs.size) - np.repeat(np.cumsum(n_a) - n_a, n_a)
-    blocks, block_e, place_e = [], np.empty(n_e, dtype=int), np.empty(n_e, dtype=int)
-    for number, count in enumerate(np.unique(n_a)):
+    blocks, place_e = [], np.empty(n_e, dtype=int)
+    for count in np.unique(n_a):
         e = np.flatnonzero(n_a == count)
-        block_e[e], place_e[e] = number, np.arange(e.size)
+        place_e[e] = np.arange(e.size)
         C_eab = np.zeros((e.size, count, 16))
         here = n_a[row // 16] == count
         C_eab[place_e[row[here] // 16], a[which[here]], row[here] % 16] = value[here]
         conn_ea = function[n_a[element] == count].reshape(e.size, count)
         blocks.append(ElementBlock((3, 3), C_eab, conn_ea))
-    return tuple(blocks), block_e, place_e
-
-
-def _outlines(grid: _Topology, element_f: np.ndarray, block_e: np.ndarray, place_e: np.ndarray) -> dict[str, Chain]:
-    """The closed chains of sides beyond which there is no element."""
-    lonely = np.repeat(element_f, 4) & ~grid.across(np.repeat(element_f, 4), False)
-    sides = np.flatnonzero(lonely)
-    start, end = grid.faces_fa.ravel()[sides], np.roll(grid.faces_fa, -1, axis=1).ravel()[sides]
-    number_f = np.cumsum(element_f) - 1
-    chains = {}
-    for i, loop in enumerate(loops(start, end)):
-        e = number_f[sides[loop] // 4]
-        name = f"boundary-{i}" if i else "boundary"
-        chains[name] = Chain(block_e[e], place_e[e], EDGE_SIDES[sides[loop] % 4], 1.0)
-    return chains
+    return tuple(blocks)

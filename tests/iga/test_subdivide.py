@@ -8,12 +8,12 @@ from tmeshes import half_fine
 
 from iga.basis import block_basis, chain_basis
 from iga.bernstein import bernstein
+from iga.boundary import boundary_chains
 from iga.bspline import KnotVector, open_knots
 from iga.cells import whole_cells
 from iga.conform import conforming
 from iga.extraction import Chain, ElementBlock, Mesh
 from iga.nurbs import nurbs_mesh, nurbs_rectangle
-from iga.outline import outline
 from iga.polygon import polygon_mesh
 from iga.quadrature import gauss, square
 from iga.subdivide import bezier_refined
@@ -113,7 +113,6 @@ def test_hanging_nodes_of_different_levels():
     assert whole_cells(mesh).lonely_ck.sum() > 2 * 3 + 1 + 6
     cells = conforming(mesh)
     assert len(cells.block_c) == 18 and cells.lonely_ck.sum() == 2 * 6 + 2 * 3
-    assert [len(chain.side_c) for chain in outline(mesh)] == [1 + 6 + 2 * 3]
     assert area(bezier_refined(mesh, 0)) == pytest.approx(3.0, rel=1e-14)
 
 
@@ -149,8 +148,8 @@ def test_a_crack_is_not_healed():
     joined = conn.copy()
     joined[1, ::4] = conn[0, 3::4]
     together = replace(apart, blocks=(ElementBlock((3, 3), C, joined),))
-    assert [len(chain.side_c) for chain in outline(apart)] == [4, 4]
-    assert [len(chain.side_c) for chain in outline(together)] == [6]
+    assert [len(chain.side_c) for chain in boundary_chains(apart)] == [4, 4]
+    assert [len(chain.side_c) for chain in boundary_chains(together)] == [6]
     assert len(bezier_refined(apart).P_AI) == 2 * 49 and len(bezier_refined(together).P_AI) == 2 * 49 - 7
 
 
@@ -168,7 +167,7 @@ def test_chains_keep_their_order():
 
 def test_the_outline_of_a_polygon_is_its_boundary():
     mesh = polygon_mesh(6, 2)
-    (found,), known = outline(mesh), mesh.chains["boundary"]
+    (found,), known = boundary_chains(mesh), mesh.chains["boundary"]
     assert len(found.side_c) == len(known.side_c) == 24 and found.outward == known.outward
     both = [set(zip(c.block_c, c.element_c, c.side_c, strict=True)) for c in (found, known)]
     assert both[0] == both[1]

@@ -5,7 +5,6 @@ import pytest
 
 from iga.basis import block_basis, chain_basis
 from iga.bspline import open_knots
-from iga.loops import loops
 from iga.nurbs import nurbs_rectangle
 from iga.polygon import polygon_control, polygon_mesh
 from iga.quadrature import gauss, square
@@ -153,11 +152,3 @@ def test_an_extraordinary_point_on_the_outline_is_refused():
         unstructured_mesh(V, faces, 0.0 * h.reshape(-1, 2))
     with pytest.raises(ValueError, match="at least 3 corners"):
         polygon_control(2, 1)
-
-
-def test_loops_are_walked_in_order():
-    start, end = np.array([4, 0, 7, 2, 1, 8]), np.array([0, 2, 8, 4, 7, 1])
-    found = loops(start, end)
-    assert [start[i].tolist() for i in found] == [[4, 0, 2], [7, 8, 1]]
-    with pytest.raises(ValueError, match="does not close"):
-        loops(start[:-1], end[:-1])
