@@ -63,15 +63,14 @@ def extracted(mesh: TMesh) -> Extraction:
     """Bezier elements, grouped by their number of functions."""
     box_ek = bezier_elements(mesh)
     e_n, A_n = _supported(mesh, box_ek)
-    C_nb = _extraction(mesh, box_ek[e_n], A_n)
     count_e = np.bincount(e_n, minlength=len(box_ek))
     start_e = np.cumsum(count_e) - count_e
     blocks, block_e, place_e = [], np.zeros(len(box_ek), dtype=int), np.zeros(len(box_ek), dtype=int)
     for n_a in np.unique(count_e):
         e = np.flatnonzero(count_e == n_a)
-        rows = start_e[e][:, None] + np.arange(n_a)
+        conn_ea = A_n[start_e[e][:, None] + np.arange(n_a)]
         block_e[e], place_e[e] = len(blocks), np.arange(len(e))
-        blocks.append(ElementBlock((DEGREE, DEGREE), C_nb[rows], A_n[rows]))
+        blocks.append(ElementBlock((DEGREE, DEGREE), _extraction(mesh, box_ek[e], conn_ea), conn_ea))
     return Extraction(box_ek, tuple(blocks), block_e, place_e)
 
 
@@ -168,11 +167,13 @@ def _supported(mesh: TMesh, box_ek: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     return e_n[sort], A_n[sort]
 
 
-def _extraction(mesh: TMesh, box_nk: np.ndarray, A_n: np.ndarray) -> np.ndarray:
-    """Rows (n, 16) of the functions A_n on their elements."""
-    i0, i1, j0, j1 = box_nk.T
+def _extraction(mesh: TMesh, box_ek: np.ndarray, conn_ea: np.ndarray) -> np.ndarray:
+    """Extraction operators (n_e, n_a, 16) of elements with the same number of functions."""
+    (n_e, n_a), A_n = conn_ea.shape, conn_ea.ravel()
+    i0, i1, j0, j1 = np.repeat(box_ek, n_a, axis=0).T
     s, t = mesh.local_knots
-    return tensor(_pieces(s, mesh.knots_i, A_n, i0, i1), _pieces(t, mesh.knots_j, A_n, j0, j1))
+    C_nb = tensor(_pieces(s, mesh.knots_i, A_n, i0, i1), _pieces(t, mesh.knots_j, A_n, j0, j1))
+    return C_nb.reshape(n_e, n_a, -1)
 
 
 def _pieces(local: np.ndarray, knots: np.ndarray, A_n: np.ndarray, i0: np.ndarray, i1: np.ndarray) -> np.ndarray:
