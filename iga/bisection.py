@@ -74,9 +74,11 @@ class Bisection:
 
         Raises
         ------
-        ValueError : an element that is not there.
+        ValueError : an element that is not there, or a mask of another length.
         """
         marked_e = np.asarray(marked_e)
+        if marked_e.dtype == bool and marked_e.shape != self.level_e.shape:
+            raise ValueError(f"marks must be a mask of {len(self.level_e)} elements, got {marked_e.size}")
         number = np.flatnonzero(marked_e) if marked_e.dtype == bool else marked_e.astype(int)
         if number.size and not (0 <= number.min() and number.max() < len(self.level_e)):
             raise ValueError(f"elements are 0 to {len(self.level_e) - 1}, got {number.min()} to {number.max()}")

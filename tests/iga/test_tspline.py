@@ -1,0 +1,338 @@
+"""T-splines: functions of analysis-suitable T-meshes are a basis; those of others need not be."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from random_tmeshes import bisections, breaks, marked, markings, suitable_tmeshes, walked_values
+from scipy.sparse import csr_array, vstack
+from scipy.sparse.linalg import spsolve
+
+from iga.basis import block_basis, chain_basis
+from iga.bernstein import bernstein, bernstein_derivative, tensor
+from iga.bisection import initial
+from iga.bspline import open_knots
+from iga.extraction import Mesh
+from iga.nurbs import nurbs_mesh
+from iga.quadrature import gauss, square
+from iga.suitable import made_suitable
+from iga.tmesh import NotSuitable, TMesh
+from iga.tmesh_lines import tensor_grid, with_line
+from iga.transfer import nesting_error, transfer, transferred
+from iga.tspline import extracted, greville, tspline_mesh, tspline_rectangle, unchecked_mesh
+
+some = settings(max_examples=40, deadline=None)
+few = settings(max_examples=20, deadline=None)
+
+
+@some
+@given(suitable_tmeshes(), st.integers(0, 2**32 - 1))
+def test_functions_are_a_partition_of_unity(mesh, seed):
+    blocks = extracted(mesh).blocks
+    assert max(np.abs(block.C_eab.sum(1) - 1.0).max() for block in blocks) < 1e-14
+    assert min(block.C_eab.min() for block in blocks) >= 0.0
+    assert np.abs(walked_values(mesh, points(mesh, seed)).sum(1) - 1.0).max() < 1e-14
+
+
+@some
+@given(suitable_tmeshes())
+def test_on_every_element_at_most_sixteen_functions_live_and_are_independent(mesh):
+    for block in extracted(mesh).blocks:
+        n_a = block.C_eab.shape[1]
+        assert n_a <= 16
+        rows = block.C_eab / np.linalg.norm(block.C_eab, axis=2, keepdims=True)
+        assert np.linalg.svd(rows, compute_uv=False).min() > 1e-9, "rank deficient"
+
+
+@some
+@given(suitable_tmeshes())
+def test_all_functions_are_independent(mesh):
+    """Singular values of all Bernstein coefficients at once."""
+    matrix = global_matrix(mesh).toarray()
+    assert matrix.shape[1] == len(mesh.anchors)
+    matrix /= np.linalg.norm(matrix, axis=0)
+    assert np.linalg.svd(matrix, compute_uv=False).min() > 1e-9
+
+
+@some
+@given(suitable_tmeshes(), st.integers(0, 2**32 - 1))
+def test_extraction_is_cox_de_boor(mesh, seed):
+    """Bernstein pieces against the recursion on knot vectors that were found by walking the T-mesh."""
+    x_qi = points(mesh, seed)
+    assert np.abs(values(mesh, x_qi) - walked_values(mesh, x_qi)).max() < 1e-13
+
+
+@few
+@given(markings(steps=4))
+def test_spaces_of_bisected_meshes_are_nested(drawn):
+    mesh, steps = drawn
+    for places in steps:
+        finer = mesh.refined(marked(mesh, places))
+        assert nesting_error(mesh.tmesh, finer.tmesh) < 1e-13
+        assert distance(mesh.tmesh, finer.tmesh) < 1e-13
+        mesh = finer
+
+
+def test_spaces_are_nested_where_extended_meshes_are_and_need_not_be_elsewhere():
+    """Li and Scott 2014: a line that shortens the extension of another takes smoothness away on one side only."""
+    grid = tensor_grid(np.arange(7.0), np.arange(7.0))
+    coarse = with_line(grid, "vertical", 2.5, (0.0, 2.0))
+    inside = with_line(coarse, "vertical", 2.5, (2.0, 3.0))
+    shorter = with_line(coarse, "horizontal", 2.5)
+    assert distance(coarse, inside) < 1e-13 and nesting_error(coarse, inside) < 1e-13
+    assert shorter.suitable and distance(coarse, shorter) > 1e-3 and nesting_error(coarse, shorter) > 1e-3
+
+
+@few
+@given(bisections())
+def test_transfer_is_the_projection_onto_the_finer_space(mesh):
+    finer = mesh.refined(np.arange(len(mesh.level_e)))
+    rows = values_at_shared_points(mesh.tmesh, finer.tmesh)
+    projected = np.linalg.lstsq(rows[1], rows[0], rcond=None)[0]
+    assert np.abs(transfer(mesh.tmesh, finer.tmesh).toarray() - projected).max() < 1e-10
+
+
+@some
+@given(suitable_tmeshes())
+def test_rectangles_have_their_area_and_reproduce_linear_fields(mesh):
+    body = tspline_rectangle(mesh)
+    area = 0.0
+    for block in body.blocks:
+        basis = block_basis(body, block, *square(gauss(2), gauss(2)))
+        gradient = np.einsum("eqaI,eai->eqIi", basis.dN_eqaI, body.P_AI[basis.conn_ea])
+        assert np.abs(gradient - np.eye(2)).max() < 1e-10
+        area += basis.dV_eq.sum()
+    assert area == pytest.approx(np.ptp(mesh.knots_i) * np.ptp(mesh.knots_j), rel=1e-12)
+    for side, length in (("bottom", mesh.knots_i), ("right", mesh.knots_j)):
+        parts = chain_basis(body, body.chains[side], *gauss(2))
+        assert sum(part.dV_eq.sum() for part in parts) == pytest.approx(np.ptp(length), rel=1e-12)
+
+
+@some
+@given(suitable_tmeshes(), st.integers(0, 2**32 - 1))
+def test_control_points_of_the_identity_are_greville_points(mesh, seed):
+    x_qi = points(mesh, seed)
+    assert np.abs(walked_values(mesh, x_qi) @ greville(mesh) - x_qi).max() < 1e-13 * np.abs(x_qi).max() + 1e-13
+
+
+@few
+@given(markings(steps=3))
+def test_an_annulus_stays_exact_however_it_is_refined(drawn):
+    """Area 3 pi / 4 and outer arc pi; the Jacobian of a rational map asks for many points."""
+    _, steps = drawn
+    mesh = initial([0.0, 1.0], [0.0, 1.0])
+    tmesh, body = mesh.tmesh, annulus(1.0, 2.0)
+    for places in steps:
+        mesh = mesh.refined(marked(mesh, places))
+        body, tmesh = transferred(tmesh, body, mesh.tmesh), mesh.tmesh
+    area = sum(block_basis(body, block, *square(gauss(14), gauss(3))).dV_eq.sum() for block in body.blocks)
+    assert area == pytest.approx(3 * np.pi / 4, rel=1e-12)
+    outer = chain_basis(body, body.chains["top"], *gauss(14))
+    assert sum(part.dV_eq.sum() for part in outer) == pytest.approx(np.pi, rel=1e-12)
+    radius = np.concatenate([np.linalg.norm(part.X_eqI, axis=2).ravel() for part in outer])
+    assert np.abs(radius - 2.0).max() < 1e-13
+
+
+@some
+@given(breaks(), breaks(), st.data())
+def test_full_grids_are_nurbs(s, t, data):
+    n_A = (len(s) + 2) * (len(t) + 2)
+    random = np.random.default_rng(data.draw(st.integers(0, 2**32 - 1)))
+    P_AI, w_A = random.normal(size=(n_A, 2)), random.uniform(0.5, 2.0, n_A)
+    nurbs = nurbs_mesh(open_knots(s, 3), open_knots(t, 3), P_AI, w_A)
+    (one,), (other,) = nurbs.blocks, tspline_mesh(tensor_grid(s, t), P_AI, w_A).blocks
+    order, sorted_conn = np.argsort(other.conn_ea, axis=1), np.sort(one.conn_ea, axis=1)
+    assert np.array_equal(np.take_along_axis(other.conn_ea, order, 1), sorted_conn)
+    C_eab = np.take_along_axis(other.C_eab, order[:, :, None], 1)
+    expected = np.take_along_axis(one.C_eab, np.argsort(one.conn_ea, axis=1)[:, :, None], 1)
+    assert np.abs(C_eab - expected).max() < 1e-12
+
+
+@pytest.mark.parametrize(("times", "smooth"), [(1, 2), (2, 1), (3, 0)])
+@pytest.mark.parametrize("direction", ["vertical", "horizontal"])
+def test_derivatives_jump_across_a_line_only_from_its_order_on(rng, times, smooth, direction):
+    """C2 across a single line, C1 across a double and C0 across a triple one, here and not along its extension."""
+    s = np.array([0.0, 1.0, 2.5, 3.0, 4.5, 6.0])
+    grid = tensor_grid(s, s)
+    mesh = with_line(grid, direction, 2.0, (0.0, 4.5), times=times)
+    mesh = with_line(mesh, direction, 3.5, (2.5, 6.0))
+    values_A = rng.normal(size=len(mesh.anchors))
+    for along in (0.7, 2.2, 4.2):
+        assert jumps(mesh, values_A, direction, 2.0, along, smooth).max() < 1e-12
+        assert jump(mesh, values_A, direction, 2.0, along, smooth + 1) > 1e-2
+        assert jumps(mesh, values_A, direction, 3.0, along, 2).max() < 1e-12
+
+
+@some
+@given(suitable_tmeshes(), st.integers(0, 2**32 - 1))
+def test_derivatives_up_to_the_multiplicity_are_continuous(mesh, seed):
+    """Across every knot value, wherever one looks: 3 less the number of its copies there are."""
+    random = np.random.default_rng(seed)
+    values_A = random.normal(size=len(mesh.anchors))
+    for direction, knots, other in (
+        ("vertical", mesh.knots_i, mesh.knots_j),
+        ("horizontal", mesh.knots_j, mesh.knots_i),
+    ):
+        for at, copies in zip(*(x[1:-1] for x in np.unique(knots, return_counts=True)), strict=True):
+            along = random.uniform(other[0], other[-1])
+            size = np.min(np.diff(np.unique(knots)))
+            for order in range(3 - copies + 1):
+                assert jump(mesh, values_A, direction, at, along, order) < 1e-10 / size**order
+
+
+@pytest.mark.parametrize(
+    ("upright", "level", "crossing", "missed", "functions"),
+    [
+        ((1.5, 0, 1), (1.5, 1, 2), (1.5, 1.5), 0.05, 16),
+        ((0.5, 0, 1), (1.5, 1, 2), (0.5, 1.5), 0.06, 17),
+        ((1.5, 0, 1), (1.5, 0, 1), (1.5, 1.5), 0.14, 17),
+    ],
+)
+def test_two_lines_too_many_and_the_sum_is_no_longer_one(upright, level, crossing, missed, functions):
+    """T-meshes of two extra lines, neither of which is harmful alone."""
+    grid = tensor_grid(np.arange(4.0), np.arange(4.0))
+    one, other = with_line(grid, "vertical", *split(upright)), with_line(grid, "horizontal", *split(level))
+    assert one.suitable and other.suitable
+    both = with_line(one, "horizontal", *split(level))
+    assert list(crossing) in both.crossings().tolist()
+    with pytest.raises(NotSuitable, match=r"meet at \({:g}, {:g}\)".format(*both.crossings()[0])):
+        tspline_mesh(both, greville(both))
+    sums = walked_values(both, points(both, 1, 2000)).sum(1)
+    assert np.abs(sums - 1.0).max() == pytest.approx(missed, abs=0.006)
+    assert max(block.conn_ea.shape[1] for block in unchecked_mesh(both, greville(both)).blocks) == functions
+    closed = made_suitable(both)
+    assert np.abs(walked_values(closed, points(both, 1)).sum(1) - 1.0).max() < 1e-14
+
+
+def test_numbers_of_control_points_and_weights_are_checked():
+    mesh = tensor_grid([0.0, 1.0], [0.0, 1.0])
+    P_AI = greville(mesh)
+    with pytest.raises(ValueError, match="asks for 16 control points and weights, got 15"):
+        tspline_mesh(mesh, P_AI[1:])
+    with pytest.raises(ValueError, match="weights must be > 0, the smallest is -1"):
+        tspline_mesh(mesh, P_AI, np.linspace(-1.0, 1.0, 16))
+
+
+def test_an_l2_projection_converges_by_the_order_of_the_mesh():
+    """Grids whose lower left quarter is bisected twice more, in both directions, and a smooth function."""
+    errors = []
+    for n in (4, 8, 16, 32):
+        mesh = initial(np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, n + 1))
+        for _ in range(2):
+            box = mesh.box_ek
+            mesh = mesh.refined((box[:, 1] <= 0.5) & (box[:, 3] <= 0.5))
+        assert len(mesh.tmesh.junctions) > 0
+        body = tspline_rectangle(mesh.tmesh)
+        errors.append(projection_error(body, lambda x: np.sin(4.0 * x[..., 0] + 1.0) * np.exp(x[..., 1])))
+    rates = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert np.all(np.abs(rates[-2:] - body.order) < 0.15), rates
+    assert errors[-1] < 2e-6
+
+
+def split(line: tuple[float, int, int]) -> tuple[float, tuple[float, float]]:
+    return line[0], (float(line[1]), float(line[2]))
+
+
+def points(mesh: TMesh, seed: int, number: int = 60) -> np.ndarray:
+    random = np.random.default_rng(seed)
+    low, high = ([mesh.knots_i[n], mesh.knots_j[n]] for n in (0, -1))
+    return random.uniform(low, high, (number, 2))
+
+
+def pieces(mesh: TMesh):
+    """Every Bezier element as its box in knot values, its coefficients and its functions."""
+    found = extracted(mesh)
+    for box, number, place in zip(found.box_ek, found.block_e, found.place_e, strict=True):
+        block = found.blocks[number]
+        yield np.concatenate([mesh.knots_i[box[:2]], mesh.knots_j[box[2:]]]), block.C_eab[place], block.conn_ea[place]
+
+
+def values(mesh: TMesh, x_qi: np.ndarray) -> np.ndarray:
+    """Values (n_q, n_A) of the extracted functions."""
+    out = np.zeros((len(x_qi), len(mesh.anchors)))
+    for (s0, s1, t0, t1), C_ab, A in pieces(mesh):
+        q = np.flatnonzero((x_qi[:, 0] >= s0) & (x_qi[:, 0] < s1) & (x_qi[:, 1] >= t0) & (x_qi[:, 1] < t1))
+        if q.size == 0:
+            continue
+        B = tensor(bernstein(3, (x_qi[q, 0] - s0) / (s1 - s0)), bernstein(3, (x_qi[q, 1] - t0) / (t1 - t0)))
+        out[np.ix_(q, A)] = B @ C_ab.T
+    return out
+
+
+def values_at_shared_points(coarse: TMesh, fine: TMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Both sets of functions at sixteen points of every element of the two meshes."""
+    x_q = gauss(4)[0]
+    samples = []
+    for mesh in (coarse, fine):
+        for (s0, s1, t0, t1), _, _ in pieces(mesh):
+            s, t = s0 + (s1 - s0) * x_q, t0 + (t1 - t0) * x_q
+            samples.append(np.stack([np.tile(s, 4), np.repeat(t, 4)], -1))
+    x_qi = np.concatenate(samples)
+    return values(coarse, x_qi), values(fine, x_qi)
+
+
+def distance(coarse: TMesh, fine: TMesh) -> float:
+    """How far the functions of one mesh are from the space of the other, at points of all elements."""
+    N_coarse, N_fine = values_at_shared_points(coarse, fine)
+    return np.abs(N_fine @ np.linalg.lstsq(N_fine, N_coarse, rcond=None)[0] - N_coarse).max()
+
+
+def global_matrix(mesh: TMesh) -> csr_array:
+    """Bernstein coefficients (16 n_e, n_A) of all functions on all elements."""
+    blocks = []
+    for _, C_ab, A in pieces(mesh):
+        entries = (C_ab.T.ravel(), (np.repeat(np.arange(16), len(A)), np.tile(A, 16)))
+        blocks.append(csr_array(entries, shape=(16, len(mesh.anchors))))
+    return vstack(blocks).tocsr()
+
+
+def one_sided(mesh: TMesh, values_A, direction, at, along, order, side) -> float:
+    """Derivative across a line of the given direction, from below it (side 0) or from above (side 1)."""
+    across = 0 if direction == "vertical" else 1
+    for box, C_ab, A in pieces(mesh):
+        (a0, a1), (b0, b1) = box[2 * across :][:2], box[2 - 2 * across :][:2]
+        if (a0 if side else a1) == at and b0 <= along < b1:
+            B_a = bernstein_derivative(3, np.array(0.0 if side else 1.0), order) / (a1 - a0) ** order
+            B_b = bernstein(3, np.array((along - b0) / (b1 - b0)))
+            return float((tensor(B_a, B_b) if across == 0 else tensor(B_b, B_a)) @ C_ab.T @ values_A[A])
+    return np.nan
+
+
+def jump(mesh: TMesh, values_A, direction, at, along, order) -> float:
+    """Jump of a derivative across a line; none where no element ends there."""
+    below, above = (one_sided(mesh, values_A, direction, at, along, order, side) for side in (0, 1))
+    return 0.0 if np.isnan(below) and np.isnan(above) else abs(above - below)
+
+
+def jumps(mesh: TMesh, values_A, direction, at, along, orders) -> np.ndarray:
+    return np.array([jump(mesh, values_A, direction, at, along, order) for order in range(orders + 1)])
+
+
+def annulus(inner: float, outer: float) -> Mesh:
+    """A quarter of an annulus, one bicubic element: the quadratic arc raised to degree three, walked clockwise."""
+    arc, w = np.array([[0.0, 1.0], [1.0, 1.0], [1.0, 0.0]]), np.array([1.0, np.sqrt(0.5), 1.0])
+    H = np.concatenate([arc * w[:, None], w[:, None]], axis=1)
+    H = np.stack([H[0], (H[0] + 2 * H[1]) / 3, (2 * H[1] + H[2]) / 3, H[2]])
+    radii = np.linspace(inner, outer, 4)
+    P_AI = np.concatenate([radius * H[:, :2] / H[:, 2:] for radius in radii])
+    return tspline_mesh(tensor_grid([0.0, 1.0], [0.0, 1.0]), P_AI, np.tile(H[:, 2], 4))
+
+
+def projection_error(body: Mesh, field) -> float:
+    """L2 distance between a field and its L2 projection."""
+    bases = [block_basis(body, block, *square(gauss(5), gauss(5))) for block in body.blocks]
+    n_A, M, f_A = len(body.P_AI), 0, np.zeros(len(body.P_AI))
+    for basis in bases:
+        M_eab = np.einsum("eqa,eqb,eq->eab", basis.N_eqa, basis.N_eqa, basis.dV_eq, optimize=True)
+        f_ea = np.einsum("eqa,eq->ea", basis.N_eqa, basis.dV_eq * field(basis.X_eqI))
+        rows, columns = (
+            np.broadcast_to(a, M_eab.shape) for a in (basis.conn_ea[:, :, None], basis.conn_ea[:, None, :])
+        )
+        M = M + csr_array((M_eab.ravel(), (rows.ravel(), columns.ravel())), shape=(n_A, n_A))
+        np.add.at(f_A, basis.conn_ea, f_ea)
+    u_A = spsolve(M.tocsc(), f_A)
+    squared = 0.0
+    for basis in bases:
+        error = np.einsum("eqa,ea->eq", basis.N_eqa, u_A[basis.conn_ea]) - field(basis.X_eqI)
+        squared += np.sum(error**2 * basis.dV_eq)
+    return float(np.sqrt(squared))
