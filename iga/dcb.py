@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from iga.adaptive import Follower, Window, adapted_tmeshes, first_window
+from iga.arms import arm_meshes, crack_path, tmeshes
 from iga.body import Body, bodies, mean_row, point_row
 from iga.bond import bond, control_points, probe, slave_number
-from iga.extraction import Mesh
-from iga.grading import COARSENING, columns, largest, part, pieces, rectangle, unequal
 from iga.material import orthotropic
 from iga.pose import Pose
 from iga.problem import Debonding
@@ -18,12 +18,11 @@ from iga.solid import joined
 from iga.solve import Solution, run
 from iga.specimen import Specimen
 from iga.system import Phase, System, untimed
+from iga.tmesh import TMesh
+from iga.tspline import tspline_rectangle
 
 #: Stiffness of a tie that hardly gives, relative to the modulus times the width: that of the stiffest elements.
 TIE = 10.0
-
-#: Elements on the bond that are so few that each counts.
-FEW = 7
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,7 +31,8 @@ class Problem(Debonding):
 
     X runs from 0 (loaded end) to ``length``, the interface lies on Y = 0 and is bonded from ``precrack`` on; each arm
     is ``arm_thickness`` thick and elastic with axis 1 along X. The opening is the separation of the loaded faces.
-    ``symmetry`` models the upper arm alone against its mirror image.
+    ``symmetry`` models the upper arm alone against its mirror image. ``adaptive`` T-splines follow the process zone and
+    have at most ``dofs`` unknowns at any time.
     """
 
     length: float
@@ -43,55 +43,23 @@ class Problem(Debonding):
     G12: float
     nu12: float
     symmetry: bool = False
+    adaptive: bool = False
 
 
-def arm_meshes(problem: Problem) -> tuple[Mesh, ...]:
-    """The arms, upper first, one element thick: equal elements along the bond, longer ones before it.
+def build(problem: Problem, phase: Phase = untimed, window: Window | None = None) -> Specimen:
+    """Discrete system of a problem with all that is needed to read results from its states.
 
-    An element boundary lies at the end of the precrack. The model of one arm gets half of ``dofs``. A mesh with `FEW`
-    elements on the bond is quadratic through the arms, all that bending needs, and spends the rest along them.
-
-    Raises
-    ------
-    ValueError : ``dofs`` is too small for a mesh, or the basis is unknown.
+    ``window`` is the fine part of an adaptive mesh, the first one if left out.
     """
-    p, q, basis = problem.degree, problem.degree, problem.basis
-
-    def unknowns(elements: int) -> int:
-        upper, lower = (sum(pair) for pair in arm_elements(problem, elements))
-        return 2 * (q + 1) * (columns(basis, p, upper) + columns(basis, p, lower))
-
-    both = arm_elements(problem, largest(unknowns, 2, problem.dofs))
-    if q > 2 and min(along for _, along in both) <= FEW:
-        q = 2
-        both = arm_elements(problem, largest(unknowns, 2, problem.dofs))
-    meshes = []
-    for (before, along), bottom in zip(both, (0.0, -problem.arm_thickness), strict=True):
-        breaks = pieces((0.0, problem.precrack, before), (problem.precrack, problem.length, along))
-        through = bottom + problem.arm_thickness * np.linspace(0.0, 1.0, 2)
-        meshes.append(rectangle(basis, (p, q), breaks, through))
-    return tuple(meshes[:1] if problem.symmetry else meshes)
-
-
-def arm_elements(problem: Problem, elements: int) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Elements before and along the bond of the upper and of the lower arm; the finer one has so many in all."""
-    bond_length = problem.length - problem.precrack
-    before = part(elements * problem.precrack / (problem.precrack + COARSENING * bond_length))
-    before = min(before, elements - 1)
-    (before_upper, before_lower), (upper, lower) = (unequal(n, problem.mismatch) for n in (before, elements - before))
-    return (before_upper, upper), (before_lower, lower)
-
-
-def build(problem: Problem, phase: Phase = untimed) -> Specimen:
-    """Discrete system of a problem with all that is needed to read results from its states."""
     with phase("mesh"):
-        meshes = arm_meshes(problem)
+        drawn = _tmeshes(problem, window)
+        meshes = tuple(tspline_rectangle(mesh) for mesh in drawn) or arm_meshes(problem)
     with phase("basis"):
         pose, extent = problem.pose, (problem.precrack, problem.length)
         D = orthotropic(problem.E1, problem.E2, problem.G12, problem.nu12, problem.plane)
         # a mirror image that is not modelled counts in the width, so that forces and energies are those of the whole
         copies = 2.0 if problem.symmetry else 1.0
-        arms = bodies(meshes, (D,) * len(meshes), pose, copies * problem.width, problem.basis == "nurbs")
+        arms = bodies(meshes, (D,) * len(meshes), pose, copies * problem.width, problem.basis != "lagrange")
         P_AI = control_points(arms)
         across = [mean_row(arm.faces["left"], pose.axes_kI[1], P_AI.size) for arm in arms]
         springs_rd, spring_r = _supports(problem, arms, pose)
@@ -116,6 +84,8 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             upper_is_slave=slave_number(problem, arms) == 0,
             copies=copies,
             probe=probe(problem, arms, extent),
+            path=(problem.precrack, crack_path(problem) if window is None else window.end),
+            tmeshes=drawn,
         )
 
 
@@ -138,7 +108,19 @@ def solve(
     ------
     ValueError : a problem for which there is no mesh or no material.
     """
-    return run(problem, build(problem, phase), on_step, phase)
+    if not problem.adaptive or problem.basis != "tspline":
+        return run(problem, build(problem, phase), on_step, phase)
+    window = first_window(problem)
+    follower = Follower(problem, window, lambda window: build(problem, phase, window), phase)
+    return run(problem, build(problem, phase, window), on_step, phase, follower)
+
+
+def _tmeshes(problem: Problem, window: Window | None) -> tuple[TMesh, ...]:
+    """T-meshes of the arms, none where the basis is another."""
+    if problem.basis != "tspline":
+        return ()
+    drawn = adapted_tmeshes(problem, window or first_window(problem)) if problem.adaptive else tmeshes(problem)
+    return drawn[:1] if problem.symmetry else drawn
 
 
 def _supports(problem: Problem, arms: tuple[Body, ...], pose: Pose) -> tuple[np.ndarray, np.ndarray]:

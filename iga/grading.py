@@ -11,9 +11,6 @@ from iga.extraction import Mesh
 from iga.lagrange import lagrange_rectangle
 from iga.nurbs import nurbs_rectangle
 
-#: Elements beyond the bond only bend; they may be this much longer than those on the crack path.
-COARSENING = 4.0
-
 
 def columns(basis: str, degree: int, elements: int) -> int:
     """Functions of one direction.
@@ -23,7 +20,7 @@ def columns(basis: str, degree: int, elements: int) -> int:
     ValueError : the basis is unknown.
     """
     if basis not in ("nurbs", "lagrange"):
-        raise ValueError(f'basis must be "nurbs" or "lagrange", got {basis!r}')
+        raise ValueError(f'basis must be "tspline", "nurbs" or "lagrange", got {basis!r}')
     return elements + degree if basis == "nurbs" else elements * degree + 1
 
 

@@ -7,7 +7,7 @@ to kink a path with a piecewise linear law has no surprises.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -30,7 +30,12 @@ HOME = 1e-9
 
 
 def follow(
-    system: System, programme: Sequence[float], steps: int | None, newton: Newton = DEFAULT, phase: Phase = untimed
+    system: System,
+    programme: Sequence[float],
+    steps: int | None,
+    newton: Newton = DEFAULT,
+    phase: Phase = untimed,
+    renew: Callable[[Point], tuple[System, State] | None] | None = None,
 ) -> Iterator[Point | End]:
     """Walk through a programme of openings; yields every converged `Point` and, last, the `End`.
 
@@ -40,6 +45,7 @@ def follow(
     steps : number of steps asked for over the whole programme; None lets the path choose them, few and by accuracy,
         and so does a number too small to draw the curve. A step that fails is made to end at the next kink of the law,
         then tried with other controls, then halved, down to 1/4096, and grows again afterwards.
+    renew : may answer a converged point with another system, and its state in equilibrium at the same opening.
     """
     pace, reach = paced(np.array(programme), steps), float(np.max(np.abs(programme)))
     rejected, peak, most = 0, 0.0, 0.0
@@ -71,6 +77,13 @@ def follow(
             if direction > 0.0 and point.opening > 0.0 and _separated(system, point, reach, peak):
                 yield End("complete", rejected, separated=True)
                 return
+            renewed = renew(point) if renew is not None else None
+            if renewed is not None:
+                system, state = renewed
+                point = _departing(system, state, direction, point.external_work, phase)
+                if point is None:
+                    yield End(f"stopped: the new mesh at opening {goal:.6g} has a singular tangent", rejected)
+                    return
     yield End("complete", rejected)
 
 

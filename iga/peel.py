@@ -9,19 +9,15 @@ import numpy as np
 
 from iga.body import Body, bodies, mean_row
 from iga.bond import bond, control_points, probe, slave_number
-from iga.extraction import Mesh
-from iga.grading import COARSENING, columns, largest, part, pieces, rectangle, unequal
 from iga.material import orthotropic
+from iga.peel_meshes import meshes, tmeshes
 from iga.pose import Pose
 from iga.problem import Debonding
 from iga.solid import joined
 from iga.solve import Solution, run
 from iga.specimen import Specimen
 from iga.system import Phase, System, untimed
-
-#: Layers of the substrate: at most so many, each this much thicker than the one above, and the top one no thinner than
-#: such a part of the length of its elements.
-LAYERS, THICKENING, FLATTEST = 3, 2.0, 0.5
+from iga.tspline import tspline_rectangle
 
 
 @dataclass(frozen=True)
@@ -52,64 +48,16 @@ class Problem(Debonding):
     substrate: Moduli
 
 
-def meshes(problem: Problem) -> tuple[Mesh, Mesh]:
-    """Strip and substrate: equal elements along the bond, longer ones beyond it, thin layers on top of the substrate.
-
-    Raises
-    ------
-    ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or the bond is longer than a body.
-    """
-    if not 0.0 < problem.bond_length < problem.strip_length or problem.bond_length > problem.substrate_length:
-        raise ValueError(f"bond_length must be > 0, < strip_length and <= substrate_length, got {problem.bond_length}")
-    end, depth = problem.bond_length, problem.substrate_thickness
-    for layers in range(LAYERS, 0, -1):
-        tops = np.concatenate([[0.0], np.cumsum(THICKENING ** np.arange(layers))])
-        try:
-            (bonded, beyond), (below, rest) = _elements(problem, layers)
-        except ValueError:
-            if layers == 1:
-                raise
-            continue
-        if tops[1] / tops[-1] * depth >= FLATTEST * end / below:
-            break
-    strip = pieces((0.0, end, bonded), (end, problem.strip_length, beyond))
-    substrate = pieces((0.0, end, below), (end, problem.substrate_length, rest))
-    through = np.array([0.0, problem.strip_thickness])
-    return (
-        rectangle(problem.basis, (problem.degree,) * 2, strip, through),
-        rectangle(problem.basis, (problem.degree,) * 2, substrate, -depth * tops[::-1] / tops[-1]),
-    )
-
-
-def _elements(problem: Problem, layers: int) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Elements on and beyond the bond, of strip and substrate; what is left of the unknowns goes to the overhang."""
-    basis, p = problem.basis, problem.degree
-    over, rest = (end - problem.bond_length for end in (problem.strip_length, problem.substrate_length))
-
-    def numbers(along: int) -> tuple[tuple[int, int], tuple[int, int]]:
-        upper, lower = unequal(along, problem.mismatch)
-        coarse = COARSENING * problem.bond_length
-        return (upper, part(over * upper / coarse)), (lower, part(rest * lower / coarse) if rest > 0.0 else 0)
-
-    def unknowns(along: int) -> int:
-        strip, substrate = (columns(basis, p, sum(pair)) for pair in numbers(along))
-        return 2 * ((p + 1) * strip + columns(basis, p, layers) * substrate)
-
-    along = largest(unknowns, 2, problem.dofs)
-    (bonded, beyond), below = numbers(along)
-    an_element = 2 * (p + 1) * (1 if basis == "nurbs" else p)
-    return (bonded, beyond + (problem.dofs - unknowns(along)) // an_element), below
-
-
 def build(problem: Problem, phase: Phase = untimed) -> Specimen:
     """Discrete system of a problem with all that is needed to read results from its states."""
     with phase("mesh"):
-        both = meshes(problem)
+        drawn = tmeshes(problem) if problem.basis == "tspline" else ()
+        both = tuple(tspline_rectangle(mesh) for mesh in drawn) or meshes(problem)
     with phase("basis"):
         pose, extent = problem.pose, (problem.bond_length, 0.0)
         moduli = (problem.strip, problem.substrate)
         D = tuple(orthotropic(m.E1, m.E2, m.G12, m.nu12, problem.plane) for m in moduli)
-        strip, substrate = pair = bodies(both, D, pose, problem.width, problem.basis == "nurbs")
+        strip, substrate = pair = bodies(both, D, pose, problem.width, problem.basis != "lagrange")
         P_AI = control_points(pair)
         springs_rd, spring_r = _support(problem, strip, pose, P_AI.size)
         system = System(
@@ -133,6 +81,8 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             upper_is_slave=slave_number(problem, pair) == 0,
             copies=1.0,
             probe=probe(problem, pair, extent),
+            path=(problem.strip_length - problem.bond_length, problem.strip_length),
+            tmeshes=drawn,
         )
 
 

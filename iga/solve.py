@@ -11,7 +11,7 @@ from iga.observe import row
 from iga.path import End, Point, follow
 from iga.problem import Debonding
 from iga.specimen import Specimen
-from iga.system import Phase, respond
+from iga.system import Phase, State, System, respond
 
 
 @dataclass(frozen=True)
@@ -33,14 +33,32 @@ class Solution:
 
 
 def run(
-    problem: Debonding, specimen: Specimen, on_step: Callable[[Mapping[str, float]], None] | None, phase: Phase
+    problem: Debonding,
+    specimen: Specimen,
+    on_step: Callable[[Mapping[str, float]], None] | None,
+    phase: Phase,
+    adapt: Callable[[Specimen, Point], tuple[Specimen, State] | None] | None = None,
 ) -> Solution:
-    """Follow the programme of a problem; ``on_step`` is called with the row of every converged step, as it comes."""
+    """Follow the programme of a problem; ``on_step`` is called with the row of every converged step, as it comes.
+
+    ``adapt`` may answer a converged point with another mesh and the state on it.
+    """
     rows: list[dict[str, float]] = []
     snapshots: list[dict[str, object]] = []
     wanted = sorted(problem.snapshot_openings)
-    worst, point, end = 0.0, None, End("complete", 0)
-    for item in follow(specimen.system, by_way_of(problem.opening, wanted), problem.steps, phase=phase):
+    worst, point, end, most = 0.0, None, End("complete", 0), specimen
+
+    def renewed(point: Point) -> tuple[System, State] | None:
+        nonlocal specimen, most
+        found = adapt(specimen, point)
+        if found is None:
+            return None
+        specimen, state = found
+        most = max(most, specimen, key=lambda one: one.system.n_dof)
+        return specimen.system, state
+
+    renew = renewed if adapt is not None else None
+    for item in follow(specimen.system, by_way_of(problem.opening, wanted), problem.steps, phase=phase, renew=renew):
         if isinstance(item, End):
             end = item
             continue
@@ -55,8 +73,8 @@ def run(
             snapshots.append(snapshot(specimen, point))
     return Solution(
         rows=tuple(rows),
-        dofs=specimen.system.n_dof,
-        elements=sum(mesh.elements for mesh in specimen.meshes),
+        dofs=most.system.n_dof,
+        elements=sum(mesh.elements for mesh in most.meshes),
         rejected_steps=end.rejected,
         status=end.status,
         snapshots=tuple(snapshots),

@@ -13,6 +13,7 @@ from iga.interface import Interface, pair
 from iga.pose import Pose
 from iga.projection import Pairing
 from iga.system import System
+from iga.tmesh import TMesh
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,9 @@ class Specimen:
     ``loaded`` names the end, "left" or "right", at which the dead load pulls each body; "" where it does not.
     Distances along the specimen are counted from the plane ``loaded_at`` of the first of them; the bond begins at the
     distance ``free_length``. ``energy_faces`` (body, end, sign) are those whose strain energy enters the J-integral.
+    ``path`` are the distances between which the mesh is made for the crack to run.
     ``probe`` has two points, on the tip of the bond and on its far end. ``copies`` is 2 where one body stands for both.
+    ``tmeshes`` are the T-meshes of the bodies in the specimen's own frame, none where the basis is another.
     """
 
     system: System
@@ -35,6 +38,8 @@ class Specimen:
     upper_is_slave: bool
     copies: float
     probe: Interface
+    path: tuple[float, float]
+    tmeshes: tuple[TMesh, ...] = ()
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:

@@ -7,8 +7,6 @@ no polynomial on that element (coarsening) the same functional is a quasi-interp
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from scipy.sparse import csr_array
 
@@ -50,7 +48,7 @@ def transferred(old: TMesh, mesh: Mesh, new: TMesh) -> Mesh:
 
 
 def nesting_error(old: TMesh, new: TMesh) -> float:
-    """Largest difference between an old function and its copy in the new space: rounding where the spaces are nested."""
+    """Largest difference between an old function and its copy in the new space: rounding where they are nested."""
     x_qi = _sample_points(new, extracted(new).box_ek).reshape(-1, 2)
     return float(np.abs((collocation(old, x_qi) - collocation(new, x_qi) @ transfer(old, new)).toarray()).max())
 

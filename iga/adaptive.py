@@ -1,0 +1,177 @@
+"""T-meshes that follow the process zone: fine where damage grows, coarse in its wake and far ahead.
+
+All meshes of a run are bisections of the same cells, so that elements whose points are being damaged are the same
+before and after; elements change only where no damage has begun or nothing is left to break, and history is carried
+over as it is. Displacements are carried over by `iga.transfer` and brought into equilibrium at the same opening.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from iga.arms import arm_tmeshes, zone_length
+from iga.control import opening_control
+from iga.newton import PATIENT, equilibrium
+from iga.point import Point
+from iga.strip import Strip
+from iga.system import Phase, State
+from iga.tmesh import TMesh
+from iga.transfer import transfer
+
+if TYPE_CHECKING:
+    from iga.dcb import Problem
+    from iga.specimen import Specimen
+
+#: The fine part goes on beyond the damage front by so many process zones, and is moved on when less than this is left.
+AHEAD, LEFT = 0.75, 0.25
+
+#: How often a cell can be halved, and how long one may be in parts of its distance from the fine part.
+HALVINGS, GROWTH = 4, 0.7
+
+#: Part of the length of a specimen within which two points are the same.
+SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class Window:
+    """The fine part, from ``start`` to ``end`` along the specimen, and the number of ``roots``, cells on the bond."""
+
+    start: float
+    end: float
+    roots: int
+
+
+def first_window(problem: Problem) -> Window:
+    """The fine part before anything moves, with the finest cells that never take more unknowns than ``dofs``.
+
+    Raises
+    ------
+    ValueError : no mesh has so few unknowns.
+    """
+    zone = zone_length(problem)
+
+    def most(roots: int) -> int:
+        starts = np.linspace(problem.precrack, problem.length, 50)
+        return max(4 * strip(problem, Window(x - zone, x + AHEAD * zone, roots)).functions for x in starts)
+
+    roots = 1
+    while most(roots + 1) <= problem.dofs:
+        roots += 1
+    if most(roots) > problem.dofs:
+        raise ValueError(f"an adaptive mesh needs at least {most(roots)} unknowns, got {problem.dofs}")
+    return Window(problem.precrack, problem.precrack + AHEAD * zone, roots)
+
+
+def strip(problem: Problem, window: Window) -> Strip:
+    """One arm with equal cells in the window and ever longer ones away from it, halved at the interface in the window.
+
+    An element boundary lies at the end of the precrack.
+    """
+    bond = problem.length - problem.precrack
+    before = max(int(np.ceil(window.roots * problem.precrack / bond)), 1)
+    starts, sizes = [], []
+    for start, length, roots in ((0.0, problem.precrack, before), (problem.precrack, bond, window.roots)):
+        x, size = start + length * np.arange(roots) / roots, np.full(roots, length / roots)
+        finest = bond / window.roots / 2**HALVINGS
+        for _ in range(HALVINGS):
+            away = np.maximum(np.maximum(window.start - (x + size), x - window.end), 0.0)
+            long = size > np.maximum(1.5 * finest, GROWTH * away)
+            half = 0.5 * size[long]
+            x = np.concatenate([x[~long], x[long], x[long] + half])
+            size = np.concatenate([size[~long], half, half])
+        starts.append(x)
+        sizes.append(size)
+    x, size = np.concatenate(starts), np.concatenate(sizes)
+    order = np.argsort(x)
+    x, size = x[order], size[order]
+    middle = x + 0.5 * size
+    halved = (middle > max(window.start, problem.precrack)) & (middle < window.end) & (size < 1.5 * finest)
+    return Strip(np.append(x, problem.length), halved)
+
+
+def adapted_tmeshes(problem: Problem, window: Window) -> tuple[TMesh, ...]:
+    """T-meshes of the upper and the lower arm with the fine part in the window."""
+    one = strip(problem, window)
+    return arm_tmeshes(problem, (one, one))
+
+
+class Follower:
+    """Answers a converged point with a mesh that has moved on, where the process zone comes near the end of this one.
+
+    Its ``window`` is that of the mesh at hand.
+    """
+
+    def __init__(self, problem: Problem, window: Window, build: Callable[[Window], Specimen], phase: Phase) -> None:
+        self.window = window
+        self._problem, self._build, self._phase = problem, build, phase
+
+    def __call__(self, specimen: Specimen, point: Point) -> tuple[Specimen, State] | None:
+        window = followed(self._problem, specimen, point, self.window)
+        if window is None:
+            return None
+        new = self._build(window)
+        state = carried(specimen, new, point, self._phase)
+        if state is None:
+            return None
+        self.window = window
+        return new, state
+
+
+def followed(problem: Problem, specimen: Specimen, point: Point, window: Window) -> Window | None:
+    """The window for a converged point, or None where the present one still is ahead of the damage front by enough."""
+    zone, law = zone_length(problem), specimen.system.interface.law
+    s_q, k_q = specimen.distance(specimen.system.interface.X_qi), point.state.k_q
+    damaged, broken = s_q[k_q > law.g_max], s_q[k_q >= law.g_u]
+    front = float(damaged.max(initial=problem.precrack))
+    if window.end >= problem.length or front < window.end - LEFT * zone:
+        return None
+    tip = float(broken.max(initial=problem.precrack))
+    return replace(window, start=tip - LEFT * zone, end=front + AHEAD * zone)
+
+
+def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State | None:
+    """The state of a point on another mesh, in equilibrium at the same opening; None where there is none.
+
+    Points that both meshes share keep their history; the others lie where damage has not begun, or is complete, and
+    take it from their neighbours.
+    """
+    with phase("mesh"):
+        u_old = old.pose.components(point.state.u_d.reshape(-1, 2))
+        u_new = np.concatenate(
+            [
+                transfer(before, after) @ u_old[body.points]
+                for before, after, body in zip(old.tmeshes, new.tmeshes, old.bodies, strict=True)
+            ]
+        )
+    k_q = _history(old, new, point.state.k_q)
+    if k_q is None:
+        return None
+    u_d = (u_new @ new.pose.axes_kI).ravel()
+    start = new.system.start()
+    trial = replace(start, u_d=u_d, load=point.state.load, k_q=k_q, scale=point.state.scale)
+    control = opening_control(new.system)
+    found = equilibrium(new.system, trial, control, point.opening, 1e-3 * point.opening, PATIENT, phase)
+    if found is None:
+        return None
+    return replace(found.state, k_q=found.response.k_q, scale=max(trial.scale, found.response.scale))
+
+
+def _history(old: Specimen, new: Specimen, k_q: np.ndarray) -> np.ndarray | None:
+    """History at the points of the new mesh; None where a point that is being damaged would be lost."""
+    s_old, s_new = (specimen.distance(specimen.system.interface.X_qi) for specimen in (old, new))
+    order = np.argsort(s_old)
+    s, k = s_old[order], k_q[order]
+    right = np.clip(np.searchsorted(s, s_new), 1, len(s) - 1)
+    nearest = np.where(s_new - s[right - 1] < s[right] - s_new, right - 1, right)
+    same = np.abs(s[nearest] - s_new) < SAME * s[-1]
+    law = new.system.interface.law
+    active = (k > law.g_max) & (k < law.g_u)
+    kept = np.zeros(len(s), dtype=bool)
+    kept[nearest[same]] = True
+    if np.any(active & ~kept):
+        return None
+    return np.where(same, k[nearest], np.interp(s_new, s, k))

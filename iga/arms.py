@@ -1,0 +1,167 @@
+"""Meshes of the arms of a double cantilever beam, of any basis, from the number of unknowns.
+
+The same rule for every basis: one interface element length all along the crack path, as short as the unknowns allow, so
+that it divides the process zone as often as possible; elements up to `COARSENING` times longer before and beyond.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from iga.extraction import Mesh
+from iga.grading import columns, largest, pieces, rectangle, unequal
+from iga.strip import Strip, functions_of_halves, strip_tmesh
+from iga.tmesh import DEGREE, TMesh
+from iga.tspline import tspline_rectangle
+
+if TYPE_CHECKING:
+    from iga.dcb import Problem
+
+#: Elements off the crack path only bend; they may be this much longer than those on it.
+COARSENING = 8.0
+
+#: Part of a process zone that the crack path goes on beyond the crack of beam theory, which is ahead of the true one.
+MARGIN = 0.4
+
+#: Part of the unknowns by which a mesh may miss those aimed at.
+NEAR = 0.02
+
+#: Elements on the crack path that are so few that each counts.
+FEW = 7
+
+#: Elements (before, on, beyond) the crack path.
+Division = tuple[int, int, int]
+
+
+def arm_meshes(problem: Problem) -> tuple[Mesh, ...]:
+    """The arms, upper first: equal elements on the crack path, longer ones before and beyond it.
+
+    An element boundary lies at the end of the precrack. The model of one arm gets half of ``dofs``. NURBS and Lagrange
+    meshes are one element thick; one with `FEW` elements on the path is quadratic through the arms, all that bending
+    needs, and spends the rest along them. Where two equal arms would miss ``dofs`` by more than `NEAR`, the lower one
+    has one element more. T-splines halve the elements towards the interface (see `iga.strip`).
+
+    Raises
+    ------
+    ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or T-splines of another degree than 3.
+    """
+    if problem.basis == "tspline":
+        meshes = tuple(tspline_rectangle(mesh) for mesh in tmeshes(problem))
+    else:
+        meshes = _rectangles(problem)
+    return meshes[:1] if problem.symmetry else meshes
+
+
+def tmeshes(problem: Problem) -> tuple[TMesh, TMesh]:
+    """T-meshes of the upper and the lower arm; refusals as those of `arm_meshes`."""
+    if problem.degree != DEGREE:
+        raise ValueError(f"degree must be {DEGREE} for T-splines, got {problem.degree}")
+    both = _strips(problem, 1)
+    for layers in range(2, 20):
+        try:
+            more = _strips(problem, layers)
+        except ValueError:
+            break
+        if not all(strip.stocky(problem.arm_thickness) for strip in more):
+            break
+        both = more
+    return arm_tmeshes(problem, both)
+
+
+def crack_path(problem: Problem) -> float:
+    """Where the crack path ends: beyond the crack at the largest opening, and part of a process zone, or with the bond.
+
+    Beam theory without shear or root rotation has the crack at ``a^2 = 3/2 opening sqrt(E h^3 / (12 G))`` in slender
+    arms; an arm that is deflected far is longer than it reaches.
+    """
+    h, opening = problem.arm_thickness, max(0.0, *problem.opening)
+    crack = (1.5 * opening * (problem.E1 * h**3 / (12.0 * problem.toughness)) ** 0.5) ** 0.5
+    end = max(np.hypot(crack, 0.5 * opening), problem.precrack) + MARGIN * zone_length(problem)
+    return min(end, problem.length)
+
+
+def zone_length(problem: Problem) -> float:
+    """Length of the process zone of slender arms, ``(E G / p_max^2)^(1/4) h^(3/4)`` (Williams and Hadavinia 2002)."""
+    return (problem.E1 * problem.toughness / problem.strength**2) ** 0.25 * problem.arm_thickness**0.75
+
+
+def division(problem: Problem, path: int) -> tuple[Division, tuple[float, float, float, float]]:
+    """Elements before, on and beyond the crack path with so many on it, and where these parts begin and end.
+
+    What is left beyond the path is part of it where that is shorter than half an element.
+    """
+    end = crack_path(problem)
+    if problem.length - end < 0.5 * (end - problem.precrack) / path:
+        end = problem.length
+    longest = COARSENING * (end - problem.precrack) / path
+    before, beyond = (int(np.ceil(length / longest)) for length in (problem.precrack, problem.length - end))
+    return (before, path, beyond), (0.0, problem.precrack, end, problem.length)
+
+
+def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
+    basis, p = problem.basis, problem.degree
+
+    def unknowns(upper: int, lower: int, q: int) -> int:
+        return 2 * (q + 1) * sum(columns(basis, p, sum(division(problem, n)[0])) for n in (upper, lower))
+
+    def chosen(q: int) -> tuple[int, int]:
+        n = largest(lambda n: unknowns(*unequal(n, problem.mismatch), q), 1, problem.dofs)
+        options = [unequal(n, problem.mismatch), unequal(n + 1, problem.mismatch)]
+        if problem.mismatch == 1.0 and not problem.symmetry and problem.interface_rule != "lumped":
+            options.append((n, n + 1))
+        missed = [abs(unknowns(*option, q) - problem.dofs) for option in options]
+        near = [option for option, by in zip(options[:2], missed, strict=False) if by <= NEAR * problem.dofs]
+        return near[0] if near else options[int(np.argmin(missed))]
+
+    q = p
+    both = chosen(q)
+    if q > 2 and min(both) <= FEW:
+        q = 2
+        both = chosen(q)
+    meshes = []
+    for n, bottom in zip(both, (0.0, -problem.arm_thickness), strict=True):
+        through = bottom + problem.arm_thickness * np.linspace(0.0, 1.0, 2)
+        meshes.append(rectangle(basis, (p, q), _breaks(*division(problem, n)), through))
+    return tuple(meshes)
+
+
+def arm_tmeshes(problem: Problem, strips: tuple[Strip, ...]) -> tuple[TMesh, ...]:
+    """T-meshes of the upper and the lower arm."""
+    h = problem.arm_thickness
+    upper, lower = strips
+    return strip_tmesh(upper, (0.0, h), top=False), strip_tmesh(lower, (-h, 0.0), top=True)
+
+
+def _strips(problem: Problem, layers: int) -> tuple[Strip, Strip]:
+    """Both arms with so many layers; the last elements on the path are not halved where that meets ``dofs`` better."""
+
+    def strip(path: int, halved: int) -> Strip:
+        (before, _, beyond), x = division(problem, path)
+        breaks_c = _breaks((before, path, beyond), x)
+        number = np.arange(len(breaks_c) - 1) - before
+        return Strip(breaks_c, (number >= 0) & (number < min(halved, path)), layers)
+
+    def strips(path: int, halved: int) -> tuple[Strip, Strip]:
+        upper, lower = unequal(path, problem.mismatch)
+        return strip(upper, halved), strip(lower, halved)
+
+    def unknowns(path: int, halved: int) -> int:
+        both = (sum(division(problem, n)[0]) + DEGREE for n in unequal(path, problem.mismatch))
+        halves = (min(halved, n) for n in unequal(path, problem.mismatch))
+        return 2 * sum(
+            columns * (layers + DEGREE) + n * functions_of_halves(layers)
+            for columns, n in zip(both, halves, strict=True)
+        )
+
+    path = largest(lambda n: unknowns(n, n), 1, problem.dofs)
+    left = problem.dofs - unknowns(path + 1, 0)
+    halved = left // (4 * functions_of_halves(layers))
+    missed = problem.dofs - unknowns(path, path)
+    better = halved > 0 and missed > max(NEAR * problem.dofs, abs(problem.dofs - unknowns(path + 1, halved)))
+    return strips(path + 1, halved) if better else strips(path, path)
+
+
+def _breaks(division: Division, x: tuple[float, float, float, float]) -> np.ndarray:
+    return pieces(*((start, end, n) for start, end, n in zip(x[:-1], x[1:], division, strict=True)))

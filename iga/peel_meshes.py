@@ -1,0 +1,124 @@
+"""Meshes of strip and substrate of a peel test, of any basis, from the number of unknowns."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from iga.extraction import Mesh
+from iga.grading import columns, largest, part, pieces, rectangle, unequal
+from iga.strip import Strip, strip_tmesh
+from iga.tmesh import DEGREE, TMesh
+
+if TYPE_CHECKING:
+    from iga.peel import Problem
+
+#: Elements beyond the bond only bend; they may be this much longer than those on it.
+COARSENING = 4.0
+
+#: Layers of the substrate: at most so many, each this much thicker than the one above, and the top one no thinner than
+#: such a part of the length of its elements.
+LAYERS, THICKENING, FLATTEST = 3, 2.0, 0.5
+
+
+def meshes(problem: Problem) -> tuple[Mesh, Mesh]:
+    """Strip and substrate: equal elements along the bond, longer ones beyond it, thin layers on top of the substrate.
+
+    Raises
+    ------
+    ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or the bond is longer than a body.
+    """
+    _require_bodies(problem)
+    end, depth = problem.bond_length, problem.substrate_thickness
+    for layers in range(LAYERS, 0, -1):
+        tops = np.concatenate([[0.0], np.cumsum(THICKENING ** np.arange(layers))])
+        try:
+            (bonded, beyond), (below, rest) = _elements(problem, layers)
+        except ValueError:
+            if layers == 1:
+                raise
+            continue
+        if tops[1] / tops[-1] * depth >= FLATTEST * end / below:
+            break
+    strip = pieces((0.0, end, bonded), (end, problem.strip_length, beyond))
+    substrate = pieces((0.0, end, below), (end, problem.substrate_length, rest))
+    through = np.array([0.0, problem.strip_thickness])
+    return (
+        rectangle(problem.basis, (problem.degree,) * 2, strip, through),
+        rectangle(problem.basis, (problem.degree,) * 2, substrate, -depth * tops[::-1] / tops[-1]),
+    )
+
+
+def _elements(problem: Problem, layers: int) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Elements on and beyond the bond, of strip and substrate; what is left of the unknowns goes to the overhang."""
+    basis, p = problem.basis, problem.degree
+    over, rest = (end - problem.bond_length for end in (problem.strip_length, problem.substrate_length))
+
+    def numbers(along: int) -> tuple[tuple[int, int], tuple[int, int]]:
+        upper, lower = unequal(along, problem.mismatch)
+        coarse = COARSENING * problem.bond_length
+        return (upper, part(over * upper / coarse)), (lower, part(rest * lower / coarse) if rest > 0.0 else 0)
+
+    def unknowns(along: int) -> int:
+        strip, substrate = (columns(basis, p, sum(pair)) for pair in numbers(along))
+        return 2 * ((p + 1) * strip + columns(basis, p, layers) * substrate)
+
+    along = largest(unknowns, 2, problem.dofs)
+    (bonded, beyond), below = numbers(along)
+    an_element = 2 * (p + 1) * (1 if basis == "nurbs" else p)
+    return (bonded, beyond + (problem.dofs - unknowns(along)) // an_element), below
+
+
+def tmeshes(problem: Problem) -> tuple[TMesh, TMesh]:
+    """T-meshes of strip and substrate: layers as many as are thick enough, then elements as the unknowns allow.
+
+    Raises
+    ------
+    ValueError : ``dofs`` is too small for a mesh, the degree is not 3, or the bond is longer than a body.
+    """
+    _require_bodies(problem)
+    if problem.degree != DEGREE:
+        raise ValueError(f"degree must be {DEGREE} for T-splines, got {problem.degree}")
+    thickness = problem.strip_thickness, problem.substrate_thickness
+    layers, both = (1, 1), _strips(problem, (1, 1))
+    for body in (1, 0):
+        while True:
+            more = (layers[0] + 1, layers[1]) if body == 0 else (layers[0], layers[1] + 1)
+            try:
+                strips = _strips(problem, more)
+            except ValueError:
+                break
+            if not strips[body].stocky(thickness[body]):
+                break
+            layers, both = more, strips
+    return (
+        strip_tmesh(both[0], (0.0, problem.strip_thickness), top=False),
+        strip_tmesh(both[1], (-problem.substrate_thickness, 0.0), top=True),
+    )
+
+
+def _strips(problem: Problem, layers: tuple[int, int]) -> tuple[Strip, Strip]:
+    """Both bodies with so many layers, elements at the interface alike; what is left goes to the overhang."""
+    bond, lengths = problem.bond_length, (problem.strip_length, problem.substrate_length)
+
+    def strips(along: int, spare: int = 0) -> tuple[Strip, Strip]:
+        made = []
+        for number, k, length in zip(unequal(along, problem.mismatch), layers, lengths, strict=True):
+            path = number * 2 ** (max(layers) - k)
+            beyond = part((length - bond) * path / (COARSENING * bond)) if length > bond else 0
+            beyond, spare = beyond + spare, 0
+            breaks_c = pieces((0.0, bond, path), (bond, length, beyond))
+            made.append(Strip(breaks_c, np.arange(len(breaks_c) - 1) < path, k))
+        return tuple(made)
+
+    def unknowns(both: tuple[Strip, Strip]) -> int:
+        return 2 * sum(strip.functions for strip in both)
+
+    along = largest(lambda n: unknowns(strips(n)), 1, problem.dofs)
+    return strips(along, (problem.dofs - unknowns(strips(along))) // (2 * (layers[0] + DEGREE)))
+
+
+def _require_bodies(problem: Problem) -> None:
+    if not 0.0 < problem.bond_length < problem.strip_length or problem.bond_length > problem.substrate_length:
+        raise ValueError(f"bond_length must be > 0, < strip_length and <= substrate_length, got {problem.bond_length}")
