@@ -48,7 +48,8 @@ def parser() -> argparse.ArgumentParser:
         return sub
 
     sub = command("verify", _verify, "Every method on every scene, all checks, one report.", "verify dcb-czm1 --jobs 2")
-    sub.add_argument("scenes", nargs="*", metavar="SCENE", help="packaged name or file; default: those for all methods")
+    what = "packaged name, scene file, or .iga mesh for a plane problem; default: the scenes for all methods"
+    sub.add_argument("scenes", nargs="*", metavar="SCENE", help=what)
     sub.add_argument("--out", type=Path, default=Path("debond-report"), metavar="DIR", help="default: debond-report")
     finer = "finer meshes as well, with observed order and uncertainty, interface rules, and the figures of the paper"
     sub.add_argument("--full", action="store_true", help=finer)
@@ -56,8 +57,8 @@ def parser() -> argparse.ArgumentParser:
 
     sub = command("solve", _solve, "One scene by one method.", "solve dcb-czm1 --set interface.strength=6")
     sub.add_argument("scene", metavar="SCENE", help="a packaged name or a file")
-    sub.add_argument("--method", default="nurbs", metavar="M", help="nurbs (default), lagrange, dolfinx, beam or lefm")
-    sub.add_argument("--dofs", type=_positive, metavar="N", help="unknowns to aim at, for nurbs and lagrange")
+    sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
+    sub.add_argument("--dofs", type=_positive, metavar="N", help="unknowns to aim at, for tspline, nurbs and lagrange")
     sub.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help="replace a key")
     sub.add_argument("--out", type=Path, metavar="DIR", help="default: debond-out/SCENE-METHOD")
     sub.add_argument("--fields", action="store_true", help="keep fields of a few steps in fields.npz")
@@ -71,6 +72,13 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("a", metavar="A", type=Path, help="CSV file or folder of a run")
     sub.add_argument("b", metavar="B", type=Path, help="what A is held against")
     sub.add_argument("--tolerance", type=_fraction, metavar="T", help="fail where the curve error is larger, e.g. 0.01")
+
+    sub = command("mesh", _mesh, "What a mesh file holds, and its picture.", "mesh arch.iga --out arch.vtu")
+    sub.add_argument("file", metavar="FILE", type=Path, help=".iga file of the Rhino T-spline plug-in")
+    formats = ".svg, .png, .pdf: picture; .vtu: Bezier cells; .iga; default: debond-mesh/FILE.svg"
+    sub.add_argument("--out", type=Path, metavar="FILE", help=formats)
+    sub.add_argument("--json", action="store_true", help="print the facts as JSON")
+    sub.add_argument("--control", action="store_true", help="draw the control points too")
 
     command("scenes", _scenes, "List the packaged scenes.", "scenes")
     command("doctor", _doctor, "What is installed, what works, how to get the rest.", "doctor")
@@ -149,28 +157,32 @@ def _print_result(result, checks, folder: Path) -> None:
 
 
 def _verify(options: argparse.Namespace) -> int:
+    from verify.plane_study import load_plate
     from verify.run import mpi_size
-    from verify.scene import SceneError, load_scene, verified_scenes
+    from verify.scene import load_scene, verified_scenes
     from verify.verification import verify
 
     if mpi_size() > 1:
         raise Refusal(f"verify: must be started in 1 process, without mpirun, got {mpi_size()}")
-    scenes, wrong = [], []
+    scenes, plates, wrong = [], [], []
     for source in options.scenes or verified_scenes():
         try:
-            scenes.append((source, load_scene(source)))
-        except SceneError as error:
+            if source.lower().endswith(".iga"):
+                plates.append(load_plate(source))
+            else:
+                scenes.append((source, load_scene(source)))
+        except Refusal as error:
             wrong.append(str(error))
     for source, scene in scenes:
         if scene.specimen.kind == "peel":
             wrong.append(f"{source}: must be a dcb for verify (peel: not available yet); debond solve takes it")
-    names = [scene.name for _, scene in scenes]
+    names = [*(scene.name for _, scene in scenes), *(plate.name for plate in plates)]
     twice = sorted({name for name in names if names.count(name) > 1})
     wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]
     if wrong:
         raise Refusal("\n".join(wrong))
     _folder(options.out)
-    return 0 if verify(scenes, options.out, options.jobs, options.full) else FAILED
+    return 0 if verify(scenes, options.out, options.jobs, options.full, plates) else FAILED
 
 
 def _hard(options: argparse.Namespace) -> int:
@@ -192,6 +204,12 @@ def _compare(options: argparse.Namespace) -> int:
         _say(f"debond: curve error {error:.4%} is larger than {options.tolerance:.4%}")
         return FAILED
     return 0
+
+
+def _mesh(options: argparse.Namespace) -> int:
+    from verify.mesh_command import examine
+
+    return 0 if examine(options.file, options.out, options.json, options.control, _say) else FAILED
 
 
 def _scenes(options: argparse.Namespace) -> int:
@@ -224,10 +242,10 @@ def _test(options: argparse.Namespace) -> int:
 
 def _known_method(method: str, dofs: int | None) -> None:
     from verify.complaints import one_of, suggestion
-    from verify.methods import METHODS, NOT_YET, WITH_DOFS
+    from verify.methods import METHODS, WITH_DOFS
 
     if method not in METHODS:
-        later = " (it is not available yet)" if method in NOT_YET else f"; {suggestion(method, METHODS)}".rstrip("; ")
+        later = f"; {suggestion(method, METHODS)}".rstrip("; ")
         raise Refusal(f"--method: must be {one_of(METHODS)}, got {method!r}{later}")
     if dofs and method not in WITH_DOFS:
         other = "; --set dolfinx.elements=N sets its mesh" if method == "dolfinx" else ""

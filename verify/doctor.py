@@ -35,7 +35,7 @@ def examine() -> tuple[list[str], bool]:
     lines.append("")
     report = all(find_spec(module) for module in ("jinja2", "matplotlib"))
     lines += [
-        f"nurbs, lagrange, beam, lefm: {'work' if needed else 'do not work'}",
+        f"tspline, nurbs, lagrange, beam, lefm: {'work' if needed else 'do not work'}",
         f"dolfinx: {'works' if dolfinx_installed() else 'does not work'}",
         f"report: {'works' if report else 'does not work'}",
     ]

@@ -81,6 +81,7 @@ class Discretization(Section):
     interface_rule: Literal["gauss", "lobatto", "lumped"] = "gauss"
     interface_points: int = Field(default=2, ge=1, le=12)
     mismatch: float = Field(default=1.0, ge=0.05, le=20)  # element length of the lower body over that of the upper one
+    adaptive: bool = False  # tspline: elements follow the process zone, and dofs is the most at any time
     slave: Literal["upper", "lower"] = "upper"  # the body whose points carry the interface
     steps: int | Literal["auto"] = 150  # equal opening increments, or "auto": the path chooses by accuracy
 
