@@ -189,6 +189,8 @@ def test_impossible_lines_are_refused_by_their_coordinates(make, message):
         (lambda a: a["up"].__setitem__((3, 5), False), "vertical lines of the end knots must be drawn in full"),
         (lambda a: a["across"].__setitem__((6, 0), False), "horizontal lines of the end knots"),
         (lambda a: a["up"].__setitem__((5, 0), False), "vertical line that reaches the frame must go through"),
+        (lambda a: a["up"].__setitem__((5, slice(2)), False), "vertical line that reaches the frame must go through"),
+        (lambda a: a["across"].__setitem__((slice(-2, None), 5), False), "horizontal line that reaches the frame"),
         (lambda a: a.update(across=a["across"][:, :-1]), "not of one mesh"),
     ],
 )
