@@ -17,16 +17,28 @@ from verify.paper import plan as figures
 from verify.paper import statements
 from verify.paper.study import Study as Figures
 from verify.paper.study import measured
+from verify.plane_study import PlaneStudy, Plate
+from verify.plane_study import lines as plane_lines
+from verify.plane_study import study as plane_study
 from verify.quadrature_study import Study, finding, study
 from verify.run import machine, versions
 from verify.schema import Scene
-from verify.table import failures, overview
+from verify.table import check_table, failures, overview
 from verify.verdict import Check, Run, SceneReport
 
-NAMES = {"nurbs": "NURBS", "lagrange": "Lagrange", "dolfinx": "DOLFINx", "beam": "cohesive beam", "lefm": "LEFM"}
+NAMES = {
+    "tspline": "T-spline",
+    "nurbs": "NURBS",
+    "lagrange": "Lagrange",
+    "dolfinx": "DOLFINx",
+    "beam": "cohesive beam",
+    "lefm": "LEFM",
+}
 
 
-def verify(scenes: Sequence[tuple[str, Scene]], out: Path, jobs: int, full: bool = False) -> bool:
+def verify(
+    scenes: Sequence[tuple[str, Scene]], out: Path, jobs: int, full: bool = False, plates: Sequence[Plate] = ()
+) -> bool:
     """Run everything, write ``out``/report.html, print the checks; whether all of them hold.
 
     Parameters
@@ -34,6 +46,7 @@ def verify(scenes: Sequence[tuple[str, Scene]], out: Path, jobs: int, full: bool
     scenes : each with the name or path that it was loaded from
     jobs : runs at a time
     full : finer and coarser meshes as well, the study of the interface rules, and the figures of the paper
+    plates : meshes from CAD, on which plane problems with exact solutions are solved
     """
     plan = [job for source, scene in scenes for job in planned(source, scene, full)]
     more = figures.planned(scenes) if full else figures.planned(())
@@ -43,9 +56,12 @@ def verify(scenes: Sequence[tuple[str, Scene]], out: Path, jobs: int, full: bool
     )
     page, quadrature = out / "report.html", study() if full else None
     paper = measured(more, outcomes) if full else None
-    _write_report(reports, page, quadrature, paper)
+    planes = tuple(plane_study(plate) for plate in plates)
+    _write_report(reports, page, quadrature, paper, planes)
     checks = [(report.scene.name, check) for report in reports for check in report.checks]
-    print("\n".join([*overview(reports), *sequences(reports), *failures(checks)]))
+    checks += [(found.name, check) for found in planes for check in found.checks]
+    tables = [line for found in planes for line in [*plane_lines(found), *check_table(found.checks), ""]]
+    print("\n".join([*overview(reports), *tables, *sequences(reports), *failures(checks)]))
     if quadrature is not None:
         print(finding(quadrature))
     if paper is not None:
@@ -117,7 +133,11 @@ def _as_run(outcome: Outcome, out: Path) -> Run:
 
 
 def _write_report(
-    reports: tuple[SceneReport, ...], page: Path, quadrature: Study | None, paper: Figures | None
+    reports: tuple[SceneReport, ...],
+    page: Path,
+    quadrature: Study | None,
+    paper: Figures | None,
+    planes: tuple[PlaneStudy, ...],
 ) -> None:
     """The page; without the packages that it needs the checks are still worth printing."""
     try:
@@ -125,4 +145,4 @@ def _write_report(
     except ImportError as error:
         print(f"debond: no report: {error.name} is missing; pip install 'debond[report]'", file=sys.stderr)
         return
-    write(reports, page, environment(), quadrature, paper)
+    write(reports, page, environment(), quadrature, paper, planes)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from verify.paper.study import Study as Figures
+from verify.plane_study import PlaneStudy
 from verify.quadrature_study import Study
-from verify.report import paper_section, study
+from verify.report import paper_section, plane, study
 from verify.report.section import section
 from verify.report.style import custom_properties
 from verify.report.summary import summarise
@@ -28,6 +29,7 @@ def write(
     environment: Mapping[str, str],
     quadrature: Study | None = None,
     paper: Figures | None = None,
+    planes: Sequence[PlaneStudy] = (),
 ) -> None:
     """Write the page.
 
@@ -38,8 +40,10 @@ def write(
     environment : what to print about versions and machine, name to value
     quadrature : the study of the interface rules, where it was made
     paper : the runs behind the figures of the paper, where they were made
+    planes : the studies of plane problems, one a mesh file
     """
     sections = tuple(section(report, f"scene-{i + 1}") for i, report in enumerate(reports))
+    plane_sections = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(planes))
     jinja = Environment(
         loader=PackageLoader("verify.report", "."),
         autoescape=True,
@@ -51,7 +55,8 @@ def write(
     jinja.filters |= {"number": number, "symbols": symbols}
     page = jinja.get_template("page.html.j2").render(
         sections=sections,
-        summary=summarise(sections),
+        summary=summarise(sections, plane_sections),
+        planes=plane_sections,
         quadrature=None if quadrature is None else study.section(quadrature, "quadrature"),
         paper=None if paper is None else paper_section.section(paper, "figures"),
         environment=dict(environment),

@@ -12,6 +12,7 @@ from verify.report.entry import Entry, rank
 from verify.report.text import percent, seconds, span
 
 if TYPE_CHECKING:
+    from verify.report.plane import PlaneSection
     from verify.report.section import Section
     from verify.verdict import Check
 
@@ -59,30 +60,33 @@ class Summary:
     tallies: tuple[Tally, ...]
     columns: tuple[Column, ...]
     rows: tuple[tuple[Section, tuple[Cell, ...]], ...]
-    failures: tuple[tuple[Section, Check], ...]
+    failures: tuple[tuple[str, str, Check], ...]  # anchor and name of the section
 
 
-def summarise(sections: Sequence[Section]) -> Summary:
+def summarise(sections: Sequence[Section], planes: Sequence[PlaneSection] = ()) -> Summary:
     """Everything above the first scene."""
-    checks = [(section, check) for section in sections for check in section.report.checks]
-    failures = tuple((section, check) for section, check in checks if not check.passed)
+    checks = [(s.anchor, s.report.scene.name, check) for s in sections for check in s.report.checks]
+    checks += [(p.anchor, p.name, check) for p in planes for check in p.checks]
+    failures = tuple((anchor, name, check) for anchor, name, check in checks if not check.passed)
     columns = _columns(sections)
     return Summary(
-        headline=headline(len(checks), len(failures), len(sections)),
+        headline=headline(len(checks), len(failures), len(sections), len(planes)),
         tone="none" if not checks else "bad" if failures else "good",
-        sentences=tuple(_sentences(sections)),
+        sentences=(*_sentences(sections), *(plane.sentence for plane in planes)),
         missing=tuple(_missing(sections)),
         ways=_ways(sections),
-        tallies=tuple(tally(kind, [check for _, check in checks]) for kind in KINDS),
+        tallies=tuple(tally(kind, [check for _, _, check in checks]) for kind in KINDS),
         columns=tuple(Column(method, name) for method, _, name in columns),
         rows=tuple((section, tuple(_cell(section, *column[:2]) for column in columns)) for section in sections),
         failures=failures,
     )
 
 
-def headline(total: int, failed: int, scenes: int) -> str:
+def headline(total: int, failed: int, scenes: int, planes: int = 0) -> str:
     """The verdict in one line."""
-    where = f"on {scenes} scene{'s' if scenes != 1 else ''}"
+    counts = [f"{scenes} scene{'s' if scenes != 1 else ''}"] if scenes or not planes else []
+    counts += [f"{planes} plane problem{'s' if planes != 1 else ''}"] if planes else []
+    where = f"on {' and '.join(counts)}"
     if not total:
         return f"No check was made {where}"
     if failed:

@@ -1,0 +1,120 @@
+"""Plane problems on mesh files: which one is posed, what is checked, and how a file is refused."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from iga.iga_file import from_mesh, write_iga
+from iga.polygon import polygon_mesh
+from tests.iga.test_plane import ring, square_mesh
+from verify import plane_study
+from verify.cli import FAILED, REFUSED, main
+from verify.plane_errors import Errors
+from verify.plane_study import Level, lines, load_plate, settled, study
+from verify.refusal import Refusal
+
+FILES = Path(__file__).parents[3] / "shared" / "iga"
+
+
+@pytest.fixture
+def written(tmp_path, monkeypatch):
+    """A function that writes a mesh as a file and returns its path; refinement ends early."""
+    monkeypatch.setattr(plane_study, "MOST_UNKNOWNS", 3000)
+
+    def write(mesh, name="body"):
+        path = tmp_path / f"{name}.iga"
+        write_iga(from_mesh(mesh), path)
+        return str(path)
+
+    return write
+
+
+@pytest.mark.parametrize(
+    ("mesh", "hole"),
+    [
+        (lambda: ring(2, 0.7, 2.0), 0.7),
+        (lambda: moved(ring(2, 0.7, 2.0), [0.1, 0.0]), None),
+        (lambda: square_mesh(2), None),
+        (lambda: moved(square_mesh(2), [1.0, -0.5]), None),
+        (lambda: polygon_mesh(6, 2), None),
+    ],
+    ids=["ring", "ring elsewhere", "corner at the origin", "beside the origin", "around the origin"],
+)
+def test_a_mesh_around_a_circle_is_a_plate_with_a_hole(mesh, hole, written):
+    plate = load_plate(written(mesh()))
+    assert plate.hole == (None if hole is None else pytest.approx(hole, rel=1e-12))
+    assert plate.name == "body" and len(plate.boundary) == 1
+
+
+def moved(mesh, by):
+    return replace(mesh, P_AI=mesh.P_AI + by)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "problem"), [(lambda: ring(3), "Kirsch"), (lambda: polygon_mesh(5, 2), "smooth")], ids=["ring", "pentagon"]
+)
+def test_what_is_checked_holds(mesh, problem, written):
+    found = study(load_plate(written(mesh())))
+    assert problem in found.problem and found.order == 4
+    assert {check.name for check in found.checks} >= {"patch-test", "nested-energy", "exact-field"}
+    assert all(check.passed for check in found.checks)
+    assert [level.name for level in found.levels][:3] == ["the file", "Bezier elements", "each cut into 4"]
+    assert np.isnan(found.levels[1].rate) and found.levels[2].rate == pytest.approx(4.0, abs=0.7)
+    assert np.max(np.abs(found.found_euv - found.exact_euv)) < 0.2 * np.max(np.abs(found.exact_euv))
+    assert len(lines(found)) == 1 + len(found.levels)
+
+
+@pytest.mark.parametrize("name", ["plate_with_hole", "square_unstructured"])
+def test_real_files(name, monkeypatch):
+    path = FILES / f"{name}.iga"
+    if not path.exists():
+        pytest.skip(f"the file {path.name} is not at hand")
+    monkeypatch.setattr(plane_study, "MOST_UNKNOWNS", 20_000)
+    plate = load_plate(str(path))
+    found = study(plate)
+    assert (plate.hole is None) == (name == "square_unstructured")
+    assert all(check.passed for check in found.checks) and len(found.levels) == 3
+    assert found.levels[-1].errors.displacement < 2e-5
+
+
+def test_a_rate_is_judged_once_it_has_settled():
+    def levels(*rates):
+        return tuple(Level("", 1, 1, Errors(1.0, 1.0, 1.0), rate, rate) for rate in rates)
+
+    nan = float("nan")
+    assert settled(levels(nan, nan, 3.9, 4.0)) and not settled(levels(nan, nan, 3.3, 3.7))
+    assert not settled(levels(nan, nan, 4.0)) and not settled(levels(nan))
+
+
+def test_files_that_are_refused(written, tmp_path):
+    folded = square_mesh(2)
+    path = written(replace(folded, P_AI=folded.P_AI * np.where(np.arange(25) == 12, -3.0, 1.0)[:, None]), "folded")
+    broken = tmp_path / "broken.iga"
+    broken.write_text("type plane\nnodeN 3\n")
+    for source in (path, str(broken), str(tmp_path / "absent.iga")):
+        with pytest.raises(Refusal, match=Path(source).name):
+            load_plate(source)
+        assert main(["verify", source, "--out", str(tmp_path / "out")]) == REFUSED
+
+
+def test_verify_takes_files_and_counts_their_checks(written, tmp_path, monkeypatch, capsys):
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("jinja2")
+    path, out = written(polygon_mesh(3, 2), "triangle"), tmp_path / "out"
+    assert main(["verify", path, "--out", str(out)]) == 0
+    said, page = capsys.readouterr().out, (out / "report.html").read_text()
+    assert "triangle: smooth field" in said and "patch-test" in said
+    assert "on 1 plane problem" in page and 'id="plane-1-stress-t"' in page and "each cut into 4" in page
+    assert page.count("✓ holds") >= 3 and "dcb-czm1" not in page
+    monkeypatch.setattr(plane_study, "PATCH_TOLERANCE", 0.0)
+    assert main(["verify", path, "--out", str(out)]) == FAILED
+    assert "FAIL triangle" in capsys.readouterr().out
+    assert 'href="#plane-1-checks">triangle</a>' in (out / "report.html").read_text()
+
+
+def test_two_files_of_one_name_are_refused(written, tmp_path, capsys):
+    path = written(square_mesh(2))
+    assert main(["verify", path, path, "--out", str(tmp_path)]) == REFUSED
+    assert "different names, got 'body' more than once" in capsys.readouterr().err
