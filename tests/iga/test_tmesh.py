@@ -143,6 +143,17 @@ def test_a_line_between_ends_on_the_lines_it_is_given():
     assert not mesh.up_ij[4, :4].any() and not mesh.up_ij[4, -4:].any(), "nothing of it in the frame"
 
 
+def test_a_line_ends_on_the_copies_of_a_line_that_are_there():
+    """The line at 0.5 is double from 0.5 on: left of that lines end on the one, right of it on the second."""
+    mesh = with_line(tensor_grid(FOUR, FOUR), "horizontal", 0.5, (0.5, 1.0), times=2)
+    mirrored = TMesh(mesh.knots_i, 1.0 - mesh.knots_j[::-1], mesh.across_ij[:, ::-1], mesh.up_ij[:, ::-1])
+    for at, extra in ((0.125, 0), (0.625, 1)):
+        below = with_line(mesh, "vertical", at, (0.0, 0.5))
+        above = with_line(mirrored, "vertical", at, (0.5, 1.0))
+        for made in (below, above):
+            assert made.suitable and len(made.anchors) == len(mesh.anchors) + 4 + extra
+
+
 def test_a_band_is_cut_in_four_around_the_rectangle_only():
     mesh = band(tensor_grid(FOUR, FOUR), (0.3, 0.35, 0.15, 0.2), levels=2)
     widths = np.diff(rectangles(mesh)[:, :2], axis=1)
