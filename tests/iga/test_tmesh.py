@@ -151,7 +151,7 @@ def test_a_line_ends_on_the_copies_of_a_line_that_are_there():
         below = with_line(mesh, "vertical", at, (0.0, 0.5))
         above = with_line(mirrored, "vertical", at, (0.5, 1.0))
         for made in (below, above):
-            assert made.suitable and len(made.anchors) == len(mesh.anchors) + 4 + extra
+            assert len(made.anchors) == len(mesh.anchors) + 4 + extra
 
 
 def test_a_band_is_cut_in_four_around_the_rectangle_only():
