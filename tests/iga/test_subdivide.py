@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from random_tmeshes import suitable_tmeshes
 from tmeshes import half_fine
 
 from iga.basis import block_basis, chain_basis
@@ -114,6 +116,18 @@ def test_hanging_nodes_of_different_levels():
     cells = conforming(mesh)
     assert len(cells.block_c) == 18 and cells.lonely_ck.sum() == 2 * 6 + 2 * 3
     assert area(bezier_refined(mesh, 0)) == pytest.approx(3.0, rel=1e-14)
+
+
+@given(suitable_tmeshes())
+def test_cells_of_any_t_mesh_are_a_conforming_disk(mesh):
+    """Vertices, sides and cells add up by Euler's formula, and the space of the T-spline is still there."""
+    body = tspline_rectangle(mesh)
+    cells = conforming(body)
+    vertices, sides = cells.corner_ck.max() + 1, cells.side_ck.max() + 1
+    assert vertices - sides + len(cells.block_c) == 1
+    assert np.all(np.bincount(cells.side_ck.ravel()) <= 2)
+    refined = bezier_refined(body, 0)
+    assert area(refined) == pytest.approx(area(body), rel=1e-12)
 
 
 def _rows_of(counts):
