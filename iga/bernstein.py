@@ -85,4 +85,4 @@ def tensor(B_s: np.ndarray, B_t: np.ndarray) -> np.ndarray:
     (..., (p + 1)(q + 1)).
     """
     product = B_t[..., :, None] * B_s[..., None, :]
-    return product.reshape(product.shape[:-2] + (-1,))
+    return product.reshape(product.shape[:-2] + (B_t.shape[-1] * B_s.shape[-1],))

@@ -12,8 +12,9 @@ import numpy as np
 from iga.extraction import SIDES, ElementBlock
 from iga.iga_file import KINDS, Domain, IgaFile, NamedSet
 
-#: Highest degree of an element, and largest magnitude of a number: products of three stay finite.
-HIGHEST, LARGEST = 20, 1e100
+#: Highest degree of an element, largest magnitude of a number (Jacobians stay finite), and least Bezier weight relative
+#: to the weights of the element.
+HIGHEST, LARGEST, LEAST = 20, 1e30, 1e-12
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII).fullmatch
 _BREAK = re.compile(r"\r\n|\r|\n")
@@ -131,7 +132,7 @@ def _node(line: _Line, i: int, nodes: int) -> list[float]:
         raise line.refusal(f"node {i + 1} of {nodes}")
     values = line.numbers(line.words[1:], 4, "numbers x y z w of a node")
     if not values[3] >= 1 / LARGEST:
-        raise line.refusal("a weight > 0", line.words[4])
+        raise line.refusal(f"a weight > 0, {1 / LARGEST:g} or more", line.words[4])
     return values
 
 
@@ -163,9 +164,11 @@ def _grouped(records: Sequence[tuple], w_A: np.ndarray) -> tuple[tuple[ElementBl
     blocks, block_e, place_e = [], np.empty(len(records), dtype=int), np.empty(len(records), dtype=int)
     for number, ((degrees, _), e) in enumerate(members.items()):
         block = ElementBlock(degrees, np.array([records[i][3] for i in e]), np.array([records[i][2] for i in e]))
-        w_eb = np.einsum("ea,eab->eb", w_A[block.conn_ea], block.C_eab)
-        if not np.all(w_eb > 0):
-            wrong = int(np.argmax(np.any(~(w_eb > 0), axis=1)))
+        w_ea = w_A[block.conn_ea]
+        w_eb = np.einsum("ea,eab->eb", w_ea, block.C_eab)
+        positive_e = np.all(w_eb > LEAST * w_ea.max(1, keepdims=True), axis=1)
+        if not np.all(positive_e):
+            wrong = int(np.argmin(positive_e))
             text = f"coefficients that give element {e[wrong]} positive Bezier weights"
             raise records[e[wrong]][0].refusal(text, f"{w_eb[wrong].min():.6g}")
         blocks.append(block)

@@ -70,34 +70,47 @@ class Sides:
         return _merged(ends, self.size_k[k]).reshape(2, -1).T
 
     @cached_property
-    def paired_k(self) -> np.ndarray:
-        """Sides (n_k,) whose middle is the middle of another side, or that are a point and no side at all."""
-        middle = _merged(self._middles(np.arange(len(self.H_kbI))), self.size_k)
-        return (np.bincount(middle)[middle] > 1) | (self.length_k < NEAR * self.size_k)
+    def opposite(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Sides k (n,) and the sides l (n,) on which their middles lie, at the parameter t (n,) of l."""
+        number = np.arange(len(self.H_kbI))
+        middle = _merged(self.points(number, np.full(len(number), 0.5)), self.size_k)
+        paired = np.flatnonzero(np.bincount(middle)[middle] > 1)
+        order = paired[np.argsort(middle[paired], kind="stable")]
+        first = np.searchsorted(middle[order], middle[order])
+        last = np.searchsorted(middle[order], middle[order], side="right") - 1
+        here = np.arange(len(order))
+        partner = order[np.where(here < last, here + 1, first)]
+        lone = np.setdiff1d(number, paired)
+        point, side, t = self._on(self.points(lone, np.full(len(lone), 0.5)), self.size_k[lone], lone)
+        other = lone[point] != side
+        return (
+            np.concatenate([order, lone[point[other]]]),
+            np.concatenate([partner, side[other]]),
+            np.concatenate([np.full(len(order), 0.5), t[other]]),
+        )
 
     @cached_property
     def shared_k(self) -> np.ndarray:
-        """Sides (n_k,) with an element on the other hand, a longer or a shorter one maybe: not on the boundary."""
-        lone = np.flatnonzero(~self.paired_k)
-        point, side = self._on(self._middles(lone), self.size_k[lone], lone)
-        shared = self.paired_k.copy()
-        shared[lone[point[lone[point] != side]]] = True
+        """Sides (n_k,) with an element on the other hand, a longer or a shorter one maybe: not on the boundary.
+
+        A side that is a point is no boundary either.
+        """
+        shared = self.length_k < NEAR * self.size_k
+        shared[self.opposite[0]] = True
         return shared
 
     @cached_property
     def hanging(self) -> np.ndarray:
         """Pairs (n, 2) of a vertex and a side inside which it lies."""
-        lone = np.flatnonzero(~self.paired_k & self.shared_k)
-        vertex = self.vertex_kv[lone, 0]
-        point, side = self._on(self.points(lone, np.zeros(len(lone))), self.size_k[lone], lone)
+        k, side, t = self.opposite
+        odd = np.unique(np.concatenate([k[t != 0.5], side[t != 0.5]]))
+        vertex = self.vertex_kv[odd, 0]
+        point, side, _ = self._on(self.points(odd, np.zeros(len(odd))), self.size_k[odd], odd)
         inside = np.all(self.vertex_kv[side] != vertex[point][:, None], axis=1)
         return np.unique(np.stack([vertex[point], side], -1)[inside], axis=0)
 
-    def _middles(self, k_n: np.ndarray) -> np.ndarray:
-        return self.points(k_n, np.full(len(k_n), 0.5))
-
-    def _on(self, X_nI: np.ndarray, size_n: np.ndarray, k_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Which points (n, 3) lie on which of the sides k_m (m,): pairs of the number of a point and a side."""
+    def _on(self, X_nI: np.ndarray, size_n: np.ndarray, k_m: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Which points (n, 3) lie on which of the sides k_m (m,): number of the point, the side and its parameter."""
         hull_mbI = self.H_kbI[k_m, :, :2] / self.H_kbI[k_m, :, 3:]
         slack_mI = NEAR * self.size_k[k_m, None]
         low_mI, high_mI = hull_mbI.min(1) - slack_mI, hull_mbI.max(1) + slack_mI
@@ -108,7 +121,7 @@ class Sides:
         away = np.abs(self.points(side, t) - X_nI[point])
         size = np.minimum(size_n[point], self.size_k[side])
         on = (np.hypot(away[:, 0], away[:, 1]) < NEAR * size) & (away[:, 2] < NEAR)
-        return point[on], side[on]
+        return point[on], side[on], t[on]
 
 
 def element_sides(mesh: Mesh) -> Sides:

@@ -1,0 +1,85 @@
+"""How smooth the functions of a mesh are across the sides of its elements."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from iga.bernstein import bernstein_derivative, tensor
+from iga.extraction import HANDS, SIDES, Mesh
+from iga.neighbours import Sides
+
+#: Derivatives along s and t: the value, the gradient, the second derivatives ss, st, tt.
+ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+
+
+def jumps(mesh: Mesh, sides: Sides) -> tuple[np.ndarray, np.ndarray]:
+    """Jumps of the functions across the middle of every inner side.
+
+    Returns
+    -------
+    k_n : (n,) sides.
+    jump_no : (n, 3) largest jump of a value, of a gradient times the size of the element, and of a second derivative
+        in space times the size squared.
+    """
+    k, other, t = sides.opposite
+    if not k.size:
+        return k, np.empty((0, 3))
+    here = _derivatives(mesh, sides, k, np.full(len(k), 0.5))
+    there = _derivatives(mesh, sides, other, t)
+    size = np.minimum(sides.size_k[k], sides.size_k[other])
+    jump_dn = np.array([abs(a - b).max(axis=1).toarray().ravel() for a, b in zip(here, there, strict=True)])
+    return k, np.stack([jump_dn[0], size * jump_dn[1:3].max(0), size**2 * jump_dn[3:].max(0)], -1)
+
+
+def _derivatives(mesh: Mesh, sides: Sides, k_n: np.ndarray, t_n: np.ndarray) -> list[csr_array]:
+    """Values, X and Y derivatives, XX, XY and YY derivatives of all functions (n, n_A) at points of sides."""
+    rows, columns, values = [], [], []
+    st_nd = _parameters(sides.side_k[k_n], t_n)
+    for number, block in enumerate(mesh.blocks):
+        n = np.flatnonzero(sides.block_k[k_n] == number)
+        e, (p, q), (s, t) = sides.element_k[k_n[n]], block.degrees, st_nd[n].T
+        B_dnb = [tensor(bernstein_derivative(p, s, i), bernstein_derivative(q, t, j)) for i, j in ORDERS]
+        conn_na = block.conn_ea[e]
+        f_dna = np.einsum("nab,dnb->dna", block.C_eab[e], B_dnb) * mesh.w_A[conn_na]
+        values.append(_in_space(_rational(f_dna), mesh.P_AI[conn_na]).reshape(len(ORDERS), -1))
+        rows.append(np.repeat(n, conn_na.shape[1]))
+        columns.append(conn_na.ravel())
+    place = np.concatenate(rows), np.concatenate(columns)
+    shape = (len(k_n), len(mesh.P_AI))
+    return [csr_array((v, place), shape=shape) for v in np.concatenate(values, axis=1)]
+
+
+def _parameters(side_n: np.ndarray, t_n: np.ndarray) -> np.ndarray:
+    """Parameters (n, 2) in the element of points on its sides, which are walked with the element on the left."""
+    st_nd = np.empty((len(t_n), 2))
+    for name, (direction, value) in SIDES.items():
+        here = side_n == name
+        st_nd[here, direction] = value
+        st_nd[here, 1 - direction] = t_n[here] if HANDS[name] > 0 else 1.0 - t_n[here]
+    return st_nd
+
+
+def _rational(f_dna: np.ndarray) -> np.ndarray:
+    """Derivatives (6, n, a) of R = f / W from those of f = w N, W = sum f, by the quotient rule applied twice."""
+    f, f_s, f_t, f_ss, f_st, f_tt = f_dna
+    W, W_s, W_t, W_ss, W_st, W_tt = f_dna.sum(2, keepdims=True)
+    R = f / W
+    R_s, R_t = (f_s - R * W_s) / W, (f_t - R * W_t) / W
+    R_ss = (f_ss - 2.0 * R_s * W_s - R * W_ss) / W
+    R_st = (f_st - R_s * W_t - R_t * W_s - R * W_st) / W
+    R_tt = (f_tt - 2.0 * R_t * W_t - R * W_tt) / W
+    return np.stack([R, R_s, R_t, R_ss, R_st, R_tt])
+
+
+def _in_space(R_dna: np.ndarray, P_naI: np.ndarray) -> np.ndarray:
+    """The same derivatives with respect to X and Y: ``R_XX = J^-T (R_ss - R_X . X_ss) J^-1``."""
+    X_dnI = np.einsum("dna,naI->dnI", R_dna, P_naI)
+    inverse_nsI = np.linalg.inv(np.stack([X_dnI[1], X_dnI[2]], -1))
+    R_X_naI = np.einsum("sna,nsI->naI", R_dna[1:3], inverse_nsI)
+    second_dna = R_dna[3:] - np.einsum("naI,dnI->dna", R_X_naI, X_dnI[3:])
+    square_nast = np.stack([second_dna[[0, 1]], second_dna[[1, 2]]], -1).transpose(1, 2, 0, 3)
+    R_XX_naIJ = np.einsum("nast,nsI,ntJ->naIJ", square_nast, inverse_nsI, inverse_nsI)
+    return np.stack(
+        [R_dna[0], *np.moveaxis(R_X_naI, 2, 0), *(R_XX_naIJ[..., I, J] for I, J in ((0, 0), (0, 1), (1, 1)))]
+    )

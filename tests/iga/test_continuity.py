@@ -1,0 +1,90 @@
+"""How smooth functions are across the sides of elements, hanging nodes included."""
+
+import numpy as np
+import pytest
+from iga_files import SMALL, real, small
+
+from iga.bspline import KnotVector, open_knots
+from iga.continuity import jumps
+from iga.iga_file import mesh
+from iga.iga_read import read_iga
+from iga.lagrange import lagrange_rectangle
+from iga.neighbours import element_sides
+from iga.nurbs import nurbs_mesh
+from iga.tmesh_lines import tensor_grid, with_lines
+from iga.tspline import tspline_rectangle
+
+ZERO = 1e-11
+
+
+def curved(kv_s, kv_t, rng):
+    """A surface of smooth functions with weights whose sides are curves."""
+    n_s, n_t = kv_s.functions, kv_t.functions
+    X, Y = np.meshgrid(kv_s.greville, kv_t.greville)
+    P_AI = np.stack([X + 0.1 * np.sin(Y), Y + 0.1 * np.cos(X)], -1).reshape(-1, 2)
+    return nurbs_mesh(kv_s, kv_t, P_AI, 0.8 + 0.4 * rng.random(n_s * n_t))
+
+
+def test_smooth_splines(rng):
+    kv = open_knots(np.linspace(0.0, 1.0, 5), 3)
+    body = curved(kv, kv, rng)
+    k, jump_no = jumps(body, element_sides(body))
+    assert len(k) == 2 * 2 * 3 * 4
+    assert jump_no.max() < ZERO
+
+
+@pytest.mark.parametrize(("multiplicity", "order"), [(1, 2), (2, 1), (3, 0)])
+def test_repeated_knots(multiplicity, order, rng):
+    """A knot m times in a cubic: continuous up to the derivative 3 - m, and no further."""
+    kv_s = KnotVector(3, np.array([0.0] * 4 + [0.4] * multiplicity + [1.0] * 4))
+    body = curved(kv_s, open_knots(np.array([0.0, 1.0]), 3), rng)
+    k, jump_no = jumps(body, element_sides(body))
+    assert len(k) == 2
+    assert jump_no[:, : order + 1].max() < ZERO
+    assert order == 2 or jump_no[:, order + 1].min() > 0.1
+
+
+def test_lagrange_is_continuous_only():
+    body = lagrange_rectangle(np.linspace(0.0, 2.0, 4), np.linspace(0.0, 1.0, 3), 2)
+    _, jump_no = jumps(body, element_sides(body))
+    assert jump_no[:, 0].max() < ZERO and jump_no[:, 1].min() > 1.0
+
+
+def test_across_hanging_nodes():
+    """A T-spline is C2 across its T-junctions too."""
+    breaks = np.linspace(0.0, 1.0, 9)
+    line = np.array([(0.4375, 0.375, 0.625)])
+    body = tspline_rectangle(with_lines(tensor_grid(breaks, breaks), line, np.empty((0, 3))))
+    sides = element_sides(body)
+    _, jump_no = jumps(body, sides)
+    assert len(sides.hanging) == 2 and jump_no.max() < ZERO
+
+
+def test_bilinear_elements_with_a_hanging_node(tmp_path):
+    body = mesh(read_iga(small(tmp_path, SMALL)))
+    _, jump_no = jumps(body, element_sides(body))
+    assert jump_no[:, 0].max() < ZERO and jump_no[:, 1].min() > 0.1
+
+
+def test_one_element_has_no_inner_side():
+    body = lagrange_rectangle(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 2)
+    k, jump_no = jumps(body, element_sides(body))
+    assert k.size == 0 and jump_no.shape == (0, 3)
+
+
+@pytest.mark.parametrize(
+    ("name", "C0", "C1"),
+    [("arch_nurbs", 0, 0), ("arch_tsplines", 0, 0), ("plate_with_hole", 12, 0), ("square_structured", 0, 0)]
+    + [("square_unstructured", 0, 24)],
+)
+def test_real_files(name, C0, C1):
+    """The plate has a C0 diagonal, the unstructured square is C1 around its extraordinary points, all else is C2."""
+    body = mesh(read_iga(real(name)))
+    sides = element_sides(body)
+    k, jump_no = jumps(body, sides)
+    _, other, _ = sides.opposite
+    rough = np.any(jump_no > ZERO, axis=1) & (k < other)
+    assert jump_no[:, 0].max() < ZERO
+    assert np.count_nonzero(jump_no[rough, 1] > 1.0) == C0
+    assert np.count_nonzero((jump_no[rough, 1] < ZERO) & (jump_no[rough, 2] > 0.02)) == C1
+    assert np.count_nonzero(rough) == C0 + C1
