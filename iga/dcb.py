@@ -13,7 +13,7 @@ from iga.body import Body, bodies, mean_row, point_row
 from iga.bond import bond, control_points, probe, slave_number
 from iga.material import orthotropic
 from iga.pose import Pose
-from iga.problem import Debonding
+from iga.problem import Debonding, smooth
 from iga.solid import joined
 from iga.solve import Solution, run
 from iga.specimen import Specimen
@@ -52,14 +52,16 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
     ``window`` is the fine part of an adaptive mesh, the first one if left out.
     """
     with phase("mesh"):
+        window = window or (first_window(problem) if follows(problem) else None)
         drawn = _tmeshes(problem, window)
-        meshes = tuple(tspline_rectangle(mesh) for mesh in drawn) or arm_meshes(problem)
+        meshes = problem.meshes or tuple(tspline_rectangle(mesh) for mesh in drawn) or arm_meshes(problem)
+        meshes = meshes[:1] if problem.symmetry else meshes
     with phase("basis"):
         pose, extent = problem.pose, (problem.precrack, problem.length)
         D = orthotropic(problem.E1, problem.E2, problem.G12, problem.nu12, problem.plane)
         # a mirror image that is not modelled counts in the width, so that forces and energies are those of the whole
         copies = 2.0 if problem.symmetry else 1.0
-        arms = bodies(meshes, (D,) * len(meshes), pose, copies * problem.width, problem.basis != "lagrange")
+        arms = bodies(meshes, (D,) * len(meshes), pose, copies * problem.width, smooth(problem))
         P_AI = control_points(arms)
         across = [mean_row(arm.faces["left"], pose.axes_kI[1], P_AI.size) for arm in arms]
         springs_rd, spring_r = _supports(problem, arms, pose)
@@ -84,7 +86,7 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
             upper_is_slave=slave_number(problem, arms) == 0,
             copies=copies,
             probe=probe(problem, arms, extent),
-            path=(problem.precrack, crack_path(problem) if window is None else window.end),
+            path=(problem.precrack, _end_of_path(problem, window)),
             tmeshes=drawn,
         )
 
@@ -108,18 +110,30 @@ def solve(
     ------
     ValueError : a problem for which there is no mesh or no material.
     """
-    if not problem.adaptive or problem.basis != "tspline":
+    if not follows(problem):
         return run(problem, build(problem, phase), on_step, phase)
     window = first_window(problem)
     follower = Follower(problem, window, lambda window: build(problem, phase, window), phase)
     return run(problem, build(problem, phase, window), on_step, phase, follower)
 
 
+def follows(problem: Problem) -> bool:
+    """Whether the mesh follows the process zone."""
+    return problem.adaptive and problem.basis == "tspline" and not problem.meshes
+
+
+def _end_of_path(problem: Problem, window: Window | None) -> float:
+    """Where the mesh for the crack ends."""
+    if problem.meshes:
+        return problem.length
+    return crack_path(problem) if window is None else window.end
+
+
 def _tmeshes(problem: Problem, window: Window | None) -> tuple[TMesh, ...]:
     """T-meshes of the arms, none where the basis is another."""
-    if problem.basis != "tspline":
+    if problem.basis != "tspline" or problem.meshes:
         return ()
-    drawn = adapted_tmeshes(problem, window or first_window(problem)) if problem.adaptive else tmeshes(problem)
+    drawn = tmeshes(problem) if window is None else adapted_tmeshes(problem, window)
     return drawn[:1] if problem.symmetry else drawn
 
 

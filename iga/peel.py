@@ -12,7 +12,7 @@ from iga.bond import bond, control_points, probe, slave_number
 from iga.material import orthotropic
 from iga.peel_meshes import meshes, tmeshes
 from iga.pose import Pose
-from iga.problem import Debonding
+from iga.problem import Debonding, smooth
 from iga.solid import joined
 from iga.solve import Solution, run
 from iga.specimen import Specimen
@@ -51,13 +51,13 @@ class Problem(Debonding):
 def build(problem: Problem, phase: Phase = untimed) -> Specimen:
     """Discrete system of a problem with all that is needed to read results from its states."""
     with phase("mesh"):
-        drawn = tmeshes(problem) if problem.basis == "tspline" else ()
-        both = tuple(tspline_rectangle(mesh) for mesh in drawn) or meshes(problem)
+        drawn = tmeshes(problem) if problem.basis == "tspline" and not problem.meshes else ()
+        both = problem.meshes or tuple(tspline_rectangle(mesh) for mesh in drawn) or meshes(problem)
     with phase("basis"):
         pose, extent = problem.pose, (problem.bond_length, 0.0)
         moduli = (problem.strip, problem.substrate)
         D = tuple(orthotropic(m.E1, m.E2, m.G12, m.nu12, problem.plane) for m in moduli)
-        strip, substrate = pair = bodies(both, D, pose, problem.width, problem.basis != "lagrange")
+        strip, substrate = pair = bodies(both, D, pose, problem.width, smooth(problem))
         P_AI = control_points(pair)
         springs_rd, spring_r = _support(problem, strip, pose, P_AI.size)
         system = System(

@@ -74,3 +74,11 @@ def from_behind(mesh: Mesh) -> Mesh:
         for name, chain in mesh.chains.items()
     }
     return replace(mesh, blocks=tuple(blocks), chains=chains)
+
+
+def upside_down(mesh: Mesh) -> Mesh:
+    """The mirror image of a body in Y = 0; what was its bottom is its top."""
+    back = from_behind(mesh)
+    other = {"bottom": "top", "top": "bottom"}
+    chains = {other.get(name, name): chain for name, chain in back.chains.items()}
+    return replace(back, P_AI=back.P_AI * [1.0, -1.0], chains=chains)

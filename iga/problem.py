@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from iga.cohesive import BilinearLaw
+from iga.extraction import Mesh
 from iga.pose import Pose
 
 
@@ -13,7 +14,8 @@ class Debonding:
     """Common part of a problem in plain numbers, any consistent units.
 
     ``opening`` is the programme of the loaded faces' mean displacement. ``steps`` is the number of steps asked for over
-    the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed at, never exceeded.
+    the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed at.
+    ``meshes`` are those of the bodies, upper first, in the specimen's own frame; made by the solver where left out.
 
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
     body, "upper" or "lower", whose points are projected. The specimen is reflected X -> -X where ``mirror`` is set,
@@ -34,6 +36,7 @@ class Debonding:
     basis: str = "nurbs"
     degree: int = 3
     dofs: int = 1956
+    meshes: tuple[Mesh, ...] = ()
     mismatch: float = 1.0
     slave: str = "upper"
     interface_rule: str = "gauss"
@@ -51,3 +54,8 @@ class Debonding:
     @property
     def pose(self) -> Pose:
         return Pose(self.angle, self.mirror, self.shift)
+
+
+def smooth(problem: Debonding) -> bool:
+    """Whether the basis is more than continuous along the specimen; of a mesh that is given nothing is known."""
+    return problem.basis != "lagrange" and not problem.meshes

@@ -10,6 +10,9 @@ import numpy as np
 from iga.bernstein import bernstein_jet
 from iga.extraction import SIDES, Chain, Mesh
 
+#: A coefficient of an extraction operator below this is none.
+NOTHING = 1e-13
+
 
 @dataclass(frozen=True)
 class Surface:
@@ -76,7 +79,7 @@ def surface(mesh: Mesh, chain: Chain, first: int) -> Surface:
     for here, number, side in chain.parts():
         block, e = mesh.blocks[number], chain.element_c[here]
         trace_cab = block.C_eab[e][:, :, _on_side(block.degrees, *SIDES[side])]
-        alive = np.any(trace_cab != 0.0, axis=2)
+        alive = np.any(np.abs(trace_cab) > NOTHING, axis=2)  # files have rounding where nothing should be
         if not np.all(alive.sum(1) == p + 1):
             raise ValueError(f"a side of degree {p} must carry {p + 1} functions, got {sorted(set(alive.sum(1)))}")
         row, a = np.nonzero(alive)

@@ -83,6 +83,8 @@ def require(scene: Scene, method: str) -> None:
     mesh, programme = scene.discretization, scene.load.opening
     if method == "tspline" and mesh.degree != 3:
         raise Unsuitable(f"discretization.degree: must be 3 for tspline, got {mesh.degree}")
+    if method == "tspline" and scene.specimen.mesh:
+        _given(scene, method)
     least = least_dofs(method, mesh.degree)
     if mesh.dofs < least:
         text = f"must be >= {least} for {method} of degree {mesh.degree}, got {mesh.dofs}"
@@ -162,6 +164,7 @@ def _iga_keys(scene: Scene, method: str) -> dict[str, Any]:
     mesh, pose = scene.discretization, scene.pose
     return {
         "basis": method,
+        "meshes": _given(scene, method),
         "degree": mesh.degree,
         "dofs": mesh.dofs,
         "interface_rule": mesh.interface_rule,
@@ -176,12 +179,21 @@ def _iga_keys(scene: Scene, method: str) -> dict[str, Any]:
     }
 
 
+def _given(scene: Scene, method: str) -> tuple:
+    """The meshes of the files that a scene names, for T-splines alone: they are what such files hold."""
+    if method != "tspline" or not scene.specimen.mesh:
+        return ()
+    from verify.given_meshes import given_meshes
+
+    return given_meshes(scene)
+
+
 def iga_problem(scene: Scene, method: str) -> tuple[ModuleType, Any]:
     """The module of ``iga`` that solves a scene, and the problem that it is given."""
     if scene.specimen.kind == "peel":
         from iga import peel
 
-        specimen = scene.specimen.model_dump(exclude={"kind", "width", "plane"})
+        specimen = scene.specimen.model_dump(exclude={"kind", "width", "plane", "mesh"})
         moduli = {name: peel.Moduli(**elastic_constants(getattr(scene, name))) for name in ("strip", "substrate")}
         keys = specimen | moduli | _common_keys(scene, method) | _iga_keys(scene, method)
         return peel, peel.Problem(**_taken(peel.Problem, keys))

@@ -77,7 +77,7 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
     """
     source = str(name_or_path)
     path = _FOLDER / f"{source}.toml" if source in packaged_scenes() else Path(name_or_path)
-    return parse_scene({"name": _as_name(path.stem), **_read(path, source)}, overrides, source)
+    return parse_scene({"name": _as_name(path.stem), **_beside(path, _read(path, source))}, overrides, source)
 
 
 def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: str = "scene") -> Scene:
@@ -114,6 +114,18 @@ def _read(path: Path, source: str) -> dict[str, Any]:
         raise SceneError(_file_and_line(source, text, str(error)), [f"is not TOML: {error}"]) from None
     except (ValueError, RecursionError) as error:  # an integer of thousands of digits, arrays nested without end
         raise SceneError(source, [f"is not a usable TOML file: {str(error)[:100]}"]) from None
+
+
+def _beside(path: Path, raw: dict[str, Any]) -> dict[str, Any]:
+    """The scene with its mesh files found from where the scene file is."""
+    specimen = raw.get("specimen")
+    if not isinstance(specimen, Mapping) or "mesh" not in specimen:
+        return raw
+    names = specimen["mesh"]
+    found = [
+        str(path.parent / name) for name in ([names] if isinstance(names, str) else names) if isinstance(name, str)
+    ]
+    return {**raw, "specimen": {**specimen, "mesh": found}} if isinstance(names, str | list) and found else raw
 
 
 def _file_and_line(source: str, text: str, message: str) -> str:

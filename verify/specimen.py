@@ -5,13 +5,25 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Literal, TypeAlias
 
-from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
 from verify.section import Positive, Section, refuse
 
 
+def _as_names(value: object) -> object:
+    """One name is a list of one."""
+    return (value,) if isinstance(value, str) else tuple(value) if isinstance(value, list) else value
+
+
+Files: TypeAlias = Annotated[tuple[Annotated[str, Field(min_length=1)], ...], BeforeValidator(_as_names)]
+
+
 class Dcb(Section):
-    """Double cantilever beam: two arms, bonded on X in [precrack, length], loaded at X = 0."""
+    """Double cantilever beam: two arms, bonded on X in [precrack, length], loaded at X = 0.
+
+    ``mesh``: `.iga` files of the upper and the lower arm for T-splines; one stands for both, the lower being its mirror
+    image.
+    """
 
     kind: Literal["dcb"]
     length: Positive
@@ -19,6 +31,7 @@ class Dcb(Section):
     precrack: Positive
     width: Positive = 1.0
     plane: Literal["stress", "strain"] = "stress"
+    mesh: Files = Field(default=(), max_length=2)
 
     @field_validator("precrack")
     @classmethod
@@ -50,6 +63,14 @@ class Peel(Section):
     bond_length: Positive
     width: Positive = 1.0
     plane: Literal["stress", "strain"] = "stress"
+    mesh: Files = ()  # `.iga` files of strip and substrate, for T-splines
+
+    @field_validator("mesh")
+    @classmethod
+    def _both_meshes(cls, mesh: tuple[str, ...]) -> tuple[str, ...]:
+        if len(mesh) not in (0, 2):
+            raise refuse("two files, of strip and substrate", ((), list(mesh)))
+        return mesh
 
     @field_validator("bond_length")
     @classmethod
