@@ -18,7 +18,8 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
     """Interface profile, ordered along the specimen, and one grid of samples an element, in the specimen's own frame.
 
     Keys: opening, load; s_q, gap_q, traction_q, damage_q (n_q,); X_euvi, u_euvi (n_e, k+1, k+1, 2) and stress_euv
-    (n_e, k+1, k+1), the Cauchy stress along it, with k = `INTERVALS`.
+    (n_e, k+1, k+1), the Cauchy stress along it, with k = `INTERVALS`; of T-splines the edges line_nki (n, 2, 2)
+    and T-junctions junction_ni (n, 2) of the T-meshes.
     """
     system, state, response = specimen.system, point.state, point.response
     interface = system.interface
@@ -36,6 +37,19 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
         "X_euvi": X,
         "u_euvi": u,
         "stress_euv": stress,
+        **_tmesh(specimen),
+    }
+
+
+def _tmesh(specimen: Specimen) -> dict[str, np.ndarray]:
+    """Edges and T-junctions of the T-meshes, where there are some."""
+    if not specimen.tmeshes:
+        return {}
+    return {
+        "line_nki": np.concatenate([mesh.edges() for mesh in specimen.tmeshes]),
+        "junction_ni": np.concatenate(
+            [np.stack([m.knots_i[m.junctions[:, 0]], m.knots_j[m.junctions[:, 1]]], -1) for m in specimen.tmeshes]
+        ),
     }
 
 

@@ -92,6 +92,15 @@ class TMesh:
         three = edges.sum(1) == 3
         return np.stack([i, j, np.argmin(edges, axis=1)], -1)[three]
 
+    def edges(self) -> np.ndarray:
+        """Edges (n, 2, 2) with length, from one index line to the next, as their end points in knot values."""
+        i, j = np.nonzero(self.across_ij[:, FRAME:-FRAME] & (np.diff(self.knots_i) > 0.0)[:, None])
+        k, m = np.nonzero(self.up_ij[FRAME:-FRAME] & (np.diff(self.knots_j) > 0.0))
+        j, k = j + FRAME, k + FRAME
+        s = np.stack([np.append(self.knots_i[i], self.knots_i[k]), np.append(self.knots_i[i + 1], self.knots_i[k])], -1)
+        t = np.stack([np.append(self.knots_j[j], self.knots_j[m]), np.append(self.knots_j[j], self.knots_j[m + 1])], -1)
+        return np.unique(np.stack([s, t], -1), axis=0)
+
     def extensions(self) -> tuple[np.ndarray, np.ndarray]:
         """Extensions (n, 3) of the T-junctions, horizontal ones (i0, i1, j) and vertical ones (j0, j1, i).
 

@@ -97,7 +97,7 @@ def read_fields(path: Path) -> tuple[Snapshot, ...]:
     names = [field.name for field in fields(Snapshot)]
     with np.load(path) as arrays:
         count = len({key.split(".")[0] for key in arrays})
-        tables = [{name: arrays[f"{i}.{name}"] for name in names} for i in range(count)]
+        tables = [{name: arrays[key] for name in names if (key := f"{i}.{name}") in arrays} for i in range(count)]
     scalars = ("opening", "load")
     return tuple(Snapshot(**{k: float(v) if k in scalars else v for k, v in table.items()}) for table in tables)
 

@@ -7,7 +7,7 @@ All forces are for the whole specimen (width included); lengths, forces and ener
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -60,6 +60,8 @@ class Snapshot:
     X_euvi: np.ndarray  # (n_e, k+1, k+1, 2) reference positions
     u_euvi: np.ndarray  # (n_e, k+1, k+1, 2) displacements
     stress_euv: np.ndarray  # (n_e, k+1, k+1) Cauchy stress sigma_xx
+    line_nki: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 2)))  # edges of the T-mesh, where there is one
+    junction_ni: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))  # T-junctions
 
 
 @dataclass(frozen=True)
