@@ -42,7 +42,7 @@ def as_stated(case: Case) -> Measures:
     size = {"tspline": 0.01, "nurbs": 0.03, "lagrange": 0.1}[case.basis]
     size *= {280: 1.0, 1956: 0.03}[case.dofs]
     size *= 2.0 if case.law == "dcb-czm2" else 1.0
-    size *= 1.0 if case.basis == "tspline" or case.points == 2 else 0.3
+    size *= 1.0 if case.basis == "tspline" or case.points == 2 else 0.5
     return {"error": size, "oscillation": 0.8 * size, "bump": size}
 
 
@@ -84,7 +84,7 @@ def test_all_are_confirmed_where_all_hold():
     assert {s.text: s.verdict for s in statements.statements(world())} == {
         s.text: "confirmed" for s in statements.statements(world())
     }
-    assert len(statements.statements(world())) == 15
+    assert len(statements.statements(world())) == 19
 
 
 @pytest.mark.parametrize(
@@ -94,6 +94,10 @@ def test_all_are_confirmed_where_all_hold():
         ("T-splines are smoother", times(100, "oscillation", basis="tspline")),
         ("NURBS are closer", times(100, "error", basis="nurbs")),
         ("NURBS are smoother", times(100, "oscillation", basis="nurbs")),
+        ("T-splines stay closer", times(100, "error", basis="tspline")),
+        ("T-splines stay smoother", times(100, "oscillation", basis="tspline")),
+        ("NURBS stay closer", times(100, "error", basis="nurbs")),
+        ("NURBS stay smoother", times(100, "oscillation", basis="nurbs")),
         ("More strength", times(0.1, "oscillation", law="dcb-czm2")),
         ("points make NURBS closer", times(10, "error", basis="nurbs", points=8)),
         ("points make NURBS smoother", times(10, "oscillation", basis="nurbs", points=8)),
@@ -117,6 +121,12 @@ def test_one_comparison_of_four_makes_it_in_part_and_is_counted():
     assert found.verdict == "confirmed in part" and found.extent.startswith("3 of 4; ")
     assert [c.subject for c in found.comparisons if not c.holds] == ["CZM 1, 280 unknowns"]
     assert "from 0.0333 to 3.33" in found.extent and "3.33," in found.extent
+
+
+def test_a_basis_that_is_overtaken_with_more_points_does_not_stay_ahead():
+    overtaken = world(times(0.1, "error", basis="nurbs", points=8))
+    assert verdict(overtaken, "T-splines are closer") == "confirmed"
+    assert verdict(overtaken, "T-splines stay closer") == "confirmed in part"
 
 
 def test_the_zone_is_counted_in_elements():
@@ -172,7 +182,7 @@ def test_the_page_shows_every_run_statement_and_figure(tmp_path):
     assert text.count('<svg class="plot"') == 3 * 6 + 2 + 4
     assert all(f"{t.case.law}/{t.case.variant}" in text for t in study.trials)
     assert all(s.text in text and s.extent in text for s in statements.statements(study))
-    assert "Of 15 statements 15 confirmed; 48 of 48 runs came to their end" in text
+    assert "Of 19 statements 19 confirmed; 48 of 48 runs came to their end" in text
     assert text.count('<a href="#figures">') == 1 and "Runs that stopped" not in text
 
 
@@ -211,7 +221,7 @@ def small(tmp_path_factory) -> tuple[Study, dict[Job, Outcome]]:
     """NURBS on the coarse mesh with 2 and 8 points, held against one-arm runs that are just fine enough."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(plans, "dolfinx_installed", lambda: False)
-        patch.setattr(plans, "STAND_IN", (1000, 1400))
+        patch.setattr(plans, "STAND_IN", (700, 1400))
         scene = load_scene("dcb-czm2")
         plan = planned([("dcb-czm2", scene)], ("nurbs",), (280,), (2, 8), (1e5,))
         outcomes = {o.job: o for o in run_all(list(plan.jobs), tmp_path_factory.mktemp("paper"), 2)}
@@ -223,10 +233,10 @@ def test_a_small_study_for_real(small):
     assert all(trial.complete for trial in study.trials) and len(outcomes) == 4
     two, eight = (study.trial(Case("nurbs", "dcb-czm2", 280, n)) for n in (2, 8))
     known = study.references["dcb-czm2", 1e5]
-    assert 0.0 < known.error < 0.005 and "NURBS on one arm" in known.label
-    assert 0.005 < eight.error < two.error < 0.04 and eight.oscillation < two.oscillation
-    assert abs(two.peak) < 0.02 and two.seconds > 0.0
-    assert 0.5 < study.zones["nurbs", "dcb-czm2", 280] < 1.0, "the mesh is coarser than the zone of CZM 2"
+    assert 0.0 < known.error < 0.02 and "NURBS on one arm" in known.label
+    assert 0.002 < eight.error < two.error < 0.1 and eight.oscillation < two.oscillation
+    assert abs(eight.peak) < 0.02 and two.seconds > 0.0
+    assert 0.5 < study.zones["nurbs", "dcb-czm2", 280] < 3.0, "the mesh hardly resolves the zone of CZM 2"
     assert verdict(study, "points make NURBS closer") == "confirmed"
     assert verdict(study, "T-splines are closer") == verdict(study, "More strength") == "not tested"
 

@@ -38,7 +38,7 @@ def _all(study: Study) -> Iterator[Statement]:
     yield _zone(study)
     for better, worse in pairwise(NAMES):
         for measure in MEASURES:
-            yield _ranking(study, better, worse, measure)
+            yield from _ranking(study, better, worse, measure)
     yield _strength(study)
     for basis in list(NAMES)[1:]:
         for measure in MEASURES:
@@ -50,18 +50,23 @@ def _all(study: Study) -> Iterator[Statement]:
     yield _coincide(study)
 
 
-def _ranking(study: Study, better: str, worse: str, measure: str) -> Statement:
+def _ranking(study: Study, better: str, worse: str, measure: str) -> Iterator[Statement]:
+    """As in Figures 6 and 7, and over all runs that Figure 8 and the other penalty add."""
     name, adjective = MEASURES[measure]
-    return Statement(
-        f"{NAMES[better]} are {adjective} than {NAMES[worse]} at equal unknowns",
-        f"{name} of {NAMES[worse]} over that of {NAMES[better]}",
-        "ratio",
-        tuple(
-            ratio(study, case, replace(case, basis=worse), measure, _where(case, "law", "dofs"))
-            for case in _cases(study, basis=better)
-            if case.of_the_paper
-        ),
-    )
+    few, many = _ends(study, "points")
+    ends = {True: f"than {NAMES[worse]} at equal unknowns", False: f"than {NAMES[worse]} with {few} to {many} points"}
+    for narrow, verb in ((True, "are"), (False, "stay")):
+        names = ("law", "dofs") if narrow else ("law", "dofs", "points", "penalty")
+        yield Statement(
+            f"{NAMES[better]} {verb} {adjective} {ends[narrow]}",
+            f"{name} of {NAMES[worse]} over that of {NAMES[better]}",
+            "ratio",
+            tuple(
+                ratio(study, case, replace(case, basis=worse), measure, _where(case, *names))
+                for case in _cases(study, basis=better)
+                if case.of_the_paper or not narrow
+            ),
+        )
 
 
 def _strength(study: Study) -> Statement:
