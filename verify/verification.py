@@ -17,6 +17,7 @@ from verify.paper import plan as figures
 from verify.paper import statements
 from verify.paper.study import Study as Figures
 from verify.paper.study import measured
+from verify.plane_rates import Convergence, rate_checks, rates
 from verify.plane_study import PlaneStudy, Plate
 from verify.plane_study import lines as plane_lines
 from verify.plane_study import study as plane_study
@@ -45,7 +46,8 @@ def verify(
     ----------
     scenes : each with the name or path that it was loaded from
     jobs : runs at a time
-    full : finer and coarser meshes as well, the study of the interface rules, and the figures of the paper
+    full : finer and coarser meshes as well, the study of the interface rules, the figures of the paper, and the
+        rates of the bases in plane elasticity
     plates : meshes from CAD, on which plane problems with exact solutions are solved
     """
     plan = [job for source, scene in scenes for job in planned(source, scene, full)]
@@ -57,9 +59,11 @@ def verify(
     page, quadrature = out / "report.html", study() if full else None
     paper = measured(more, outcomes) if full else None
     planes = tuple(plane_study(plate) for plate in plates)
-    _write_report(reports, page, quadrature, paper, planes)
+    bases = rates() if full else ()
+    _write_report(reports, page, quadrature, paper, planes, bases)
     checks = [(report.scene.name, check) for report in reports for check in report.checks]
     checks += [(found.name, check) for found in planes for check in found.checks]
+    checks += [("plane elasticity", check) for check in rate_checks(bases)]
     tables = [line for found in planes for line in [*plane_lines(found), *check_table(found.checks), ""]]
     print("\n".join([*overview(reports), *tables, *sequences(reports), *failures(checks)]))
     if quadrature is not None:
@@ -138,6 +142,7 @@ def _write_report(
     quadrature: Study | None,
     paper: Figures | None,
     planes: tuple[PlaneStudy, ...],
+    bases: tuple[Convergence, ...],
 ) -> None:
     """The page; without the packages that it needs the checks are still worth printing."""
     try:
@@ -145,4 +150,4 @@ def _write_report(
     except ImportError as error:
         print(f"debond: no report: {error.name} is missing; pip install 'debond[report]'", file=sys.stderr)
         return
-    write(reports, page, environment(), quadrature, paper, planes)
+    write(reports, page, environment(), quadrature, paper, planes, bases)

@@ -9,9 +9,10 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from verify.paper.study import Study as Figures
+from verify.plane_rates import Convergence
 from verify.plane_study import PlaneStudy
 from verify.quadrature_study import Study
-from verify.report import paper_section, plane, study
+from verify.report import paper_section, plane, plane_rates, study
 from verify.report.section import section
 from verify.report.style import custom_properties
 from verify.report.summary import summarise
@@ -30,6 +31,7 @@ def write(
     quadrature: Study | None = None,
     paper: Figures | None = None,
     planes: Sequence[PlaneStudy] = (),
+    rates: tuple[Convergence, ...] = (),
 ) -> None:
     """Write the page.
 
@@ -41,9 +43,11 @@ def write(
     quadrature : the study of the interface rules, where it was made
     paper : the runs behind the figures of the paper, where they were made
     planes : the studies of plane problems, one a mesh file
+    rates : the convergence of the bases in plane elasticity, where it was measured
     """
     sections = tuple(section(report, f"scene-{i + 1}") for i, report in enumerate(reports))
     plane_sections = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(planes))
+    rates_section = plane_rates.section(rates, "rates") if rates else None
     jinja = Environment(
         loader=PackageLoader("verify.report", "."),
         autoescape=True,
@@ -55,8 +59,9 @@ def write(
     jinja.filters |= {"number": number, "symbols": symbols}
     page = jinja.get_template("page.html.j2").render(
         sections=sections,
-        summary=summarise(sections, plane_sections),
+        summary=summarise(sections, (*plane_sections, *filter(None, [rates_section]))),
         planes=plane_sections,
+        rates=rates_section,
         quadrature=None if quadrature is None else study.section(quadrature, "quadrature"),
         paper=None if paper is None else paper_section.section(paper, "figures"),
         environment=dict(environment),

@@ -13,6 +13,7 @@ from verify.report.text import percent, seconds, span
 
 if TYPE_CHECKING:
     from verify.report.plane import PlaneSection
+    from verify.report.plane_rates import RatesSection
     from verify.report.section import Section
     from verify.verdict import Check
 
@@ -63,7 +64,7 @@ class Summary:
     failures: tuple[tuple[str, str, Check], ...]  # anchor and name of the section
 
 
-def summarise(sections: Sequence[Section], planes: Sequence[PlaneSection] = ()) -> Summary:
+def summarise(sections: Sequence[Section], planes: Sequence[PlaneSection | RatesSection] = ()) -> Summary:
     """Everything above the first scene."""
     checks = [(s.anchor, s.report.scene.name, check) for s in sections for check in s.report.checks]
     checks += [(p.anchor, p.name, check) for p in planes for check in p.checks]
