@@ -12,7 +12,7 @@ from iga.bezier import homogeneous, jacobian
 from iga.extraction import Chain, Mesh
 from iga.iga_file import IgaFile, mesh
 from iga.iga_read import read_iga
-from iga.neighbours import NEAR, chains_of, element_sides
+from iga.neighbours import NEAR, Sides, chains_of, element_sides
 from iga.quadrature import gauss, square
 
 #: Sides of a rectangle: (coordinate that they share, whether it is the largest, hand of the body). The chains run with
@@ -56,13 +56,14 @@ def body_mesh(path: Path | str) -> Mesh:
     try:
         body = mesh(file)
         _refuse_folded(body)
-        chains = {side: _side(file, body, side) for side in RECTANGLE}
+        sides = element_sides(body)
+        chains = {side: _side(file, body, sides, side) for side in RECTANGLE}
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     return replace(body, chains={**body.chains, **chains})
 
 
-def _side(file: IgaFile, body: Mesh, side: str) -> Chain:
+def _side(file: IgaFile, body: Mesh, sides: Sides, side: str) -> Chain:
     """One side by the name of a set or by where it lies."""
     names = [part.name for part in file.sets if part.kind == "side" and _plain(part.name) == side]
     if len(names) > 1:
@@ -72,13 +73,12 @@ def _side(file: IgaFile, body: Mesh, side: str) -> Chain:
             f"side set {names[0]}: must be one connected chain of sides of the boundary to be the {side} side"
         )
     axis, largest, outward = RECTANGLE[side]
-    chain = body.chains[names[0]] if names else _straight(body, side, axis, largest)
+    chain = body.chains[names[0]] if names else _straight(sides, side, axis, largest)
     return chain if chain.outward == outward else _backwards(chain)
 
 
-def _straight(body: Mesh, side: str, axis: int, largest: bool) -> Chain:
+def _straight(sides: Sides, side: str, axis: int, largest: bool) -> Chain:
     """The boundary on one line of the bounding box."""
-    sides = element_sides(body)
     boundary = np.flatnonzero(~sides.shared_k)
     x_kb = sides.H_kbI[boundary, :, axis] / sides.H_kbI[boundary, :, 3]
     edge = x_kb[:, [0, -1]].max() if largest else x_kb[:, [0, -1]].min()

@@ -39,9 +39,9 @@ def _derivatives(mesh: Mesh, sides: Sides, k_n: np.ndarray, t_n: np.ndarray) -> 
     for number, block in enumerate(mesh.blocks):
         n = np.flatnonzero(sides.block_k[k_n] == number)
         e, (p, q), (s, t) = sides.element_k[k_n[n]], block.degrees, st_nd[n].T
-        B_dnb = [tensor(bernstein_derivative(p, s, i), bernstein_derivative(q, t, j)) for i, j in ORDERS]
+        B_nbd = np.stack([tensor(bernstein_derivative(p, s, i), bernstein_derivative(q, t, j)) for i, j in ORDERS], -1)
         conn_na = block.conn_ea[e]
-        f_dna = np.einsum("nab,dnb->dna", block.C_eab[e], B_dnb) * mesh.w_A[conn_na]
+        f_dna = np.ascontiguousarray(np.moveaxis(block.C_eab[e] @ B_nbd, 2, 0)) * mesh.w_A[conn_na]
         values.append(_in_space(_rational(f_dna), mesh.P_AI[conn_na]).reshape(len(ORDERS), -1))
         rows.append(np.repeat(n, conn_na.shape[1]))
         columns.append(conn_na.ravel())
@@ -74,12 +74,12 @@ def _rational(f_dna: np.ndarray) -> np.ndarray:
 
 def _in_space(R_dna: np.ndarray, P_naI: np.ndarray) -> np.ndarray:
     """The same derivatives with respect to X and Y: ``R_XX = J^-T (R_ss - R_X . X_ss) J^-1``."""
-    X_dnI = np.einsum("dna,naI->dnI", R_dna, P_naI)
+    X_dnI = (R_dna[:, :, None] @ P_naI)[:, :, 0]
     inverse_nsI = np.linalg.inv(np.stack([X_dnI[1], X_dnI[2]], -1))
-    R_X_naI = np.einsum("sna,nsI->naI", R_dna[1:3], inverse_nsI)
-    second_dna = R_dna[3:] - np.einsum("naI,dnI->dna", R_X_naI, X_dnI[3:])
-    square_nast = np.stack([second_dna[[0, 1]], second_dna[[1, 2]]], -1).transpose(1, 2, 0, 3)
-    R_XX_naIJ = np.einsum("nast,nsI,ntJ->naIJ", square_nast, inverse_nsI, inverse_nsI)
-    return np.stack(
-        [R_dna[0], *np.moveaxis(R_X_naI, 2, 0), *(R_XX_naIJ[..., I, J] for I, J in ((0, 0), (0, 1), (1, 1)))]
-    )
+    R_X_naI = np.stack([R_dna[1], R_dna[2]], -1) @ inverse_nsI
+    second_dna = R_dna[3:] - (R_X_naI @ X_dnI[3:, ..., None])[..., 0]
+    ss_na, st_na, tt_na = second_dna
+    half_sna2 = [np.stack(pair, -1) @ inverse_nsI for pair in ((ss_na, st_na), (st_na, tt_na))]
+    XX_na, XY_na = np.moveaxis(np.stack([half[..., 0] for half in half_sna2], -1) @ inverse_nsI, 2, 0)
+    YY_na = (np.stack([half[..., 1] for half in half_sna2], -1) @ inverse_nsI)[..., 1]
+    return np.stack([R_dna[0], R_X_naI[..., 0], R_X_naI[..., 1], XX_na, XY_na, YY_na])

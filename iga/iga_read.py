@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,6 @@ from iga.iga_file import KINDS, Domain, IgaFile, NamedSet
 HIGHEST, LARGEST, LEAST = 20, 1e30, 1e-12
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII).fullmatch
-_BREAK = re.compile(r"\r\n|\r|\n")
 
 
 class IgaError(ValueError):
@@ -30,11 +30,15 @@ class IgaError(ValueError):
 
 @dataclass(frozen=True)
 class _Line:
-    """The words of one line without its comment; no words at the end of the file."""
+    """The words of one line without its comment; no words at the end of the file.
+
+    ``plain`` lines have ASCII letters and no underscore: what Python takes for a number there is one.
+    """
 
     path: Path
     number: int
     words: tuple[str, ...]
+    plain: bool = False
 
     def refusal(self, expected: str, got: object = None) -> IgaError:
         found = got if got is not None else repr(_short(self.words[0])) if self.words else "the end of the file"
@@ -65,9 +69,15 @@ class _Line:
 
     def numbers(self, words: Sequence[str], count: int, what: str) -> list[float]:
         """Finite numbers, so many."""
-        if not all(map(_NUMBER, words)):
-            wrong = next(word for word in words if not _NUMBER(word))
-            raise self.refusal(f"{count} {what}, all finite numbers", repr(_short(wrong)))
+        if self.plain and len(words) == count:  # the usual case is quick: files have thousands of such lines
+            try:
+                values = list(map(float, words))
+            except ValueError:
+                values = [np.nan]
+            if max(values) <= LARGEST and min(values) >= -LARGEST and isfinite(sum(values)):  # a NaN may pass the first
+                return values
+        if wrong := [word for word in words if not _NUMBER(word)]:
+            raise self.refusal(f"{count} {what}, all finite numbers", repr(_short(wrong[0])))
         values = list(map(float, self.counted(words, count, what)))
         if max(values) > LARGEST or min(values) < -LARGEST:
             raise self.refusal(f"numbers up to {LARGEST:g} in magnitude", f"{max(values, key=abs):g}")
@@ -98,14 +108,14 @@ def _lines(path: Path) -> Iterator[_Line]:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        line = len(_BREAK.split(data[: error.start].decode("utf-8", "replace")))
+        line = len(_split(data[: error.start].decode("utf-8", "replace")))
         raise IgaError(path, line, f"expected UTF-8 text, got the byte 0x{data[error.start]:02x}") from None
     number = 0
-    for number, line in enumerate(_BREAK.split(text), 1):
+    for number, line in enumerate(_split(text), 1):
         words = line.split()
         comment = next((i for i, word in enumerate(words) if word[0] == "#"), None) if "#" in line else None
         if words[:comment]:
-            yield _Line(path, number, tuple(words[:comment]))
+            yield _Line(path, number, tuple(words[:comment]), line.isascii() and "_" not in line)
     while True:
         yield _Line(path, number, ())
 
@@ -227,6 +237,11 @@ def _domain(line: _Line, lines: Iterator[_Line], nodes: int, conn_e: Sequence[np
         line = next(lines)
         places.append(line.ids(line.words, len(conn_e[e]), n_a, "domain"))
     return Domain(elements, functions, tuple(places))
+
+
+def _split(text: str) -> list[str]:
+    """Lines, whatever they end with."""
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 def _short(word: str) -> str:
