@@ -74,6 +74,8 @@ class Sides:
         """Sides k (n,) and the sides l (n,) on which their middles lie, at the parameter t (n,) of l."""
         number = np.arange(len(self.H_kbI))
         middle = _merged(self.points(number, np.full(len(number), 0.5)), self.size_k)
+        ends = np.sort(self.vertex_kv, axis=1)  # of three sides on one, that in the middle has the same middle
+        middle = np.unique(np.column_stack([middle, ends]), axis=0, return_inverse=True)[1].ravel()
         paired = np.flatnonzero(np.bincount(middle)[middle] > 1)
         order = paired[np.argsort(middle[paired], kind="stable")]
         first = np.searchsorted(middle[order], middle[order])
@@ -102,8 +104,10 @@ class Sides:
     @cached_property
     def hanging(self) -> np.ndarray:
         """Pairs (n, 2) of a vertex and a side inside which it lies."""
-        k, side, t = self.opposite
-        odd = np.unique(np.concatenate([k[t != 0.5], side[t != 0.5]]))
+        k, side, _ = self.opposite
+        ends = np.sort(self.vertex_kv, axis=1)
+        partial = np.any(ends[k] != ends[side], axis=1)
+        odd = np.unique(np.concatenate([k[partial], side[partial]]))
         vertex = self.vertex_kv[odd, 0]
         point, side, _ = self._on(self.points(odd, np.zeros(len(odd))), self.size_k[odd], odd)
         inside = np.all(self.vertex_kv[side] != vertex[point][:, None], axis=1)

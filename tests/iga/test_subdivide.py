@@ -15,6 +15,7 @@ from iga.bspline import KnotVector, open_knots
 from iga.cells import whole_cells
 from iga.conform import conforming
 from iga.extraction import Chain, ElementBlock, Mesh
+from iga.neighbours import element_sides
 from iga.nurbs import nurbs_mesh, nurbs_rectangle
 from iga.polygon import polygon_mesh
 from iga.quadrature import gauss, square
@@ -116,6 +117,8 @@ def test_hanging_nodes_of_different_levels():
     cells = conforming(mesh)
     assert len(cells.block_c) == 18 and cells.lonely_ck.sum() == 2 * 6 + 2 * 3
     assert area(bezier_refined(mesh, 0)) == pytest.approx(3.0, rel=1e-14)
+    assert [len(chain.side_c) for chain in boundary_chains(mesh)] == [1 + 6 + 2 * 3]
+    assert len(np.unique(element_sides(mesh).hanging[:, 0])) == 2 + 3
 
 
 @given(suitable_tmeshes())
