@@ -11,7 +11,7 @@ from verify.schema import Scene
 from verify.verdict import Check
 
 #: The bases that every case is run with.
-BASES = ("nurbs", "lagrange")
+BASES = ("tspline", "nurbs", "lagrange")
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Case:
     may_stop: bool = False
 
 
-#: One arm on a mesh that resolves the process zone of ``dcb-czm1`` with either basis, at the price of a coarse one.
+#: One arm on a mesh that resolves the process zone of ``dcb-czm1`` with any basis, at the price of a coarse one.
 FINE = ("effects.symmetry=true", "discretization.dofs=4000")
 
 

@@ -58,7 +58,7 @@ def warned(trial: Trial) -> Check:
     return Check("warned", trial.name, silent, 0.0, "exact", "An under-resolved process zone is announced.")
 
 
-#: Strength, and unknowns with which either basis resolves its process zone.
+#: Strength, and unknowns with which any basis resolves its process zone.
 _LIMIT = ((4, 5000), (8, 7000), (15, 9000), (30, 13000), (60, 18000))
 #: Two curves of different meshes that are closer than this are the same.
 _SAME = 0.002
