@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from importlib.util import find_spec
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from verify.effects import simulated
 from verify.refusal import Refusal
@@ -14,6 +14,9 @@ from verify.result import Result, Snapshot, steps_from_rows
 from verify.schema import Discretization, Pose, Scene
 from verify.specimen import Isotropic, Material
 from verify.timing import Stopwatch, peak_memory_mb
+
+if TYPE_CHECKING:
+    from verify.lefm import LefmProblem
 
 #: name -> what it is, in the words of the report
 METHODS: Mapping[str, str] = {
@@ -250,20 +253,25 @@ def _beam(scene: Scene, method: str, on_step: OnStep) -> Result:
     )
 
 
-def _lefm(scene: Scene, method: str, on_step: OnStep) -> Result:
+def lefm_problem(scene: Scene) -> LefmProblem:
+    """What ``verify.lefm`` solves of a scene."""
     from verify.lefm import LefmProblem
-    from verify.lefm import solve as solve_lefm
 
-    watch = Stopwatch()
-    keys, constants = problem_keys(scene, method), elastic_constants(scene.material)
+    keys, constants = problem_keys(scene, "lefm"), elastic_constants(scene.material)
     taken = {field.name for field in fields(LefmProblem)} & set(keys)
-    problem = LefmProblem(
+    return LefmProblem(
         young=axial_modulus(scene),
         transverse=constants["E2"],
         shear=constants["G12"],
         points=counted_steps(scene),
         **{name: keys[name] for name in taken},
     )
+
+
+def _lefm(scene: Scene, method: str, on_step: OnStep) -> Result:
+    from verify.lefm import solve as solve_lefm
+
+    watch, problem = Stopwatch(), lefm_problem(scene)
     with watch.phase("solve"):
         try:
             solution = solve_lefm(problem, on_step)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import isfinite, nan
 
@@ -12,7 +12,7 @@ import numpy as np
 from verify import lefm
 from verify.curve import Curve, curve_error, oscillation, peak
 from verify.jobs import Job, Outcome
-from verify.methods import axial_modulus, elastic_constants, problem_keys
+from verify.methods import lefm_problem
 from verify.paper.plan import LAWS, Case, Plan, Problem
 from verify.process_zone import expected
 from verify.result import Result
@@ -151,16 +151,7 @@ def curve(result: Result) -> Curve:
 
 def limit(scene: Scene) -> Curve:
     """LEFM by simple beam theory, the curve that the paper draws."""
-    constants, keys = elastic_constants(scene.material), problem_keys(scene, "lefm")
-    taken = {field.name for field in fields(lefm.LefmProblem)} & set(keys)
-    problem = lefm.LefmProblem(
-        young=axial_modulus(scene),
-        transverse=constants["E2"],
-        shear=constants["G12"],
-        theory="simple",
-        **{name: keys[name] for name in taken},
-    )
-    rows = lefm.solve(problem).rows
+    rows = lefm.solve(replace(lefm_problem(scene), theory="simple")).rows
     return tuple(np.array([row[name] for row in rows]) for name in ("opening", "load"))
 
 
