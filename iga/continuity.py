@@ -25,14 +25,14 @@ def jumps(mesh: Mesh, sides: Sides) -> tuple[np.ndarray, np.ndarray]:
     k, other, t = sides.opposite
     if not k.size:
         return k, np.empty((0, 3))
-    here = _derivatives(mesh, sides, k, np.full(len(k), 0.5))
-    there = _derivatives(mesh, sides, other, t)
+    here = space_derivatives(mesh, sides, k, np.full(len(k), 0.5))
+    there = space_derivatives(mesh, sides, other, t)
     size = np.minimum(sides.size_k[k], sides.size_k[other])
     jump_dn = np.array([abs(a - b).max(axis=1).toarray().ravel() for a, b in zip(here, there, strict=True)])
     return k, np.stack([jump_dn[0], size * jump_dn[1:3].max(0), size**2 * jump_dn[3:].max(0)], -1)
 
 
-def _derivatives(mesh: Mesh, sides: Sides, k_n: np.ndarray, t_n: np.ndarray) -> list[csr_array]:
+def space_derivatives(mesh: Mesh, sides: Sides, k_n: np.ndarray, t_n: np.ndarray) -> list[csr_array]:
     """Values, X and Y derivatives, XX, XY and YY derivatives of all functions (n, n_A) at points of sides."""
     rows, columns, values = [], [], []
     st_nd = _parameters(sides.side_k[k_n], t_n)

@@ -67,6 +67,20 @@ def test_a_side_with_a_hanging_node_is_inside(tmp_path):
     assert len(vertex) == 1 and (sides.element_k[side[0]], sides.side_k[side[0]]) == (0, "RIGHT")
 
 
+@pytest.mark.parametrize("at", [0.3, 0.05, 2.0 / 3.0])
+def test_a_hanging_node_anywhere(tmp_path, at):
+    """The node on the long side at any part of it, the functions of the long side its interpolation."""
+    text = SMALL.replace("node 2 0.5", f"node 2 {at!r}")
+    text = text.replace("1 0 0.5 0\n0 0 0.5 0", f"1 0 {1 - at!r} 0\n0 0 {at!r} 0")
+    text = text.replace("0.5 0 0 0\n0.5 0 1 0", f"{1 - at!r} 0 0 0\n{at!r} 0 1 0")
+    body = mesh(read_iga(small(tmp_path, text)))
+    sides = element_sides(body)
+    ((vertex, side),) = sides.hanging
+    k = np.flatnonzero(sides.vertex_kv[:, 0] == vertex)[:1]
+    assert sides.points(k, np.zeros(1))[0, :2] == pytest.approx([1.0, at], abs=1e-15)
+    assert len(boundary_chains(body)[0].element_c) == 7
+
+
 def test_a_slit_is_boundary():
     """The middle line of a strip with functions of its own on either face, up to a tip inside."""
     kv_s, kv_t = open_knots(np.linspace(0.0, 4.0, 5), 1), open_knots(np.array([-1.0, 0.0, 1.0]), 1)

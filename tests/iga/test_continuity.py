@@ -5,7 +5,7 @@ import pytest
 from iga_files import SMALL, real, small
 
 from iga.bspline import KnotVector, open_knots
-from iga.continuity import jumps
+from iga.continuity import jumps, space_derivatives
 from iga.iga_file import mesh
 from iga.iga_read import read_iga
 from iga.lagrange import lagrange_rectangle
@@ -42,6 +42,35 @@ def test_repeated_knots(multiplicity, order, rng):
     assert len(k) == 2
     assert jump_no[:, : order + 1].max() < ZERO
     assert order == 2 or jump_no[:, order + 1].min() > 0.1
+
+
+def test_derivatives_reproduce_the_position(rng):
+    """Functions weighted with the control points give X and Y: first derivatives are unit vectors, second ones zero."""
+    body = curved(open_knots(np.linspace(0.0, 1.0, 4), 3), open_knots(np.linspace(0.0, 1.0, 3), 2), rng)
+    sides = element_sides(body)
+    k = rng.integers(0, len(sides.block_k), 50)
+    t = rng.random(50)
+    N, N_X, N_Y, N_XX, N_XY, N_YY = space_derivatives(body, sides, k, t)
+    assert N @ body.P_AI == pytest.approx(sides.points(k, t)[:, :2], abs=1e-14)
+    assert N_X @ body.P_AI == pytest.approx(np.tile([1.0, 0.0], (50, 1)), abs=1e-12)
+    assert N_Y @ body.P_AI == pytest.approx(np.tile([0.0, 1.0], (50, 1)), abs=1e-12)
+    for second in (N_XX, N_XY, N_YY):
+        assert abs(second).max() > 1.0 and np.abs(second @ body.P_AI).max() < 1e-10
+
+
+def test_second_derivatives_are_slopes_of_the_first(rng):
+    """Along a side, by a difference quotient: d(N_X)/dt = N_XX dX/dt + N_XY dY/dt."""
+    body = curved(open_knots(np.linspace(0.0, 1.0, 4), 3), open_knots(np.linspace(0.0, 1.0, 3), 2), rng)
+    sides, h = element_sides(body), 1e-5
+    k = np.arange(len(sides.block_k))
+    t = 0.1 + 0.8 * rng.random(len(k))
+    X_t, Y_t, _ = ((sides.points(k, t + h) - sides.points(k, t - h)) / (2 * h)).T
+    ahead, behind = (space_derivatives(body, sides, k, t + sign * h) for sign in (1.0, -1.0))
+    _, _, _, N_XX, N_XY, N_YY = (matrix.toarray() for matrix in space_derivatives(body, sides, k, t))
+    slope_X, slope_Y = ((ahead[i] - behind[i]).toarray() / (2 * h) for i in (1, 2))
+    scale = np.abs(N_XX).max()
+    assert N_XX * X_t[:, None] + N_XY * Y_t[:, None] == pytest.approx(slope_X, abs=1e-6 * scale)
+    assert N_XY * X_t[:, None] + N_YY * Y_t[:, None] == pytest.approx(slope_Y, abs=1e-6 * scale)
 
 
 def test_lagrange_is_continuous_only():
