@@ -18,8 +18,8 @@ from iga.bernstein import bernstein, tensor
 from iga.bezier import homogeneous
 from iga.extraction import Mesh
 
-#: Two points are one where all their random coordinates, which lie in [0, 1], agree to this.
-SAME = 1e-9
+#: Two points are one where all their random coordinates, which lie in [0, 1], agree to this: files may have few digits.
+SAME = 1e-6
 
 #: Parameters of the corners of a cell, counterclockwise; side k runs from corner k to the next.
 CORNERS = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])

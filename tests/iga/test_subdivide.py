@@ -190,6 +190,13 @@ def test_the_outline_of_a_polygon_is_its_boundary():
     assert both[0] == both[1]
 
 
+def test_coefficients_of_nine_digits_still_join():
+    body = tspline_rectangle(half_fine(8))
+    blocks = tuple(replace(block, C_eab=np.round(block.C_eab, 9)) for block in body.blocks)
+    rounded = replace(body, blocks=blocks, P_AI=np.round(body.P_AI, 9))
+    assert len(bezier_refined(rounded, 0).P_AI) == len(bezier_refined(body, 0).P_AI) == (3 * 16 + 1) * (3 * 12 + 1)
+
+
 def test_neighbours_that_disagree_are_refused():
     with pytest.raises(ValueError, match=r"must agree on their common side, element 0 of block [01] misses"):
         bezier_refined(two_degrees(kink=0.05))
