@@ -15,6 +15,7 @@ import numpy as np
 
 from iga.arms import arm_tmeshes, zone_length
 from iga.control import opening_control
+from iga.grading import largest
 from iga.newton import PATIENT, equilibrium
 from iga.point import Point
 from iga.strip import Strip
@@ -58,11 +59,7 @@ def first_window(problem: Problem) -> Window:
         starts = np.linspace(problem.precrack, problem.length, 50)
         return max(4 * strip(problem, Window(x - zone, x + AHEAD * zone, roots)).functions for x in starts)
 
-    roots = 1
-    while most(roots + 1) <= problem.dofs:
-        roots += 1
-    if most(roots) > problem.dofs:
-        raise ValueError(f"an adaptive mesh needs at least {most(roots)} unknowns, got {problem.dofs}")
+    roots = largest(most, 1, problem.dofs)
     return Window(problem.precrack, problem.precrack + AHEAD * zone, roots)
 
 

@@ -32,7 +32,7 @@ def rectangle(basis: str, degrees: tuple[int, int], breaks_s: np.ndarray, breaks
 
 
 def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:
-    """The largest number from ``least`` on whose mesh has no more unknowns than aimed at.
+    """The largest number from ``least`` on whose mesh has no more unknowns than aimed at; they grow with the number.
 
     Raises
     ------
@@ -40,10 +40,13 @@ def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:
     """
     if unknowns(least) > aim:
         raise ValueError(f"a mesh of this basis and degree needs at least {unknowns(least)} unknowns, got {aim}")
-    number = least
-    while unknowns(number + 1) <= aim:
-        number += 1
-    return number
+    low, high = least, 2 * least
+    while unknowns(high) <= aim:
+        low, high = high, 2 * high
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if unknowns(middle) <= aim else (low, middle)
+    return low
 
 
 def part(elements: float) -> int:
