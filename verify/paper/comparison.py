@@ -62,7 +62,7 @@ class Statement:
         low, middle, high = (self.shown(v) for v in (min(values), float(np.median(values)), max(values)))
         spread = f"{middle}, from {low} to {high}" if low != high else middle
         open_ = len(self.comparisons) - len(self.decided)
-        return f"{self.held} of {len(self.decided)}{f', {open_} undecided' if open_ else ''}; {self.measure} {spread}"
+        return f"{self.held} of {len(self.decided)}{f', {open_} undecided' if open_ else ''}; {self.measure}: {spread}"
 
     def shown(self, value: float) -> str:
         """A value in the statement's unit."""

@@ -8,7 +8,7 @@ from itertools import product
 from math import isfinite
 
 from verify.paper.comparison import Statement, counted
-from verify.paper.plan import LAWS, Case
+from verify.paper.plan import LAWS, PAPER_PENALTY, Case
 from verify.paper.statements import statements
 from verify.paper.study import Study, Trial
 from verify.report.paper_figures import FigureGroup, figures
@@ -130,7 +130,7 @@ def _run(trial: Trial) -> RunRow:
 
 
 def _name(case: Case) -> str:
-    more = "" if case.of_the_paper else f", penalty {number(case.penalty)}"
+    more = "" if case.penalty == PAPER_PENALTY else f", penalty {number(case.penalty)}"
     return f"{LAWS[case.law]}, {case.dofs} unknowns, {METHOD_NAMES[case.basis]}, {case.points} points{more}"
 
 
