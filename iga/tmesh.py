@@ -40,6 +40,8 @@ class TMesh:
     up_ij: np.ndarray
 
     def __post_init__(self) -> None:
+        for name in ("knots_i", "knots_j"):
+            object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=float))
         for knots, along, name in ((self.knots_i, self.across_ij, "s"), (self.knots_j, self.up_ij.T, "t")):
             _check_knots(knots, name)
             if len(along) != len(knots) - 1:

@@ -237,6 +237,11 @@ def test_corners_and_dangling_ends_are_refused_where_they_are(gone, message):
         TMesh(mesh.knots_i, mesh.knots_j, across, up)
 
 
+def test_whole_numbers_are_knots_like_others():
+    whole = TMesh(np.repeat([0, 1, 3], [4, 1, 4]), np.repeat([0, 2], 4), np.ones((8, 8), bool), np.ones((9, 7), bool))
+    assert same(whole, tensor_grid([0.0, 1.0, 3.0], [0.0, 2.0])) and whole.knots_i.dtype == float
+
+
 def test_knots_above_the_degree_are_refused():
     knots = np.repeat([0.0, 0.5, 1.0], [4, 4, 4])
     edges = np.ones((11, 12), dtype=bool)
