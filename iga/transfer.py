@@ -50,7 +50,7 @@ def transferred(old: TMesh, mesh: Mesh, new: TMesh) -> Mesh:
 def nesting_error(old: TMesh, new: TMesh) -> float:
     """Largest difference between an old function and its copy in the new space: rounding where they are nested."""
     x_qi = _sample_points(new, extracted(new).box_ek).reshape(-1, 2)
-    return float(np.abs((collocation(old, x_qi) - collocation(new, x_qi) @ transfer(old, new)).toarray()).max())
+    return float(abs(collocation(old, x_qi) - collocation(new, x_qi) @ transfer(old, new)).max())
 
 
 def collocation(mesh: TMesh, x_qi: np.ndarray) -> csr_array:
