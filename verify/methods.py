@@ -92,19 +92,20 @@ def require(scene: Scene, method: str) -> None:
     if mesh.dofs < least:
         text = f"must be >= {least} for {method} of degree {mesh.degree}, got {mesh.dofs}"
         raise Unsuitable(f"discretization.dofs: {text}")
-    if mesh.interface_rule == "lumped" and method in WITH_DOFS:
-        _require_twins(scene, method)
+    if method in WITH_DOFS and (mesh.interface_rule == "lumped" or mesh.adaptive or scene.specimen.kind == "peel"):
+        _require_mesh(scene, method)
     if method in ("beam", "lefm") and any(b <= a for a, b in zip((0.0, *programme), programme, strict=False)):
         raise Unsuitable(f"load.opening: must only increase for the method {method}, got {list(programme)}")
 
 
-def _require_twins(scene: Scene, method: str) -> None:
-    """Lumping joins control points one to one; whether they are there only the meshes can tell."""
+def _require_mesh(scene: Scene, method: str) -> None:
+    """What only the meshes can tell: whether one is possible at all, and whether lumping finds points one to one."""
     solver, problem = iga_problem(scene, method)
     try:
         solver.build(problem)
     except ValueError as error:
-        raise Unsuitable(f"discretization.interface_rule: {str(error).removeprefix('interface_rule ')}") from None
+        key = "interface_rule" if str(error).startswith("interface_rule") else "dofs"
+        raise Unsuitable(f"discretization.{key}: {str(error).removeprefix('interface_rule ')}") from None
 
 
 def least_dofs(method: str, degree: int) -> int:

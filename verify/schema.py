@@ -167,7 +167,12 @@ class Scene(Section):
     @field_validator("discretization")
     @classmethod
     def _two_meshes(cls, mesh: Discretization, info: ValidationInfo) -> Discretization:
-        effects = info.data.get("effects")
+        effects, specimen = info.data.get("effects"), info.data.get("specimen")
+        if mesh.adaptive and specimen is not None and (specimen.kind == "peel" or specimen.mesh):
+            why = "for a peel" if specimen.kind == "peel" else "with specimen.mesh, which is taken as it is"
+            raise refuse(f"false {why}", (("adaptive",), True))
+        if mesh.adaptive and mesh.mismatch != 1.0:
+            raise refuse("1 with discretization.adaptive, whose arms are alike", (("mismatch",), mesh.mismatch))
         if effects is not None and effects.symmetry:
             given = {"mismatch": mesh.mismatch, "slave": mesh.slave}
             for key, plain in (("mismatch", 1.0), ("slave", "upper")):
