@@ -7,7 +7,6 @@ over as it is. Displacements are carried over by `iga.transfer` and brought into
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -96,38 +95,16 @@ def adapted_tmeshes(problem: Problem, window: Window) -> tuple[TMesh, ...]:
     return arm_tmeshes(problem, (one, one))
 
 
-class Follower:
-    """Answers a converged point with a mesh that has moved on, where the process zone comes near the end of this one.
-
-    Its ``window`` is that of the mesh at hand.
-    """
-
-    def __init__(self, problem: Problem, window: Window, build: Callable[[Window], Specimen], phase: Phase) -> None:
-        self.window = window
-        self._problem, self._build, self._phase = problem, build, phase
-
-    def __call__(self, specimen: Specimen, point: Point) -> tuple[Specimen, State] | None:
-        window = followed(self._problem, specimen, point, self.window)
-        if window is None:
-            return None
-        new = self._build(window)
-        state = carried(specimen, new, point, self._phase)
-        if state is None:
-            return None
-        self.window = window
-        return new, state
-
-
-def followed(problem: Problem, specimen: Specimen, point: Point, window: Window) -> Window | None:
-    """The window for a converged point, or None where the present one still is ahead of the damage front by enough."""
-    zone, law = zone_length(problem), specimen.system.interface.law
+def followed(problem: Problem, roots: int, specimen: Specimen, point: Point) -> Window | None:
+    """The window for a converged point, or None where the mesh at hand goes on beyond the damage front by enough."""
+    zone, law, end = zone_length(problem), specimen.system.interface.law, specimen.path[1]
     s_q, k_q = specimen.distance(specimen.system.interface.X_qi), point.state.k_q
     damaged, broken = s_q[k_q > law.g_max], s_q[k_q >= law.g_u]
     front = float(damaged.max(initial=problem.precrack))
-    if window.end >= problem.length or front < window.end - LEFT * zone:
+    if end >= problem.length or front < end - LEFT * zone:
         return None
     tip = float(broken.max(initial=problem.precrack))
-    return replace(window, start=tip - LEFT * zone, end=front + AHEAD * zone)
+    return Window(tip - LEFT * zone, front + AHEAD * zone, roots)
 
 
 def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State | None:

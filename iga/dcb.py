@@ -7,17 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.adaptive import Follower, Window, adapted_tmeshes, first_window
+from iga.adaptive import Window, adapted_tmeshes, carried, first_window, followed
 from iga.arms import arm_meshes, crack_path, tmeshes
 from iga.body import Body, bodies, mean_row, point_row
 from iga.bond import bond, control_points, probe, slave_number
 from iga.material import orthotropic
+from iga.point import Point
 from iga.pose import Pose
 from iga.problem import Debonding, smooth
 from iga.solid import joined
 from iga.solve import Solution, run
 from iga.specimen import Specimen
-from iga.system import Phase, System, untimed
+from iga.system import Phase, State, System, untimed
 from iga.tmesh import TMesh
 from iga.tspline import tspline_rectangle
 
@@ -112,9 +113,17 @@ def solve(
     """
     if not follows(problem):
         return run(problem, build(problem, phase), on_step, phase)
-    window = first_window(problem)
-    follower = Follower(problem, window, lambda window: build(problem, phase, window), phase)
-    return run(problem, build(problem, phase, window), on_step, phase, follower)
+    first = first_window(problem)
+
+    def adapt(specimen: Specimen, point: Point) -> tuple[Specimen, State] | None:
+        window = followed(problem, first.roots, specimen, point)
+        if window is None:
+            return None
+        moved = build(problem, phase, window)
+        state = carried(specimen, moved, point, phase)
+        return None if state is None else (moved, state)
+
+    return run(problem, build(problem, phase, first), on_step, phase, adapt)
 
 
 def follows(problem: Problem) -> bool:
