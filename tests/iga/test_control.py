@@ -34,9 +34,12 @@ def control(name, system, start):
 
 @pytest.fixture(scope="module", params=["linear", "finite"])
 def branch(request):
-    """System and two successive points on the softening branch, damage growing at several points."""
+    """System and two successive points on the softening branch, damage growing at several points.
+
+    They are near to one another: the curve falls in waves, and further on it comes by the same load again.
+    """
     system = build(replace(CZM1, kinematics=request.param)).system
-    points = [p for p in follow(system, (1.0,), 40) if isinstance(p, Point)]
+    points = [p for p in follow(system, (1.0,), 80) if isinstance(p, Point)]
     peak = int(np.argmax([p.state.load for p in points]))
     pairs = zip(points[peak:-1], points[peak + 1 :], strict=True)
     start, end = next(

@@ -96,7 +96,7 @@ def test_the_slope_at_a_kink_is_the_mean_of_those_before_and_after(kinks):
 
 def test_where_the_load_turns_the_slope_is_the_one_behind_the_kink():
     """A coarser mesh: the load falls until a point breaks, and rises after; the opening grows all the while."""
-    system = build(replace(CZM1, dofs=800)).system
+    system = build(replace(CZM1, dofs=400)).system
     *points, _ = follow(system, (1.0,), None)
     law, errors = system.interface.law, []
     for start, end in zip(points[:-1], points[1:], strict=True):
@@ -107,6 +107,4 @@ def test_where_the_load_turns_the_slope_is_the_one_behind_the_kink():
         if before * after < 0.0 < opening_before * opening_after:
             errors.append(abs(end.slope - after) / abs(after))
     print(f"load turns at {len(errors)} kinks, the slope behind met within {errors}")
-    if not errors:
-        pytest.fail("no such kink")
-    assert max(errors) < 1e-5
+    assert len(errors) > 2 and max(errors) < 1e-5
