@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from iga.tmesh import FRAME, TMesh, counting, neighbours, painted
+from iga.tmesh import FRAME, TMesh, neighbours, painted, span_points
 
 
 def made_suitable(mesh: TMesh) -> TMesh:
@@ -21,11 +21,11 @@ def made_suitable(mesh: TMesh) -> TMesh:
 
 def _cheaper(mesh: TMesh) -> np.ndarray:
     """The T-junctions (n, 3) that are cheapest to move at the points where extensions meet."""
-    level, upright = mesh.extensions()
+    level, upright = mesh.extensions
     flat = mesh.junctions[:, 2] < 2
     junctions = np.concatenate([mesh.junctions[flat], mesh.junctions[~flat]])
-    i_h, j_h, n_h = _points(level)
-    j_v, i_v, n_v = _points(upright)
+    i_h, j_h, n_h = span_points(level)
+    j_v, i_v, n_v = span_points(upright)
     m_t = len(mesh.knots_j)
     point_h, point_v = i_h * m_t + j_h, i_v * m_t + j_v
     point = np.concatenate([point_h, point_v])
@@ -35,13 +35,6 @@ def _cheaper(mesh: TMesh) -> np.ndarray:
     order = np.lexsort((junction, _way(mesh, junctions)[junction], point))
     _, first = np.unique(point[order], return_index=True)
     return junctions[np.unique(junction[order[first]])]
-
-
-def _points(spans: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """All points of spans (from, to, line), ends included: place along, line, number of the span."""
-    start, end, line = spans.T
-    number = np.repeat(np.arange(len(spans)), end - start + 1)
-    return start[number] + counting(end - start + 1), line[number], number
 
 
 def _next(mesh: TMesh, junctions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -71,8 +64,8 @@ def _prolonged(mesh: TMesh, junctions: np.ndarray) -> TMesh:
     """The T-mesh with the lines of these T-junctions drawn on to the next line."""
     level, upright = _next(mesh, junctions)
     shape = len(mesh.knots_i), len(mesh.knots_j)
-    across = mesh.across_ij | painted(level, shape, ends=False)[:-1]
-    up = mesh.up_ij | painted(upright, shape[::-1], ends=False)[:-1].T
+    across = mesh.across_ij | painted(level, shape)
+    up = mesh.up_ij | painted(upright, shape[::-1]).T
     for along in (across, up.T):
         along[:FRAME] |= along[FRAME]
         along[-FRAME:] |= along[-FRAME - 1]

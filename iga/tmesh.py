@@ -73,6 +73,7 @@ class TMesh:
         inside = self.crossed_ij & self.levelled_ij
         return np.argwhere(inside[FRAME:-FRAME, FRAME:-FRAME].T)[:, ::-1] + FRAME
 
+    @cached_property
     def local_indices(self) -> tuple[np.ndarray, np.ndarray]:
         """Indices (n_A, 5) of every anchor's knots along s and along t: its own and two that its rays meet each way."""
         i, j = self.anchors.T
@@ -83,7 +84,7 @@ class TMesh:
     @cached_property
     def local_knots(self) -> tuple[np.ndarray, np.ndarray]:
         """Local knot vectors (n_A, 5) along s and along t."""
-        across, up = self.local_indices()
+        across, up = self.local_indices
         return self.knots_i[across], self.knots_j[up]
 
     @cached_property
@@ -103,6 +104,7 @@ class TMesh:
         t = np.stack([np.append(self.knots_j[j], self.knots_j[m]), np.append(self.knots_j[j], self.knots_j[m + 1])], -1)
         return np.unique(np.stack([s, t], -1), axis=0)
 
+    @cached_property
     def extensions(self) -> tuple[np.ndarray, np.ndarray]:
         """Extensions (n, 3) of the T-junctions, horizontal ones (i0, i1, j) and vertical ones (j0, j1, i).
 
@@ -117,10 +119,10 @@ class TMesh:
 
     def crossings(self) -> np.ndarray:
         """Points (n, 2), in knot values, where a horizontal extension meets a vertical one, ends included."""
-        level, upright = self.extensions()
-        shape = len(self.knots_i), len(self.knots_j)
-        met = painted(level, shape, ends=True) & painted(upright, shape[::-1], ends=True).T
-        i, j = np.nonzero(met)
+        level, upright = self.extensions
+        m_t = len(self.knots_j)
+        (i_h, j_h, _), (j_v, i_v, _) = span_points(level), span_points(upright)
+        i, j = np.divmod(np.intersect1d(i_h * m_t + j_h, i_v * m_t + j_v), m_t)
         return np.stack([self.knots_i[i], self.knots_j[j]], -1)
 
     @property
@@ -130,10 +132,10 @@ class TMesh:
 
     def extended(self) -> tuple[np.ndarray, np.ndarray]:
         """Unit edges with the extensions drawn in, ``across_ij`` and ``up_ij``."""
-        level, upright = self.extensions()
+        level, upright = self.extensions
         m_s, m_t = len(self.knots_i), len(self.knots_j)
-        across = painted(level, (m_s, m_t), ends=False)[:-1] | self.across_ij
-        up = painted(upright, (m_t, m_s), ends=False)[:-1].T | self.up_ij
+        across = painted(level, (m_s, m_t)) | self.across_ij
+        up = painted(upright, (m_t, m_s)).T | self.up_ij
         return across, up
 
     def _edges(self, i: np.ndarray, j: np.ndarray) -> np.ndarray:
@@ -212,13 +214,19 @@ def _reach(hit: np.ndarray, i: np.ndarray, j: np.ndarray, forwards: np.ndarray) 
     return np.stack([np.where(forwards, left, left2), np.where(forwards, right2, right), j], -1)
 
 
-def painted(spans: np.ndarray, shape: tuple[int, int], ends: bool) -> np.ndarray:
-    """Points (m, n) covered by spans (from, to, line); the last point of each only where ``ends``."""
+def painted(spans: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Unit edges (m - 1, n) that spans (from, to, line) cover among points (m, n)."""
+    along, line, _ = span_points(spans - [0, 1, 0])
+    edges = np.zeros((shape[0] - 1, shape[1]), dtype=bool)
+    edges[along, line] = True
+    return edges
+
+
+def span_points(spans: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """All points of spans (from, to, line), ends included: place along, line, number of the span."""
     start, end, line = spans.T
-    length = end - start + int(ends)
-    points = np.zeros(shape, dtype=bool)
-    points[np.repeat(start, length) + counting(length), np.repeat(line, length)] = True
-    return points
+    number = np.repeat(np.arange(len(spans)), end - start + 1)
+    return start[number] + counting(end - start + 1), line[number], number
 
 
 def counting(lengths: np.ndarray) -> np.ndarray:

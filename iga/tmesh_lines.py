@@ -82,12 +82,12 @@ def with_lines(mesh: TMesh, vertical_nk: np.ndarray, horizontal_nk: np.ndarray, 
     upright = _index_spans(vertical_nk, knots_i, knots_j, times, "vertical")
     level = _index_spans(horizontal_nk, knots_j, knots_i, times, "horizontal")
     shape = len(knots_i), len(knots_j)
-    drawn_up = up | painted(upright, shape[::-1], ends=False)[:-1].T
-    drawn_across = across | painted(level, shape, ends=False)[:-1]
+    drawn_up = up | painted(upright, shape[::-1]).T
+    drawn_across = across | painted(level, shape)
     upright = _ended(upright, drawn_across, knots_j)
     level = _ended(level, drawn_up.T, knots_i)
-    up = up | painted(upright, shape[::-1], ends=False)[:-1].T
-    across = across | painted(level, shape, ends=False)[:-1]
+    up = up | painted(upright, shape[::-1]).T
+    across = across | painted(level, shape)
     return TMesh(knots_i, knots_j, across, up)
 
 
@@ -212,19 +212,26 @@ def _ended(spans: np.ndarray, crossing: np.ndarray, along: np.ndarray) -> np.nda
 
 
 def _check_tiling(box_ek: np.ndarray) -> None:
-    """Every cell of the grid that the sides span lies in one rectangle and no more."""
+    """Every place lies in one rectangle and no more.
+
+    How many rectangles hold a place is the sum of signs over the corners to its lower left; so it is one everywhere
+    if the signs of all corners cancel but for those of the outline.
+    """
     s, t = np.unique(box_ek[:, :2]), np.unique(box_ek[:, 2:])
-    i0, i1 = np.searchsorted(s, box_ek[:, :2]).T
-    j0, j1 = np.searchsorted(t, box_ek[:, 2:]).T
-    corner = np.zeros((len(s), len(t)), dtype=np.int32)
-    for i, j, sign in ((i0, j0, 1), (i1, j0, -1), (i0, j1, -1), (i1, j1, 1)):
-        np.add.at(corner, (i, j), sign)
-    times = corner.cumsum(0, dtype=np.int32).cumsum(1, dtype=np.int32)[:-1, :-1]
-    wrong = np.argwhere(times != 1)
-    if len(wrong):
-        i, j = wrong[0]
-        what = "no rectangle covers" if times[i, j] == 0 else f"{times[i, j]} rectangles cover"
-        raise ValueError(f"{what} ({_pair(s[i : i + 2])}) x ({_pair(t[j : j + 2])})")
+    i_ek, j_ek = np.searchsorted(s, box_ek[:, :2]), np.searchsorted(t, box_ek[:, 2:])
+    corner = (i_ek[:, :, None] * len(t) + j_ek[:, None, :]).reshape(-1, 4)
+    place, number = np.unique(corner, return_inverse=True)
+    sign = np.bincount(number.ravel(), np.tile([1.0, -1.0, -1.0, 1.0], len(box_ek)))
+    outline = {0: 1.0, len(t) - 1: -1.0, (len(s) - 1) * len(t): -1.0, len(s) * len(t) - 1: 1.0}
+    left = sign != 0.0
+    if dict(zip(place[left].tolist(), sign[left].tolist(), strict=True)) == outline:
+        return
+    change = np.zeros(len(s) * len(t), dtype=int)
+    change[place] = sign
+    times = change.reshape(len(s), len(t)).cumsum(0).cumsum(1)[:-1, :-1]
+    i, j = np.argwhere(times != 1)[0]
+    what = "no rectangle covers" if times[i, j] == 0 else f"{times[i, j]} rectangles cover"
+    raise ValueError(f"{what} ({_pair(s[i : i + 2])}) x ({_pair(t[j : j + 2])})")
 
 
 def _pair(values: np.ndarray) -> str:

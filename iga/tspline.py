@@ -14,6 +14,8 @@ from iga.bernstein import tensor
 from iga.extraction import ElementBlock, Mesh, one_sided
 from iga.tmesh import DEGREE, FRAME, TMesh, counting, neighbours, painted, require_suitable
 
+_AT_ONCE = 2048  # elements whose pieces stay in the cache
+
 
 @dataclass(frozen=True)
 class Extraction:
@@ -137,8 +139,9 @@ def _faces(mesh: TMesh, across: np.ndarray, up: np.ndarray) -> np.ndarray:
 def _check_rectangles(across: np.ndarray, up: np.ndarray, i0, i1, j0, j1) -> None:
     """Boxes that start at every lower left corner have all cells between them, and their sides are all edges."""
     cells = int(np.sum((i1 - i0) * (j1 - j0)))
-    left = painted(np.stack([j0, j1, i0], -1), up.T.shape, ends=False).T
-    bottom = painted(np.stack([i0, i1, j0], -1), across.shape, ends=False)
+    shape = up.shape[0], across.shape[1]
+    left = painted(np.stack([j0, j1, i0], -1), shape[::-1]).T
+    bottom = painted(np.stack([i0, i1, j0], -1), shape)
     if (
         cells != (up.shape[0] - 1) * up.shape[1]
         or np.any(left[:-1] != up[:-1])
@@ -152,7 +155,7 @@ def _supported(mesh: TMesh, box_ek: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
     Elements are sorted by rows; in each row that a function spans those of its columns are one run.
     """
-    across, up = mesh.local_indices()
+    across, up = mesh.local_indices
     m = len(mesh.knots_i)
     key_e = box_ek[:, 2] * m + box_ek[:, 0]
     order = np.argsort(key_e)
@@ -169,11 +172,14 @@ def _supported(mesh: TMesh, box_ek: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 def _extraction(mesh: TMesh, box_ek: np.ndarray, conn_ea: np.ndarray) -> np.ndarray:
     """Extraction operators (n_e, n_a, 16) of elements with the same number of functions."""
-    (n_e, n_a), A_n = conn_ea.shape, conn_ea.ravel()
-    i0, i1, j0, j1 = np.repeat(box_ek, n_a, axis=0).T
-    s, t = mesh.local_knots
-    C_nb = tensor(_pieces(s, mesh.knots_i, A_n, i0, i1), _pieces(t, mesh.knots_j, A_n, j0, j1))
-    return C_nb.reshape(n_e, n_a, -1)
+    n_e, n_a = conn_ea.shape
+    (s, t), C_eab = mesh.local_knots, np.empty((n_e, n_a, (DEGREE + 1) ** 2))
+    for first in range(0, n_e, _AT_ONCE):
+        some = slice(first, first + _AT_ONCE)
+        A_n, (i0, i1, j0, j1) = conn_ea[some].ravel(), np.repeat(box_ek[some], n_a, axis=0).T
+        C_nb = tensor(_pieces(s, mesh.knots_i, A_n, i0, i1), _pieces(t, mesh.knots_j, A_n, j0, j1))
+        C_eab[some] = C_nb.reshape(-1, n_a, C_nb.shape[1])
+    return C_eab
 
 
 def _pieces(local: np.ndarray, knots: np.ndarray, A_n: np.ndarray, i0: np.ndarray, i1: np.ndarray) -> np.ndarray:

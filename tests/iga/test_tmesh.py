@@ -40,7 +40,7 @@ def test_anchors_and_local_knots_are_those_of_a_walk(mesh):
 @given(any_tmeshes())
 def test_extensions_and_their_crossings_are_those_of_a_walk(mesh):
     level, upright = walked_extensions(mesh)
-    found_level, found_upright = mesh.extensions()
+    found_level, found_upright = mesh.extensions
     assert {(i, j) for i0, i1, j in found_level for i in range(i0, i1 + 1)} == level
     assert {(i, j) for j0, j1, i in found_upright for j in range(j0, j1 + 1)} == upright
     assert {tuple(x) for x in mesh.crossings()} == {(mesh.knots_i[i], mesh.knots_j[j]) for i, j in level & upright}
