@@ -37,7 +37,7 @@ def paint(axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, x
     axes.imshow(pixels, extent=(*x, *y), aspect="auto", interpolation="none", zorder=1)
     many = len(x_euvi) > _MANY_ELEMENTS
     ink = "#808a96" if many else colour("ink")  # pixels cannot follow the page
-    lines = LineCollection(_perimeter(x_euvi), colors=ink, linewidths=0.25, alpha=0.7, zorder=2, rasterized=many)
+    lines = LineCollection(perimeter(x_euvi), colors=ink, linewidths=0.25, alpha=0.7, zorder=2, rasterized=many)
     axes.add_collection(lines)
     axes.set(xlim=x, ylim=y)
 
@@ -78,7 +78,7 @@ def _interpolation(points: int, cells: int) -> np.ndarray:
     return np.maximum(1 - np.abs(at[:, None] - np.arange(points)), 0)
 
 
-def _perimeter(x_euvi: np.ndarray) -> np.ndarray:
+def perimeter(x_euvi: np.ndarray) -> np.ndarray:
     """Closed outlines of the elements (n_e, 4 (m - 1) + 1, 2)."""
     sides = (x_euvi[:, :-1, 0], x_euvi[:, -1, :-1], x_euvi[:, :0:-1, -1], x_euvi[:, 0, ::-1])
     return np.concatenate(sides, axis=1)

@@ -8,7 +8,7 @@ from itertools import groupby
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
-from verify.report import cost, curves, drawing, fields, meshes, zones
+from verify.report import cost, curves, drawing, fields, meshes, undeformed, zones
 from verify.report.entry import Entry, entries
 from verify.report.style import Panel
 from verify.report.summary import KINDS, Tally, headline, tally
@@ -136,6 +136,10 @@ def _figures(
     load.append(curves.j_figure(scene, drawn, f"{anchor}-j"))
     small = len(groups) % 3 == 0
     interface = [fields.traction(scene, group, f"{anchor}-traction-{i}", small) for i, group in enumerate(groups)]
+    plain = [
+        undeformed.undeformed(scene, drawn, f"{anchor}-meshes"),
+        undeformed.followed(scene, drawn, f"{anchor}-moves"),
+    ]
     deformed = [meshes.deformed(scene, groups[-1], f"{anchor}-deformed")] if groups else []
     ledgers = [curves.energies(scene, ledger, f"{anchor}-energy")] if ledger is not None else []
     ledgers.append(curves.ledger_gap(scene, drawn, f"{anchor}-ledger"))
@@ -145,6 +149,7 @@ def _figures(
     titled = (
         ("Load and opening", load, drawn),
         ("Traction along the interface", interface, [entry for entry in drawn if entry.result.snapshots]),
+        ("Meshes", plain, ()),
         ("Deformed meshes and stress", deformed, ()),
         ("Energy", ledgers, [entry for entry in drawn if entry.method != "lefm"]),
         ("Cost", times, ()),

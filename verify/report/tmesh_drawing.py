@@ -17,10 +17,10 @@ from verify.report.style import colour
 _STEPS = 8  # straight pieces of a curved line, from knot to knot
 _MANY = 4000  # from so many lines or dots on they become pixels
 
-_LINES = {"color": colour("ink"), "linewidth": 0.5, "zorder": 3}
+LINES = {"color": colour("ink"), "linewidth": 0.5, "zorder": 3}
 _OUTLINE = {"color": colour("ink"), "linewidth": 1.1, "zorder": 3.2}
 _EXTENSIONS = {"color": colour("tspline"), "linewidth": 0.6, "linestyle": (0, (2.5, 1.8)), "zorder": 2.5}
-_JUNCTIONS = {"color": colour("bad"), "marker": "s", "markersize": 3.0, "markeredgewidth": 0.0, "zorder": 5}
+JUNCTIONS = {"color": colour("bad"), "marker": "s", "markersize": 3.0, "markeredgewidth": 0.0, "zorder": 5}
 _ANCHORS = {"color": colour("accent"), "marker": "o", "markersize": 2.2, "markeredgewidth": 0.0, "zorder": 4}
 _ZONE = {"color": colour("zone"), "linewidth": 5.0, "alpha": 0.75, "zorder": 2, "capstyle": "butt"}
 
@@ -58,12 +58,12 @@ def draw_tmesh(
     solid, dashed, outline = _runs(tmesh)
     curves = _curves(tmesh, mesh, solid), _curves(tmesh, mesh, dashed), _curves(tmesh, mesh, outline)
     for lines, style, label in zip(
-        curves, (_LINES, _EXTENSIONS, _OUTLINE), ("T-mesh", "extensions", "outline"), strict=True
+        curves, (LINES, _EXTENSIONS, _OUTLINE), ("T-mesh", "extensions", "outline"), strict=True
     ):
         axes.add_collection(LineCollection(lines, label=label, rasterized=len(lines) > _MANY, **style))
     if dots:
         _dots(axes, _placed(tmesh, mesh, tmesh.anchors), "anchors", _ANCHORS)
-    _dots(axes, _placed(tmesh, mesh, tmesh.junctions[:, :2]), "T-junctions", _JUNCTIONS)
+    _dots(axes, _placed(tmesh, mesh, tmesh.junctions[:, :2]), "T-junctions", JUNCTIONS)
     if zone is not None:
         axes.add_collection(LineCollection([_along(tmesh, mesh, zone)], label="zone", **_ZONE))
     axes.grid(False)
@@ -73,10 +73,10 @@ def draw_tmesh(
 
 def legend_entries(tmesh: TMesh, zone: str = "", dots: bool = True) -> list[Line2D]:
     """What a legend of the drawing says; ``zone`` names what is shaded."""
-    entries = [Line2D([], [], label="line of the T-mesh", **_LINES)]
+    entries = [Line2D([], [], label="line of the T-mesh", **LINES)]
     if len(tmesh.junctions):
         entries.append(Line2D([], [], label="extension: Bézier elements end here, too", **_EXTENSIONS))
-        entries.append(Line2D([], [], label="T-junction", linestyle="none", **_JUNCTIONS))
+        entries.append(Line2D([], [], label="T-junction", linestyle="none", **JUNCTIONS))
     if dots:
         entries.append(Line2D([], [], label="anchor of a function", linestyle="none", **_ANCHORS))
     if zone:

@@ -1,0 +1,59 @@
+"""Rows of a specimen, one a method: the whole of it, and beside it an enlarged part around the process zone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from verify.report.fields import process_zone
+from verify.report.paint import Limits
+from verify.report.style import WIDE, colour
+from verify.result import Snapshot
+
+if TYPE_CHECKING:
+    from verify.scene import Scene
+
+#: Inches: margin, width of the whole specimen, gap, width of the enlarged part; least and largest height of a row.
+LEFT, WHOLE, GAP, CLOSE = 0.42, 6.3, 0.5, WIDE - 7.32
+LOWEST, HIGHEST = 0.8, 2.2
+
+
+def rows(count: int, height: float, below: float) -> tuple[Figure, list[tuple[Axes, Axes]]]:
+    """A figure with one row a method: the whole specimen, and an enlarged part of the same ``height`` in inches.
+
+    ``below`` inches are left free at the foot.
+    """
+    between = 0.5
+    total = below + count * (height + between)
+    figure = Figure(figsize=(WIDE, total))
+    pairs = []
+    for i in range(count):
+        bottom = (total - (i + 1) * (height + between) + 0.15) / total
+        places = ((LEFT, WHOLE), (LEFT + WHOLE + GAP, CLOSE))
+        pairs.append(tuple(figure.add_axes((x / WIDE, bottom, w / WIDE, height / total)) for x, w in places))
+        for axes in pairs[-1]:
+            axes.grid(False)
+        pairs[-1][1].spines[["top", "right"]].set_visible(True)
+        pairs[-1][1].locator_params(nbins=4)
+    return figure, pairs
+
+
+def zoom(scene: Scene, snapshots: Sequence[Snapshot], height: float) -> tuple[Limits, Limits]:
+    """Limits of the enlarged part, around the first process zone; its frame is ``height`` inches high, to scale."""
+    body = scene.specimen
+    zone = next((z for s in snapshots if (z := process_zone(s)) is not None), (body.precrack, body.precrack))
+    width = min(max(1.7 * (zone[1] - zone[0]), 5 * body.arm_thickness), 0.3 * body.length)
+    middle = min(sum(zone) / 2, body.length - width / 2)
+    reach = width * height / CLOSE / 2
+    return (middle - width / 2, middle + width / 2), (-reach, reach)
+
+
+def mark(axes: Axes, part: tuple[Limits, Limits]) -> None:
+    """Frame what is enlarged beside."""
+    (x0, x1), (y0, y1) = part
+    frame = Rectangle((x0, y0), x1 - x0, y1 - y0, fill=False, edgecolor=colour("muted"), linewidth=0.6, zorder=5)
+    axes.add_patch(frame)
