@@ -14,7 +14,9 @@ from verify.schema import Scene
 from verify.verdict import Check
 
 #: Lagrange bases of equal size are coarser than NURBS: their tolerance is that of their mesh.
-CROSS_CODE = {"tspline": 0.005, "nurbs": 0.005, "lagrange": 0.02}
+CROSS_CODE = {"tspline": 0.005, "tspline-adaptive": 0.005, "nurbs": 0.005, "lagrange": 0.02}
+#: Runs that are as fine as their tolerance against the beam asks for.
+CLOSE = ("tspline", "tspline-adaptive", "nurbs", "dolfinx", "dolfinx-p3")
 #: A linear beam leaves out what a slender arm hardly has; the finite one also the St. Venant-Kirchhoff bulk.
 ANALYTICAL = {"linear": 0.002, "finite": 0.005}
 
@@ -30,7 +32,7 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
     usable = {method: result for method, result in results.items() if result.load.size > 1 and end > 0}
     kinematics = simulated(scene, "beam")["kinematics"]
     fine = ANALYTICAL[kinematics]
-    analytical = {**CROSS_CODE, **dict.fromkeys(("tspline", "nurbs", "dolfinx", "dolfinx-p3"), fine)}
+    analytical = {**CROSS_CODE, **dict.fromkeys(CLOSE, fine)}
     checks = []
     for method, tolerance in analytical.items():
         if method in usable and "beam" in usable:

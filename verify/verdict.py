@@ -42,6 +42,7 @@ class Run:
     left_out: str = ""  # "not run: DOLFINx is not installed"
     folder: str = ""  # relative to the report
     command: str = ""  # repeats this run
+    scene: Scene | None = None  # as this run had it; that of the report where left out
 
 
 @dataclass(frozen=True)

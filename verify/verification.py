@@ -23,7 +23,7 @@ from verify.plane_study import lines as plane_lines
 from verify.plane_study import study as plane_study
 from verify.quadrature_study import Study, finding, study
 from verify.run import machine, versions
-from verify.schema import Scene
+from verify.scene import Scene, parse_scene
 from verify.table import check_table, failures, overview
 from verify.verdict import Check, Run, SceneReport
 
@@ -35,6 +35,9 @@ NAMES = {
     "beam": "cohesive beam",
     "lefm": "LEFM",
 }
+
+#: T-splines that follow the process zone, with at most a third of the unknowns that the meshes at rest have.
+ADAPTIVE = ("discretization.adaptive=true", "discretization.dofs=700")
 
 
 def verify(
@@ -81,6 +84,7 @@ def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
         yield Job(source, scene, method, method)
     if full:
         yield figures.cubic(source, scene)
+        yield Job(source, scene, "tspline", "tspline-adaptive", ADAPTIVE)
         for parts in (2, 4):
             dofs = scene.discretization.dofs // parts
             yield Job(source, scene, "nurbs", f"nurbs-{dofs}", (f"discretization.dofs={dofs}",))
@@ -127,13 +131,14 @@ def environment() -> dict[str, str]:
 
 def _as_run(outcome: Outcome, out: Path) -> Run:
     job, result = outcome.job, outcome.result
-    mesh = {"dolfinx": job.scene.dolfinx, **dict.fromkeys(WITH_DOFS, job.scene.discretization)}.get(job.method)
-    given = dict(override.split("=") for override in job.overrides)
-    degree = given.get("dolfinx.degree", mesh.degree if mesh else "")
-    name = NAMES[job.method] + (f" p={degree}" if mesh else "")
+    scene = parse_scene(job.scene.model_dump(), job.overrides) if job.overrides else job.scene
+    mesh = {"dolfinx": scene.dolfinx, **dict.fromkeys(WITH_DOFS, scene.discretization)}.get(job.method)
+    name = NAMES[job.method] + (f" p={mesh.degree}" if mesh else "")
+    name += ", adaptive" if job.method == "tspline" and scene.discretization.adaptive else ""
     label = f"{name}, {result.dofs} unknowns" if result is not None and result.dofs else name
     folder = str(job.folder(out).relative_to(out))
-    return Run(label, job.method, result, outcome.left_out, folder, shlex.join(["debond", *job.command(out)]))
+    command = shlex.join(["debond", *job.command(out)])
+    return Run(label, job.method, result, outcome.left_out, folder, command, scene)
 
 
 def _write_report(

@@ -243,11 +243,14 @@ def test_process_zone_is_counted_in_elements_and_marked_where_they_are_too_few(t
     found = given.runs[0].result
     steps = found.steps | {"crack_length": crack, "damage_front": crack + 0.9}
     coarse = replace(found, steps=steps, dofs=280)
-    runs = (replace(given.runs[0], result=coarse, label="coarse"), replace(given.runs[0], label="fine"), given.runs[3])
+    had = given.scene.discretization.model_copy(update={"dofs": 280})
+    scene = given.scene.model_copy(update={"discretization": had})
+    few = replace(given.runs[0], result=coarse, label="coarse", scene=scene)
+    runs = (few, replace(given.runs[0], label="fine"), given.runs[3])
     text, parsed = page(tmp_path, replace(given, runs=runs))
     table = re.search(r'<table class="zones">.*?</table>', text, re.DOTALL)[0]
     assert table.count("fewer than 3 elements") == 1 and table.count("fine enough") == 1
-    assert "coarse 0.77 mm 0.89 mm 1.2 0.9 mm 1.2 " in re.sub(r"\s+", " ", Page(table).text)
+    assert "coarse 0.67 mm 0.89 mm 1.3 0.9 mm 1.3 " in re.sub(r"\s+", " ", Page(table).text)
     assert "cohesive beam" not in table  # it has no mesh
 
 

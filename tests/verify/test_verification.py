@@ -15,6 +15,7 @@ import pytest
 
 from verify import jobs, methods, verification
 from verify.cli import main
+from verify.crosschecks import cross_checks
 from verify.jobs import Job, Outcome
 from verify.result import Result
 from verify.scene import Scene, load_scene
@@ -42,9 +43,11 @@ def scene() -> Scene:
 
 
 def test_every_method_runs_on_every_scene(scene: Scene) -> None:
-    assert [job.variant for job in planned(LINEAR, scene)] == ["nurbs", "lagrange", "dolfinx", "beam", "lefm"]
+    assert [job.variant for job in planned(LINEAR, scene)] == [
+        "tspline", "nurbs", "lagrange", "dolfinx", "beam", "lefm"
+    ]  # fmt: skip
     full = [job.variant for job in planned(LINEAR, scene, full=True)]
-    assert full[5:] == ["dolfinx-p3", "nurbs-978", "nurbs-489"]
+    assert full[6:] == ["dolfinx-p3", "tspline-adaptive", "nurbs-978", "nurbs-489"]
 
 
 def test_a_run_is_repeated_by_its_command(scene: Scene, tmp_path: Path) -> None:
@@ -139,6 +142,32 @@ def test_j_is_no_check_on_a_coarse_mesh_of_a_sequence(scene: Scene) -> None:
     assert not coarse.meant_for(check)
     assert coarse.meant_for(replace(check, name="energy-ledger"))
     assert Job(LINEAR, scene, "nurbs", "nurbs").meant_for(check)
+    assert Job(LINEAR, scene, "tspline", "tspline-adaptive", verification.ADAPTIVE).meant_for(check)
+
+
+def test_runs_are_named_and_kept_with_what_they_were_told(
+    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan = [job for job in planned(LINEAR, scene, full=True) if job.overrides]
+    only(monkeypatch, *plan)
+    monkeypatch.setattr(verification, "run_all", lambda jobs, *how: [Outcome(job, None, "by nobody") for job in jobs])
+    verify([(LINEAR, scene)], tmp_path, jobs=1)
+    runs = reports[0].runs
+    assert [run.label for run in runs] == ["DOLFINx p=3", "T-spline p=3, adaptive", "NURBS p=3", "NURBS p=3"]
+    assert [run.scene.dolfinx.degree for run in runs] == [3, 2, 2, 2]
+    assert [run.scene.discretization.dofs for run in runs] == [1956, 700, 978, 489]
+    assert runs[1].scene.discretization.adaptive and not runs[2].scene.discretization.adaptive
+
+
+def test_t_splines_that_follow_the_process_zone_are_held_against_both(scene: Scene) -> None:
+    """Tolerances are those of the T-splines at rest: a curve 0.3 % off is too far from the beam, and no further."""
+    x = np.linspace(0.0, 3.0, 50)
+    off = {"tspline-adaptive": 1.003, "tspline": 1.003, "beam": 1.0, "dolfinx": 1.0}
+    results = {name: Result(name, {"opening": x, "load": factor * np.sqrt(x)}) for name, factor in off.items()}
+    found = {(c.name, c.subject): c for c in cross_checks(scene, results)}
+    for name in ("tspline", "tspline-adaptive"):
+        assert [found[kind, f"{name} / dolfinx"].passed for kind in ("curve", "peak")] == [True, True]
+        assert not found["beam-curve", f"{name} / beam"].passed
 
 
 def test_an_interrupt_ends_all_runs(tmp_path: Path) -> None:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from math import isfinite
 
 from verify import process_zone
-from verify.methods import WITH_DOFS
 from verify.report.entry import Entry
 from verify.report.text import Units, number, quantity
 from verify.scene import Scene
@@ -35,7 +34,7 @@ def rows(scene: Scene, found: Sequence[Entry]) -> tuple[ZoneRow, ...]:
 
 
 def _row(scene: Scene, entry: Entry) -> ZoneRow | None:
-    zone = process_zone.expected(_as_run(scene, entry), entry.method)
+    zone = process_zone.expected(entry.run.scene or scene, entry.method)
     if not isfinite(zone.element):
         return None
     length, unit = process_zone.measured(entry.result), Units.of(scene.units).length
@@ -48,11 +47,3 @@ def _row(scene: Scene, entry: Entry) -> ZoneRow | None:
         measured_elements=number(length / zone.element, 2) if isfinite(length) else UNKNOWN,
         resolved=zone.resolved,
     )
-
-
-def _as_run(scene: Scene, entry: Entry) -> Scene:
-    """The scene with the unknowns that the run had: the page shows several meshes of one scene."""
-    if entry.method not in WITH_DOFS:
-        return scene
-    mesh = scene.discretization.model_copy(update={"dofs": entry.result.dofs})
-    return scene.model_copy(update={"discretization": mesh})
