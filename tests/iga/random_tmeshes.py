@@ -4,6 +4,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from iga.bisection import Bisection, initial
+from iga.strip import Strip, strip_tmesh
 from iga.suitable import made_suitable
 from iga.tmesh import TMesh
 from iga.tmesh_lines import from_rectangles, tensor_grid, with_line
@@ -48,6 +49,14 @@ def one_way(draw):
         low, high = sorted(draw(st.sets(st.integers(0, len(t) - 1), min_size=2, max_size=2)))
         mesh = with_line(mesh, "vertical", at, (t[low], t[high]), times=draw(st.integers(1, 2)))
     return mesh.transposed if draw(st.booleans()) else mesh
+
+
+@st.composite
+def strips(draw):
+    """Elements along an interface, some of them halved towards it once for every layer."""
+    s = draw(breaks())
+    halved = [draw(st.booleans()) for _ in s[1:]]
+    return Strip(s, np.array(halved), draw(st.integers(1, 3)))
 
 
 @st.composite
@@ -103,6 +112,7 @@ def suitable_tmeshes():
     return st.one_of(
         bisections().map(lambda mesh: mesh.tmesh),
         one_way(),
+        st.builds(strip_tmesh, strips(), st.just((-0.5, 1.0)), st.booleans()),
         split_at_will().map(made_suitable),
         drawn_at_will().map(made_suitable),
     )

@@ -12,12 +12,14 @@ from random_tmeshes import (
     drawn_at_will,
     one_way,
     split_at_will,
+    strips,
     suitable_tmeshes,
     walked_anchors,
     walked_extensions,
     walked_knots,
 )
 
+from iga.strip import strip_tmesh
 from iga.suitable import made_suitable
 from iga.tmesh import NotSuitable, TMesh, require_suitable
 from iga.tmesh_lines import band, from_rectangles, tensor_grid, with_line
@@ -83,6 +85,16 @@ def test_exchanged_directions_exchange_everything(mesh):
 @given(one_way())
 def test_lines_that_end_in_one_direction_only_are_suitable(mesh):
     assert mesh.suitable
+
+
+@some
+@given(strips(), st.booleans())
+def test_strips_are_suitable_and_have_the_functions_that_they_say(strip, top):
+    mesh = strip_tmesh(strip, (0.0, 2.0), top)
+    assert mesh.suitable and len(mesh.anchors) == strip.functions
+    at_interface = mesh.knots_i[mesh.anchors[mesh.anchors[:, 1] == (len(mesh.knots_j) - 3 if top else 2), 0]]
+    shortest = np.min(np.diff(strip.breaks_c)[strip.halved_c], initial=np.inf) / 2**strip.layers
+    assert np.min(np.diff(np.unique(at_interface))) == pytest.approx(min(shortest, np.diff(strip.breaks_c).min()))
 
 
 @some
