@@ -39,6 +39,9 @@ DOLFINX_WAYS = (
 #: Fractions of the largest opening at which the fields are kept: before and near the peak, under way, at the end.
 SNAPSHOT_FRACTIONS = (0.1, 0.2, 0.5, 1.0)
 
+#: Below so many times the least unknowns a specimen with a long precrack or a small opening may have no mesh.
+SMALL = 10
+
 OnStep = Callable[[Mapping[str, float]], None]
 
 
@@ -92,7 +95,9 @@ def require(scene: Scene, method: str) -> None:
     if mesh.dofs < least:
         text = f"must be >= {least} for {method} of degree {mesh.degree}, got {mesh.dofs}"
         raise Unsuitable(f"discretization.dofs: {text}")
-    if method in WITH_DOFS and (mesh.interface_rule == "lumped" or mesh.adaptive or scene.specimen.kind == "peel"):
+    if method in WITH_DOFS and (
+        mesh.interface_rule == "lumped" or mesh.adaptive or scene.specimen.kind == "peel" or mesh.dofs < SMALL * least
+    ):
         _require_mesh(scene, method)
     if method in ("beam", "lefm") and any(b <= a for a, b in zip((0.0, *programme), programme, strict=False)):
         raise Unsuitable(f"load.opening: must only increase for the method {method}, got {list(programme)}")
