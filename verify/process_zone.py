@@ -24,6 +24,9 @@ from verify.specimen import Material
 #: Elements that a zone needs at the least (Turon et al. 2007, sec. 2.2: three to five).
 ENOUGH = 3
 
+#: Meshes of fewer unknowns are made to see whether they resolve a zone; the size of larger ones is told by proportion.
+AT_HAND = 5000
+
 #: First root of cosh(x) cos(x) = -1, that of a cantilever's first mode.
 CANTILEVER = 1.8751040687119611
 
@@ -170,10 +173,22 @@ def _remedy(scene: Scene, method: str, zone: Zone) -> str:
         if method == "dolfinx"
         else ("discretization.dofs", scene.discretization.dofs)
     )
-    # both grow as the elements along the specimen do
-    wanted = now * ENOUGH / zone.elements
-    digits = 10 ** max(len(str(int(wanted))) - 2, 0)
-    return f"{key} = {int(np.ceil(wanted / digits) * digits)} resolves it, or a lower interface.strength"
+    # both grow about as the elements along the specimen do
+    wanted = _rounded(now * ENOUGH / zone.elements)
+    while method in WITH_DOFS and wanted < AT_HAND and not _with_dofs(scene, method, wanted).resolved:
+        wanted = _rounded(1.05 * wanted)
+    return f"{key} = {wanted} resolves it, or a lower interface.strength"
+
+
+def _with_dofs(scene: Scene, method: str, dofs: int) -> Zone:
+    mesh = scene.discretization.model_copy(update={"dofs": dofs})
+    return expected(scene.model_copy(update={"discretization": mesh}), method)
+
+
+def _rounded(number: float) -> int:
+    """Up to two digits."""
+    digits = 10 ** max(len(str(int(number))) - 2, 0)
+    return int(np.ceil(number / digits) * digits)
 
 
 def _bodies(scene: Scene) -> tuple[tuple[Material, float], ...]:

@@ -1,11 +1,12 @@
 """Length of the process zone: its formulas against other routes, elements counted in it, warnings, measurement."""
 
 import json
+import re
 
 import numpy as np
 import pytest
 
-from verify.methods import iga_problem
+from verify.methods import WITH_DOFS, iga_problem
 from verify.process_zone import (
     CANTILEVER,
     bulk_length,
@@ -74,17 +75,20 @@ def test_the_modulus_of_a_bulky_body():
     assert slender_length(ply) == pytest.approx(slender_length(scene))
 
 
-@pytest.mark.parametrize("method", ["nurbs", "lagrange"])
+@pytest.mark.parametrize("method", WITH_DOFS)
 @pytest.mark.parametrize("rule", ["gauss", "lumped"])
 def test_elements_are_those_of_the_mesh_maker(method, rule):
+    """The crack path is divided into equal elements; of Lagrange ones all nodes are seen, three an element."""
     scene = load_scene("dcb-czm1", [f'discretization.interface_rule="{rule}"'])
     solver, problem = iga_problem(scene, method)
-    mesh = solver.build(problem).meshes[0]
-    x = np.unique(np.round(mesh.P_AI[:, 0], 9)) if method == "lagrange" else None
-    if method == "lagrange":  # nodes: three an element
-        assert element_length(scene, method) == pytest.approx(3 * np.diff(x[x > 4.0]).max())
-    bonded = 10.0 / element_length(scene, method)
-    assert bonded == pytest.approx(round(bonded), rel=1e-9) and 0 < bonded < mesh.elements
+    specimen = solver.build(problem)
+    start, end = specimen.path
+    assert start == 4.0 and 9.0 < end < 14.0
+    if method == "lagrange":
+        x = np.unique(np.round(specimen.meshes[0].P_AI[:, 0], 9))
+        assert element_length(scene, method) == pytest.approx(3 * np.diff(x[(x >= start) & (x <= end)]).max())
+    on_path = (end - start) / element_length(scene, method)
+    assert on_path == pytest.approx(round(on_path), rel=1e-9) and 0 < on_path < specimen.meshes[0].elements
 
 
 @pytest.mark.parametrize("method", ["beam", "lefm"])
@@ -93,16 +97,23 @@ def test_methods_without_a_mesh_have_nothing_to_warn_of(method):
     assert np.isnan(element_length(scene, method)) and warnings(scene, method) == ()
 
 
-def test_a_mesh_that_is_too_coarse_is_warned_of_and_the_one_advised_is_not():
-    coarse = load_scene("dcb-czm2", ["discretization.dofs=280"])
-    (text,) = warnings(coarse, "nurbs")
-    assert text.startswith("process zone 0.73 mm < element 0.77 mm: ") and "discretization.dofs = 890" in text
-    assert warnings(load_scene("dcb-czm2", ["discretization.dofs=890"]), "nurbs") == ()
-    (text,) = warnings(load_scene("dcb-czm2", ["discretization.dofs=600"]), "nurbs")
-    assert "spans 2.3 elements of 0.32 mm, fewer than 3" in text
+@pytest.mark.parametrize("method", WITH_DOFS)
+def test_a_mesh_that_is_too_coarse_is_warned_of_and_the_one_advised_is_not(method):
+    (text,) = warnings(load_scene("dcb-czm2", ["discretization.dofs=160"]), method)
+    assert text.startswith("process zone 0.73 mm < element ")
+    few = {"tspline": 300, "nurbs": 600, "lagrange": 1200}[method]
+    (text,) = warnings(load_scene("dcb-czm2", [f"discretization.dofs={few}"]), method)
+    assert re.match(r"process zone 0.73 mm spans 2\.\d elements of 0\.[23]\d* mm, fewer than 3", text)
+    advised = int(re.search(r"discretization\.dofs = (\d+)", text)[1])
+    assert few < advised < 2 * few
+    assert warnings(load_scene("dcb-czm2", [f"discretization.dofs={advised}"]), method) == ()
+
+
+def test_what_a_warning_says_depends_on_the_method_and_on_the_units():
     strong = load_scene("dcb-czm2", ["interface.strength=60"])
     assert "dolfinx.elements = " in warnings(strong, "dolfinx")[0]
-    assert "mm" not in warnings(coarse.model_copy(update={"units": "consistent units"}), "nurbs")[0]
+    plain = load_scene("dcb-czm2", ["discretization.dofs=280"]).model_copy(update={"units": "consistent units"})
+    assert "mm" not in warnings(plain, "nurbs")[0]
 
 
 def test_the_printed_peel_test_has_a_zone_far_below_any_element():
