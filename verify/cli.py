@@ -51,11 +51,16 @@ def parser() -> argparse.ArgumentParser:
     what = "packaged name, scene file, or .iga mesh for a plane problem; default: the scenes for all methods"
     sub.add_argument("scenes", nargs="*", metavar="SCENE", help=what)
     sub.add_argument("--out", type=Path, default=Path("debond-report"), metavar="DIR", help="default: debond-report")
-    finer = "finer meshes as well, with observed order and uncertainty, interface rules, and the figures of the paper"
+    finer = (
+        "finer meshes as well, with observed order and uncertainty, T-splines that follow the process zone, interface "
+        "rules, and the figures of the paper"
+    )
     sub.add_argument("--full", action="store_true", help=finer)
     sub.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help="runs at a time")
 
-    sub = command("solve", _solve, "One scene by one method.", "solve dcb-czm1 --set interface.strength=6")
+    text = "One scene by one method: T-splines, NURBS, Lagrange or DOLFINx elements, a beam, LEFM."
+    example = "solve dcb-czm1 --method tspline --set discretization.adaptive=true"
+    sub = command("solve", _solve, text, example)
     sub.add_argument("scene", metavar="SCENE", help="a packaged name or a file")
     sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
     sub.add_argument("--dofs", type=_positive, metavar="N", help="unknowns to aim at, for tspline, nurbs and lagrange")
