@@ -78,6 +78,13 @@ class Mesh:
         return sum(len(block.conn_ea) for block in self.blocks)
 
 
+def on_side(degrees: tuple[int, int], side: str) -> np.ndarray:
+    """Bernstein indices that do not vanish on a side, along the side's own parameter."""
+    direction, value = SIDES[side]
+    number = np.arange((degrees[0] + 1) * (degrees[1] + 1)).reshape(degrees[1] + 1, degrees[0] + 1)
+    return np.take(number, -int(value), axis=1 - direction)
+
+
 def one_sided(side: str, block_c: np.ndarray, element_c: np.ndarray) -> Chain:
     """Chain of the same side of all its elements, in the order of the side's own parameter."""
     return Chain(block_c, element_c, np.full(len(element_c), side), HANDS[side])

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from iga.bernstein import bernstein, bernstein_derivative
-from iga.extraction import HANDS, SIDES, Chain, Mesh
+from iga.extraction import HANDS, SIDES, Chain, Mesh, on_side
 from iga.quadrature import gauss
 
 #: A function smaller than this on all points of a side does not live on it.
@@ -48,11 +48,10 @@ def living(sides: Sequence[SidePoints]) -> np.ndarray:
 
 
 def _on_side(mesh: Mesh, number: int, e: np.ndarray, side: str, more: int) -> SidePoints:
-    block, (direction, value) = mesh.blocks[number], SIDES[side]
-    p = block.degrees[1 - direction]
+    block = mesh.blocks[number]
+    p = block.degrees[1 - SIDES[side][0]]
     xi_q, weight_q = gauss(p + 1 + more)
-    table = np.arange(block.C_eab.shape[2]).reshape(block.degrees[1] + 1, block.degrees[0] + 1)
-    trace_eab = block.C_eab[e][:, :, np.take(table, -int(value), axis=1 - direction)]
+    trace_eab = block.C_eab[e][:, :, on_side(block.degrees, side)]
     conn_ea = block.conn_ea[e]
     wC_eab = trace_eab * mesh.w_A[conn_ea][..., None]
     wN, wdN = (np.einsum("eab,qb->eqa", wC_eab, B(p, xi_q)) for B in (bernstein, bernstein_derivative))

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from iga.bernstein import bernstein_jet
-from iga.extraction import SIDES, Chain, Mesh
+from iga.extraction import SIDES, Chain, Mesh, on_side
 
 #: A coefficient of an extraction operator below this is none.
 NOTHING = 1e-13
@@ -78,7 +78,7 @@ def surface(mesh: Mesh, chain: Chain, first: int) -> Surface:
     C_cab, conn_ca = np.empty((n_c, p + 1, p + 1)), np.empty((n_c, p + 1), dtype=int)
     for here, number, side in chain.parts():
         block, e = mesh.blocks[number], chain.element_c[here]
-        trace_cab = block.C_eab[e][:, :, _on_side(block.degrees, *SIDES[side])]
+        trace_cab = block.C_eab[e][:, :, on_side(block.degrees, side)]
         alive = np.any(np.abs(trace_cab) > NOTHING, axis=2)  # files have rounding where nothing should be
         if not np.all(alive.sum(1) == p + 1):
             raise ValueError(f"a side of degree {p} must carry {p + 1} functions, got {sorted(set(alive.sum(1)))}")
@@ -94,9 +94,3 @@ def normal(tangent_qi: np.ndarray, outward: float) -> np.ndarray:
     """Unit outward normal (n_q, 2): the tangent turned clockwise where the body lies to the left (``outward`` +1)."""
     n = outward * np.stack([tangent_qi[:, 1], -tangent_qi[:, 0]], -1)
     return n / np.sqrt(np.sum(n * n, -1, keepdims=True))
-
-
-def _on_side(degrees: tuple[int, int], direction: int, value: float) -> np.ndarray:
-    """Bernstein indices that do not vanish on a side, along the side."""
-    number = np.arange((degrees[0] + 1) * (degrees[1] + 1)).reshape(degrees[1] + 1, degrees[0] + 1)
-    return np.take(number, 0 if value == 0.0 else -1, axis=1 - direction)
