@@ -50,6 +50,16 @@ def bernstein_derivative(degree: int, xi: np.ndarray, order: int = 1) -> np.ndar
     return degree * (np.concatenate([zero, lower], -1) - np.concatenate([lower, zero], -1))
 
 
+def elevation(degree: int, higher: int) -> np.ndarray:
+    """Bernstein polynomials in those of a higher degree P (p + 1, P + 1), Farin 2002, section 6.1.
+
+    ``E_bc = binom(p, b) binom(P - p, c - b) / binom(P, c)``
+    """
+    columns, more = range(higher + 1), higher - degree
+    rows = [[comb(degree, b) * comb(more, c - b) if c >= b else 0 for c in columns] for b in range(degree + 1)]
+    return np.array(rows) / [comb(higher, c) for c in columns]
+
+
 def bernstein_jet(degree: int, xi_q: np.ndarray, orders: int) -> np.ndarray:
     """Values and derivatives up to ``orders`` at many points by one matrix product (orders + 1, n_q, p + 1).
 

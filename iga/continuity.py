@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from iga.bernstein import bernstein_derivative, tensor
-from iga.extraction import HANDS, SIDES, Mesh
+from iga.extraction import Mesh
 from iga.neighbours import Sides
 
 #: Derivatives along s and t: the value, the gradient, the second derivatives ss, st, tt.
@@ -35,7 +35,7 @@ def jumps(mesh: Mesh, sides: Sides) -> tuple[np.ndarray, np.ndarray]:
 def space_derivatives(mesh: Mesh, sides: Sides, k_n: np.ndarray, t_n: np.ndarray) -> list[csr_array]:
     """Values, X and Y derivatives, XX, XY and YY derivatives of all functions (n, n_A) at points of sides."""
     rows, columns, values = [], [], []
-    st_nd = _parameters(sides.side_k[k_n], t_n)
+    st_nd = sides.parameters(k_n, t_n)
     for number, block in enumerate(mesh.blocks):
         n = np.flatnonzero(sides.block_k[k_n] == number)
         e, (p, q), (s, t) = sides.element_k[k_n[n]], block.degrees, st_nd[n].T
@@ -48,16 +48,6 @@ def space_derivatives(mesh: Mesh, sides: Sides, k_n: np.ndarray, t_n: np.ndarray
     place = np.concatenate(rows), np.concatenate(columns)
     shape = (len(k_n), len(mesh.P_AI))
     return [csr_array((v, place), shape=shape) for v in np.concatenate(values, axis=1)]
-
-
-def _parameters(side_n: np.ndarray, t_n: np.ndarray) -> np.ndarray:
-    """Parameters (n, 2) in the element of points on its sides, which are walked with the element on the left."""
-    st_nd = np.empty((len(t_n), 2))
-    for name, (direction, value) in SIDES.items():
-        here = side_n == name
-        st_nd[here, direction] = value
-        st_nd[here, 1 - direction] = t_n[here] if HANDS[name] > 0 else 1.0 - t_n[here]
-    return st_nd
 
 
 def _rational(f_dna: np.ndarray) -> np.ndarray:

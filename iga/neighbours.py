@@ -9,16 +9,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import comb
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components, depth_first_order
 from scipy.spatial import cKDTree
 
-from iga.bernstein import bernstein, bernstein_derivative
+from iga.bernstein import bernstein, bernstein_derivative, elevation
 from iga.bezier import homogeneous
-from iga.extraction import HANDS, SIDES, Chain, Mesh
+from iga.extraction import HANDS, SIDES, Chain, Mesh, on_side
 
 #: Points are the same within this part of the size of their element; third coordinates lie in [0, 1].
 NEAR = 1e-6
@@ -51,6 +50,15 @@ class Sides:
         h_nI = np.einsum("nb,nbI->nI", bernstein(self.H_kbI.shape[1] - 1, t_n), self.H_kbI[k_n])
         return h_nI[:, :3] / h_nI[:, 3:]
 
+    def parameters(self, k_n: np.ndarray, t_n: np.ndarray) -> np.ndarray:
+        """The same points as parameters (n, 2) of the elements."""
+        st_nd = np.empty((len(t_n), 2))
+        for name, (direction, value) in SIDES.items():
+            here = self.side_k[k_n] == name
+            st_nd[here, direction] = value
+            st_nd[here, 1 - direction] = t_n[here] if HANDS[name] > 0 else 1.0 - t_n[here]
+        return st_nd
+
     @cached_property
     def length_k(self) -> np.ndarray:
         """Length (n_k,) of the straight lines between the Bezier points of each side."""
@@ -70,20 +78,28 @@ class Sides:
         return _merged(ends, self.size_k[k]).reshape(2, -1).T
 
     @cached_property
+    def edge_k(self) -> np.ndarray:
+        """Edges (n_k,), numbered from 0: one for all sides with the same ends and the same middle."""
+        k = np.arange(len(self.H_kbI))
+        middle = _merged(self.points(k, np.full(len(k), 0.5)), self.size_k)
+        ends = np.sort(self.vertex_kv, axis=1)  # of three sides on one, that in the middle has the same middle
+        return np.unique(np.column_stack([middle, ends]), axis=0, return_inverse=True)[1].ravel()
+
+    @cached_property
+    def lone(self) -> np.ndarray:
+        """Sides (n,) that share their edge with no other: on the boundary or beside longer or shorter ones."""
+        return np.flatnonzero(np.bincount(self.edge_k)[self.edge_k] == 1)
+
+    @cached_property
     def opposite(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Sides k (n,) and the sides l (n,) on which their middles lie, at the parameter t (n,) of l."""
-        number = np.arange(len(self.H_kbI))
-        middle = _merged(self.points(number, np.full(len(number), 0.5)), self.size_k)
-        ends = np.sort(self.vertex_kv, axis=1)  # of three sides on one, that in the middle has the same middle
-        middle = np.unique(np.column_stack([middle, ends]), axis=0, return_inverse=True)[1].ravel()
-        paired = np.flatnonzero(np.bincount(middle)[middle] > 1)
-        order = paired[np.argsort(middle[paired], kind="stable")]
-        first = np.searchsorted(middle[order], middle[order])
-        last = np.searchsorted(middle[order], middle[order], side="right") - 1
+        lone, paired = self.lone, np.setdiff1d(np.arange(len(self.edge_k)), self.lone)
+        order = paired[np.argsort(self.edge_k[paired], kind="stable")]
+        first = np.searchsorted(self.edge_k[order], self.edge_k[order])
+        last = np.searchsorted(self.edge_k[order], self.edge_k[order], side="right") - 1
         here = np.arange(len(order))
         partner = order[np.where(here < last, here + 1, first)]
-        lone = np.setdiff1d(number, paired)
-        point, side, t = self._on(self.points(lone, np.full(len(lone), 0.5)), self.size_k[lone], lone)
+        point, side, t = self._on(self.points(lone, np.full(len(lone), 0.5)), self.size_k[lone])
         other = lone[point] != side
         return (
             np.concatenate([order, lone[point[other]]]),
@@ -101,20 +117,24 @@ class Sides:
         shared[self.opposite[0]] = True
         return shared
 
-    @cached_property
+    @property
     def hanging(self) -> np.ndarray:
         """Pairs (n, 2) of a vertex and a side inside which it lies."""
-        k, side, _ = self.opposite
-        ends = np.sort(self.vertex_kv, axis=1)
-        partial = np.any(ends[k] != ends[side], axis=1)
-        odd = np.unique(np.concatenate([k[partial], side[partial]]))
-        vertex = self.vertex_kv[odd, 0]
-        point, side, _ = self._on(self.points(odd, np.zeros(len(odd))), self.size_k[odd], odd)
-        inside = np.all(self.vertex_kv[side] != vertex[point][:, None], axis=1)
-        return np.unique(np.stack([vertex[point], side], -1)[inside], axis=0)
+        return np.stack(self.hanging_at[:2], -1)
 
-    def _on(self, X_nI: np.ndarray, size_n: np.ndarray, k_m: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Which points (n, 3) lie on which of the sides k_m (m,): number of the point, the side and its parameter."""
+    @cached_property
+    def hanging_at(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Vertices (n,), the sides (n,) inside which they lie, and at which parameter (n,) of these."""
+        starts = self.vertex_kv[self.lone, 0]  # and with them all ends, for lone sides form closed chains
+        vertex, first = np.unique(starts, return_index=True)
+        k = self.lone[first]
+        point, side, t = self._on(self.points(k, np.zeros(len(k))), self.size_k[k])
+        inside = np.all(self.vertex_kv[side] != vertex[point][:, None], axis=1)
+        return vertex[point[inside]], side[inside], t[inside]
+
+    def _on(self, X_nI: np.ndarray, size_n: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Which points (n, 3) lie on which lone sides: number of the point, the side and its parameter."""
+        k_m = self.lone
         hull_mbI = self.H_kbI[k_m, :, :2] / self.H_kbI[k_m, :, 3:]
         slack_mI = NEAR * self.size_k[k_m, None]
         low_mI, high_mI = hull_mbI.min(1) - slack_mI, hull_mbI.max(1) + slack_mI
@@ -172,20 +192,14 @@ def _walks(start_n: np.ndarray, end_n: np.ndarray) -> list[np.ndarray]:
 
 def _block_sides(H_ebI: np.ndarray, degrees: tuple[int, int], highest: int) -> np.ndarray:
     """Homogeneous Bezier points (4 n_e, highest + 1, d) of the sides of a block, four an element."""
-    p, q = degrees
-    H_ejiI = H_ebI.reshape(len(H_ebI), q + 1, p + 1, -1)
-    sides = []
-    for name, (direction, value) in SIDES.items():
-        H_ebI = np.take(H_ejiI, 0 if value == 0.0 else -1, axis=2 - direction)
-        H_ebI = H_ebI if HANDS[name] > 0 else H_ebI[:, ::-1]
-        sides.append(np.einsum("bc,ebI->ecI", _raised(degrees[1 - direction], highest), H_ebI))
-    return np.stack(sides, 1).reshape(-1, highest + 1, H_ejiI.shape[-1])
+    walks = (walked(degrees, name) for name in SIDES)
+    sides = [np.einsum("bc,ebI->ecI", elevation(len(walk) - 1, highest), H_ebI[:, walk]) for walk in walks]
+    return np.stack(sides, 1).reshape(-1, highest + 1, H_ebI.shape[-1])
 
 
-def _raised(p: int, highest: int) -> np.ndarray:
-    """Degree elevation (p + 1, highest + 1): ``binom(p, b) binom(P - p, c - b) / binom(P, c)`` (Farin 2002, 6.1)."""
-    rows = [[comb(p, b) * comb(highest - p, c - b) if c >= b else 0 for c in range(highest + 1)] for b in range(p + 1)]
-    return np.array(rows) / [comb(highest, c) for c in range(highest + 1)]
+def walked(degrees: tuple[int, int], side: str) -> np.ndarray:
+    """Bernstein indices along a side, walked with the element on the left."""
+    return on_side(degrees, side)[:: int(HANDS[side])]
 
 
 def _merged(X_nI: np.ndarray, size_n: np.ndarray) -> np.ndarray:
