@@ -59,11 +59,7 @@ class Pose:
 
 def from_behind(mesh: Mesh) -> Mesh:
     """The same body with the first parametric direction of every element reversed."""
-    blocks = []
-    for block in mesh.blocks:
-        p, q = block.degrees
-        back = np.arange((p + 1) * (q + 1)).reshape(q + 1, p + 1)[:, ::-1].ravel()
-        blocks.append(ElementBlock(block.degrees, block.C_eab[:, :, back], block.conn_ea))
+    blocks = tuple(block_from_behind(block, np.ones(len(block.conn_ea), dtype=bool)) for block in mesh.blocks)
     chains = {
         name: Chain(
             chain.block_c[::-1],
@@ -73,7 +69,14 @@ def from_behind(mesh: Mesh) -> Mesh:
         )
         for name, chain in mesh.chains.items()
     }
-    return replace(mesh, blocks=tuple(blocks), chains=chains)
+    return replace(mesh, blocks=blocks, chains=chains)
+
+
+def block_from_behind(block: ElementBlock, turned_e: np.ndarray) -> ElementBlock:
+    """The block with the first parametric direction of some of its elements (n_e,) reversed."""
+    p, q = block.degrees
+    back_b = np.arange((p + 1) * (q + 1)).reshape(q + 1, p + 1)[:, ::-1].ravel()
+    return replace(block, C_eab=np.where(turned_e[:, None, None], block.C_eab[:, :, back_b], block.C_eab))
 
 
 def upside_down(mesh: Mesh) -> Mesh:
