@@ -17,11 +17,10 @@ def cut(mesh: Mesh, at_ed: np.ndarray) -> Mesh:
         NaN where an element stays whole.
     """
     for direction in (0, 1):
-        first_e = np.cumsum([0, *(len(block.conn_ea) for block in mesh.blocks)])
-        parts = np.split(at_ed[:, direction], first_e[1:-1])
+        parts = np.split(at_ed[:, direction], mesh.first_b[1:-1])
         blocks = tuple(_cut(block, direction, at_e) for block, at_e in zip(mesh.blocks, parts, strict=True))
         cut_e = ~np.isnan(at_ed[:, direction])
-        chains = {name: _carried(chain, direction, cut_e, first_e) for name, chain in mesh.chains.items()}
+        chains = {name: _carried(chain, direction, cut_e, mesh.first_b) for name, chain in mesh.chains.items()}
         mesh = Mesh(mesh.P_AI, mesh.w_A, blocks, chains)
         at_ed = np.repeat(at_ed, 1 + cut_e, axis=0)
     return mesh
@@ -48,10 +47,11 @@ def _cut(block: ElementBlock, direction: int, at_e: np.ndarray) -> ElementBlock:
     return ElementBlock(block.degrees, C_eab, block.conn_ea[source])
 
 
-def _carried(chain: Chain, direction: int, cut_e: np.ndarray, first_e: np.ndarray) -> Chain:
+def _carried(chain: Chain, direction: int, cut_e: np.ndarray, first_b: np.ndarray) -> Chain:
     """The chain on the pieces of its elements, in the same order."""
     piece_e = np.cumsum(np.concatenate([[0], 1 + cut_e]))
-    start_c, cut_c = first_e[chain.block_c], cut_e[first_e[chain.block_c] + chain.element_c]
+    start_c = first_b[chain.block_c]
+    cut_c = cut_e[start_c + chain.element_c]
     fixed_c, value_c = np.array([SIDES[side] for side in chain.side_c]).reshape(-1, 2).T
     whole_c = fixed_c == direction
     c = np.repeat(np.arange(len(cut_c)), 1 + (cut_c & ~whole_c))

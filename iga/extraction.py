@@ -74,8 +74,13 @@ class Mesh:
         return min(min(block.degrees) for block in self.blocks) + 1
 
     @property
+    def first_b(self) -> np.ndarray:
+        """Numbers of the first element of each block and of the end (n_b + 1,), counted through the blocks."""
+        return np.cumsum([0, *(len(block.conn_ea) for block in self.blocks)])
+
+    @property
     def elements(self) -> int:
-        return sum(len(block.conn_ea) for block in self.blocks)
+        return int(self.first_b[-1])
 
 
 def on_side(degrees: tuple[int, int], side: str) -> np.ndarray:

@@ -15,7 +15,7 @@ import numpy as np
 from iga.bezier import homogeneous, jacobian
 from iga.extraction import ElementBlock, Mesh
 from iga.neighbours import chains_of, element_sides
-from iga.pose import SEEN_FROM_BEHIND
+from iga.pose import SEEN_FROM_BEHIND, block_from_behind
 from iga.quadrature import gauss, square
 
 #: What a file may describe; only the first is a body in the plane.
@@ -80,7 +80,7 @@ def mesh(file: IgaFile) -> Mesh:
         raise ValueError(f"type: must be plane for a body in the plane, got {file.kind}")
     body = Mesh(np.ascontiguousarray(file.P_AI[:, :2]), file.w_A, file.blocks)
     turned = [_clockwise(body, block) for block in file.blocks]
-    body = replace(body, blocks=tuple(_from_behind(*pair) for pair in zip(file.blocks, turned, strict=True)))
+    body = replace(body, blocks=tuple(block_from_behind(*pair) for pair in zip(file.blocks, turned, strict=True)))
     sets = {part.name: part for part in file.sets if part.kind == "side"}
     if not sets:
         return body
@@ -97,9 +97,8 @@ def mesh(file: IgaFile) -> Mesh:
 
 def from_mesh(body: Mesh) -> IgaFile:
     """The file of a body in the plane: elements block by block, every chain a side set."""
-    sizes = [len(block.conn_ea) for block in body.blocks]
-    first = np.concatenate([[0], np.cumsum(sizes)])
-    block_e = np.repeat(np.arange(len(sizes)), sizes)
+    first = body.first_b
+    block_e = np.repeat(np.arange(len(body.blocks)), np.diff(first))
     sets = tuple(
         NamedSet("side", "_".join(name.split()), first[chain.block_c] + chain.element_c, tuple(map(str, chain.side_c)))
         for name, chain in body.chains.items()
@@ -151,12 +150,3 @@ def _clockwise(body: Mesh, block: ElementBlock) -> np.ndarray:
     p, q = block.degrees
     points_q, weights_q = square(gauss(p + 1), gauss(q + 1))
     return jacobian(homogeneous(body.P_AI, body.w_A, block), block.degrees, points_q) @ weights_q < 0
-
-
-def _from_behind(block: ElementBlock, turned_e: np.ndarray) -> ElementBlock:
-    """The block with the first parametric direction of some of its elements reversed."""
-    if not turned_e.any():
-        return block
-    p, q = block.degrees
-    back_b = np.arange((p + 1) * (q + 1)).reshape(q + 1, p + 1)[:, ::-1].ravel()
-    return replace(block, C_eab=np.where(turned_e[:, None, None], block.C_eab[:, :, back_b], block.C_eab))

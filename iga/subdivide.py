@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from iga.bernstein import elevation
 from iga.bezier import homogeneous
 from iga.conform import conforming
 from iga.cut import halved
-from iga.extraction import SIDES, Chain, ElementBlock, Mesh
+from iga.extraction import SIDES, ElementBlock, Mesh
 from iga.neighbours import NEAR, Sides, element_sides, walked
 
 
@@ -41,11 +43,10 @@ def _joined(mesh: Mesh) -> Mesh:
         where = f"element {sides.element_k[worst]} of block {sides.block_k[worst]}"
         raise ValueError(f"neighbours must agree on their common side, {where} misses by {gap.max():.1e} of its size")
     C_eab = np.broadcast_to(np.eye(Q_ebk.shape[1]), (len(conn_eb), Q_ebk.shape[1], Q_ebk.shape[1]))
-    first_b = np.cumsum([0, *(len(block.conn_ea) for block in mesh.blocks)])
-    chains = {
-        name: Chain(np.zeros_like(chain.block_c), first_b[chain.block_c] + chain.element_c, chain.side_c, chain.outward)
-        for name, chain in mesh.chains.items()
-    }
+    chains = {}
+    for name, chain in mesh.chains.items():
+        element_c = mesh.first_b[chain.block_c] + chain.element_c
+        chains[name] = replace(chain, block_c=np.zeros_like(chain.block_c), element_c=element_c)
     return Mesh(Q_Ak[:, :2] / Q_Ak[:, 2:], Q_Ak[:, 2], (ElementBlock((p, p), C_eab, conn_eb),), chains)
 
 
