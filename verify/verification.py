@@ -134,8 +134,9 @@ def _as_run(outcome: Outcome, out: Path) -> Run:
     scene = parse_scene(job.scene.model_dump(), job.overrides) if job.overrides else job.scene
     mesh = {"dolfinx": scene.dolfinx, **dict.fromkeys(WITH_DOFS, scene.discretization)}.get(job.method)
     name = NAMES[job.method] + (f" p={mesh.degree}" if mesh else "")
-    name += ", adaptive" if job.method == "tspline" and scene.discretization.adaptive else ""
-    label = f"{name}, {result.dofs} unknowns" if result is not None and result.dofs else name
+    adaptive = job.method == "tspline" and scene.discretization.adaptive
+    name, most = (f"{name}, adaptive", "at most ") if adaptive else (name, "")
+    label = f"{name}, {most}{result.dofs} unknowns" if result is not None and result.dofs else name
     folder = str(job.folder(out).relative_to(out))
     command = shlex.join(["debond", *job.command(out)])
     return Run(label, job.method, result, outcome.left_out, folder, command, scene)

@@ -191,6 +191,7 @@ def test_asks_nothing_of_the_network(whole: tuple[str, Page]) -> None:
 
 def test_is_small_enough_and_every_tag_is_closed(whole: tuple[str, Page]) -> None:
     text, parsed = whole
+    assert not re.search(r' d="[^"]*\.\d{3}', text)  # coordinates to a hundredth of a point
     assert len(text.encode()) < 8e6 / 2  # two of the four packaged scenes
     assert text.lstrip().startswith("<!DOCTYPE html>") and not parsed.open
 
@@ -261,6 +262,16 @@ def test_says_how_a_run_ended_and_where_lumped_interface_points_are(tmp_path: Pa
     scene = given.scene.model_copy(update={"discretization": mesh})
     _, parsed = page(tmp_path, replace(changed(given, "nurbs", result=whole), scene=scene))
     assert "complete, separated at opening 5.2" in parsed.text and "lumped at the control points" in parsed.text
+
+
+def test_meshes_are_drawn_before_they_are_deformed(whole: tuple[str, Page]) -> None:
+    _, parsed = whole
+    for label in ("NURBS p=3, 1952 unknowns: 224 elements", "Lagrange p=3, 1952 unknowns: 80 elements"):
+        assert parsed.text.count(label) == 2  # scenes
+    assert (
+        parsed.text.index(" Meshes ") < parsed.text.index("Undeformed meshes") < parsed.text.index(" Deformed meshes ")
+    )
+    assert "T-junction" not in parsed.text  # none of these runs has any
 
 
 def test_failing_check_is_marked(tmp_path: Path) -> None:

@@ -37,7 +37,9 @@ def paint(axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, x
     axes.imshow(pixels, extent=(*x, *y), aspect="auto", interpolation="none", zorder=1)
     many = len(x_euvi) > _MANY_ELEMENTS
     ink = "#808a96" if many else colour("ink")  # pixels cannot follow the page
-    lines = LineCollection(perimeter(x_euvi), colors=ink, linewidths=0.25, alpha=0.7, zorder=2, rasterized=many)
+    outlines_eki = perimeter(x_euvi)
+    outlines_eki = outlines_eki[seen(outlines_eki, (x, y))]
+    lines = LineCollection(outlines_eki, colors=ink, linewidths=0.25, alpha=0.7, zorder=2, rasterized=many)
     axes.add_collection(lines)
     axes.set(xlim=x, ylim=y)
 
@@ -52,13 +54,11 @@ def _grey_levels(
     corners = np.stack([x_fine[:, :-1, :-1], x_fine[:, 1:, :-1], x_fine[:, 1:, 1:], x_fine[:, :-1, 1:]], axis=-2)
     middle = (value[:, :-1, :-1] + value[:, 1:, :-1] + value[:, 1:, 1:] + value[:, :-1, 1:]) / 4
     corners, middle = corners.reshape(-1, 4, 2), middle.ravel()
-    (left, right), (bottom, top) = frame
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    seen = (high[:, 0] >= left) & (low[:, 0] <= right) & (high[:, 1] >= bottom) & (low[:, 1] <= top)
+    inside = seen(corners, frame)
     figure = Figure(figsize=size, dpi=_DPI, facecolor="none")
     axes = figure.add_axes((0, 0, 1, 1), xlim=frame[0], ylim=frame[1])
     axes.set_axis_off()
-    fill = PolyCollection(corners[seen], array=middle[seen], cmap="gray", clim=(-limit, limit))
+    fill = PolyCollection(corners[inside], array=middle[inside], cmap="gray", clim=(-limit, limit))
     fill.set(antialiased=False, edgecolor="face", linewidth=0.2)
     axes.add_collection(fill, autolim=False)
     canvas = FigureCanvasAgg(figure)
@@ -76,6 +76,13 @@ def _interpolation(points: int, cells: int) -> np.ndarray:
     """Weights (cells (points - 1) + 1, points) of linear interpolation between equally spaced points."""
     at = np.linspace(0, points - 1, cells * (points - 1) + 1)
     return np.maximum(1 - np.abs(at[:, None] - np.arange(points)), 0)
+
+
+def seen(lines_nki: np.ndarray, frame: tuple[Limits, Limits]) -> np.ndarray:
+    """Whether the box around each line (n, k, 2) meets the frame: bool (n,)."""
+    low, high = lines_nki.min(axis=1), lines_nki.max(axis=1)
+    least, most = np.transpose(frame)
+    return np.all((high >= least) & (low <= most), axis=1)
 
 
 def perimeter(x_euvi: np.ndarray) -> np.ndarray:

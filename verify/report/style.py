@@ -197,6 +197,7 @@ def _adapt(svg: str, key: str, title: str) -> str:
     svg = re.sub(r"font-family: [^;\"]*", "font-family: inherit", svg)
     svg = re.sub(r"font: ((?:[a-z0-9.]+ )*?)([\d.]+)px [^;\"]*", r"font-size: \2px", svg)
     svg = svg.replace("*{stroke-linejoin: round; stroke-linecap: butt}", "")
+    svg = re.sub(r' d="[^"]*"|<use [^>]*>', _short_numbers, svg)
     svg = _private_ids(svg, key)
     width, height = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', svg).groups()
     head = (
@@ -204,6 +205,11 @@ def _adapt(svg: str, key: str, title: str) -> str:
         f'preserveAspectRatio="xMidYMid meet"><title id="{key}-t">{escape(title)}</title>'
     )
     return head + svg[svg.index(">") + 1 :]
+
+
+def _short_numbers(match: re.Match[str]) -> str:
+    """Coordinates to a hundredth of a point: a quarter of the page would be digits that nobody sees."""
+    return re.sub(r"\s+", " ", re.sub(r"(\.\d\d)\d+", r"\1", match[0]))
 
 
 def _private_ids(svg: str, key: str) -> str:

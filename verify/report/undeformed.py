@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from verify.report.entry import Entry
 from verify.report.fields import process_zone
 from verify.report.layout import HIGHEST, LEFT, WHOLE, mark, rows, zoom
-from verify.report.paint import Limits, perimeter
+from verify.report.paint import Limits, perimeter, seen
 from verify.report.style import WIDE, Panel, colour, drawing, to_svg
 from verify.report.text import Units, axis, number, quantity
 from verify.report.tmesh_drawing import JUNCTIONS, LINES
@@ -76,26 +76,20 @@ def draw(axes: Axes, snapshot: Snapshot, ink: str, frame: tuple[Limits, Limits])
     x, y = frame
     height = axes.get_position().height * axes.figure.get_size_inches()[1]
     apart = 0.5 * _APART / (height - _APART) * (y[1] - y[0])
+    frame = x, (y[0] - apart, y[1] + apart)
     outlines_eki = perimeter(np.asarray(snapshot.X_euvi))
     side_e = np.sign(outlines_eki[..., 1].mean(axis=1))
     for side in np.unique(side_e):
         shift = np.array([0.0, side * apart])
-        _plot(axes, outlines_eki[side_e == side] + shift, x, "elements", {**_ELEMENTS, "color": ink})
-        lines_nki, points_ni = (
-            values[np.sign(middle) * side >= 0] + shift
-            for values, middle in (
-                (snapshot.line_nki, snapshot.line_nki[..., 1].mean(axis=1)),
-                (snapshot.junction_ni, snapshot.junction_ni[:, 1]),
-            )
-        )
-        _plot(axes, _once(lines_nki), x, "T-mesh", LINES)
-        points_ni = _once(points_ni)
-        seen = (points_ni[:, 0] >= x[0]) & (points_ni[:, 0] <= x[1])
-        if seen.any():
-            axes.plot(*points_ni[seen].T, linestyle="none", label="T-junctions", **{**JUNCTIONS, "markersize": 1.8})
+        _plot(axes, outlines_eki[side_e == side] + shift, frame, "elements", {**_ELEMENTS, "color": ink})
+        _plot(axes, _of_arm(snapshot.line_nki, side) + shift, frame, "T-mesh", LINES)
+        points_nki = _of_arm(snapshot.junction_ni[:, None], side) + shift
+        points_ni = points_nki[seen(points_nki, frame), 0]
+        if len(points_ni):
+            axes.plot(*points_ni.T, linestyle="none", label="T-junctions", **{**JUNCTIONS, "markersize": 1.8})
     if (zone := process_zone(snapshot)) is not None:
         axes.plot(zone, (0.0, 0.0), label="zone", **_ZONE)
-    axes.set(xlim=x, ylim=(y[0] - apart, y[1] + apart))
+    axes.set(xlim=frame[0], ylim=frame[1])
 
 
 def _picture(
@@ -189,19 +183,18 @@ def _frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[tuple[Limits, L
     return ((left, right), (-reach, reach)), height, (height - _APART) / to_scale
 
 
-def _plot(axes: Axes, lines_nki: np.ndarray, x: Limits, label: str, style: dict[str, object]) -> None:
+def _plot(axes: Axes, lines_nki: np.ndarray, frame: tuple[Limits, Limits], label: str, style: dict) -> None:
     """Lines that are seen, as one path."""
-    seen = (lines_nki[..., 0].max(axis=1, initial=-np.inf) >= x[0]) & (
-        lines_nki[..., 0].min(axis=1, initial=np.inf) <= x[1]
-    )
-    if seen.any():
-        gaps = np.pad(lines_nki[seen], ((0, 0), (0, 1), (0, 0)), constant_values=np.nan)
+    lines_nki = lines_nki[seen(lines_nki, frame)]
+    if len(lines_nki):
+        gaps = np.pad(lines_nki, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan)
         axes.plot(*gaps.reshape(-1, 2).T, label=label, **style)
 
 
-def _once(values: np.ndarray) -> np.ndarray:
-    """Each place once: both arms have what lies on the bond."""
-    return np.unique(values, axis=0) if len(values) else values
+def _of_arm(lines_nki: np.ndarray, side: float) -> np.ndarray:
+    """Lines of the arm above (+1) or below (-1), each once: both have what lies on the bond, Y = 0."""
+    own = np.sign(lines_nki[..., 1].mean(axis=1)) * side >= 0
+    return np.unique(lines_nki[own], axis=0) if own.any() else lines_nki[own]
 
 
 def _legend(figure: Figure, tmesh: bool) -> None:
