@@ -56,6 +56,7 @@ def drawn(given: Snapshot, frame=FRAME):
 
 def test_each_arm_has_its_own_junctions_on_its_own_side():
     _, parts = drawn(snapshot(junctions=(8.5, 9.5, 10.5)))
+    assert len(parts["T-mesh"]) == 3 * 2 * (29 - 3 + 1)  # of each arm the lines across and the bond, and a gap each
     marks = parts["T-junctions"]
     assert sorted(marks[:, 0]) == [8.5, 8.5, 9.5, 9.5, 10.5, 10.5]
     for side in (1, -1):
@@ -81,7 +82,7 @@ def test_the_longest_element_that_the_zone_meets_counts():
     breaks = np.concatenate([np.linspace(0, 8, 5), np.linspace(8, 9.5, 16)[1:], np.linspace(9.5, LENGTH, 10)[1:]])
     assert bond_element(snapshot(breaks=breaks), (8.55, 9.45)) == pytest.approx(0.1)
     assert bond_element(snapshot(breaks=breaks), (8.55, 9.65)) == pytest.approx(0.5)
-    assert bond_element(snapshot(breaks=breaks), (8.5, 9.5)) == pytest.approx(0.1)  # neighbours that end there
+    assert bond_element(snapshot(breaks=breaks), (8.0, 9.5)) == pytest.approx(0.1)  # neighbours that end there
     assert np.isnan(bond_element(snapshot(breaks=breaks), (15.0, 16.0)))
 
 
