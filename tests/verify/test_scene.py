@@ -104,7 +104,7 @@ BROKEN_PEEL = {
     "specimen.strip_length=120.0": "specimen.bond_length: must be < specimen.strip_length = 120, got 120",
     "specimen.precrack=4.0": (
         "specimen.precrack: is not a key of a scene, got 4.0; the keys here are kind, strip_length, strip_thickness, "
-        "substrate_length, substrate_thickness, bond_length, width, plane"
+        "substrate_length, substrate_thickness, bond_length, width, plane, mesh"
     ),
     "material={young=1.0, poisson=0.2}": (
         "material: must be left out: the materials of a peel are strip and substrate, "
