@@ -72,12 +72,13 @@ def test_layers_are_twice_as_thick_and_their_elements_twice_as_long(strip):
     assert np.allclose(x1 - x0, np.diff(strip.breaks_c)[column] / parts, rtol=1e-9)
 
 
-@pytest.mark.parametrize("layers", [1, 2, 3, 4])
-def test_functions_of_halves_are_those_that_come_with_one_more_halved_element(layers):
+@pytest.mark.parametrize(("layers", "functions"), [(1, 1), (2, 2 * 1 + 3), (3, 4 * 1 + 2 * 3 + 4)])
+def test_a_line_has_one_function_on_each_row_that_it_meets(layers, functions):
+    """Shortest lines one, on the interface; the next ones three, for two rows are at an end of the knots, and so on."""
     x = np.linspace(0.0, 1.0, 8)
     counts = [len(strip_tmesh(Strip(x, np.arange(7) < n, layers), (0.0, 1.0), False).anchors) for n in (2, 3, 6)]
-    assert counts[1] - counts[0] == functions_of_halves(layers)
-    assert counts[2] - counts[0] == 4 * functions_of_halves(layers)
+    assert counts[1] - counts[0] == functions == functions_of_halves(layers)
+    assert counts[2] - counts[0] == 4 * functions
 
 
 @pytest.mark.parametrize("layers", [1, 2, 3])
