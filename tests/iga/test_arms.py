@@ -1,0 +1,189 @@
+"""Meshes of the arms from the number of unknowns: one rule for every basis."""
+
+from dataclasses import replace
+from time import process_time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from specimens import PAPER
+from test_peel import PEEL
+
+from iga.arms import COARSENING, arm_meshes, crack_path, tmeshes, zone_length
+from iga.dcb import build, solve
+from iga.peel_meshes import tmeshes as peel_tmeshes
+from iga.surface import surface
+from iga.tspline import tspline_rectangle
+
+some = settings(max_examples=40, deadline=None)
+BASES = ("tspline", "nurbs", "lagrange")
+CZM1 = replace(PAPER, opening=(3.0,))
+CZM2 = replace(CZM1, strength=6.0)
+
+#: How far the unknowns may miss their aim where single elements count. Elements on the path, before and beyond it may
+#: all become one more at once: three of one arm with 8 unknowns each or 24; T-splines have three more in both arms or
+#: none, and 4 for the halves of one.
+MISSED = {"tspline": 2 * 3 * 8 + 4, "nurbs": 3 * 8, "lagrange": 3 * 24}
+
+LEAST = 400
+
+
+@st.composite
+def problems(draw, most=50_000):
+    """Specimens as slender as that of the paper or less, openings from half of one at which the crack runs."""
+    dofs = round(LEAST * (most / LEAST) ** draw(st.floats(0.0, 1.0)))
+    return replace(
+        CZM1,
+        basis=draw(st.sampled_from(BASES)),
+        dofs=dofs,
+        strength=draw(st.sampled_from([2.0, 4.0, 6.0])),
+        opening=(draw(st.floats(1.0, 8.0)),),
+        precrack=draw(st.floats(3.0, 5.0)),
+        arm_thickness=draw(st.floats(0.1, 0.4)),
+        symmetry=draw(st.booleans()),
+    )
+
+
+def sides(problem):
+    """Lengths of the elements along the interface and their middles, a pair an arm, from the control points alone."""
+    meshes = [tspline_rectangle(mesh) for mesh in tmeshes(problem)] if problem.basis == "tspline" else ()
+    for mesh, side in zip(meshes or arm_meshes(problem), ("bottom", "top"), strict=False):
+        face = surface(mesh, mesh.chains[side], 0)
+        x = face.bezier_points(mesh.P_AI)[:, :, 0]
+        yield x[:, -1] - x[:, 0], 0.5 * (x[:, 0] + x[:, -1])
+
+
+def unknowns(problem) -> int:
+    if problem.basis == "tspline":
+        return sum(2 * len(mesh.anchors) for mesh in tmeshes(problem)[: 1 if problem.symmetry else 2])
+    return sum(mesh.P_AI.size for mesh in arm_meshes(problem))
+
+
+@some
+@given(problems())
+def test_unknowns_are_those_aimed_at(problem):
+    """One arm alone is one of two equal ones: half of what is aimed at, and half of what both gain at once."""
+    aim = problem.dofs / (2 if problem.symmetry else 1)
+    missed = abs(unknowns(problem) - aim)
+    assert missed <= max(0.02 * aim, MISSED[problem.basis])
+
+
+@pytest.mark.parametrize("basis", BASES)
+@pytest.mark.parametrize("problem", [CZM1, CZM2], ids=["czm1", "czm2"])
+@pytest.mark.parametrize("dofs", [280, 400, 1956, 4000, 10_000])
+def test_the_specimens_of_the_paper_have_the_same_size_with_every_basis(basis, problem, dofs):
+    assert unknowns(replace(problem, basis=basis, dofs=dofs)) == pytest.approx(dofs, rel=0.02)
+
+
+@some
+@given(problems(most=10_000))
+def test_elements_are_equal_on_the_crack_path_and_longer_elsewhere(problem):
+    """A boundary at the precrack; T-splines may have some elements at the end of the path that are not halved."""
+    end = crack_path(problem)
+    for length, middle in sides(problem):
+        assert np.min(np.abs(middle - 0.5 * length - problem.precrack)) < 1e-12 * problem.length
+        assert length.sum() == pytest.approx(problem.length, rel=1e-12)
+        on_path = length[(middle > problem.precrack) & (middle < end)]
+        shortest, longest = on_path.min(), on_path.max()
+        if problem.basis == "tspline":
+            assert np.log2(longest / shortest) == pytest.approx(round(np.log2(longest / shortest)), abs=1e-9)
+            assert np.all(np.diff(on_path) > -1e-12)
+        else:
+            assert longest == pytest.approx(shortest, rel=1e-9)
+        assert np.all(length >= 0.5 * shortest * (1.0 - 1e-9))
+        if problem.basis != "tspline":
+            assert length.max() <= COARSENING * longest * (1.0 + 1e-9)
+
+
+def lines_on(mesh, j: int) -> np.ndarray:
+    """Places of the lines of a T-mesh that have a function on the horizontal line j."""
+    return np.unique(mesh.knots_i[mesh.anchors[mesh.anchors[:, 1] == j % len(mesh.knots_j), 0]])
+
+
+@some
+@given(problems(most=10_000).map(lambda problem: replace(problem, basis="tspline", symmetry=False)))
+def test_t_splines_are_suitable_and_halve_their_elements_towards_the_interface(problem):
+    """Elements opposite keep to the rule of all bases; at the interface those on the path are halved."""
+    for mesh, top in zip(tmeshes(problem), (False, True), strict=True):
+        assert mesh.suitable
+        interface, opposite = (lines_on(mesh, j) for j in ((-3, 2) if top else (2, -3)))
+        on_path = (opposite[:-1] >= problem.precrack) & (opposite[1:] <= crack_path(problem) * (1.0 + 1e-12))
+        cells = np.diff(opposite)
+        assert cells.max() <= COARSENING * cells[on_path].max() * (1.0 + 1e-9)
+        layers = np.log2(cells[on_path].min() / np.diff(interface).min())
+        assert layers > 0.5 and layers == pytest.approx(round(layers), abs=1e-9)
+        fine = np.diff(interface) < 1.5 * np.diff(interface).min()
+        assert opposite[0] < interface[:-1][fine].min() == pytest.approx(problem.precrack)
+        assert interface[1:][fine].max() <= crack_path(problem) * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("mismatch", [0.5, 0.73, 1.37, 3.0])
+@pytest.mark.parametrize("basis", BASES)
+def test_lengths_on_the_path_are_in_the_ratio_asked_for(basis, mismatch):
+    problem = replace(CZM1, basis=basis, dofs=3000, mismatch=mismatch)
+    shortest = [length[(m > 4.0) & (m < crack_path(problem))].min() for length, m in sides(problem)]
+    assert shortest[1] / shortest[0] == pytest.approx(mismatch, rel=0.05)
+
+
+RUNS = [(CZM1, "finite"), (CZM2, "linear"), (replace(CZM1, opening=(1.0,)), "finite")]
+
+
+@pytest.mark.parametrize(("problem", "kinematics"), RUNS, ids=["czm1", "czm2", "a third"])
+def test_the_crack_path_is_as_long_as_the_damage_goes_and_not_much_longer(problem, kinematics):
+    last = solve(replace(problem, basis="tspline", dofs=400, steps=12, kinematics=kinematics)).rows[-1]
+    ahead = crack_path(problem) - last["damage_front"]
+    print(f"damage ends {ahead:.2f} before the path, crack {last['crack_length']:.2f}, zone {zone_length(problem):.2f}")
+    assert 0.0 <= ahead < 1.5 * zone_length(problem)
+
+
+def test_the_path_ends_with_the_bond_and_begins_with_the_precrack():
+    assert crack_path(replace(CZM1, opening=(50.0,))) == 14.0
+    closed = crack_path(replace(CZM1, opening=(-0.1,)))
+    assert 4.0 < closed < 4.0 + zone_length(CZM1)
+    assert crack_path(replace(CZM1, opening=(1.0, 3.0, 0.5))) == crack_path(CZM1)
+
+
+@pytest.mark.parametrize("interface_rule", ["gauss", "lumped"])
+def test_equal_arms_where_points_must_meet(interface_rule):
+    """Lumping needs them; otherwise an arm may have one element more where that meets the unknowns better."""
+    counts = [
+        [mesh.elements for mesh in arm_meshes(replace(CZM1, dofs=dofs, interface_rule=interface_rule))]
+        for dofs in range(240, 420, 8)
+    ]
+    unequal = [upper != lower for upper, lower in counts]
+    assert any(unequal) == (interface_rule == "gauss") and max(abs(a - b) for a, b in counts) <= 3
+
+
+def made(problem, dofs):
+    """Seconds of work for the meshes of a problem with so many unknowns, and how many they have."""
+    start = process_time()
+    if problem is PEEL:
+        meshes = [tspline_rectangle(mesh) for mesh in peel_tmeshes(replace(PEEL, basis="tspline", dofs=dofs))]
+    else:
+        meshes = arm_meshes(replace(problem, basis="tspline", dofs=dofs))
+    return process_time() - start, sum(mesh.P_AI.size for mesh in meshes)
+
+
+@pytest.mark.parametrize("problem", [CZM1, PEEL], ids=["arms", "peel"])
+def test_meshes_of_fifty_thousand_unknowns_take_seconds_and_grow_with_their_size(problem):
+    sizes = (6_250, 12_500, 25_000, 50_000)
+    seconds, found = np.transpose([min(made(problem, dofs) for _ in range(3)) for dofs in sizes])
+    exponent = np.polyfit(np.log(found), np.log(seconds), 1)[0]
+    print(f"seconds {seconds.round(2)}, exponent {exponent:.2f}")
+    assert np.all(np.abs(found / sizes - 1.0) < 0.02)
+    assert seconds[-1] < 10.0 and exponent < 1.2
+
+
+def test_what_no_mesh_can_be_made_of_is_refused():
+    with pytest.raises(ValueError, match="degree must be 3 for T-splines, got 2"):
+        arm_meshes(replace(CZM1, basis="tspline", degree=2))
+    with pytest.raises(ValueError, match="degree must be 3 for T-splines, got 4"):
+        peel_tmeshes(replace(PEEL, basis="tspline", degree=4))
+    with pytest.raises(ValueError, match='basis must be "tspline", "nurbs" or "lagrange", got \'fourier\''):
+        arm_meshes(replace(CZM1, basis="fourier"))
+    for basis in BASES:
+        with pytest.raises(ValueError, match="needs at least [0-9]+ unknowns, got 60"):
+            arm_meshes(replace(CZM1, basis=basis, dofs=60))
+    with pytest.raises(ValueError, match="needs at least"):
+        build(replace(CZM1, basis="tspline", dofs=60))
