@@ -165,6 +165,7 @@ def made(problem, dofs):
     return process_time() - start, sum(mesh.P_AI.size for mesh in meshes)
 
 
+@pytest.mark.slow  # a rate of seconds is worth something on a quiet machine only
 @pytest.mark.parametrize("problem", [CZM1, PEEL], ids=["arms", "peel"])
 def test_meshes_of_fifty_thousand_unknowns_take_seconds_and_grow_with_their_size(problem):
     sizes = (6_250, 12_500, 25_000, 50_000)

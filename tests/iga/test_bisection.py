@@ -117,6 +117,7 @@ def test_what_cannot_be_bisected_is_refused(make, message):
         make()
 
 
+@pytest.mark.slow  # a rate of seconds is worth something on a quiet machine only
 def test_fifty_thousand_unknowns_are_built_and_extracted_in_seconds():
     """A mesh refined towards an arc: it grows in both directions, and the time with the number of functions."""
     mesh, meshes = initial(np.arange(5.0), np.arange(5.0)), {}
