@@ -13,6 +13,8 @@ from iga.lagrange import lagrange_rectangle
 from iga.material import isotropic, orthotropic
 from iga.nurbs import nurbs_rectangle
 from iga.quadrature import gauss, square
+from iga.strip import Strip, strip_tmesh
+from iga.tspline import tspline_rectangle
 
 D_GENERIC = orthotropic(130.0, 9.0, 5.0, 0.3, "stress")
 
@@ -68,6 +70,8 @@ def warped(mesh: Mesh, amount: float) -> Mesh:
 
 def unit_square(kind: str, degree: int, elements: int) -> Mesh:
     breaks = np.linspace(0.0, 1.0, elements + 1)
+    if kind == "tspline":
+        return tspline_rectangle(strip_tmesh(Strip(breaks, np.arange(elements) % 2 == 0, 2), (0.0, 1.0), top=False))
     if kind == "nurbs":
         return nurbs_rectangle(open_knots(breaks, degree), open_knots(breaks, degree))
     return lagrange_rectangle(breaks, breaks, degree)
@@ -78,19 +82,25 @@ def with_weights(mesh: Mesh, rng) -> Mesh:
 
 
 @pytest.mark.parametrize("kinematics", KINEMATICS)
-@pytest.mark.parametrize("kind", ["nurbs", "rational", "lagrange"])
-@pytest.mark.parametrize("degree", [1, 2, 3, 4, 5])
+@pytest.mark.parametrize(
+    ("kind", "degree"),
+    [(kind, degree) for kind in ("nurbs", "rational", "lagrange") for degree in (1, 2, 3, 4, 5)]
+    + [("tspline", 3), ("rational tspline", 3)],
+)
 def test_patch(kind, degree, kinematics, rng):
     """A linear field on warped elements: constant stress, and no force on any inner control point."""
-    mesh = warped(unit_square("lagrange" if kind == "lagrange" else "nurbs", degree, 3), 0.05)
-    mesh = with_weights(mesh, rng) if kind == "rational" else mesh
+    mesh = warped(unit_square("nurbs" if kind == "rational" else kind.split()[-1], degree, 3), 0.05)
+    mesh = with_weights(mesh, rng) if "rational" in kind else mesh
     inside = np.all((mesh.P_AI > 1e-9) & (mesh.P_AI < 1 - 1e-9), axis=1)
-    basis = block_basis(mesh, mesh.blocks[0], *square(gauss(14), gauss(14)))
-    u = mesh.P_AI @ np.array([[0.05, -0.02], [0.03, 0.04]])
-    P, _, _ = KINEMATICS[kinematics](D_GENERIC, gradient(basis, u))
-    assert np.ptp(P, axis=(2, 3)).max() < 1e-10 * np.abs(P).max()
+    u, stress = mesh.P_AI @ np.array([[0.05, -0.02], [0.03, 0.04]]), []
     f = np.zeros_like(u)
-    np.add.at(f, basis.conn_ea, element_forces(basis, P))
+    for block in mesh.blocks:
+        basis = block_basis(mesh, block, *square(gauss(14), gauss(14)))
+        P, _, _ = KINEMATICS[kinematics](D_GENERIC, gradient(basis, u))
+        stress.append(P.reshape(2, 2, -1))
+        np.add.at(f, basis.conn_ea, element_forces(basis, P))
+    P = np.concatenate(stress, axis=-1)
+    assert np.ptp(P, axis=2).max() < 1e-10 * np.abs(P).max()
     assert np.abs(f[inside]).max() < 1e-10 * np.abs(f).max()
 
 

@@ -102,7 +102,7 @@ def deformed(system, opening: float, shift: float, rng) -> np.ndarray:
 
 
 @pytest.mark.parametrize("slave", ["upper", "lower"])
-@pytest.mark.parametrize("basis", ["nurbs", "lagrange"])
+@pytest.mark.parametrize("basis", ["tspline", "nurbs", "lagrange"])
 @pytest.mark.parametrize("state", STATES)
 def test_tangent_on_a_curved_sliding_interface(state, basis, slave, rng):
     """Central difference to 1e-6 in every state; slid by a third of an element, so that no point meets its twin."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.peel import Moduli, Problem, build, meshes, solve
+from iga.peel import Moduli, Problem, build, solve
 
 
 def isotropic(young: float, poisson: float) -> Moduli:
@@ -34,10 +34,19 @@ def column(solution, name):
     return np.array([row[name] for row in solution.rows])
 
 
-@pytest.fixture(scope="module", params=[("finite", "upper"), ("finite", "lower"), ("linear", "upper")], ids="-".join)
+PEELED = [
+    ("finite", "upper", "nurbs"),
+    ("finite", "lower", "nurbs"),
+    ("linear", "upper", "nurbs"),
+    ("finite", "upper", "tspline"),
+]
+
+
+@pytest.fixture(scope="module", params=PEELED, ids="-".join)
 def peel(request):
-    kinematics, slave = request.param
-    return solve(replace(PEEL, kinematics=kinematics, slave=slave, dofs=2600, opening=(0.8,), steps=50))
+    kinematics, slave, basis = request.param
+    problem = replace(PEEL, kinematics=kinematics, slave=slave, basis=basis)
+    return solve(replace(problem, dofs=2600, opening=(0.8,), steps=50))
 
 
 def test_first_row_and_distances_from_the_loaded_end(peel):
@@ -101,11 +110,11 @@ def test_rows_are_the_same_in_any_pose(kinematics):
         assert np.max(np.abs(column(here, name) - column(there, name))) <= 1e-8 * scale, name
 
 
-@pytest.mark.parametrize("basis", ["nurbs", "lagrange"])
+@pytest.mark.parametrize("basis", ["tspline", "nurbs", "lagrange"])
 @pytest.mark.parametrize("bond_length", [60.0, 120.0])
 @pytest.mark.parametrize("dofs", [400, 700, 1000, 1956, 3700])
 def test_size_of_the_mesh_is_met(dofs, bond_length, basis):
-    both = meshes(replace(PEEL, dofs=dofs, bond_length=bond_length, basis=basis))
+    both = build(replace(PEEL, dofs=dofs, bond_length=bond_length, basis=basis)).meshes
     assert 0.98 * dofs <= sum(mesh.P_AI.size for mesh in both) <= dofs
 
 

@@ -45,11 +45,14 @@ SMALL = {
 }
 
 
+FLATS = [("finite", "nurbs"), ("linear", "nurbs"), ("finite", "lagrange"), ("finite", "tspline")]
+
+
 def column(solution, name):
     return np.array([row[name] for row in solution.rows])
 
 
-@pytest.fixture(scope="module", params=[("finite", "nurbs"), ("linear", "nurbs"), ("finite", "lagrange")], ids="-".join)
+@pytest.fixture(scope="module", params=FLATS, ids="-".join)
 def flat(request):
     kinematics, basis = request.param
     problem = replace(FLAT, kinematics=kinematics, basis=basis)

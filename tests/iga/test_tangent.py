@@ -22,11 +22,18 @@ def points_of(system, programme, steps=60):
     return [p for p in follow(system, programme, steps) if isinstance(p, Point)]
 
 
-@pytest.fixture(scope="module", params=[("nurbs", "finite"), ("lagrange", "finite"), ("lagrange", "linear")])
+SNAPPING_ONES = [
+    replace(SNAPPING, basis="nurbs"),
+    replace(SNAPPING, basis="lagrange"),
+    replace(SNAPPING, basis="lagrange", kinematics="linear"),
+    replace(SNAPPING, basis="tspline", strength=10.0, dofs=200),
+]
+
+
+@pytest.fixture(scope="module", params=SNAPPING_ONES, ids=lambda problem: f"{problem.basis}-{problem.kinematics}")
 def snapping(request):
     """A system whose path snaps back, and its points."""
-    basis, kinematics = request.param
-    system = build(replace(SNAPPING, basis=basis, kinematics=kinematics)).system
+    system = build(request.param).system
     return system, points_of(system, (1.0,))
 
 
