@@ -14,7 +14,7 @@ import numpy as np
 
 from iga.control import opening_control
 from iga.landing import landed
-from iga.newton import DEFAULT, PATIENT, Newton, equilibrium
+from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium
 from iga.pace import Pace, Step, next_step, paced
 from iga.point import End, Point
 from iga.system import Phase, State, System, energies, respond, untimed
@@ -25,6 +25,8 @@ from iga.work import leaks, step_work, straight_work
 SEPARATED = 1e-3
 #: A state as good as the one where the path departs is this part of the opening, or of g_max, ahead.
 TRIFLE = 1e-6
+#: Parts of the penalty with which contact is searched for, one after the other, where it is too stiff to be found.
+SOFTER = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 #: An opening that is this part of the one before is none.
 HOME = 1e-9
 
@@ -129,10 +131,29 @@ def _departing(system: System, state: State, direction: float, work: float, phas
             u_d=state.u_d + trifle / rate * found.du_d,
             load=state.load + trifle / rate * found.d_load,
         )
-        tried = equilibrium(system, moved, opening_control(system), opening + trifle, trifle, PATIENT, phase)
+        tried = _touching(system, moved, opening + trifle, trifle, phase)
         if tried is not None:
             state = replace(state, closed_q=tried.state.closed_q)
     return start
+
+
+def _touching(system: System, trial: State, opening: float, change: float, phase: Phase) -> Equilibrium | None:
+    """Equilibrium at an opening where it is not known what touches.
+
+    Where a search with the contact as it is fails, softer contact shows most of what touches, and ever stiffer one the
+    rest.
+    """
+    control = opening_control(system)
+    found = equilibrium(system, trial, control, opening, change, PATIENT, phase)
+    if found is not None:
+        return found
+    law = system.interface.law
+    for part in SOFTER:
+        soft = replace(system, interface=replace(system.interface, law=replace(law, penalty=part * law.penalty)))
+        found = equilibrium(soft, trial, control, opening, change, PATIENT, phase)
+        if found is not None:
+            trial = replace(found.state, k_q=trial.k_q)
+    return found
 
 
 def _onto(system: System, point: Point, goal: float) -> Step:
