@@ -34,14 +34,18 @@ FEW = 7
 #: Elements (before, on, beyond) the crack path.
 Division = tuple[int, int, int]
 
+#: Elements on the crack path of an arm, and elements before it beyond those that its length asks for.
+Arm = tuple[int, int]
+
 
 def arm_meshes(problem: Problem) -> tuple[Mesh, ...]:
     """The arms, upper first: equal elements on the crack path, longer ones before and beyond it.
 
-    An element boundary lies at the end of the precrack. The model of one arm gets half of ``dofs``. NURBS and Lagrange
-    meshes are one element thick; one with `FEW` elements on the path is quadratic through the arms, all that bending
-    needs, and spends the rest along them. Where two equal arms would miss ``dofs`` by more than `NEAR`, the lower one
-    has one element more. T-splines halve the elements towards the interface (see `iga.strip`).
+    An element boundary lies at the end of the precrack. The model of one arm gets half of ``dofs``. NURBS and
+    Lagrange meshes are one element thick; one with `FEW` elements on the path is quadratic through the arms, all that
+    bending needs, and spends the rest along them. Where two equal arms would miss ``dofs`` by more than `NEAR`, the
+    lower one has one element more, or there are more elements before the path. T-splines halve the elements towards
+    the interface (see `iga.strip`).
 
     Raises
     ------
@@ -87,43 +91,52 @@ def zone_length(problem: Problem) -> float:
     return (problem.E1 * problem.toughness / problem.strength**2) ** 0.25 * problem.arm_thickness**0.75
 
 
-def division(problem: Problem, path: int) -> tuple[Division, tuple[float, float, float, float]]:
+def division(problem: Problem, path: int, spare: int = 0) -> tuple[Division, tuple[float, float, float, float]]:
     """Elements before, on and beyond the crack path with so many on it, and where these parts begin and end.
 
-    What is left beyond the path is part of it where that is shorter than half an element.
+    There are ``spare`` more elements before the path than their length asks for. What is left beyond the path is part
+    of it where that is shorter than half an element.
     """
     end = crack_path(problem)
     if problem.length - end < 0.5 * (end - problem.precrack) / path:
         end = problem.length
     longest = COARSENING * (end - problem.precrack) / path
     before, beyond = (int(np.ceil(length / longest)) for length in (problem.precrack, problem.length - end))
-    return (before, path, beyond), (0.0, problem.precrack, end, problem.length)
+    return (before + spare, path, beyond), (0.0, problem.precrack, end, problem.length)
 
 
 def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
     basis, p = problem.basis, problem.degree
 
-    def unknowns(upper: int, lower: int, q: int) -> int:
-        return 2 * (q + 1) * sum(columns(basis, p, sum(division(problem, n)[0])) for n in (upper, lower))
+    def arms(path: int, *spare: int) -> tuple[Arm, Arm]:
+        upper, lower = zip(unequal(path, problem.mismatch), spare or (0, 0), strict=True)
+        return upper, lower
 
-    def chosen(q: int) -> tuple[int, int]:
-        n = largest(lambda n: unknowns(*unequal(n, problem.mismatch), q), 1, problem.dofs)
-        options = [unequal(n, problem.mismatch), unequal(n + 1, problem.mismatch)]
-        if problem.mismatch == 1.0 and not problem.symmetry and problem.interface_rule != "lumped":
-            options.append((n, n + 1))
-        missed = [abs(unknowns(*option, q) - problem.dofs) for option in options]
+    def unknowns(both: tuple[Arm, Arm], q: int) -> int:
+        return 2 * (q + 1) * sum(columns(basis, p, sum(division(problem, *arm)[0])) for arm in both)
+
+    def chosen(q: int) -> tuple[Arm, Arm]:
+        n = largest(lambda n: unknowns(arms(n), q), 1, problem.dofs)
+        least = unknowns(arms(n), q)
+        spare = (problem.dofs - least) // (unknowns(arms(n, 1, 1), q) - least)
+        options = [arms(n), arms(n + 1), arms(n, spare, spare), arms(n, spare + 1, spare + 1)]
+        if not problem.symmetry:
+            alike = problem.mismatch == 1.0 and problem.interface_rule != "lumped"
+            options[2:2] = [((n, 0), (n + 1, 0))] if alike else []
+            options.append(arms(n, spare, spare + 1))
+        missed = [abs(unknowns(option, q) - problem.dofs) for option in options]
         near = [option for option, by in zip(options[:2], missed, strict=False) if by <= NEAR * problem.dofs]
         return near[0] if near else options[int(np.argmin(missed))]
 
     q = p
     both = chosen(q)
-    if q > 2 and min(both) <= FEW:
+    if q > 2 and min(path for path, _ in both) <= FEW:
         q = 2
         both = chosen(q)
     meshes = []
-    for n, bottom in zip(both, (0.0, -problem.arm_thickness), strict=True):
+    for arm, bottom in zip(both, (0.0, -problem.arm_thickness), strict=True):
         through = bottom + problem.arm_thickness * np.linspace(0.0, 1.0, 2)
-        meshes.append(rectangle(basis, (p, q), _breaks(*division(problem, n)), through))
+        meshes.append(rectangle(basis, (p, q), _breaks(*division(problem, *arm)), through))
     return tuple(meshes)
 
 
@@ -135,32 +148,34 @@ def arm_tmeshes(problem: Problem, strips: tuple[Strip, ...]) -> tuple[TMesh, ...
 
 
 def _strips(problem: Problem, layers: int) -> tuple[Strip, Strip]:
-    """Both arms with so many layers; the last elements on the path are not halved where that meets ``dofs`` better."""
+    """Both arms with so many layers: all elements on the path halved, or what meets ``dofs`` better.
 
-    def strip(path: int, halved: int) -> Strip:
-        (before, _, beyond), x = division(problem, path)
-        breaks_c = _breaks((before, path, beyond), x)
-        number = np.arange(len(breaks_c) - 1) - before
+    That may be one element more, of which the last ones are not halved, or more elements before the path.
+    """
+    column, halves = layers + DEGREE, functions_of_halves(layers)
+
+    def strip(path: int, halved: int, spare: int) -> Strip:
+        parts, x = division(problem, path, spare)
+        breaks_c = _breaks(parts, x)
+        number = np.arange(len(breaks_c) - 1) - parts[0]
         return Strip(breaks_c, (number >= 0) & (number < min(halved, path)), layers)
 
-    def strips(path: int, halved: int) -> tuple[Strip, Strip]:
-        upper, lower = unequal(path, problem.mismatch)
-        return strip(upper, halved), strip(lower, halved)
-
-    def unknowns(path: int, halved: int) -> int:
-        both = (sum(division(problem, n)[0]) + DEGREE for n in unequal(path, problem.mismatch))
-        halves = (min(halved, n) for n in unequal(path, problem.mismatch))
-        return 2 * sum(
-            columns * (layers + DEGREE) + n * functions_of_halves(layers)
-            for columns, n in zip(both, halves, strict=True)
-        )
+    def unknowns(path: int, halved: int, spare: int = 0) -> int:
+        paths = unequal(path, problem.mismatch)
+        columns = sum(sum(division(problem, n, spare)[0]) + DEGREE for n in paths)
+        return 2 * (columns * column + sum(min(halved, n) for n in paths) * halves)
 
     path = largest(lambda n: unknowns(n, n), 1, problem.dofs)
-    left = problem.dofs - unknowns(path + 1, 0)
-    halved = left // (4 * functions_of_halves(layers))
-    missed = problem.dofs - unknowns(path, path)
-    better = halved > 0 and missed > max(NEAR * problem.dofs, abs(problem.dofs - unknowns(path + 1, halved)))
-    return strips(path + 1, halved) if better else strips(path, path)
+    missing = (problem.dofs - unknowns(path, path)) // 4
+    options = [(path, path, 0)]
+    if 4 * missing > NEAR * problem.dofs:
+        spare, fewer = missing // column, -(-(column - missing % column) // halves)
+        longer = (problem.dofs - unknowns(path + 1, 0)) // (4 * halves)
+        options += [(path + 1, longer, 0), (path, path, spare), (path, path - fewer, spare + 1)]
+        options = [option for option in options if option[1] > 0]
+    best = min(options, key=lambda option: abs(problem.dofs - unknowns(*option)))
+    upper, lower = (strip(n, *best[1:]) for n in unequal(best[0], problem.mismatch))
+    return upper, lower
 
 
 def _breaks(division: Division, x: tuple[float, float, float, float]) -> np.ndarray:
