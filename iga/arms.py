@@ -78,12 +78,14 @@ def crack_path(problem: Problem) -> float:
     """Where the crack path ends: beyond the crack at the largest opening, and part of a process zone, or with the bond.
 
     Beam theory without shear or root rotation has the crack at ``a^2 = 3/2 opening sqrt(E h^3 / (12 G))`` in slender
-    arms; an arm that is deflected far is longer than it reaches.
+    arms; an arm that is deflected far is longer than it reaches. Soft contact gives way over the length
+    ``(E h^3 / (3 penalty))^(1/4)`` of a beam on springs (Hetenyi 1946).
     """
     h, opening = problem.arm_thickness, max(0.0, *problem.opening)
     crack = (1.5 * opening * (problem.E1 * h**3 / (12.0 * problem.toughness)) ** 0.5) ** 0.5
-    end = max(np.hypot(crack, 0.5 * opening), problem.precrack) + MARGIN * zone_length(problem)
-    return min(end, problem.length)
+    soft = (problem.E1 * h**3 / (3.0 * problem.penalty)) ** 0.25
+    ahead = max(MARGIN * zone_length(problem), soft if problem.contact else 0.0)
+    return min(max(np.hypot(crack, 0.5 * opening), problem.precrack) + ahead, problem.length)
 
 
 def zone_length(problem: Problem) -> float:
