@@ -9,7 +9,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 from hypothesis import settings  # noqa: E402
 
 # A run on a loaded machine must not fail for its pace, and a failure must come back in the next run.
-settings.register_profile("debond", deadline=None, derandomize=True, max_examples=50)
+settings.register_profile("debond", deadline=None, derandomize=True, max_examples=25)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "debond"))
 
 os.environ.setdefault("MPLBACKEND", "Agg")
