@@ -32,7 +32,7 @@ ROWS = (
 )  # fmt: skip
 
 #: Some of the cases, fast ones; --slow runs all of them.
-FAST = ("coarse-czm2", "unload-reload", "short-ligament")
+FAST = ("coarse-czm2", "short-ligament")
 
 
 def fake_rows(opening: float, n: int = 30) -> list[dict[str, float]]:
