@@ -1,7 +1,7 @@
 """Meshes of the arms of a double cantilever beam, of any basis, from the number of unknowns.
 
 The same rule for every basis: one interface element length all along the crack path, as short as the unknowns allow, so
-that it divides the process zone as often as possible; elements up to `COARSENING` times longer before and beyond.
+that it divides the process zone as often as possible; elements up to `coarsening` times longer before and beyond.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import numpy as np
 
 from iga.extraction import Mesh
 from iga.grading import columns, largest, pieces, rectangle, unequal
+from iga.material import orthotropic
 from iga.strip import Strip, functions_of_halves, strip_tmesh
 from iga.tmesh import DEGREE, TMesh
 from iga.tspline import tspline_rectangle
@@ -19,8 +20,9 @@ from iga.tspline import tspline_rectangle
 if TYPE_CHECKING:
     from iga.dcb import Problem
 
-#: Elements off the crack path only bend; they may be this much longer than those on it.
-COARSENING = 8.0
+#: How much longer than those on the crack path elements off it may be: where Poisson's ratio is zero, and where the
+#: material is incompressible (measured: with equal elements those on the path become too few).
+COARSENING, LEAST_COARSENING = 4.0, 1.25
 
 #: Part of a process zone that the crack path goes on beyond the crack of beam theory, which is ahead of the true one.
 MARGIN = 0.4
@@ -93,17 +95,33 @@ def zone_length(problem: Problem) -> float:
     return (problem.E1 * problem.toughness / problem.strength**2) ** 0.25 * problem.arm_thickness**0.75
 
 
+def coarsening(problem: Problem) -> float:
+    """How much longer elements off the crack path may be than those on it.
+
+    A bent arm is no polynomial where its rotation is finite. What a cubic leaves of it is a spurious change of volume,
+    which grows with the cube of the length of an element, and costs stress ``1 / (1 - D12^2 / (D11 D22))`` times that
+    of bending: an arm that is nearly incompressible locks in long elements.
+    """
+    D = orthotropic(problem.E1, problem.E2, problem.G12, problem.nu12, problem.plane)
+    return max(LEAST_COARSENING, COARSENING * (1.0 - D[0, 1] ** 2 / (D[0, 0] * D[1, 1])) ** (1.0 / 3.0))
+
+
 def division(problem: Problem, path: int, spare: int = 0) -> tuple[Division, tuple[float, float, float, float]]:
     """Elements before, on and beyond the crack path with so many on it, and where these parts begin and end.
 
-    There are ``spare`` more elements before the path than their length asks for. What is left beyond the path is part
-    of it where that is shorter than half an element.
+    There are ``spare`` more elements before the path than their length asks for. Where there are few on the path there
+    are no more of them elsewhere. One cubic element stands before the path in place of two: the bending line of an
+    unloaded beam is a cubic. What is left beyond the path is part of it where that is shorter than half an element.
     """
     end = crack_path(problem)
     if problem.length - end < 0.5 * (end - problem.precrack) / path:
         end = problem.length
-    longest = COARSENING * (end - problem.precrack) / path
+    longest = coarsening(problem) * (end - problem.precrack) / path
     before, beyond = (int(np.ceil(length / longest)) for length in (problem.precrack, problem.length - end))
+    if path <= FEW:
+        before, beyond = min(before, path), min(beyond, path)
+    if before == 2 and problem.degree >= 3:
+        before = 1
     return (before + spare, path, beyond), (0.0, problem.precrack, end, problem.length)
 
 
@@ -125,7 +143,7 @@ def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
         if not problem.symmetry:
             alike = problem.mismatch == 1.0 and problem.interface_rule != "lumped"
             options[2:2] = [((n, 0), (n + 1, 0))] if alike else []
-            options.append(arms(n, spare, spare + 1))
+            options += [arms(n, spare, spare + 1)] if alike else []
         missed = [abs(unknowns(option, q) - problem.dofs) for option in options]
         near = [option for option, by in zip(options[:2], missed, strict=False) if by <= NEAR * problem.dofs]
         return near[0] if near else options[int(np.argmin(missed))]

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from specimens import PAPER
+from specimens import PAPER, E
 from test_peel import PEEL
 
-from iga.arms import COARSENING, arm_meshes, crack_path, tmeshes, zone_length
+from iga.arms import COARSENING, FEW, LEAST_COARSENING, arm_meshes, coarsening, crack_path, tmeshes, zone_length
 from iga.dcb import build, solve
 from iga.peel_meshes import tmeshes as peel_tmeshes
 from iga.surface import surface
@@ -76,6 +76,24 @@ def test_the_specimens_of_the_paper_have_the_same_size_with_every_basis(basis, p
     assert unknowns(replace(problem, basis=basis, dofs=dofs)) == pytest.approx(dofs, rel=0.02)
 
 
+def coarsest(problem, before: int, path: int) -> float:
+    """One cubic element before the path may stand for two; few on the path ask for no more of them elsewhere."""
+    if path <= FEW:
+        return np.inf
+    return coarsening(problem) * (2.0 if before == 1 and problem.degree >= 3 else 1.0)
+
+
+def test_nearly_incompressible_arms_have_no_long_elements():
+    """Poisson's ratio 0 has the longest; those of plane stress hardly matter."""
+    strain = {
+        nu: coarsening(replace(PAPER, plane="strain", nu12=nu, G12=E / (2 * (1 + nu))))
+        for nu in (0.0, 0.3, 0.45, 0.4999)
+    }
+    assert strain[0.0] == COARSENING and strain[0.4999] == LEAST_COARSENING
+    assert strain[0.0] > strain[0.3] > strain[0.45] > strain[0.4999]
+    assert coarsening(replace(PAPER, plane="stress", nu12=0.4999, G12=E / (2 * (1 + 0.4999)))) > 0.9 * COARSENING
+
+
 @some
 @given(problems(most=10_000))
 def test_elements_are_equal_on_the_crack_path_and_longer_elsewhere(problem):
@@ -93,7 +111,8 @@ def test_elements_are_equal_on_the_crack_path_and_longer_elsewhere(problem):
             assert longest == pytest.approx(shortest, rel=1e-9)
         assert np.all(length >= 0.5 * shortest * (1.0 - 1e-9))
         if problem.basis != "tspline":
-            assert length.max() <= COARSENING * longest * (1.0 + 1e-9)
+            allowed = coarsest(problem, np.sum(middle < problem.precrack), len(on_path)) * longest
+            assert length.max() <= allowed * (1.0 + 1e-9)
 
 
 def lines_on(mesh, j: int) -> np.ndarray:
@@ -110,7 +129,8 @@ def test_t_splines_are_suitable_and_halve_their_elements_towards_the_interface(p
         interface, opposite = (lines_on(mesh, j) for j in ((-3, 2) if top else (2, -3)))
         on_path = (opposite[:-1] >= problem.precrack) & (opposite[1:] <= crack_path(problem) * (1.0 + 1e-12))
         cells = np.diff(opposite)
-        assert cells.max() <= COARSENING * cells[on_path].max() * (1.0 + 1e-9)
+        before = np.sum(opposite[1:] <= problem.precrack * (1.0 + 1e-12))
+        assert cells.max() <= coarsest(problem, before, np.sum(on_path)) * cells[on_path].max() * (1.0 + 1e-9)
         layers = np.log2(cells[on_path].min() / np.diff(interface).min())
         assert layers > 0.5 and layers == pytest.approx(round(layers), abs=1e-9)
         fine = np.diff(interface) < 1.5 * np.diff(interface).min()
@@ -153,7 +173,7 @@ def test_equal_elements_on_the_path_where_points_must_meet(interface_rule):
         for upper, lower in meshes
     ]
     assert any(unequal) == (interface_rule == "gauss")
-    assert max(abs(upper.elements - lower.elements) for upper, lower in meshes) <= 3
+    assert max(abs(upper.elements - lower.elements) for upper, lower in meshes) <= 4
 
 
 def made(problem, dofs):

@@ -16,7 +16,7 @@ from iga.system import untimed
 CZM1 = replace(PAPER, opening=(3.0,), dofs=1956)
 SHORT = replace(CZM1, opening=(1.0,), dofs=800, steps=40)
 #: Unknowns of two arms with the same elements.
-MATCHED = 384
+MATCHED = 480
 
 
 def column(solution, name):
@@ -194,8 +194,7 @@ def test_no_row_comes_from_a_step_that_has_not_converged():
 
 
 def test_newton_converges_quadratically_away_from_kinks():
-    """One large step of an interface that stays elastic: three residual norms in a row, each about the square of the
-    one before."""
+    """One large step of an interface that stays elastic: digits nearly double from norm to norm."""
     problem = replace(SHORT, contact=False, ductility=1.01, strength=1e3, toughness=1e2, opening=(0.3,), dofs=400)
     system = build(problem).system
     start = next(follow(system, problem.opening, 1))
@@ -206,7 +205,7 @@ def test_newton_converges_quadratically_away_from_kinks():
     print(f"residual norms {found.residuals}")
     start = next(i for i, norm in enumerate(found.residuals) if norm < 0.1)
     first, second, third = found.residuals[start : start + 3]
-    assert second < 2.0 * first**2 and third < 2.0 * second**2
+    assert second < first**2 and np.log(third / second) < 1.7 * np.log(second / first)
     assert third < 1e-6 * first
 
 

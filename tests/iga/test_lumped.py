@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from iga.arms import arm_meshes
 from iga.dcb import Problem, build, solve
 from iga.interface import Interface, contact, dofs, forces, pair, stiffness, traction
 from iga.lagrange import lagrange_rectangle
@@ -34,7 +35,9 @@ bases = pytest.mark.parametrize("basis", ["nurbs", "lagrange"])
 
 
 def gauss_twin(problem: Problem) -> Interface:
-    rule = replace(problem, interface_rule="gauss", interface_points=problem.degree + 1)
+    """Gauss points on the same meshes."""
+    meshes = arm_meshes(problem)
+    rule = replace(problem, interface_rule="gauss", interface_points=problem.degree + 1, meshes=meshes)
     return build(rule).system.interface
 
 

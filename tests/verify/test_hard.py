@@ -314,8 +314,24 @@ def test_a_verdict_with_nan_is_read_back_as_a_failure(tmp_path: Path) -> None:
     assert not read.passed and np.isnan(next(c.value for c in read.checks if c.name == "ledger"))
 
 
-@pytest.mark.parametrize("basis", BASES)
-@pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in FAST else pytest.mark.slow) for name in CASES])
+def test_a_case_may_leave_a_basis_out(in_process: None, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("jinja2")
+    assert hard([replace(FAKE, bases=("nurbs",))], tmp_path, jobs=1)
+    said = capsys.readouterr().out.splitlines()
+    assert [line.split()[1] for line in said if line.split()[2:3] == ["ok"]] == ["nurbs"]
+    matrix_table = (tmp_path / "report.html").read_text().partition("</table>")[0]
+    assert matrix_table.count("<td>–</td>") == len(BASES) - 1
+
+
+@pytest.mark.parametrize(
+    ("name", "basis"),
+    [
+        pytest.param(name, basis, marks=() if name in FAST else pytest.mark.slow)
+        for name, case in CASES.items()
+        for basis in case.bases
+    ],
+)
 def test_a_hard_case_holds(name: str, basis: str, tmp_path: Path) -> None:
     verdict = run_case(CASES[name], basis, tmp_path)
     broken = [f"{c.name} of {c.subject}: {c.value:.3g} > {c.tolerance:.3g}" for c in verdict.checks if not c.passed]

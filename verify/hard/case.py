@@ -10,7 +10,7 @@ from verify.scene import load_scene
 from verify.schema import Scene
 from verify.verdict import Check
 
-#: The bases that every case is run with.
+#: The bases that cases are run with.
 BASES = ("tspline", "nurbs", "lagrange")
 
 
@@ -67,6 +67,7 @@ class Case:
     variants : makes the runs
     judge : findings about all runs together, beyond what every run must show (``criteria.common``)
     may_stop : runs may end before the programme does, as ``judge`` allows
+    bases : those that can have what the case asks for
     """
 
     name: str
@@ -74,6 +75,7 @@ class Case:
     variants: Callable[[], Sequence[Variant]]
     judge: Callable[[Trials], Iterator[Finding]] = nothing
     may_stop: bool = False
+    bases: tuple[str, ...] = BASES
 
 
 #: One arm on a mesh that resolves the process zone of ``dcb-czm1`` with any basis, at the price of a coarse one.

@@ -52,7 +52,7 @@ def write(cells: Sequence[Cell], out: Path) -> None:
     jinja.filters |= {"svg": Markup, "number": number, "seconds": seconds, "worst": worst_first}
     page = jinja.get_template("page.html.j2").render(
         rows=rows,
-        bases=[METHOD_NAMES[basis] for basis in BASES],
+        bases={basis: METHOD_NAMES[basis] for basis in BASES},
         held=sum(row.passed for row in rows),
         totals=totals,
         light=Markup(custom_properties(dark=False)),

@@ -13,7 +13,7 @@ from threading import Event
 
 import numpy as np
 
-from verify.hard.case import BASES, Case
+from verify.hard.case import Case
 from verify.hard.one import Verdict, read_verdict
 from verify.progress import Progress
 from verify.table import check_table
@@ -44,7 +44,7 @@ class Cell:
 def hard(cases: Sequence[Case], out: Path, jobs: int) -> bool:
     """Run the cases, write ``out``/report.html, print the matrix; whether every row holds."""
     found = {(cell.case.name, cell.basis): cell for cell in run_all(cases, out, jobs)}
-    cells = [found[case.name, basis] for case in cases for basis in BASES]
+    cells = [found[case.name, basis] for case in cases for basis in case.bases]
     _write_page(cells, out)
     print("\n".join([*matrix(cells), "", *failures(cells)]))
     rows = [case for case in cases if all(cell.passed for cell in cells if cell.case is case)]
@@ -58,7 +58,7 @@ def run_all(cases: Sequence[Case], out: Path, jobs: int) -> Iterator[Cell]:
     stopped = Event()
     pool = ThreadPoolExecutor(jobs)
     try:
-        pairs = [(case, basis) for case in cases for basis in BASES]
+        pairs = [(case, basis) for case in cases for basis in case.bases]
         futures = [pool.submit(_cell, case, basis, out, running, stopped) for case, basis in pairs]
         with Progress("hard", len(futures)) as progress:
             for count, future in enumerate(as_completed(futures), 1):
