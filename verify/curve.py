@@ -95,7 +95,7 @@ def curve_error(curve: Curve, reference: Curve, end: float | None = None, n: int
     """
     last = float(envelope(*reference)[0][-1])
     end = last if end is None else min(end, last)
-    grid = end * np.arange(1, n + 1) / n
+    grid = end * (np.arange(1, n + 1) / n)  # the last is the end itself; times n, over n it may round beyond
     wanted = load_at(reference, grid)
     return float(np.sqrt(np.sum((load_at(curve, grid) - wanted) ** 2) / np.sum(wanted**2)))
 
@@ -159,7 +159,7 @@ def oscillation(curve: Curve, reference: Curve, end: float | None = None, n: int
     end = last if end is None else min(end, last)
     if not end > begin:
         return {"rms": np.nan, "excess_variation": np.nan}
-    grid = begin + (end - begin) * np.arange(1, n + 1) / n
+    grid = np.minimum(begin + (end - begin) * (np.arange(1, n + 1) / n), end)
     load = load_at(curve, grid)
     ratio = load / load_at(reference, grid) - 1.0
     variation, net = np.sum(np.abs(np.diff(load))), abs(load[-1] - load[0])

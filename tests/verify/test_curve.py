@@ -82,6 +82,14 @@ def test_curve_error_needs_the_whole_range():
     assert curve_error((d[:40], smooth(d[:40])), (d, smooth(d)), end=2.0) == pytest.approx(0.0, abs=1e-14)
 
 
+@given(st.floats(1e-3, 1e3))
+def test_curves_are_compared_to_their_very_end(end):
+    """Rounding must not push the last sample beyond it, where there is no load."""
+    d = np.linspace(0.0, 1.0, 40) * end
+    assert curve_error((d, 1.01 * smooth(d / end)), (d, smooth(d / end))) == pytest.approx(0.01, rel=1e-9)
+    assert oscillation((d, smooth(d / end)), (d, smooth(d / end)))["rms"] == pytest.approx(0.0, abs=1e-12)
+
+
 def test_hermite_is_exact_for_cubics_and_of_fourth_order():
     d = np.array([0.0, 0.4, 1.0, 2.0])
     at = np.linspace(0.0, 2.0, 31)
