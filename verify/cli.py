@@ -9,6 +9,8 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")  # before NumPy is imported; timings would mean little otherwise
 
 import argparse  # noqa: E402
+import math  # noqa: E402
+import re  # noqa: E402
 import subprocess  # noqa: E402
 from collections.abc import Sequence  # noqa: E402
 from pathlib import Path  # noqa: E402
@@ -73,10 +75,9 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--out", type=Path, default=Path("debond-hard"), metavar="DIR", help="default: debond-hard")
     sub.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help="cases at a time")
 
-    sub = command("compare", _compare, "Two load-opening curves.", "compare mine.csv debond-out/dcb-czm1-nurbs")
-    sub.add_argument("a", metavar="A", type=Path, help="CSV file or folder of a run")
-    sub.add_argument("b", metavar="B", type=Path, help="what A is held against")
-    sub.add_argument("--tolerance", type=_fraction, metavar="T", help="fail where the curve error is larger, e.g. 0.01")
+    text = "Two load-opening curves: error, peak, energy; of runs, or of anybody's code."
+    example = "compare my.csv run --opening-a U2 --load-a RF2 --curve-tol 0.01"
+    _compare_options(command("compare", _compare, text, example))
 
     sub = command("mesh", _mesh, "What a mesh file holds, and its picture.", "mesh arch.iga --out arch.vtu")
     sub.add_argument("file", metavar="FILE", type=Path, help=".iga file of the Rhino T-spline plug-in")
@@ -90,6 +91,27 @@ def parser() -> argparse.ArgumentParser:
     sub = command("test", _test, "Run the tests; arguments go to pytest.", "test -k curve")
     sub.add_argument("rest", nargs=argparse.REMAINDER, metavar="ARG")
     return top
+
+
+def _compare_options(sub: argparse.ArgumentParser) -> None:
+    # -1e-3 is a number, not an option: argparse itself knows this from Python 3.14 on
+    sub._negative_number_matcher = re.compile(r"-\.?\d")
+    sub.add_argument("a", metavar="A", type=Path, help="CSV file or folder of a run")
+    sub.add_argument("b", metavar="B", type=Path, help="what A is held against")
+    for side in "ab":
+        own = f"of {side.upper()}"
+        sub.add_argument(f"--opening-{side}", type=_column, metavar="COLUMN", help=f"name or number {own}'s opening")
+        sub.add_argument(f"--load-{side}", type=_column, metavar="COLUMN", help=f"name or number {own}'s load")
+        for key in ("opening", "load"):
+            what = f"multiplies the {key} {own}: units, and signs"
+            sub.add_argument(f"--{key}-scale-{side}", type=_scale, default=1.0, metavar="X", help=what)
+    sub.add_argument("--end", type=_number, metavar="D", help="compare up to this opening; default: the last of B")
+    sub.add_argument("--at", type=_numbers, default=[], metavar="D,D,...", help="print the loads at these openings")
+    limit = "fail where the curve error is larger, e.g. 0.01"
+    sub.add_argument("--curve-tol", "--tolerance", type=_fraction, metavar="T", help=limit)
+    sub.add_argument("--peak-tol", type=_fraction, metavar="T", help="and where the peak loads differ by more")
+    sub.add_argument("--energy-tol", type=_fraction, metavar="T", help="and where the works differ by more")
+    sub.add_argument("--out", type=Path, metavar="DIR", help="write comparison.json and comparison.html")
 
 
 def _solve(options: argparse.Namespace) -> int:
@@ -200,15 +222,28 @@ def _hard(options: argparse.Namespace) -> int:
 
 
 def _compare(options: argparse.Namespace) -> int:
-    from verify.compare import compare
+    from verify import compare_command as work
+    from verify.compare import checks
+    from verify.curve_file import Reading
 
-    found = compare(options.a, options.b)
-    error, peak = found["curve_error"], found["peak_difference"]
-    print(f"curve error {error:.4%}, peak {peak:+.4%}, up to opening {found['end']:.6g}")
-    if options.tolerance is not None and not error <= options.tolerance:
-        _say(f"debond: curve error {error:.4%} is larger than {options.tolerance:.4%}")
-        return FAILED
-    return 0
+    keys = ("opening", "load", "opening_scale", "load_scale")
+    a, b = (
+        work.Source(getattr(options, side), Reading(**{key: getattr(options, f"{key}_{side}") for key in keys}))
+        for side in "ab"
+    )
+    comparison, loads = work.held_against(a, b, options.end, options.at)
+    if options.out is not None:
+        _folder(options.out)
+    found = checks(comparison, options.curve_tol, options.peak_tol, options.energy_tol)
+    print("\n".join(work.table(comparison, loads, found)), flush=True)
+    for remark in work.remarks(comparison):
+        _say(f"debond: {remark}")
+    if options.out is not None:
+        work.write(options.out, (a, b), comparison, loads, found, _say)
+        print(f"written: {options.out}")
+    for complaint in work.complaints(found, comparison):
+        _say(f"debond: {complaint}")
+    return 0 if all(check.passed for check in found) else FAILED
 
 
 def _mesh(options: argparse.Namespace) -> int:
@@ -288,6 +323,31 @@ def _fraction(text: str) -> float:
         value = -1.0
     if not 0 <= value < float("inf"):
         raise argparse.ArgumentTypeError(f"must be a number >= 0, got {text!r}")
+    return value
+
+
+def _column(text: str) -> str | int:
+    return int(text) if text.isascii() and text.isdigit() and len(text) < 10 else text
+
+
+def _scale(text: str) -> float:
+    value = _number(text)
+    if value == 0.0:
+        raise argparse.ArgumentTypeError(f"must be a finite number other than 0, got {text!r}")
+    return value
+
+
+def _numbers(text: str) -> list[float]:
+    return [_number(part) for part in text.split(",")]
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"must be a finite number, got {text!r}")
     return value
 
 

@@ -1,88 +1,170 @@
-"""Two load-opening curves, of one's own or of somebody else's code."""
+"""Two load-opening curves against each other, of one's own or of somebody else's code."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curve import curve_error
-from verify.refusal import Refusal
+from verify.curve import PROPAGATION, curve_error, envelope, load_at, oscillation, peak
+from verify.curve_file import CurveError
+from verify.verdict import Check
+
+#: Samples over the opening; points on the propagation branch below which a wave cannot be told from the sampling.
+SAMPLES, POINTS_OF_A_WAVE = 400, 10
+
+#: A curve that ends this share of the opening too early has reached the end all the same.
+ROUNDING = 1e-6
+
+Points = tuple[np.ndarray, np.ndarray]
 
 
-class CurveError(Refusal):
-    """A file that holds no curve."""
+@dataclass(frozen=True)
+class Part:
+    """One of the curves, as far as it is compared."""
+
+    opening: np.ndarray  # (n,) path up to the first arrival at the end
+    load: np.ndarray  # (n,)
+    first: float  # opening at which the given curve begins and ends
+    last: float
+    peak_opening: float  # of the envelope
+    peak_load: float
+    work: float  # integral of load over opening along the path, by the trapezoidal rule
 
 
-def read_curve(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Opening (n,) and load (n,) of a file or of the folder of a run.
+@dataclass(frozen=True)
+class Comparison:
+    """A against B over the openings (0, end].
 
-    A header must name ``opening`` and ``load``, in any order among others; without one the first two columns count.
-    Commas, semicolons, tabs and blanks separate; lines that begin with # are skipped.
+    ``curve_error``, ``peak_difference``, ``peak_shift`` and ``energy_difference`` are relative to B. Oscillation is NaN
+    where it cannot be told.
+    """
+
+    a: Part
+    b: Part
+    asked_end: float  # the opening up to which B was to be compared
+    end: float  # as far as A reaches
+    curve_error: float
+    oscillation_rms: float
+    excess_variation: float
+    opening_n: np.ndarray  # (SAMPLES,) and the loads of both envelopes there
+    load_a_n: np.ndarray
+    load_b_n: np.ndarray
+
+    @property
+    def missing(self) -> float:
+        """Share of the openings asked for that A does not reach."""
+        return max(0.0, 1.0 - self.a.last / self.asked_end)
+
+    @property
+    def peak_difference(self) -> float:
+        return self.a.peak_load / self.b.peak_load - 1.0
+
+    @property
+    def peak_shift(self) -> float:
+        """How much later, in opening over that of B, the peak of A comes."""
+        return _ratio(self.a.peak_opening, self.b.peak_opening) - 1.0
+
+    @property
+    def energy_difference(self) -> float:
+        return _ratio(self.a.work - self.b.work, abs(self.b.work))
+
+    @property
+    def worst(self) -> tuple[float, float, float]:
+        """Opening at which the loads differ most, load of A and of B there."""
+        i = int(np.argmax(np.abs(self.load_a_n - self.load_b_n)))
+        return float(self.opening_n[i]), float(self.load_a_n[i]), float(self.load_b_n[i])
+
+    def loads_at(self, openings: Sequence[float]) -> list[tuple[float, float, float]]:
+        """Opening, load of A and load of B, on the envelopes.
+
+        Raises
+        ------
+        CurveError : an opening outside (0, end].
+        """
+        outside = [at for at in openings if not 0.0 < at <= self.end]
+        if outside:
+            raise CurveError(f"at: must be > 0 and <= {self.end:.6g}, the end of the comparison, got {outside[0]:g}")
+        loads = [load_at((part.opening, part.load), openings).tolist() for part in (self.a, self.b)]
+        return list(zip(openings, *loads, strict=True))
+
+
+def compare(a: Points, b: Points, end: float | None = None) -> Comparison:
+    """Hold A against B over the openings that both reach, up to ``end``; without it up to the last opening of B.
+
+    A curve that begins at an opening above 0 is joined to the origin by a straight line: there the specimen bears
+    nothing, and a beginning that is left out shows as an error.
 
     Raises
     ------
-    CurveError
-        Naming the file and the line.
+    CurveError : ``end`` beyond B, nothing in common, or no load of B above 0.
     """
-    path = path / "curve.csv" if path.is_dir() else path
-    try:
-        text = path.read_bytes().decode()
-    except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or "not a text in UTF-8"
-        raise CurveError(f"{path}: must be a file with a curve, got: {why}") from None
-    lines = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1)]
-    rows = [(i, _cells(line)) for i, line in lines if line and not line.startswith("#")]
-    if not rows:
-        raise CurveError(f"{path}: must hold a curve of at least 2 points, got an empty file")
-    columns, body = _columns(path, rows)
-    points = np.array([_point(path, i, cells, columns) for i, cells in body])
-    if len(points) < 2 or not np.ptp(points[:, 0]) > 0:
-        raise CurveError(f"{path}: must hold at least 2 points of different opening, got {len(points)}")
-    if np.max(points[:, 0]) <= 0:
-        raise CurveError(f"{path}: the openings must go above 0, got at most {np.max(points[:, 0]):g}")
-    return points[:, 0], points[:, 1]
+    first_a, last_a, first_b, last_b = (float(f(d)) for d in (a[0], b[0]) for f in (lambda x: x[0], np.max))
+    asked = last_b if end is None else float(end)
+    if not 0.0 < asked <= last_b * (1.0 + ROUNDING):
+        raise CurveError(f"end: must be > 0 and <= {last_b:.6g}, the last opening of B, got {asked:g}")
+    common = min(asked, last_a, last_b)
+    if max(first_a, first_b) >= common:
+        raise CurveError(
+            f"A and B must have openings in common, got {first_a:.6g} to {last_a:.6g} and {first_b:.6g} to {last_b:.6g}"
+            + (f", compared up to {asked:.6g}" if asked < last_b else "")
+        )
+    part_a, part_b = _part(a, common), _part(b, common)
+    if not part_b.peak_load > 0.0:
+        raise CurveError(f"B: the loads must go above 0 up to the opening {common:.6g}; a scale of -1 turns signs")
+    grid = common * (np.arange(1, SAMPLES + 1) / SAMPLES)  # ends at the end, to the last digit
+    scaled = [(part.opening / common, part.load / part_b.peak_load) for part in (part_a, part_b)]
+    with np.errstate(all="ignore"):  # numbers near the ends of the range end as inf or NaN, and so fail
+        error = curve_error(*scaled, end=1.0, n=SAMPLES)
+        wave = _wave(scaled, part_b.peak_opening / common)
+        loads = [load_at((part.opening, part.load), grid) for part in (part_a, part_b)]
+    return Comparison(part_a, part_b, asked, common, error, *wave, grid, *loads)
 
 
-def compare(a: Path, b: Path) -> dict[str, float]:
-    """Curve error of ``a`` against ``b`` over the openings that both reach, and the ratio of their peaks minus one."""
-    (opening_a, load_a), (opening_b, load_b) = read_curve(a), read_curve(b)
-    end = float(min(opening_a.max(), opening_b.max()))
-    return {
-        "curve_error": curve_error((opening_a, load_a), (opening_b, load_b), end),
-        "peak_difference": float(load_a.max() / load_b.max() - 1) if load_b.max() else np.nan,
-        "end": end,
-    }
+def checks(
+    comparison: Comparison, curve: float | None = None, peak: float | None = None, energy: float | None = None
+) -> list[Check]:
+    """What the given relative tolerances ask for; and with any of them, that A goes as far as it was to be compared."""
+    limits = (
+        ("curve-error", comparison.curve_error, curve, "relative L2 distance of the loads over the opening"),
+        ("peak-load", comparison.peak_difference, peak, "difference of the peak loads over that of B"),
+        ("energy", comparison.energy_difference, energy, "difference of the works along the path over that of B"),
+    )
+    found = [Check(name, "A / B", v, limit, "cross-code", text) for name, v, limit, text in limits if limit is not None]
+    far = "share of the opening that A does not reach"
+    return found + [Check("end", "A / B", comparison.missing, ROUNDING, "cross-code", far)] if found else []
 
 
-def _cells(line: str) -> list[str]:
-    separator = next((s for s in ",;\t" if s in line), None)
-    return [cell.strip().strip('"') for cell in line.split(separator)]
+def _part(curve: Points, end: float) -> Part:
+    first, last = float(curve[0][0]), float(np.max(curve[0]))
+    d, P = _up_to(*_from_origin(*curve), end)
+    with np.errstate(all="ignore"):
+        at, load = peak(envelope(d, P))
+        work = float(np.sum((P[1:] / 2.0 + P[:-1] / 2.0) * np.diff(d)))
+    return Part(d, P, first, last, at, load, work)
 
 
-def _columns(path: Path, rows: list[tuple[int, list[str]]]) -> tuple[tuple[int, int], list[tuple[int, list[str]]]]:
-    """Which columns are opening and load, and the rows below the header."""
-    number, first = rows[0]
-    if all(_is_number(cell) for cell in first):
-        if len(first) < 2:
-            raise CurveError(f"{path}:{number}: must have two columns, opening and load, got 1")
-        return (0, 1), rows
-    names = [cell.lower() for cell in first]
-    missing = [name for name in ("opening", "load") if name not in names]
-    if missing:
-        raise CurveError(f"{path}:{number}: the header must name {' and '.join(missing)}, got {', '.join(first)[:100]}")
-    return (names.index("opening"), names.index("load")), rows[1:]
+def _from_origin(d: np.ndarray, P: np.ndarray) -> Points:
+    return (np.append(0.0, d), np.append(0.0, P)) if d[0] > 0.0 else (d, P)
 
 
-def _point(path: Path, line: int, cells: list[str], columns: tuple[int, int]) -> tuple[float, float]:
-    opening, load = (cells[c] if c < len(cells) else "nothing" for c in columns)
-    if not (_is_number(opening) and _is_number(load)):
-        raise CurveError(f"{path}:{line}: opening and load must be finite numbers, got {opening[:30]} and {load[:30]}")
-    return float(opening), float(load)
+def _up_to(d: np.ndarray, P: np.ndarray, end: float) -> Points:
+    """The path until it first comes to the opening ``end``, which it reaches."""
+    i = int(np.argmax(d >= end))
+    share = (end - d[i - 1]) / (d[i] - d[i - 1])
+    load = P[i - 1] + share * (P[i] - P[i - 1])
+    return np.append(d[:i], end), np.append(P[:i], load)
 
 
-def _is_number(text: str) -> bool:
-    try:
-        return bool(np.isfinite(float(text)))
-    except ValueError:
-        return False
+def _wave(scaled: list[Points], peak_opening: float) -> tuple[float, float]:
+    """Oscillation of A about B, where both have the points to show one."""
+    points = min(np.count_nonzero(envelope(*curve)[0] > PROPAGATION * peak_opening) for curve in scaled)
+    if points < POINTS_OF_A_WAVE:
+        return np.nan, np.nan
+    found = oscillation(*scaled, end=1.0, n=SAMPLES)
+    return found["rms"], found["excess_variation"]
+
+
+def _ratio(value: float, reference: float) -> float:
+    return value / reference if reference else np.nan

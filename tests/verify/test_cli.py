@@ -68,9 +68,9 @@ REFUSED = {
     "compare /dev/null /dev/null": "must hold a curve of at least 2 points",
     "compare curve.csv missing.csv": "missing.csv: must be a file with a curve",
     "compare curve.csv other.csv": "other.csv:1: the header must name load, got opening, force",
-    "compare curve.csv holes.csv": "holes.csv:3: opening and load must be finite numbers, got 1 and nothing",
+    "compare curve.csv holes.csv": "holes.csv:3: column 'load' must be a finite number, got ''",
     "compare curve.csv point.csv": "point.csv: must hold at least 2 points of different opening",
-    "compare curve.csv curve.csv --tolerance -1": "argument --tolerance: must be a number >= 0, got '-1'",
+    "compare curve.csv curve.csv --tolerance -1": "argument --curve-tol/--tolerance: must be a number >= 0, got '-1'",
     "scenes all": "all",
 }
 
@@ -165,7 +165,8 @@ def test_compare_judges_by_the_tolerance(folder: Path, capsys: pytest.CaptureFix
     (folder / "more.csv").write_text("# my code\nforce;load;opening\n9;0;0\n9;2.02;1\n9;1.01;3\n")
     (folder / "bare.txt").write_text("0 0\n1 2\n3 1\n")
     assert main(["compare", "more.csv", "curve.csv"]) == 0
-    assert "curve error 1.0000%, peak +1.0000%, up to opening 3" in capsys.readouterr().out
+    said = capsys.readouterr().out.splitlines()
+    assert said[1].split() == ["curve", "error", "1", "%"] and said[2].split()[2:] == ["2.02", "2", "+1", "%"]
     assert main(["compare", "more.csv", "curve.csv", "--tolerance", "0.011"]) == 0
     assert main(["compare", "more.csv", "curve.csv", "--tolerance", "0.009"]) == 1
     assert main(["compare", "bare.txt", "curve.csv", "--tolerance", "0"]) == 0

@@ -1,0 +1,105 @@
+"""A table of numbers in a text that nobody described: separator, decimal mark, comments, header."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import takewhile
+
+#: How the lines of other people's files begin where they hold no data; the last one is Abaqus's.
+COMMENTS = ("#", "%", "!", "//", "**")
+
+_SAMPLE = 400  # lines that the separator is told from, spread over the file
+
+Row = tuple[int, list[str]]  # line number, from 1, and cells
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """Separator (empty: blanks) and decimal mark."""
+
+    separator: str
+    decimal_comma: bool
+
+    def cells(self, line: str) -> list[str]:
+        """The cells of a line without quotes and outer blanks; empty ones at the end are dropped."""
+        if self.separator:
+            try:
+                cells = next(csv.reader([line], delimiter=self.separator, skipinitialspace=True), [])
+            except csv.Error:  # a cell of more than 128 kB
+                cells = line.split(self.separator)
+        else:
+            cells = [cell.strip('"') for cell in re.findall(r'"[^"]*"|\S+', line)]
+        cells = [cell.strip() for cell in cells]
+        while cells and not cells[-1]:
+            cells.pop()
+        return cells
+
+    def value(self, cell: str) -> float | None:
+        """The number in a cell, NaN and infinity too, or None. Fortran's 1.0D-3 is one."""
+        text = cell.replace(",", ".") if self.decimal_comma else cell
+        try:
+            return None if "_" in text else float(re.sub("[dD]", "e", text) if text[-1:].isdigit() else text)
+        except ValueError:
+            return None
+
+    def numbers(self, cells: Sequence[str]) -> int:
+        """How many cells hold a number."""
+        return sum(self.value(cell) is not None for cell in cells)
+
+
+#: In order of preference. A comma cannot separate and be the decimal mark.
+_DIALECTS = (
+    Dialect(";", False),
+    Dialect(";", True),
+    Dialect("\t", False),
+    Dialect("\t", True),
+    Dialect(",", False),
+    Dialect("", False),
+    Dialect("", True),
+)
+
+
+@dataclass(frozen=True)
+class Table:
+    """The lines of a text that are not empty, taken apart.
+
+    ``lead`` is what comes before the first row of two numbers, ``body`` the rest, ``remarks`` the comments above that
+    row, taken apart as if they were rows.
+    """
+
+    dialect: Dialect
+    remarks: list[Row]
+    lead: list[Row]
+    body: list[Row]
+
+
+def read_table(text: str) -> Table:
+    """Take a text apart by the dialect in which most of its cells are numbers, two or more a line."""
+    lines = [(i, line.strip(" \r\f\v")) for i, line in enumerate(re.split("\r\n|\n|\r", text), 1) if line.strip()]
+    comments = [(i, line) for i, line in lines if line.startswith(COMMENTS)]
+    data = [(i, line) for i, line in lines if not line.startswith(COMMENTS)]
+    dialect = _dialect([line for _, line in data])
+    rows = [(i, dialect.cells(line)) for i, line in data]
+    lead = list(takewhile(lambda row: dialect.numbers(row[1]) < 2, rows))
+    first = rows[len(lead)][0] if len(lead) < len(rows) else len(text)
+    remarks = [(i, dialect.cells(line.lstrip("#%!/* "))) for i, line in comments if i < first]
+    return Table(dialect, remarks, lead, rows[len(lead) :])
+
+
+def _dialect(lines: Sequence[str]) -> Dialect:
+    """The reading that finds the most numbers; where two find as many, the one without a decimal comma."""
+    sample = lines[:: max(1, len(lines) // _SAMPLE)]
+    votes = [sum(_share_of_numbers(dialect, line) for line in sample) for dialect in _DIALECTS]
+    if max(votes, default=0) > 0:
+        return _DIALECTS[votes.index(max(votes))]
+    present = (dialect for dialect in _DIALECTS if lines and dialect.separator in lines[0])
+    return next(present, Dialect("", False))
+
+
+def _share_of_numbers(dialect: Dialect, line: str) -> float:
+    cells = dialect.cells(line)
+    count = dialect.numbers(cells)
+    return count / len(cells) if count >= 2 else 0.0

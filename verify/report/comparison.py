@@ -1,0 +1,88 @@
+"""Two curves on one self-contained page: both over the opening, their difference, and the numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+from matplotlib.axes import Axes
+
+from verify.compare import Comparison
+from verify.curve import envelope
+from verify.report.style import HALF, Line, Panel, colour, custom_properties, drawing, panel, to_svg
+from verify.verdict import Check
+
+_CSS = Path(__file__).with_name("page.css")
+_A, _B = Line("lagrange", 1.2, (), 1.0, 4.0), Line("dolfinx", 3.4, (), 0.5, 2.0)
+_PATH = {"alpha": 0.35, "linewidth": 0.7, "linestyle": "solid"}
+
+
+def page(
+    comparison: Comparison,
+    labels: tuple[str, str],
+    rows: Sequence[tuple[str, str, str, str, str]],
+    found: Sequence[Check],
+    remarks: Sequence[str],
+) -> str:
+    """The HTML.
+
+    Parameters
+    ----------
+    labels : names of A and B
+    rows : name, name of its check, value of A, of B, and difference
+    found : the checks that were asked for
+    remarks : what is printed above the numbers
+    """
+    jinja = Environment(
+        loader=PackageLoader("verify.report", "."),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return jinja.get_template("comparison.html.j2").render(
+        labels=labels,
+        rows=rows,
+        checks={check.name: check for check in found},
+        passed=all(check.passed for check in found),
+        remarks=remarks,
+        panels=[Panel(Markup(p.svg), p.caption) for p in (_curves(comparison, labels), _difference(comparison))],
+        light=Markup(custom_properties(dark=False)),
+        dark=Markup(custom_properties(dark=True)),
+        css=Markup(_CSS.read_text(encoding="utf-8")),
+    )
+
+
+def _curves(comparison: Comparison, labels: tuple[str, str]) -> Panel:
+    with drawing():
+        figure, axes = panel(HALF, 3.0)
+        for part, style, name in ((comparison.b, _B, f"B: {labels[1]}"), (comparison.a, _A, f"A: {labels[0]}")):
+            axes.plot(part.opening, part.load, color=colour(style.colour), **_PATH)
+            axes.plot(*envelope(part.opening, part.load), **style.options(), label=name)
+            axes.plot(part.peak_opening, part.peak_load, ".", color=colour(style.colour), zorder=5)
+        axes.set(xlabel="opening", ylabel="load", xlim=(0, None))
+        axes.legend(loc="best")
+        svg = to_svg(figure, "curves", f"Load against opening of {labels[0]} and {labels[1]}")
+    caption = "What displacement control would show of both curves, and thin their paths; dots are the peaks."
+    return Panel(svg, caption)
+
+
+def _difference(comparison: Comparison) -> Panel:
+    gap = (comparison.load_a_n - comparison.load_b_n) / comparison.b.peak_load
+    with drawing():
+        figure, axes = panel(HALF, 3.0)
+        axes.axhline(0, color=colour("ink"), linewidth=0.6)
+        axes.plot(comparison.opening_n, 100 * gap, **_A.options())
+        _mark_worst(axes, comparison, 100 * gap)
+        axes.set(xlabel="opening", ylabel="(load of A − load of B) / peak of B (%)", xlim=(0, None))
+        svg = to_svg(figure, "difference", "Difference of the loads against opening")
+    return Panel(svg, "Their difference over the peak of B, where both are sampled; a ring marks the largest.")
+
+
+def _mark_worst(axes: Axes, comparison: Comparison, gap: np.ndarray) -> None:
+    i = int(np.argmax(np.abs(gap)))
+    ring = {"markerfacecolor": "none", "color": colour("bad"), "markersize": 6, "zorder": 6}
+    axes.plot(comparison.opening_n[i], gap[i], "o", **ring)
