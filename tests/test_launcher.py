@@ -116,6 +116,8 @@ def test_test_verb() -> None:
     pytest_command = ["python", "-P", "-m", "pytest"]
     assert launcher.command(["test", "-k", "x"], "python") == [*pytest_command, "-k", "x"]
     assert launcher.command(["test", "--slow", "-q"], "python") == [*pytest_command, "-m", "", "-q"]
+    assert launcher.command(["test"], "python") == [*pytest_command, "-n", "auto"]
+    assert launcher.command(["test", "--slow"], "python") == [*pytest_command, "-m", "", "-n", "auto"]
     assert launcher.command(["solve", "--slow"], "python") == ["python", "-P", "-m", "verify.cli", "solve", "--slow"]
 
 
