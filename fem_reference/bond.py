@@ -1,4 +1,4 @@
-"""The bond between the arms in matrix form: the gap at every point is a fixed linear function of the displacements."""
+"""The bond between the bodies as matrices: the gap at every point is a fixed linear function of the displacements."""
 
 from __future__ import annotations
 

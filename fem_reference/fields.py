@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 import ufl
 from dolfinx import fem
-from petsc4py import PETSc
 
 from fem_reference.dolfinx_api import evaluate, expression
-from fem_reference.forms import cauchy_stress
+from fem_reference.forms import cauchy_stress, constant
 from fem_reference.model import Model
 from fem_reference.state import State, ordered_along
 
@@ -27,9 +26,9 @@ def field_sampler(model: Model) -> Callable[[State], Snapshot | None]:
     line_u = np.linspace(0.0, 1.0, k)
     points_qI = np.stack(np.meshgrid(line_u, line_u, indexing="ij"), axis=-1).reshape(-1, 2)
     samplers = []
-    for u in model.displacement:
+    for u, body in zip(model.displacement, model.specimen.bodies, strict=True):
         domain = u.function_space.mesh
-        D = fem.Constant(domain, model.problem.elasticity_IJ.astype(PETSc.ScalarType))
+        D = constant(domain, body.D_IJ)
         X = ufl.SpatialCoordinate(domain)
         stress = cauchy_stress(u, D, model.problem.kinematics == "finite")
         samplers.append((expression(ufl.as_vector([X[0], X[1], u[0], u[1], stress[0, 0]]), points_qI), domain))
@@ -55,7 +54,7 @@ def field_sampler(model: Model) -> Callable[[State], Snapshot | None]:
 
 
 def along_first(values_euvc: np.ndarray) -> np.ndarray:
-    """Elements sorted by their place, upper arm first, with X rising along u and Y along v."""
+    """Elements sorted by their place, upper body first, with X rising along u and Y along v."""
     X_euv, Y_euv = values_euvc[..., 0], values_euvc[..., 1]
     turned = np.abs(X_euv[:, -1, 0] - X_euv[:, 0, 0]) < np.abs(X_euv[:, 0, -1] - X_euv[:, 0, 0])
     straight = np.where(turned[:, None, None, None], values_euvc.swapaxes(1, 2), values_euvc)

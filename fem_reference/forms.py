@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import basix.ufl
 import numpy as np
 import ufl
-from dolfinx import fem
+from dolfinx import fem, mesh
 from petsc4py import PETSc
 
 from fem_reference.dolfinx_api import entity_maps
 from fem_reference.mesh import TwoBodies
-from fem_reference.problem import Problem
+from fem_reference.problem import Debonding
+from fem_reference.specimen import Face, Specimen
 
-UPPER, LOWER, BOND = 1, 2, 1
+BOND = 1
 
 
 @dataclass(frozen=True)
 class WeakForm:
     """UFL forms on the parent mesh; lists are blocks (upper, lower).
 
-    ``internal`` and ``bulk`` are the internal forces of the arms and their tangent; ``load`` the face forces of a unit
-    load; ``slope`` the mean du_y/dX of each face as a functional. ``gap`` (one row of blocks), ``weight`` and
+    ``internal`` and ``bulk`` are the internal forces of the bodies and their tangent; ``load`` the face forces of a
+    unit load; ``slope`` the mean du_y/dX of each loaded face as a functional; ``face_energy`` the strain energy on the
+    end faces as the J-integral counts it, per unit width. ``gap`` (one row of blocks), ``weight`` and
     ``position`` are integrals over the bond against functions that are 1 at one of its quadrature points: of the gap as
     a bilinear form, of 1 and of X.
     """
@@ -53,46 +56,59 @@ def bond_points(degree: int) -> int:
 
 
 def displacements(bodies: TwoBodies, degree: int) -> tuple[fem.Function, fem.Function]:
-    """Vector Lagrange functions, upper and lower arm."""
-    upper, lower = (
-        fem.Function(fem.functionspace(body.mesh, ("Lagrange", degree, (2,)))) for body in (bodies.upper, bodies.lower)
-    )
+    """Vector Lagrange functions on the upper and the lower body."""
+    upper, lower = (fem.Function(fem.functionspace(body.mesh, ("Lagrange", degree, (2,)))) for body in bodies.pair)
     return upper, lower
 
 
-def weak_form(problem: Problem, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function]) -> WeakForm:
+def weak_form(
+    problem: Debonding, specimen: Specimen, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function]
+) -> WeakForm:
     """All forms of the problem.
 
-    Material and sizes enter as constants: one compiled form serves every problem of the same degree and kinematics.
+    Materials and sizes enter as constants: one compiled form serves every specimen of a kind, at the same degree and
+    kinematics.
     """
     domain, finite, (u, w) = bodies.parent, problem.kinematics == "finite", displacement
     V = ufl.MixedFunctionSpace(u.function_space, w.function_space)
-    (v_u, v_w), (d_u, d_w) = ufl.TestFunctions(V), ufl.TrialFunctions(V)
+    v, d = ufl.TestFunctions(V), ufl.TrialFunctions(V)
     point = basix.ufl.quadrature_element("interval", degree=2 * bond_points(problem.degree) - 1)
     q = ufl.TestFunction(fem.functionspace(bodies.bond.mesh, point))("+")
-    width = fem.Constant(domain, PETSc.ScalarType(problem.width))
-    face = fem.Constant(domain, PETSc.ScalarType(problem.arm_thickness))
-    D = fem.Constant(domain, problem.elasticity_IJ.astype(PETSc.ScalarType))
+    width = constant(domain, problem.width)
+    D = [constant(domain, body.D_IJ) for body in specimen.bodies]
+    W = [energy_density(u_body, D_body, finite) for u_body, D_body in zip(displacement, D, strict=True)]
     dx, ds, dS = _measures(bodies, problem.degree)
 
-    stored = width * (energy_density(u, D, finite) * dx(UPPER) + energy_density(w, D, finite) * dx(LOWER))
-    virtual_work = ufl.derivative(stored, u, v_u) + ufl.derivative(stored, w, v_w)
-    tangent = ufl.derivative(virtual_work, u, d_u) + ufl.derivative(virtual_work, w, d_w)
+    def over_faces(density: Callable, part: Callable[[Face], float]) -> ufl.Form:
+        """Sum over the faces of integrals of a density (of the body), each times a part of its own."""
+        return sum(constant(domain, part(face)) * density(face.body) * ds(i) for i, face in enumerate(specimen.faces))
+
+    def per_length(face: Face) -> float:
+        return face.load / specimen.bodies[face.body].thickness
+
+    stored = width * (W[0] * dx(0) + W[1] * dx(1))
+    virtual_work = ufl.derivative(stored, u, v[0]) + ufl.derivative(stored, w, v[1])
+    tangent = ufl.derivative(virtual_work, u, d[0]) + ufl.derivative(virtual_work, w, d[1])
     return WeakForm(
         internal=ufl.extract_blocks(virtual_work),
         bulk=ufl.extract_blocks(tangent),
-        load=ufl.extract_blocks(v_u[1] / face * ds(UPPER) - v_w[1] / face * ds(LOWER)),
-        slope=ufl.extract_blocks(v_u[1].dx(0) / face * ds(UPPER) + v_w[1].dx(0) / face * ds(LOWER)),
+        load=ufl.extract_blocks(over_faces(lambda i: v[i][1], per_length)),
+        slope=ufl.extract_blocks(over_faces(lambda i: v[i][1].dx(0), lambda face: abs(per_length(face)))),
         energy=stored,
-        face_energy=energy_density(u, D, finite) * ds(UPPER) + energy_density(w, D, finite) * ds(LOWER),
+        face_energy=over_faces(lambda i: W[i], lambda face: face.energy),
         gap=[
             ufl.TrialFunction(u.function_space)("+")[1] * q * dS(BOND),
             -ufl.TrialFunction(w.function_space)("-")[1] * q * dS(BOND),
         ],
         weight=q * dS(BOND),
         position=ufl.SpatialCoordinate(domain)("+")[0] * q * dS(BOND),
-        maps=entity_maps(domain, (bodies.upper, bodies.lower, bodies.bond), bodies.interface_quads),
+        maps=entity_maps(domain, (*bodies.pair, bodies.bond), bodies.interface_quads),
     )
+
+
+def constant(domain: mesh.Mesh, value: float | np.ndarray) -> fem.Constant:
+    """A number or an array that a compiled form reads at run time."""
+    return fem.Constant(domain, np.asarray(value, dtype=PETSc.ScalarType))
 
 
 def strain(u: fem.Function, finite: bool) -> ufl.core.expr.Expr:
@@ -124,8 +140,8 @@ def cauchy_stress(u: fem.Function, D: ufl.core.expr.Expr, finite: bool) -> ufl.c
 def _measures(bodies: TwoBodies, degree: int) -> tuple[ufl.Measure, ufl.Measure, ufl.Measure]:
     bulk = {"quadrature_degree": 2 * bulk_points(degree) - 1}
     bond = {"quadrature_degree": 2 * bond_points(degree) - 1}
-    cells = [(UPPER, bodies.upper_cells), (LOWER, bodies.lower_cells)]
-    faces = [(UPPER, bodies.upper_face.ravel()), (LOWER, bodies.lower_face.ravel())]
+    cells = list(enumerate(bodies.cells))
+    faces = [(i, facets.ravel()) for i, facets in enumerate(bodies.faces)]
     quads = [(BOND, np.ascontiguousarray(bodies.interface_quads).ravel())]
     return (
         ufl.Measure("dx", domain=bodies.parent, subdomain_data=cells, metadata=bulk),

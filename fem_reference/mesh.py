@@ -1,4 +1,4 @@
-"""Two arms on one conforming mesh: the parent, a submesh for each arm, and one for the bond between them."""
+"""Two bodies on one conforming mesh: the parent, a submesh for each body, and one for the bond between them."""
 
 from __future__ import annotations
 
@@ -9,97 +9,99 @@ from dolfinx import mesh
 from mpi4py import MPI
 
 from fem_reference.dolfinx_api import Submesh, create_submesh
-from fem_reference.problem import Problem
+from fem_reference.specimen import Body, Face, Place, Specimen
 
 
 @dataclass(frozen=True)
 class TwoBodies:
-    """The mesh of a double cantilever beam.
+    """The mesh of a specimen.
 
-    ``*_cells`` are owned cells of the parent; ``*_face`` (n, 2) are owned facets at X = 0 as (cell, local facet);
-    ``interface_quads`` (n, 4) are owned facets of the bond as (upper cell, local facet, lower cell, local facet).
+    Pairs are those of its two bodies, upper first: submeshes, and ``cells`` of the parent that this rank owns.
+    ``faces`` has the owned facets (n, 2) of every face of the specimen as (cell, local facet); ``interface_quads``
+    (n, 4) are owned facets of the bond as (upper cell, local facet, lower cell, local facet).
     """
 
     parent: mesh.Mesh
-    upper: Submesh
-    lower: Submesh
+    pair: tuple[Submesh, Submesh]
     bond: Submesh
-    upper_cells: np.ndarray
-    lower_cells: np.ndarray
-    upper_face: np.ndarray
-    lower_face: np.ndarray
+    cells: tuple[np.ndarray, np.ndarray]
+    faces: tuple[np.ndarray, ...]
     interface_quads: np.ndarray
 
 
-def grid_lines(problem: Problem) -> np.ndarray:
-    """Element boundaries along the specimen (elements + 1,): one at the end of the precrack, even on either side."""
-    n = problem.elements
-    on_precrack = min(max(round(n * problem.precrack / problem.length), 1), n - 1)
-    bonded = np.linspace(problem.precrack, problem.length, n - on_precrack + 1)
-    return np.concatenate([np.linspace(0.0, problem.precrack, on_precrack + 1)[:-1], bonded])
-
-
-def two_bodies(problem: Problem, comm: MPI.Intracomm) -> TwoBodies:
-    """Mesh of the problem, spread over the ranks of ``comm``."""
-    parent = _parent(problem, comm)
-    tdim = 2
+def two_bodies(specimen: Specimen, comm: MPI.Intracomm) -> TwoBodies:
+    """Mesh of a specimen, spread over the ranks of ``comm``."""
+    parent = _parent(specimen, comm)
+    tdim, near = 2, specimen.near
     for pair in ((1, tdim), (tdim, 1)):
         parent.topology.create_connectivity(*pair)
-    h, tolerance = problem.arm_thickness, 1e-6 * np.min(np.diff(grid_lines(problem)))
-    near = min(tolerance, 1e-6 * h)
-    upper = mesh.locate_entities(parent, tdim, lambda x: x[1] > -near)
-    lower = mesh.locate_entities(parent, tdim, lambda x: x[1] < near)
-    bonded = mesh.locate_entities(parent, 1, lambda x: (np.abs(x[1]) < near) & (x[0] > problem.precrack - near))
-    face = mesh.locate_entities_boundary(parent, 1, lambda x: np.abs(x[0]) < near)
-    is_upper = np.zeros(_count(parent, tdim), dtype=bool)
-    is_upper[upper] = True
-    face_pairs = _sides(parent, _owned(parent, 1, face), 1)
-    on_top = is_upper[face_pairs[:, 0]]
+    cells = [entities_on(parent, tdim, _extent(body), near) for body in specimen.bodies]
+    bonded = entities_on(parent, 1, (tuple(sorted(specimen.bond)), (0.0, 0.0)), near)
+    belongs = [_marked(parent, tdim, cells_of_body) for cells_of_body in cells]
+    faces = (_owned(parent, 1, entities_on(parent, 1, _side(specimen, face), near)) for face in specimen.faces)
     return TwoBodies(
-        parent,
-        create_submesh(parent, tdim, upper),
-        create_submesh(parent, tdim, lower),
-        create_submesh(parent, 1, bonded),
-        _owned(parent, tdim, upper),
-        _owned(parent, tdim, lower),
-        face_pairs[on_top],
-        face_pairs[~on_top],
-        _upper_first(_sides(parent, _owned(parent, 1, bonded), 2), is_upper),
+        parent=parent,
+        pair=tuple(create_submesh(parent, tdim, cells_of_body) for cells_of_body in cells),
+        bond=create_submesh(parent, 1, bonded),
+        cells=tuple(_owned(parent, tdim, cells_of_body) for cells_of_body in cells),
+        faces=tuple(
+            _seen_from(parent, facets, belongs[face.body]) for facets, face in zip(faces, specimen.faces, strict=True)
+        ),
+        interface_quads=np.hstack([_seen_from(parent, _owned(parent, 1, bonded), inside) for inside in belongs]),
     )
 
 
-def _parent(problem: Problem, comm: MPI.Intracomm) -> mesh.Mesh:
+def entities_on(domain: mesh.Mesh, dim: int, place: Place, near: float) -> np.ndarray:
+    """Local entities (owned and ghosts) that lie in a place."""
+    domain.topology.create_connectivity(dim, 2)
+    (left, right), (low, high) = place
+    return mesh.locate_entities(
+        domain,
+        dim,
+        lambda x: (x[0] > left - near) & (x[0] < right + near) & (x[1] > low - near) & (x[1] < high + near),
+    )
+
+
+def _parent(specimen: Specimen, comm: MPI.Intracomm) -> mesh.Mesh:
     """A grid of unit steps, moved to its place: every line is where it should be to the last digit.
 
-    Facets between ranks need a ghost cell on their other side, which ``create_rectangle`` gives them by default.
+    Beyond the end of the shorter body it has cells that belong to none. Facets between ranks need a ghost cell on their
+    other side, which ``create_rectangle`` gives them by default.
     """
-    n, m = problem.elements, problem.elements_across
-    parent = mesh.create_rectangle(comm, [[0.0, -m], [n, m]], [n, 2 * m], mesh.CellType.quadrilateral)
+    upper, lower = (body.Y for body in specimen.bodies)
+    X, Y, below = specimen.X, np.concatenate([lower, upper[1:]]), lower.size - 1
+    n, m = X.size - 1, Y.size - 1
+    parent = mesh.create_rectangle(comm, [[0.0, -below], [n, m - below]], [n, m], mesh.CellType.quadrilateral)
     x = parent.geometry.x
-    x[:, 0] = grid_lines(problem)[np.rint(x[:, 0]).astype(int)]
-    x[:, 1] = np.rint(x[:, 1]) * (problem.arm_thickness / m)
+    x[:, 0] = X[np.rint(x[:, 0]).astype(int)]
+    x[:, 1] = Y[np.rint(x[:, 1]).astype(int) + below]
     return parent
 
 
-def _count(parent: mesh.Mesh, dim: int) -> int:
-    entities = parent.topology.index_map(dim)
-    return entities.size_local + entities.num_ghosts
+def _extent(body: Body) -> Place:
+    return (0.0, body.length), (float(body.Y[0]), float(body.Y[-1]))
+
+
+def _side(specimen: Specimen, face: Face) -> Place:
+    return (face.X, face.X), _extent(specimen.bodies[face.body])[1]
+
+
+def _marked(parent: mesh.Mesh, dim: int, entities: np.ndarray) -> np.ndarray:
+    index_map = parent.topology.index_map(dim)
+    marked = np.zeros(index_map.size_local + index_map.num_ghosts, dtype=bool)
+    marked[entities] = True
+    return marked
 
 
 def _owned(parent: mesh.Mesh, dim: int, entities: np.ndarray) -> np.ndarray:
     return entities[entities < parent.topology.index_map(dim).size_local]
 
 
-def _sides(parent: mesh.Mesh, facets: np.ndarray, n_sides: int) -> np.ndarray:
-    """(cell, local facet) on each side of the facets: (n, 2) on the boundary with one side, (n, 4) inside with two."""
+def _seen_from(parent: mesh.Mesh, facets: np.ndarray, inside_c: np.ndarray) -> np.ndarray:
+    """Facets (n, 2) as (cell, local facet) of the cell on their one or two sides that is inside."""
     to_cells, to_facets = parent.topology.connectivity(1, 2), parent.topology.connectivity(2, 1)
     facets_cf = to_facets.array.reshape(-1, 4)  # a quadrilateral has four
-    cells_fs = to_cells.array[to_cells.offsets[facets][:, None] + np.arange(n_sides)]
-    local_fs = np.argmax(facets_cf[cells_fs] == facets[:, None, None], axis=2)
-    return np.stack([cells_fs, local_fs], axis=2).reshape(facets.size, 2 * n_sides).astype(np.int32)
-
-
-def _upper_first(quads: np.ndarray, is_upper: np.ndarray) -> np.ndarray:
-    """The same facets with the upper body on the first, the "+", side."""
-    swapped = quads[:, [2, 3, 0, 1]]
-    return np.where(is_upper[quads[:, :1]], quads, swapped)
+    one_f, other_f = to_cells.array[to_cells.offsets[facets]], to_cells.array[to_cells.offsets[facets + 1] - 1]
+    cells_f = np.where(inside_c[one_f], one_f, other_f)
+    local_f = np.argmax(facets_cf[cells_f] == facets[:, None], axis=1)
+    return np.stack([cells_f, local_f], axis=1).astype(np.int32)

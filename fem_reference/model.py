@@ -18,7 +18,8 @@ from fem_reference.forms import WeakForm, displacements, weak_form
 from fem_reference.law import Law
 from fem_reference.linear import Factorisation, outer, widened, without_zeros
 from fem_reference.mesh import TwoBodies, two_bodies
-from fem_reference.problem import Problem
+from fem_reference.problem import Debonding
+from fem_reference.specimen import Specimen
 from fem_reference.supports import supports, tie
 
 Phase = Callable[[str], AbstractContextManager]
@@ -28,25 +29,26 @@ Phase = Callable[[str], AbstractContextManager]
 class Model:
     """A problem ready to be solved.
 
-    Unknowns ``u_n`` are the displacements owned by this rank: x and y in turn, upper arm first. The load enters as
+    Unknowns ``u_n`` are the displacements owned by this rank: x and y in turn, upper body first. The load enters as
     ``load * load_n``, and ``load_n @ u_n``, summed over the ranks, is the opening: one vector is force and constraint.
     Points ``q`` of the bond are those that this rank owns.
     """
 
-    problem: Problem
+    problem: Debonding
+    specimen: Specimen
     bodies: TwoBodies
     displacement: tuple[fem.Function, fem.Function]  # upper, lower: what the forms read
     law: Law
     bond: Bond
     internal: BlockVector
-    bulk: list  # compiled blocks of the arms' tangent
+    bulk: list  # compiled blocks of the bodies' tangent
     energy: fem.Form
     face_energy: fem.Form
     bcs: tuple[fem.DirichletBC, ...]
     free_n: np.ndarray  # 1 where free, 0 where supported
-    tie_n: np.ndarray  # elongation of the spring between the arms times the root of its stiffness
+    tie_n: np.ndarray  # elongation of the tie times the root of its stiffness; zero without one
     load_n: np.ndarray
-    slope_n: np.ndarray  # mean du_y/dX of the faces, upper and lower, as functionals
+    slope_n: np.ndarray  # mean du_y/dX of the loaded faces, upper and lower, as functionals
     X_nI: np.ndarray  # (n, 2) reference position of the node of each unknown
     X_q: np.ndarray
     tie_matrix: PETSc.Mat  # the spring's
@@ -62,7 +64,7 @@ class Model:
 
     @property
     def upper_n(self) -> np.ndarray:
-        """True for the unknowns of the upper arm."""
+        """True for the unknowns of the upper body."""
         return np.arange(self.load_n.size) < owned(self.displacement[0])
 
     def dot(self, a_n: np.ndarray, b_n: np.ndarray) -> float:
@@ -86,7 +88,7 @@ class Model:
             u.x.scatter_forward()
 
     def bulk_force(self, u_n: np.ndarray) -> np.ndarray:
-        """Internal forces of the arms, at the supports too."""
+        """Internal forces of the bodies, at the supports too."""
         self.displace(u_n)
         return self.internal.assemble()
 
@@ -124,25 +126,26 @@ class Model:
             return self.factorisation.solve(force_n)
 
     def assemble_bulk(self, u_n: np.ndarray) -> None:
-        """The part of the arms and of their tie in the tangent; with linear kinematics it never changes."""
+        """The part of the bodies and of their tie in the tangent; with linear kinematics it never changes."""
         self.displace(u_n)
         self.bulk_matrix.zeroEntries()
         add_block_matrix(self.bulk_matrix, self.bulk, self.bcs)
         self.bulk_matrix.axpy(1.0, self.tie_matrix, PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
 
 
-def build_model(problem: Problem, phase: Phase, comm: MPI.Intracomm) -> Model:
+def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
     """Mesh, spaces, compiled forms and matrices of a problem."""
+    specimen = problem.specimen()
     with phase("mesh"):
-        bodies = two_bodies(problem, comm)
+        bodies = two_bodies(specimen, comm)
     with phase("basis"):
         displacement = displacements(bodies, problem.degree)
-        weak = weak_form(problem, bodies, displacement)
+        weak = weak_form(problem, specimen, bodies, displacement)
         bulk = compile_forms(weak.bulk, weak.maps)
         internal, load, slope = (_vector(blocks, weak) for blocks in (weak.internal, weak.load, weak.slope))
         energy, face_energy = compile_forms([weak.energy, weak.face_energy], weak.maps)
-    bcs, free_n = supports(problem, bodies, displacement)
-    tie_n = tie(problem, bodies, displacement)
+    bcs, free_n = supports(specimen, displacement)
+    tie_n = tie(specimen, displacement)
     with phase("assembly"):
         bond, X_q = _bond(problem, weak, free_n)
         narrow = create_block_matrix(bulk)
@@ -154,6 +157,7 @@ def build_model(problem: Problem, phase: Phase, comm: MPI.Intracomm) -> Model:
         tangent_matrix = bulk_matrix.copy()
     return Model(
         problem=problem,
+        specimen=specimen,
         bodies=bodies,
         displacement=displacement,
         law=law_of(problem),
@@ -184,7 +188,7 @@ def _largest(matrix: PETSc.Mat, free_n: np.ndarray, comm: MPI.Intracomm) -> floa
     return comm.allreduce(float(np.max(diagonal_n, initial=0.0)), MPI.MAX)
 
 
-def law_of(problem: Problem) -> Law:
+def law_of(problem: Debonding) -> Law:
     """The traction law of a problem."""
     p = problem
     return Law(p.strength, p.toughness, p.ductility, p.penalty, p.contact, p.irreversible)
@@ -194,7 +198,7 @@ def _vector(blocks: list, weak: WeakForm) -> BlockVector:
     return BlockVector(compile_forms(blocks, weak.maps))
 
 
-def _bond(problem: Problem, weak: WeakForm, free_n: np.ndarray) -> tuple[Bond, np.ndarray]:
+def _bond(problem: Debonding, weak: WeakForm, free_n: np.ndarray) -> tuple[Bond, np.ndarray]:
     """The bond's matrices, and the positions of its points: integrals over a point's share, divided by the share."""
     gap = [compile_forms(weak.gap, weak.maps)]
     weight_q = _vector([weak.weight], weak).assemble()

@@ -10,7 +10,7 @@ import numpy as np
 from fem_reference.control import FRONT_STEP, Control, Front, at, front_of, opening_control
 from fem_reference.model import Model
 from fem_reference.newton import bordered_step, find_equilibrium
-from fem_reference.problem import Problem
+from fem_reference.problem import Debonding
 from fem_reference.state import State
 from fem_reference.work import work_along
 
@@ -41,7 +41,7 @@ class Separation:
     opening: float
 
 
-def branches(problem: Problem) -> list[np.ndarray]:
+def branches(problem: Debonding) -> list[np.ndarray]:
     """Equal increments of the opening, about ``steps`` over the whole programme: their ends, one array a branch."""
     corners = np.concatenate([[0.0], problem.opening])
     ways = np.abs(np.diff(corners))

@@ -1,4 +1,4 @@
-"""Solve a double cantilever beam: build the model, follow its path, write down what is found."""
+"""Solve a specimen: build the model, follow its path, write down what is found."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fem_reference.assembled import owned
 from fem_reference.fields import field_sampler
 from fem_reference.model import build_model
 from fem_reference.path import Failure, Separation, path
-from fem_reference.problem import Problem
+from fem_reference.problem import Debonding
 from fem_reference.state import row_of
 
 OnStep = Callable[[Mapping[str, float]], None]
@@ -23,7 +23,7 @@ class Solution:
     """A run, as far as it came; the same on every rank, but for the snapshots, which the first one has."""
 
     rows: tuple[dict[str, float], ...]
-    dofs: int  # two a node of both arms, supported ones included
+    dofs: int  # two a node of both bodies, supported ones included
     elements: int
     rejected_steps: int
     status: str  # "complete", or "stopped: <cause and what to do>"
@@ -32,13 +32,13 @@ class Solution:
     snapshots: tuple[dict, ...]
 
 
-def solve_dcb(
-    problem: Problem,
+def solve_debonding(
+    problem: Debonding,
     on_step: OnStep = lambda row: None,
     phase: Callable[[str], AbstractContextManager] = lambda name: nullcontext(),
     comm: MPI.Intracomm = MPI.COMM_WORLD,
 ) -> Solution:
-    """Solve a double cantilever beam.
+    """Solve a `fem_reference.dcb.Problem` or a `fem_reference.peel.Problem`.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def solve_dcb(
     return Solution(
         rows=tuple(rows),
         dofs=comm.allreduce(sum(owned(u) for u in model.displacement)),
-        elements=2 * problem.elements * problem.elements_across,
+        elements=comm.allreduce(sum(cells.size for cells in model.bodies.cells)),
         rejected_steps=rejected,
         status=status,
         ending=ending,

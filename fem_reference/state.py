@@ -9,7 +9,8 @@ from dolfinx import fem
 
 from fem_reference.assembled import owned
 from fem_reference.model import Model
-from fem_reference.supports import dofs_at
+from fem_reference.specimen import point
+from fem_reference.supports import dofs_on
 
 
 @dataclass(frozen=True)
@@ -34,9 +35,14 @@ class State:
 
 
 def row_of(model: Model, state: State) -> dict[str, float]:
-    """Numbers of a converged point by name, forces and energies for the whole width; the same on every rank."""
+    """Numbers of a converged point by name, forces and energies for the whole width; the same on every rank.
+
+    ``reaction_x`` and ``reaction_y`` are what the supports carry besides the resultant of the loads, which is zero
+    where two faces are pulled apart.
+    """
     bond_force_n = model.bond.force(model.law.traction(state.g_q, state.k_q)[0])
-    residual_n = model.bulk_force(state.u_n) + bond_force_n - state.load * model.load_n
+    load_n = state.load * model.load_n
+    reaction_n = (1 - model.free_n) * (model.bulk_force(state.u_n) + bond_force_n - load_n)
     bulk, face = (model.comm.allreduce(fem.assemble_scalar(form)) for form in (model.energy, model.face_energy))
     cohesive, contact, dissipated = (
         model.dot(model.bond.weight_q, density_q) for density_q in model.law.energies(state.g_q, state.k_q)
@@ -52,16 +58,16 @@ def row_of(model: Model, state: State) -> dict[str, float]:
         "newton_iterations": state.iterations,
         "load_slope": state.slope,
         "heading": state.heading,
-        "tip_opening": opening_at(model, model.problem.precrack),
-        "end_opening": opening_at(model, model.problem.length),
+        "tip_opening": opening_at(model, model.specimen.bond[0]),
+        "end_opening": opening_at(model, model.specimen.bond[1]),
         "damage_front": foremost(model, state, model.law.g_peak),
         "face_slope_top": model.dot(model.slope_n * on_upper_n, state.u_n),
         "face_slope_bottom": model.dot(model.slope_n * ~on_upper_n, state.u_n),
         "face_energy": face,
         "interface_force": -resultant(model, bond_force_n * on_upper_n, 1),
-        "reaction_x": resultant(model, residual_n * (1 - model.free_n), 0),
-        "reaction_y": resultant(model, residual_n * (1 - model.free_n), 1),
-        "load_moment": moment(model, state, state.load * model.load_n * on_upper_n),
+        "reaction_x": resultant(model, reaction_n + load_n, 0),
+        "reaction_y": resultant(model, reaction_n + load_n, 1),
+        "load_moment": moment(model, state, load_n * on_upper_n),
         "interface_moment": -moment(model, state, bond_force_n * on_upper_n),
         "bulk_energy": bulk,
         "cohesive_energy": cohesive,
@@ -88,27 +94,29 @@ def moment(model: Model, state: State, force_n: np.ndarray) -> float:
 def opening_at(model: Model, X: float) -> float:
     """Normal gap at a vertex of the interface, of the displacements last put into the forms."""
     jump = 0.0
-    for u, body, sign in zip(model.displacement, (model.bodies.upper, model.bodies.lower), (1.0, -1.0), strict=True):
-        dofs = dofs_at(u, body.mesh, model.problem, (X, 0.0), 1)
+    for u, sign in zip(model.displacement, (1.0, -1.0), strict=True):
+        dofs = dofs_on(u, point(X, 0.0), model.specimen.near, 1)
         jump += sign * float(np.sum(u.x.array[dofs[dofs < owned(u)]]))
     return model.comm.allreduce(jump)
 
 
 def foremost(model: Model, state: State, gap: float) -> float:
     """Distance from the loaded end to the foremost point that was ever open by ``gap``, linear between the points."""
-    X_q, k_q = ordered_along(model, state.k_q)
+    s_q, k_q = ordered_along(model, state.k_q)
+    tip, end = (float(model.specimen.distance(X)) for X in model.specimen.bond)
     open_q = np.flatnonzero(k_q >= gap)
     if not open_q.size:
-        return model.problem.precrack
+        return tip
     last = open_q[-1]
-    if last == X_q.size - 1:
-        return model.problem.length
+    if last == s_q.size - 1:
+        return end
     share = (k_q[last] - gap) / (k_q[last] - k_q[last + 1])
-    return float(X_q[last] + share * (X_q[last + 1] - X_q[last]))
+    return float(s_q[last] + share * (s_q[last + 1] - s_q[last]))
 
 
 def ordered_along(model: Model, *values_q: np.ndarray) -> list[np.ndarray]:
-    """Positions of all points of the bond, over all ranks, in rising order, and values in the same order."""
-    gathered = [np.concatenate(model.comm.allgather(v_q)) for v_q in (model.X_q, *values_q)]
+    """Distances of all points of the bond from the loaded end, over all ranks, rising, and values in the same order."""
+    s_q = model.specimen.distance(model.X_q)
+    gathered = [np.concatenate(model.comm.allgather(v_q)) for v_q in (s_q, *values_q)]
     order = np.argsort(gathered[0])
     return [v_q[order] for v_q in gathered]

@@ -82,8 +82,10 @@ def solve(scene: Scene, method: str, on_step: OnStep | None = None) -> Result:
 
 def require(scene: Scene, method: str) -> None:
     """Raise ``Unsuitable`` where the method is not made for the scene, ``NotRun`` where this machine lacks it."""
-    if scene.specimen.kind == "peel" and method not in WITH_DOFS:
+    if scene.specimen.kind == "peel" and method not in (*WITH_DOFS, "dolfinx"):
         raise Unsuitable(f"specimen.kind: must be \"dcb\" for {method}, got 'peel' (peel: not available yet)")
+    if method == "dolfinx":
+        _require_elements(scene)
     if method == "dolfinx" and not dolfinx_installed():
         raise NotRun(DOLFINX_MISSING)
     mesh, programme = scene.discretization, scene.load.opening
@@ -111,6 +113,14 @@ def _require_mesh(scene: Scene, method: str) -> None:
     except ValueError as error:
         key = "interface_rule" if str(error).startswith("interface_rule") else "dofs"
         raise Unsuitable(f"discretization.{key}: {str(error).removeprefix('interface_rule ')}") from None
+
+
+def _require_elements(scene: Scene) -> None:
+    """As many elements as the specimen has parts."""
+    try:
+        dolfinx_problem(scene)
+    except ValueError as error:
+        raise Unsuitable(f"dolfinx.{error}") from None
 
 
 def least_dofs(method: str, degree: int) -> int:
@@ -168,6 +178,12 @@ def elastic_constants(material: Material) -> dict[str, float]:
     return material.model_dump()
 
 
+def _peel_keys(scene: Scene, moduli: type) -> dict[str, Any]:
+    """Geometry and materials of a peel, as both field solvers call them; ``moduli`` is the solver's own type."""
+    materials = {name: moduli(**elastic_constants(getattr(scene, name))) for name in ("strip", "substrate")}
+    return scene.specimen.model_dump(exclude={"kind", "width", "plane", "mesh"}) | materials
+
+
 def _iga_keys(scene: Scene, method: str) -> dict[str, Any]:
     """Mesh, interface rule, steps and pose, as both specimens of ``iga`` call them."""
     mesh, pose = scene.discretization, scene.pose
@@ -202,9 +218,7 @@ def iga_problem(scene: Scene, method: str) -> tuple[ModuleType, Any]:
     if scene.specimen.kind == "peel":
         from iga import peel
 
-        specimen = scene.specimen.model_dump(exclude={"kind", "width", "plane", "mesh"})
-        moduli = {name: peel.Moduli(**elastic_constants(getattr(scene, name))) for name in ("strip", "substrate")}
-        keys = specimen | moduli | _common_keys(scene, method) | _iga_keys(scene, method)
+        keys = _peel_keys(scene, peel.Moduli) | _common_keys(scene, method) | _iga_keys(scene, method)
         return peel, peel.Problem(**_taken(peel.Problem, keys))
     from iga import dcb
 
@@ -224,13 +238,23 @@ def _taken(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in keys.items() if key in known or value != plain.get(key)}
 
 
+def dolfinx_problem(scene: Scene) -> Any:
+    """The problem that `fem_reference` is given; DOLFINx itself is not asked for. ValueError where it refuses it."""
+    from fem_reference import dcb, peel
+    from fem_reference.material import Moduli
+
+    mesh = scene.dolfinx.model_dump()
+    if scene.specimen.kind == "peel":
+        keys = {**_peel_keys(scene, Moduli), **_common_keys(scene, "dolfinx"), "steps": counted_steps(scene)}
+        return peel.Problem(**keys, **mesh)
+    return dcb.Problem(**problem_keys(scene, "dolfinx"), **mesh)
+
+
 def _dolfinx(scene: Scene, method: str, on_step: OnStep) -> Result:
-    from fem_reference.problem import Problem
-    from fem_reference.solve import solve_dcb
+    from fem_reference.solve import solve_debonding
 
     watch = Stopwatch()
-    problem = Problem(degree=scene.dolfinx.degree, elements=scene.dolfinx.elements, **problem_keys(scene, method))
-    return _result(method, solve_dcb(problem, on_step=on_step, phase=watch.phase), watch)
+    return _result(method, solve_debonding(dolfinx_problem(scene), on_step=on_step, phase=watch.phase), watch)
 
 
 def _beam(scene: Scene, method: str, on_step: OnStep) -> Result:

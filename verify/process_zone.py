@@ -16,7 +16,7 @@ import numpy as np
 from numpy import cos, cosh, sin, sinh
 from scipy.optimize import brentq
 
-from verify.methods import WITH_DOFS, elastic_constants, iga_problem
+from verify.methods import WITH_DOFS, dolfinx_problem, elastic_constants, iga_problem
 from verify.result import Result
 from verify.scene import Scene
 from verify.specimen import Material
@@ -152,18 +152,16 @@ def crack_modulus(material: Material, plane: str) -> float:
 
 def element_length(scene: Scene, method: str) -> float:
     """Longest element along the bond, NaN for a method without a mesh, or where none can be made."""
-    if method in WITH_DOFS:
-        from iga.sizes import element_length as longest
+    try:
+        if method in WITH_DOFS:
+            from iga.sizes import element_length as longest
 
-        solver, problem = iga_problem(scene, method)
-        try:
+            solver, problem = iga_problem(scene, method)
             return longest(solver.build(problem))
-        except ValueError:
-            return nan
-    if method == "dolfinx":
-        n, length, bond_start = scene.dolfinx.elements, scene.specimen.length, scene.specimen.free_length
-        before = min(max(round(n * bond_start / length), 1), n - 1)  # a grid line lies on the end of the precrack
-        return (length - bond_start) / (n - before)
+        if method == "dolfinx":
+            return float(np.max(dolfinx_problem(scene).specimen().bond_elements))
+    except ValueError:
+        pass
     return nan
 
 

@@ -13,12 +13,12 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 from mpi4py import MPI
 
 from fem_reference.control import opening_control
+from fem_reference.dcb import Problem
 from fem_reference.law import Law
 from fem_reference.model import build_model
 from fem_reference.newton import find_equilibrium
 from fem_reference.path import path
-from fem_reference.problem import Problem
-from fem_reference.solve import solve_dcb
+from fem_reference.solve import solve_debonding
 
 CZM1 = Problem(
     length=14.0,
@@ -38,7 +38,7 @@ REFERENCE = Path(__file__).parents[3] / "shared" / "reference"
 
 @cache
 def columns(problem):
-    solution = solve_dcb(problem)
+    solution = solve_debonding(problem)
     assert solution.status == "complete"
     return {name: np.array([row[name] for row in solution.rows]) for name in solution.rows[0]}
 
@@ -198,7 +198,7 @@ def test_plane_strain_is_stiffer_by_its_modulus():
 
 def test_snapshots_hold_the_fields_of_their_step():
     rows = []
-    solution = solve_dcb(replace(SHORT, steps=12, snapshot_openings=(0.25, 1.2)), on_step=rows.append)
+    solution = solve_debonding(replace(SHORT, steps=12, snapshot_openings=(0.25, 1.2)), on_step=rows.append)
     assert rows == list(solution.rows)
     assert [s["opening"] for s in solution.snapshots] == pytest.approx([0.3, 1.2])
     first, last = solution.snapshots
@@ -217,7 +217,7 @@ def test_snapshots_hold_the_fields_of_their_step():
 
 
 def test_unknowns_count_two_a_node_of_both_arms():
-    solution = solve_dcb(replace(CZM1, opening=(0.02,), steps=1))
+    solution = solve_debonding(replace(CZM1, opening=(0.02,), steps=1))
     assert solution.dofs == 2 * 2 * (2 * 112 + 1) * 3
     assert solution.elements == 224
 

@@ -10,9 +10,8 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 from dolfinx import fem
 from mpi4py import MPI
 
-from fem_reference.mesh import grid_lines
+from fem_reference.dcb import Problem
 from fem_reference.model import build_model
-from fem_reference.problem import Problem
 
 SMALL = Problem(
     length=6.0,
@@ -172,7 +171,7 @@ def test_unit_load_is_uniform_on_both_faces_and_measures_the_opening(finite):
 
 @pytest.mark.parametrize(("elements", "precrack"), [(9, 2.1), (112, 4.0), (2, 0.01), (5, 5.99)])
 def test_an_element_ends_where_the_precrack_ends(elements, precrack):
-    lines = grid_lines(Problem(**(SMALL.__dict__ | {"elements": elements, "precrack": precrack})))
+    lines = Problem(**(SMALL.__dict__ | {"elements": elements, "precrack": precrack})).specimen().X
     assert lines.size == elements + 1
     assert precrack in lines
     assert lines[0] == 0.0

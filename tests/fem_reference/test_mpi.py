@@ -15,14 +15,14 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 PROGRAM = """
 import json, sys
 from dataclasses import replace
-from fem_reference.problem import Problem
-from fem_reference.solve import solve_dcb
+from fem_reference.dcb import Problem
+from fem_reference.solve import solve_debonding
 from mpi4py import MPI
 rows = []
 problem = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, E2=120e3, G12=50e3, nu12=0.2, strength=4.0,
                   toughness=0.1, ductility=12.5, opening=(0.9, 0.6), steps=15, snapshot_openings=(0.9,))
-solution = solve_dcb(problem, on_step=rows.append)
-snapping = solve_dcb(replace(problem, strength=6.0, elements=14, opening=(1.0, 0.5, 1.1), steps=20))
+solution = solve_debonding(problem, on_step=rows.append)
+snapping = solve_debonding(replace(problem, strength=6.0, elements=14, opening=(1.0, 0.5, 1.1), steps=20))
 assert bool(rows) == (MPI.COMM_WORLD.rank == 0)
 if MPI.COMM_WORLD.rank == 0:
     snapshot = solution.snapshots[0]

@@ -14,11 +14,11 @@ from scipy.interpolate import CubicHermiteSpline
 
 from fem_reference import newton
 from fem_reference.control import front_of, gap_row
+from fem_reference.dcb import Problem
 from fem_reference.law import Law
 from fem_reference.model import build_model
 from fem_reference.path import Failure, departing, path
-from fem_reference.problem import Problem
-from fem_reference.solve import solve_dcb
+from fem_reference.solve import solve_debonding
 from fem_reference.state import State
 from fem_reference.work import work_along
 
@@ -41,7 +41,7 @@ KINEMATICS = pytest.mark.parametrize("kinematics", ["linear", "finite"])
 
 @cache
 def solve(problem):
-    solution = solve_dcb(problem)
+    solution = solve_debonding(problem)
     return solution, {name: np.array([row[name] for row in solution.rows]) for name in solution.rows[0]}
 
 

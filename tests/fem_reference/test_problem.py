@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from fem_reference.problem import Problem, in_plane_stiffness
+from fem_reference.dcb import Problem
+from fem_reference.material import in_plane_stiffness
 
 DCB = dict(
     length=14.0,
