@@ -94,7 +94,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _compare_options(sub: argparse.ArgumentParser) -> None:
-    # -1e-3 is a number, not an option: argparse itself knows this from Python 3.14 on
+    # argparse takes -1 and -0.5 for numbers, but -1e-3 for an option
     sub._negative_number_matcher = re.compile(r"-\.?\d")
     sub.add_argument("a", metavar="A", type=Path, help="CSV file or folder of a run")
     sub.add_argument("b", metavar="B", type=Path, help="what A is held against")
@@ -224,6 +224,7 @@ def _hard(options: argparse.Namespace) -> int:
 def _compare(options: argparse.Namespace) -> int:
     from verify import compare_command as work
     from verify.compare import checks
+    from verify.compare_words import complaints, remarks, table
     from verify.curve_file import Reading
 
     keys = ("opening", "load", "opening_scale", "load_scale")
@@ -235,13 +236,13 @@ def _compare(options: argparse.Namespace) -> int:
     if options.out is not None:
         _folder(options.out)
     found = checks(comparison, options.curve_tol, options.peak_tol, options.energy_tol)
-    print("\n".join(work.table(comparison, loads, found)), flush=True)
-    for remark in work.remarks(comparison):
+    print("\n".join(table(comparison, loads, found)), flush=True)
+    for remark in remarks(comparison):
         _say(f"debond: {remark}")
     if options.out is not None:
         work.write(options.out, (a, b), comparison, loads, found, _say)
         print(f"written: {options.out}")
-    for complaint in work.complaints(found, comparison):
+    for complaint in complaints(comparison, found):
         _say(f"debond: {complaint}")
     return 0 if all(check.passed for check in found) else FAILED
 

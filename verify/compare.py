@@ -51,6 +51,11 @@ class Comparison:
     opening_n: np.ndarray  # (SAMPLES,) and the loads of both envelopes there
     load_a_n: np.ndarray
     load_b_n: np.ndarray
+    names: tuple[str, str] = ("A", "B")
+
+    @property
+    def reaches(self) -> bool:
+        return self.missing <= ROUNDING
 
     @property
     def missing(self) -> float:
@@ -90,7 +95,7 @@ class Comparison:
         return list(zip(openings, *loads, strict=True))
 
 
-def compare(a: Points, b: Points, end: float | None = None) -> Comparison:
+def compare(a: Points, b: Points, end: float | None = None, names: tuple[str, str] = ("A", "B")) -> Comparison:
     """Hold A against B over the openings that both reach, up to ``end``; without it up to the last opening of B.
 
     A curve that begins at an opening above 0 is joined to the origin by a straight line: there the specimen bears
@@ -100,26 +105,25 @@ def compare(a: Points, b: Points, end: float | None = None) -> Comparison:
     ------
     CurveError : ``end`` beyond B, nothing in common, or no load of B above 0.
     """
-    first_a, last_a, first_b, last_b = (float(f(d)) for d in (a[0], b[0]) for f in (lambda x: x[0], np.max))
+    (first_a, last_a), (first_b, last_b) = ((float(d[0]), float(np.max(d))) for d, _ in (a, b))
     asked = last_b if end is None else float(end)
     if not 0.0 < asked <= last_b * (1.0 + ROUNDING):
-        raise CurveError(f"end: must be > 0 and <= {last_b:.6g}, the last opening of B, got {asked:g}")
+        raise CurveError(f"end: must be > 0 and <= {last_b:.6g}, the last opening of {names[1]}, got {asked:g}")
     common = min(asked, last_a, last_b)
     if max(first_a, first_b) >= common:
-        raise CurveError(
-            f"A and B must have openings in common, got {first_a:.6g} to {last_a:.6g} and {first_b:.6g} to {last_b:.6g}"
-            + (f", compared up to {asked:.6g}" if asked < last_b else "")
-        )
-    part_a, part_b = _part(a, common), _part(b, common)
-    if not part_b.peak_load > 0.0:
-        raise CurveError(f"B: the loads must go above 0 up to the opening {common:.6g}; a scale of -1 turns signs")
-    grid = common * (np.arange(1, SAMPLES + 1) / SAMPLES)  # ends at the end, to the last digit
-    scaled = [(part.opening / common, part.load / part_b.peak_load) for part in (part_a, part_b)]
+        ranges = f"{first_a:.6g} to {last_a:.6g} and {first_b:.6g} to {min(asked, last_b):.6g}"
+        raise CurveError(f"{' and '.join(names)}: must have openings in common, got {ranges}")
     with np.errstate(all="ignore"):  # numbers near the ends of the range end as inf or NaN, and so fail
+        part_a, part_b = _part(a, common), _part(b, common)
+        top = part_b.peak_load
+        if not top > 0.0:
+            raise CurveError(f"{names[1]}: the loads up to {common:.6g} must go above 0, got at most {top:g}")
+        scaled = [(part.opening / common, part.load / top) for part in (part_a, part_b)]
         error = curve_error(*scaled, end=1.0, n=SAMPLES)
         wave = _wave(scaled, part_b.peak_opening / common)
+        grid = common * (np.arange(1, SAMPLES + 1) / SAMPLES)
         loads = [load_at((part.opening, part.load), grid) for part in (part_a, part_b)]
-    return Comparison(part_a, part_b, asked, common, error, *wave, grid, *loads)
+    return Comparison(part_a, part_b, asked, common, error, *wave, grid, *loads, names)
 
 
 def checks(
@@ -139,9 +143,8 @@ def checks(
 def _part(curve: Points, end: float) -> Part:
     first, last = float(curve[0][0]), float(np.max(curve[0]))
     d, P = _up_to(*_from_origin(*curve), end)
-    with np.errstate(all="ignore"):
-        at, load = peak(envelope(d, P))
-        work = float(np.sum((P[1:] / 2.0 + P[:-1] / 2.0) * np.diff(d)))
+    at, load = peak(envelope(d, P))
+    work = float(np.sum((P[1:] / 2.0 + P[:-1] / 2.0) * np.diff(d)))
     return Part(d, P, first, last, at, load, work)
 
 

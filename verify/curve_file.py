@@ -94,7 +94,9 @@ def sound(source: str, d: np.ndarray, P: np.ndarray) -> tuple[np.ndarray, np.nda
         raise CurveError(f"{source}: must hold at least 2 points of different opening, got {d.size}")
     if d.max() <= 0:
         raise CurveError(f"{source}: the openings must go above 0, got at most {d.max():g}; a scale of -1 turns signs")
-    if envelope(d, P)[0].size < 2:
+    with np.errstate(all="ignore"):
+        monotone = envelope(d, P)[0]
+    if monotone.size < 2:
         raise CurveError(f"{source}: the opening must grow from the first point on, got the largest, {d[0]:g}, first")
     return d, P
 

@@ -1,0 +1,184 @@
+"""Load-opening curves in the regression tests of other projects. Needs NumPy only."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from numbers import Real
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from verify.compare import Points, checks, compare
+from verify.compare_words import complaints, remarks, table
+from verify.curve_file import Column, CurveError, Reading, read_curve, sound
+
+__all__ = ["CurveError", "CurveLike", "Reading", "assert_curves_close"]
+
+
+class _Result(Protocol):
+    @property
+    def opening(self) -> ArrayLike: ...
+
+    @property
+    def load(self) -> ArrayLike: ...
+
+
+class _Frame(Protocol):
+    @property
+    def columns(self) -> Any: ...
+
+    def __getitem__(self, name: Any) -> Any: ...
+
+
+_Table = Mapping[str, ArrayLike] | np.ndarray | _Frame
+CurveLike = str | os.PathLike[str] | tuple[ArrayLike, ArrayLike] | _Table | _Result
+
+
+def assert_curves_close(
+    actual: CurveLike,
+    expected: CurveLike,
+    *,
+    curve: float | None = None,
+    peak: float | None = None,
+    energy: float | None = None,
+    end: float | None = None,
+    actual_as: Reading | None = None,
+    expected_as: Reading | None = None,
+) -> None:
+    """Fail unless one load-opening curve is as close to another as the given tolerances ask.
+
+    Each tolerance is relative; at least one must be given. With P the load over the opening D that a test under
+    displacement control would show (points whose opening exceeds all before, a vertical drop at a snap-back), P_e that
+    of ``expected``, and D_i = i end / 400, i = 1 ... 400::
+
+        curve     sqrt( sum_i (P(D_i) - P_e(D_i))^2 / sum_i P_e(D_i)^2 )    <= curve
+        peak      | max P / max P_e - 1 |                                  <= peak
+        energy    | W - W_e | / | W_e |,  W = integral of P dD on the path  <= energy
+
+    ``actual`` must reach ``end`` as well: a run that stops early is not close. A curve whose first opening is above 0
+    is joined to the origin by a straight line.
+
+    Parameters
+    ----------
+    actual, expected
+        Opening (n,) and load (n,) along the path, in units of which only the scales of the readings know: a pair of
+        sequences or array (2, n); columns of a mapping, a structured array or a data frame; an object with ``opening``
+        and ``load``, as a result of this package is; or the path of a text file or of the folder of a run.
+    curve, peak, energy : relative tolerances, 0.01 for 1 %
+    end : compare up to this opening; default: the last of ``expected``
+    actual_as, expected_as
+        Which columns are opening and load, and what they are multiplied by; default: those of these names, unscaled.
+
+    Raises
+    ------
+    AssertionError
+        With a table of both curves, the opening at which they differ most, and every tolerance that is broken.
+    ValueError, TypeError
+        What was given is no curve or no tolerance (missing file or column, text or NaN among the numbers, one point,
+        openings without overlap): a test that could not be made, not one that failed.
+
+    Examples
+    --------
+    >>> from verify.testing import Reading, assert_curves_close
+    >>> expected = [0, 1, 2, 3], [0.0, 4.0, 3.0, 2.0]
+    >>> history = {"U2": [0, -1, -2, -3], "RF2": [0, -4020, -3015, -2010]}
+    >>> metres = Reading(opening="U2", load="RF2", opening_scale=-1, load_scale=-1e-3)
+    >>> assert_curves_close(history, expected, actual_as=metres, curve=0.01, peak=0.01, energy=0.01)
+    >>> assert_curves_close(history, expected, actual_as=metres, curve=0.002)
+    Traceback (most recent call last):
+        ...
+    AssertionError: actual is not close to expected: curve error 0.5 %, more than 0.2 %
+    ...
+    """
+    __tracebackhide__ = True
+    limits = {"curve": curve, "peak": peak, "energy": energy}
+    if all(limit is None for limit in limits.values()):
+        raise TypeError("assert_curves_close needs a tolerance: curve, peak or energy")
+    for name, limit in limits.items():
+        _tolerance(name, limit)
+    if end is not None and (isinstance(end, bool) or not isinstance(end, Real)):
+        raise TypeError(f"end: must be a number, got {end!r}")
+    names = ("actual", "expected")
+    found = compare(_points("actual", actual, actual_as), _points("expected", expected, expected_as), end, names)
+    judged = checks(found, **limits)
+    if not all(check.passed for check in judged):
+        broken = "; ".join([*complaints(found, judged), *remarks(found)])
+        lines = [f"actual is not close to expected: {broken}", *table(found, (), judged)]
+        raise AssertionError("\n".join(lines))
+
+
+def _tolerance(name: str, limit: float | None) -> None:
+    if limit is None:
+        return
+    if isinstance(limit, bool) or not isinstance(limit, Real):
+        raise TypeError(f"{name}: must be a number, got {limit!r}")
+    if not 0 <= limit < np.inf:
+        raise ValueError(f"{name}: must be >= 0 and finite, got {limit!r}")
+
+
+def _points(name: str, source: CurveLike, reading: Reading | None) -> Points:
+    if reading is not None and not isinstance(reading, Reading):
+        raise TypeError(f"{name}_as: must be a Reading, got {type(reading).__name__}")
+    reading = reading or Reading()
+    if isinstance(source, str | os.PathLike):
+        return read_curve(Path(source), reading)
+    opening, load = _two_columns(name, source, reading)
+    d, P = _numbers(f"{name}, opening", opening), _numbers(f"{name}, load", load)
+    if d.size != P.size:
+        raise CurveError(f"{name}: opening and load must be of one length, got {d.size} and {P.size}")
+    with np.errstate(over="ignore"):
+        return sound(name, d * reading.opening_scale, P * reading.load_scale)
+
+
+def _two_columns(name: str, source: Any, reading: Reading) -> tuple[Any, Any]:
+    columns = _names(source)
+    if columns is not None:
+        opening, load = (_column(name, columns, column) for column in reading.columns)
+        return source[opening], source[load]
+    if reading.opening is not None or reading.load is not None:
+        raise TypeError(f"{name}_as: columns are chosen in a file or a table, got {type(source).__name__}")
+    if hasattr(source, "opening") and hasattr(source, "load"):
+        return source.opening, source.load
+    if not (isinstance(source, Sequence | np.ndarray) and len(source) == 2):
+        what = f"an array of shape {source.shape}" if isinstance(source, np.ndarray) else type(source).__name__
+        raise TypeError(f"{name}: must be (opening, load), a table with these columns, or a path, got {what}")
+    return source[0], source[1]
+
+
+def _names(source: Any) -> list[Any] | None:
+    """The names of the columns; None where there are none."""
+    if isinstance(source, Mapping):
+        return list(source)
+    if isinstance(source, np.ndarray):
+        return list(source.dtype.names) if source.dtype.names else None
+    return list(source.columns) if hasattr(source, "columns") else None
+
+
+def _column(name: str, columns: list[Any], wanted: Column) -> Any:
+    if wanted in columns:
+        return wanted
+    if isinstance(wanted, int):
+        if wanted > len(columns):
+            raise CurveError(f"{name}: has {len(columns)} columns, got column number {wanted}")
+        return columns[wanted - 1]
+    alike = [column for column in columns if str(column).casefold() == wanted.casefold()]
+    if len(alike) != 1:
+        listed = ", ".join(map(str, columns)) or "none"
+        raise CurveError(f"{name}: must have {'one' if alike else 'a'} column {wanted!r}, got {listed}")
+    return alike[0]
+
+
+def _numbers(name: str, values: Any) -> np.ndarray:
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind not in "iufO":
+            raise TypeError(f"{name}: must be real numbers, got {array.dtype}")
+        array = array.astype(float)
+    except (TypeError, ValueError) as error:
+        raise type(error)(str(error) if str(error).startswith(name) else f"{name}: must be numbers, {error}") from None
+    if array.ndim != 1:
+        raise CurveError(f"{name}: must be of one dimension, got shape {array.shape}")
+    return array
