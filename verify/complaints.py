@@ -28,7 +28,8 @@ def complaints(error: ValidationError, raw: Mapping[str, Any]) -> list[str]:
     if any(e["loc"] == kind for e in details):
         # another specimen has other keys, so nothing can be said about those that belong to it
         details = [e for e in details if e["loc"] == kind or e["loc"][0] not in _ALTERNATIVES]
-    return [sentence for e in details for sentence in _sentences(e, raw)]
+    sentences = (sentence for e in details for sentence in _sentences(e, raw))
+    return list(dict.fromkeys(sentences))  # one number that stands for two is wrong once
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
@@ -77,9 +78,14 @@ def _place(loc: tuple[str | int, ...]) -> tuple[type[Section], FieldInfo | None,
         path.append(part)
         if here is not None and isinstance(part, str):
             model, field = here, here.model_fields.get(part)
-            annotation = field.annotation if field else None
-            here = annotation if isinstance(annotation, type) and issubclass(annotation, Section) else None
+            here = _table(field.annotation if field else None)
     return model, field, tuple(path)
+
+
+def _table(annotation: object) -> type[Section] | None:
+    """The table that a key holds, or holds a list of."""
+    inner = get_args(annotation)[0] if get_origin(annotation) is tuple else annotation
+    return inner if isinstance(inner, type) and issubclass(inner, Section) else None
 
 
 def _dotted(path: tuple[str | int, ...], raw: Mapping[str, Any]) -> str:
@@ -91,25 +97,34 @@ def _dotted(path: tuple[str | int, ...], raw: Mapping[str, Any]) -> str:
             value = value.get(part) if isinstance(value, Mapping) else None
         elif isinstance(value, list):
             text += f"[{part}]"
+            value = value[part]
     return text
 
 
 def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) -> str:
     """The range of a key; with its type in front where ``full``."""
-    annotation = field.annotation if field else None
+    annotation = _without_none(field.annotation if field else None)
     if path == ("specimen", "kind"):
         return one_of(_SPECIMENS)
     if get_origin(annotation) is Literal:
         return one_of(get_args(annotation))
-    if get_origin(annotation) is tuple:
-        return "a number" if isinstance(path[-1], int) else "a number, or a list of at least one number"
+    if get_origin(annotation) is tuple and _table(annotation) is None:
+        how_many = "at least one number" if get_args(annotation)[-1] is ... else "two"
+        return "a number" if isinstance(path[-1], int) else f"a number, or a list of {how_many}"
     if annotation not in _KINDS:
-        tables = [annotation] if isinstance(annotation, type) else list(_ALTERNATIVES[str(path[0])].values())
+        table = _table(annotation)
+        tables = [table] if table is not None else list(_ALTERNATIVES[str(path[0])].values())
         return "a table of " + ", or of ".join(", ".join(table.model_fields) for table in tables)
     if annotation is str and field.metadata:
         return "1 to 80 letters, digits, dots, dashes and underscores, a letter or digit first"
     bounds = [f"{sign} {limit:g}" for limit, sign in _bounds(field)]
     return " ".join([_KINDS[annotation]] * (full or not bounds) + [" and ".join(bounds)] * bool(bounds))
+
+
+def _without_none(annotation: object) -> object:
+    """The kind of a number that may be left out."""
+    kinds = [kind for kind in get_args(annotation) if kind in _KINDS]
+    return kinds[0] if type(None) in get_args(annotation) and kinds else annotation
 
 
 def _bounds(field: FieldInfo) -> list[tuple[float, str]]:

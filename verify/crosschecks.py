@@ -1,4 +1,5 @@
-"""What must hold between runs of one scene: every code against the cohesive beam, and the codes against each other.
+"""What must hold between runs of one scene: every code against the cohesive beam, the codes against each other, and
+all of them against what others have published for it.
 
 LEFM appears in no check: it is a limit that a cohesive zone approaches, not a target.
 """
@@ -7,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from verify.curve import curve_error, peak
+from verify.curve import curve_error, dense, load_at, peak
 from verify.effects import simulated
+from verify.published import Published
 from verify.result import Result
 from verify.schema import Scene
 from verify.verdict import Check
@@ -19,6 +21,8 @@ CROSS_CODE = {"tspline": 0.005, "tspline-adaptive": 0.005, "nurbs": 0.005, "lagr
 CLOSE = ("tspline", "tspline-adaptive", "nurbs", "dolfinx", "dolfinx-p3")
 #: A linear beam leaves out what a slender arm hardly has; the finite one also the St. Venant-Kirchhoff bulk.
 ANALYTICAL = {"linear": 0.002, "finite": 0.005}
+#: Runs that are held against published values: all but the coarse ones of a sequence of meshes, and LEFM.
+JUDGED = (*CROSS_CODE, "dolfinx", "dolfinx-p3", "beam")
 
 
 def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
@@ -48,7 +52,46 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
             ratio = peak_load(usable[method]) / peak_load(other) - 1
             meaning = "Two codes that share nothing find the same peak load (relative difference)."
             checks.append(Check("peak", pair, ratio, tolerance, "cross-code", meaning))
+    return (*checks, *published_checks(scene, usable))
+
+
+def published_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
+    """Every run against every value that the scene carries; a load that a run did not come to is NaN, and fails."""
+    checks = []
+    for name, known in zip(published_names(scene), scene.published, strict=True):
+        for method in (method for method in JUDGED if method in results):
+            value = known.deviation(published_load(known, results[method]))
+            checks.append(Check(name, method, value, known.tolerance, known.kind, published_meaning(known)))
     return tuple(checks)
+
+
+def published_names(scene: Scene) -> tuple[str, ...]:
+    """One for every value: ``published-peak``, ``published-load-4.5``; numbered from the second of a kind on."""
+    plain = [
+        "published-peak" if known.quantity == "peak" else f"published-load-{known.opening:g}"
+        for known in scene.published
+    ]
+    return tuple(
+        name + (f"-{plain[: i + 1].count(name)}" if name in plain[:i] else "") for i, name in enumerate(plain)
+    )
+
+
+def published_load(known: Published, result: Result) -> float:
+    """What a run has for a published value; NaN where it did not come so far."""
+    if known.quantity == "peak":
+        return peak_load(result)
+    curve, steps = (result.opening, result.load), result.steps
+    if {"load_slope", "heading"} <= set(steps):
+        curve = dense(*curve, steps["load_slope"], steps["heading"])
+    return float(load_at(curve, known.opening))
+
+
+def published_meaning(known: Published) -> str:
+    """One sentence with its source."""
+    low, high = known.value
+    value = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+    what = "The peak load" if known.quantity == "peak" else f"The load at opening {known.opening:g}"
+    return f"{what} is what others published, {value}: {known.source}."
 
 
 def distance(a: Result, b: Result, end: float) -> float:

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, ValidationInfo, ValidatorFunctionWrapHandler, field_validator
 from pydantic_core import PydanticCustomError
 
+from verify.published import Published
 from verify.section import Positive, Section, refuse
 from verify.specimen import MATERIALS, Material, Specimen, definite
 
@@ -108,6 +109,12 @@ class Dolfinx(Section):
     elements: int = Field(default=112, ge=2, le=100_000)  # along the specimen
 
 
+def _as_tables(value: object) -> object:
+    if not isinstance(value, list | tuple):
+        raise refuse("a list of tables, each under [[published]]", ((), value))
+    return tuple(value)
+
+
 class Scene(Section):
     """One physical problem. Every method solves the same one."""
 
@@ -123,6 +130,7 @@ class Scene(Section):
     effects: Effects = Effects()
     discretization: Discretization = Discretization()
     dolfinx: Dolfinx = Dolfinx()
+    published: Annotated[tuple[Published, ...], BeforeValidator(_as_tables)] = ()  # what others found, for verify
 
     @field_validator("material", "strip", "substrate", mode="wrap")
     @classmethod
@@ -182,3 +190,15 @@ class Scene(Section):
                         f"{text} with effects.symmetry, which models the upper arm alone", ((key,), given[key])
                     )
         return mesh
+
+    @field_validator("published")
+    @classmethod
+    def _on_the_way(cls, published: tuple[Published, ...], info: ValidationInfo) -> tuple[Published, ...]:
+        load = info.data.get("load")
+        if load is None:
+            return published
+        end = max(load.opening)
+        beyond = [((i, "opening"), known.opening) for i, known in enumerate(published) if (known.opening or 0) > end]
+        if beyond:
+            raise refuse(f"<= {end:g}, the largest load.opening", *beyond)
+        return published

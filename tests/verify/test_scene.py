@@ -23,6 +23,16 @@ from verify.scene import (
     verified_scenes,
 )
 
+#: Scenes of others with what they published.
+BENCHMARKS = (
+    "alfano-crisfield",
+    "alfano-crisfield-weak",
+    "alfano-crisfield-xas913c",
+    "compdam-dcb",
+    "krueger-dcb",
+    "tijs-dcb",
+)
+
 MINIMAL = """
 [specimen]
 kind = "dcb"
@@ -137,10 +147,10 @@ def test_a_useful_scene_is_short(tmp_path: Path) -> None:
     assert scene.discretization.steps == 150
 
 
-def test_packaged_scenes_are_those_of_the_paper() -> None:
+def test_packaged_scenes_are_those_of_the_paper_and_benchmarks() -> None:
     names = {"dcb-czm1", "dcb-czm2", "dcb-czm1-linear", "dcb-czm2-linear"}
     peels = {"peel-60", "peel-80", "peel-100", "peel-120", "peel-as-printed", "peel-soft"}
-    assert set(packaged_scenes()) == names | peels
+    assert set(packaged_scenes()) == names | peels | set(BENCHMARKS)
     assert set(verified_scenes()) == names
     for name in peels:
         assert load_scene(name).name == name
@@ -223,7 +233,7 @@ def test_a_syntax_error_names_file_and_line(tmp_path: Path) -> None:
 
 def test_a_misspelt_scene_gets_a_suggestion() -> None:
     assert '"dcb-czm1"' in sentences("dcb-cmz1")[0]
-    assert "the packaged scenes are dcb-czm1," in sentences("zzz")[0]
+    assert "the packaged scenes are alfano-crisfield, " in sentences("zzz")[0]
 
 
 @pytest.mark.parametrize("content", [b"\xff\xfe\x00", b"a = " + b"9" * 5000, b"a = " + b"[" * 5000])

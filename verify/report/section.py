@@ -8,7 +8,7 @@ from itertools import groupby
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
-from verify.report import cost, curves, drawing, fields, meshes, undeformed, zones
+from verify.report import cost, curves, drawing, fields, meshes, published, undeformed, zones
 from verify.report.entry import Entry, entries
 from verify.report.style import Panel
 from verify.report.summary import KINDS, Tally, headline, tally
@@ -77,6 +77,8 @@ class Section:
     checks: tuple[tuple[Tally, tuple[CheckGroup, ...]], ...]
     rows: tuple[RunRow, ...]
     zones: tuple[zones.ZoneRow, ...]
+    published: tuple[published.PublishedRow, ...]
+    compared: tuple[Entry, ...]  # columns of what was published
     notes: tuple[str, ...]
 
     @property
@@ -106,6 +108,8 @@ def section(report: SceneReport, anchor: str) -> Section:
         checks=tuple((tally(kind, checks), _check_groups(kind, checks)) for kind in KINDS),
         rows=tuple(_run_row(entry, report.scene) for entry in found),
         zones=zones.rows(report.scene, found),
+        published=published.rows(report.scene, found),
+        compared=published.compared(found),
         notes=tuple(_notes(found)),
     )
 

@@ -1,0 +1,196 @@
+"""Published values: how scenes carry them, how runs are held against them, where the page shows them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from verify.checks import law_of, run_checks
+from verify.crosschecks import cross_checks, peak_load, published_checks, published_load, published_names
+from verify.methods import dolfinx_installed, solve
+from verify.result import Result
+from verify.scene import Scene, SceneError, load_scene, packaged_scenes, verified_scenes
+
+PEAK = 'quantity = "peak", tolerance = 0.03, source = "them"'
+AT = 'quantity = "load_at", tolerance = 0.03, source = "them"'
+
+#: what stands in published -> the sentence that must come
+BROKEN = {
+    f"[{{{PEAK}, value = -1.0}}]": "published[0].value: must be > 0, got -1",
+    f"[{{{PEAK}, value = [1.0, -2.0]}}]": "published[0].value[1]: must be > 0, got -2",
+    f"[{{{PEAK}, value = [2.0, 1.0]}}]": "published[0].value: must be the lowest before the highest, got [2.0, 1.0]",
+    f"[{{{PEAK}, value = [1.0]}}]": (
+        "published[0].value: must be a number, or a list of two, the lowest and the highest, got [1.0]"
+    ),
+    f'[{{{PEAK}, value = "8"}}]': "published[0].value: must be a number, got '8'",
+    f"[{{{PEAK}}}]": "published[0].value: is missing, must be a number, or a list of two",
+    f"[{{{PEAK}, value = 1.0, opening = 2.0}}]": (
+        "published[0].opening: must be left out for a peak, wherever it is, got 2"
+    ),
+    f"[{{{AT}, value = 1.0}}]": "published[0].opening: is missing, must be a number > 0",
+    f"[{{{AT}, value = 1.0, opening = 0.0}}]": "published[0].opening: must be > 0, got 0.0",
+    f"[{{{AT}, value = 1.0, opening = true}}]": "published[0].opening: must be a number > 0, got true",
+    f"[{{{PEAK}, value = 1.0}}, {{{AT}, value = 1.0, opening = 3.1}}]": (
+        "published[1].opening: must be <= 3, the largest load.opening, got 3.1"
+    ),
+    '[{quantity = "force", value = 1.0, tolerance = 0.03, source = "them"}]': (
+        "published[0].quantity: must be \"peak\" or \"load_at\", got 'force'"
+    ),
+    '[{quantity = "peak", value = 1.0, tolerance = 1.0, source = "them"}]': (
+        "published[0].tolerance: must be > 0 and < 1, got 1.0"
+    ),
+    '[{quantity = "peak", value = 1.0, tolerance = 0.03}]': "published[0].source: is missing, must be a text",
+    '[{quantity = "peak", value = 1.0, tolerance = 0.03, source = " "}]': (
+        "published[0].source: must be a text that says where the value is written, got ' '"
+    ),
+    f'[{{{PEAK}, value = 1.0, kind = "exact"}}]': (
+        "published[0].kind: must be \"cross-code\" or \"analytical\", got 'exact'"
+    ),
+    f"[{{{PEAK}, value = 1.0, tolerence = 0.1}}]": (
+        'published[0].tolerence: is not a key of a scene, got 0.1; did you mean "tolerance"?'
+    ),
+    "[3]": "published[0]: must be a table of quantity, opening, value, tolerance, kind, source, got 3",
+    "3": "published: must be a list of tables, each under [[published]], got 3",
+}
+
+
+def benchmarks() -> list[str]:
+    return [name for name in packaged_scenes() if load_scene(name).published]
+
+
+def with_values(*tables: str) -> Scene:
+    return load_scene("dcb-czm1", [f"published=[{', '.join(tables)}]"])
+
+
+def drawn(method: str, peak: float = 2.0) -> Result:
+    """A load that rises to its peak at opening 1 and falls to half of it at opening 3."""
+    opening = np.linspace(0.0, 3.0, 31)
+    load = peak * np.where(opening <= 1.0, opening, 1.25 - opening / 4)
+    return Result(method, {"opening": opening, "load": load})
+
+
+@pytest.mark.parametrize("value", BROKEN)
+def test_a_broken_table_is_refused_with_key_range_and_value(value: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        load_scene("dcb-czm1", [f"published={value}"])
+    assert caught.value.sentences == (BROKEN[value],)
+
+
+def test_a_scene_passes_on_what_it_carries() -> None:
+    scene = load_scene("alfano-crisfield-weak")
+    assert Scene.model_validate(scene.model_dump()) == scene
+
+
+def test_a_run_is_held_against_every_value() -> None:
+    scene = with_values(
+        f"{{{PEAK}, value = 2.0}}",
+        f"{{{PEAK}, value = [1.5, 1.9], kind = 'analytical'}}",
+        f"{{{AT}, value = 1.6, opening = 2.0}}",
+        f"{{{AT}, value = [0.9, 1.1], opening = 3.0}}",
+    )
+    checks = {check.name: check for check in published_checks(scene, {"nurbs": drawn("nurbs")})}
+    assert {name: check.value for name, check in checks.items()} == pytest.approx(
+        {
+            "published-peak": 0.0,
+            "published-peak-2": 2.0 / 1.9 - 1,  # above the range
+            "published-load-2": 1.5 / 1.6 - 1,
+            "published-load-3": 0.0,  # within it
+        }
+    )
+    assert [check.passed for check in checks.values()] == [True, False, False, True]
+    assert [check.kind for check in checks.values()] == ["cross-code", "analytical", "cross-code", "cross-code"]
+    assert all(check.subject == "nurbs" and check.meaning.endswith(": them.") for check in checks.values())
+    assert published_names(scene) == tuple(checks)
+
+
+def test_a_load_between_steps_is_on_the_arc_of_the_path() -> None:
+    """A parabola through steps with their slopes: in the middle of one linear interpolation is 1/64 off."""
+    x = np.linspace(0.0, 2.0, 9)
+    known = with_values(f"{{{AT}, value = 1.0, opening = 0.625}}").published[0]
+    straight = Result("nurbs", {"opening": x, "load": 1 - (x - 1) ** 2})
+    exact = 1 - 0.375**2
+    assert published_load(known, straight) == pytest.approx(exact - 1 / 64)
+    curved = replace(straight, steps=straight.steps | {"load_slope": 2 * (1 - x), "heading": np.ones(9)})
+    assert published_load(known, curved) == pytest.approx(exact, abs=2e-3)
+
+
+def test_a_run_that_stops_before_the_opening_fails() -> None:
+    scene = with_values(f"{{{AT}, value = 1.6, opening = 2.0}}")
+    whole = drawn("nurbs")
+    early = replace(whole, steps={name: column[:15] for name, column in whole.steps.items()})
+    (check,) = published_checks(scene, {"nurbs": early})
+    assert np.isnan(check.value) and not check.passed
+
+
+def test_all_codes_are_judged_but_fracture_mechanics_and_coarse_meshes_are_not() -> None:
+    scene = with_values(f"{{{PEAK}, value = 2.0}}")
+    names = ("tspline", "nurbs", "lagrange", "dolfinx", "dolfinx-p3", "beam", "lefm", "nurbs-978")
+    checks = cross_checks(scene, {name: drawn(name) for name in names})
+    judged = {check.subject for check in checks if check.name == "published-peak"}
+    assert judged == set(names) - {"lefm", "nurbs-978"}
+
+
+def test_the_page_shows_published_values_with_their_source(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("jinja2")
+    from verify import report
+    from verify.verdict import Run, SceneReport
+
+    scene = load_scene("compdam-dcb")
+    runs = {"beam": solve(scene, "lefm")}  # what is shown does not depend on who computed it
+    found = tuple(Run(name, name, replace(result, method=name)) for name, result in runs.items())
+    report.write((SceneReport(scene, found, published_checks(scene, runs)),), tmp_path / "report.html", {})
+    text = (tmp_path / "report.html").read_text()
+    table = re.search(r'<table class="published">.*?</table>', text, re.DOTALL)[0]
+    plain = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", table))
+    assert "peak load CompDam, github.com/nasa/CompDam_DGD" in plain and "load at 4.5 mm" in plain
+    load = published_load(scene.published[0], runs["beam"])
+    assert f"8 N 3.0 % {load:.3f} N +{100 * (load / 8 - 1):.2f}"[:22] in plain.replace("\u00a0", " ")
+    assert text.count("finalLoadTol") == 2  # there and with its check
+
+
+def test_benchmarks_are_run_by_name_only() -> None:
+    assert len(benchmarks()) == 6
+    assert not set(benchmarks()) & set(verified_scenes())
+
+
+@pytest.mark.parametrize(("name", "stiffness"), [("compdam-dcb", 2e5), ("tijs-dcb", 1e6)])
+def test_ductility_stands_for_the_initial_stiffness_of_the_source(name: str, stiffness: float) -> None:
+    scene = load_scene(name)
+    assert law_of(scene).stiffness == pytest.approx(stiffness, rel=1e-4)
+    assert scene.interface.penalty == stiffness
+
+
+def test_compdam_published_the_corrected_beam_theory() -> None:
+    scene = load_scene("compdam-dcb")
+    limit = solve(scene, "lefm")
+    loads = [published_load(known, limit) for known in scene.published]
+    assert loads == pytest.approx([8.0, 4.38], rel=1e-3)
+
+
+def test_the_beam_finds_what_was_published_whatever_the_initial_stiffness() -> None:
+    """Alfano and Crisfield have g_u / g_max of 98 000, the scene 100."""
+    peaks = []
+    for ductility in (5.0, 98e3):
+        scene = load_scene("alfano-crisfield", [f"interface.ductility={ductility}", "discretization.steps=20"])
+        result = solve(scene, "beam")
+        peaks.append(peak_load(result))
+        (check,) = published_checks(scene, {"beam": result})
+        assert check.passed and result.complete
+    assert peaks == pytest.approx([peaks[0]] * 2, rel=3e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["tspline", "nurbs", "dolfinx", "beam"])
+@pytest.mark.parametrize("name", benchmarks())
+def test_whole_benchmarks(name: str, method: str) -> None:
+    if method == "dolfinx" and not dolfinx_installed():
+        pytest.skip("DOLFINx is not installed")
+    scene = load_scene(name)
+    result = solve(scene, method)
+    checks = (*run_checks(scene, result), *published_checks(scene, {method: result}))
+    assert [check for check in checks if not check.passed] == []

@@ -1,0 +1,50 @@
+"""What others published for a scene, beside what the runs found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from verify.crosschecks import published_load
+from verify.published import Published
+from verify.report.entry import Entry
+from verify.report.text import Units, number, percent, quantity
+from verify.scene import Scene
+
+
+@dataclass(frozen=True)
+class PublishedRow:
+    """A line of the table; ``cells`` are load and deviation of every run that has a curve."""
+
+    quantity: str
+    value: str
+    tolerance: str
+    cells: tuple[tuple[str, str], ...]
+    source: str
+
+
+def compared(found: Sequence[Entry]) -> tuple[Entry, ...]:
+    """The columns: runs with a curve, LEFM among them, which is shown but not judged."""
+    return tuple(entry for entry in found if entry.agreement is not None)
+
+
+def rows(scene: Scene, found: Sequence[Entry]) -> tuple[PublishedRow, ...]:
+    """One for each published value."""
+    return tuple(_row(known, Units.of(scene.units), compared(found)) for known in scene.published)
+
+
+def _row(known: Published, units: Units, found: Sequence[Entry]) -> PublishedRow:
+    low, high = known.value
+    loads = [published_load(known, entry.result) for entry in found]
+    value = quantity(low, units.force) if low == high else f"{number(low, 6)} to {quantity(high, units.force)}"
+    return PublishedRow(
+        "peak load" if known.quantity == "peak" else f"load at {quantity(known.opening, units.length)}",
+        value,
+        percent(known.tolerance),
+        tuple((quantity(load, units.force, 4), _signed(known.deviation(load))) for load in loads),
+        known.source,
+    )
+
+
+def _signed(deviation: float) -> str:
+    return ("+" if deviation > 0 else "") + percent(deviation)
