@@ -25,7 +25,7 @@ class Problem(Debonding):
 
     The interface is matched: a point of the strip faces for good the point of the substrate that it was bonded to, and
     gap and traction are vertical. That leaves out how far the substrate's surface tilts, and what the strip slides
-    along it where it does (`fem_reference.tilt` measures it).
+    along it where it does. The strip itself may turn as it likes.
     """
 
     strip_length: float

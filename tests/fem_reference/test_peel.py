@@ -95,3 +95,70 @@ def test_quadratic_curve_agrees_with_the_fine_reference(bond_length, end):
     load = np.interp(grid, run["opening"][outward], run["load"][outward])
     expected = np.interp(grid, reference[:, 0], reference[:, 1])
     assert np.linalg.norm(load - expected) < 0.002 * np.linalg.norm(expected)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("bond_length", [60.0, 80.0, 100.0, 120.0])
+def test_the_strip_comes_off_and_the_run_says_so(bond_length):
+    problem = replace(PEEL, bond_length=bond_length, opening=(20.0,), elements=75)
+    solution, run = solve(problem)
+    assert solution.ending == f"separated at opening {run['opening'][-1]:.6g}"
+    assert run["opening"][-1] < 20.0
+    assert np.min(np.diff(run["opening"])) < 0
+    assert np.all(run["load"] >= 0)
+    assert run["load"][-1] < 1e-3 * np.max(run["load"])
+    gap = run["external_work"] - run["stored_energy"] - run["dissipated_energy"]
+    assert np.max(np.abs(gap)) < 2e-3 * run["dissipated_energy"][-1]
+    whole = problem.toughness * bond_length
+    assert 0.98 * whole < run["dissipated_energy"][-1] < whole
+    assert run["bulk_energy"][-1] < 1e-3 * whole
+
+
+SOFT = replace(
+    PEEL,
+    strip_length=60.0,
+    strip_thickness=1.0,
+    substrate_length=40.0,
+    substrate_thickness=5.0,
+    bond_length=35.0,
+    strip=isotropic(50.0, 0.2),
+    strength=0.2,
+    opening=(30.0,),
+    elements=112,
+    steps=40,
+)
+
+
+def end_face(snapshot):
+    """Angle of the strip's axis at its loaded face, in the middle of the height."""
+    X_euvi, u_euvi = snapshot["X_euvi"], snapshot["u_euvi"]
+    x_uvi = (X_euvi + u_euvi)[np.argmax(X_euvi[..., 0].max(axis=(1, 2)))]
+    middle = x_uvi.shape[1] // 2
+    along = x_uvi[-1, middle] - x_uvi[-2, middle]
+    return np.degrees(np.arctan2(along[1], along[0]))
+
+
+def test_a_soft_strip_is_peeled_until_its_end_is_upright():
+    """There dP sin(theta) = G_Ic w: the identity of J holds at every step, and the load tends to G_Ic w."""
+    solution, run = solve(replace(SOFT, snapshot_openings=(30.0,)))
+    assert j_deviation(SOFT, run) < 0.005
+    assert end_face(solution.snapshots[-1]) > 87.0
+    assert run["load"][-1] == pytest.approx(SOFT.toughness, rel=0.005)
+    assert run["crack_length"][-1] > 30.0
+    peak = np.max(run["load"])
+    assert np.max(np.abs(run["load_moment"] + run["interface_moment"])) < 1e-10 * peak * SOFT.strip_length
+    assert np.max(np.hypot(run["reaction_x"], run["reaction_y"])) < 1e-10 * peak
+
+
+def test_snapshots_hold_both_bodies_and_the_base_does_not_move():
+    solution, _ = solve(replace(SHORT, steps=4, opening=(0.3,), snapshot_openings=(0.3,)))
+    (snapshot,) = solution.snapshots
+    X_euvi, u_euvi = snapshot["X_euvi"], snapshot["u_euvi"]
+    assert X_euvi.shape == u_euvi.shape == (solution.elements, 3, 3, 2)
+    base = np.isclose(X_euvi[..., 1], -10.0)
+    assert base.any() and not np.any(u_euvi[base])
+    above, below = X_euvi[X_euvi.mean(axis=(1, 2))[:, 1] > 0], X_euvi[X_euvi.mean(axis=(1, 2))[:, 1] < 0]
+    assert (above[..., 0].max(), above[..., 1].max()) == (150.0, 2.0)
+    assert (below[..., 0].max(), below[..., 1].max()) == pytest.approx((120.0, 0.0), abs=1e-12)
+    assert np.all(np.diff(snapshot["s_q"]) > 0)
+    assert 30.0 < snapshot["s_q"][0] < snapshot["s_q"][-1] < 150.0

@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from fem_reference import peel
 from fem_reference.dcb import Problem
-from fem_reference.material import in_plane_stiffness
+from fem_reference.material import Moduli, in_plane_stiffness
 
 DCB = dict(
     length=14.0,
@@ -62,3 +65,55 @@ def test_plane_strain_takes_the_third_direction_for_transverse():
     stress = np.linalg.solve(S, strain)
     D = in_plane_stiffness(E1, E2, G12, nu, "strain")
     assert D[:2, :2] @ strain[:2] == pytest.approx(stress[:2], rel=1e-12)
+
+
+PEEL = dict(
+    strip_length=15.0,
+    strip_thickness=0.2,
+    substrate_length=12.0,
+    substrate_thickness=1.0,
+    bond_length=6.0,
+    strip=Moduli(250e3, 250e3, 100e3, 0.2),
+    substrate=Moduli(5e3, 5e3, 2e3, 0.2),
+    strength=6.0,
+    toughness=0.1,
+    ductility=10.0,
+)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"bond_length": 15.0}, "bond_length: must be < strip_length = 15.0, got 15.0"),
+        ({"bond_length": 13.0}, "bond_length: must be <= substrate_length = 12.0, got 13.0"),
+        ({"elements": 2}, "elements: must be >= 3, one on each part of the specimen, got 2"),
+        ({"elements": 1, "bond_length": 12.0}, "elements: must be >= 2"),
+        ({"strip_thickness": 0.0}, "strip_thickness: must be > 0"),
+        ({"substrate": Moduli(1.0, 1.0, 1.0, 1.5)}, "negative energy"),
+    ],
+)
+def test_impossible_peels_are_refused_with_key_and_value(change, words):
+    with pytest.raises(ValueError, match=words):
+        peel.Problem(**(PEEL | change))
+
+
+@pytest.mark.parametrize("elements", [3, 4, 17, 150, 451])
+@pytest.mark.parametrize(("bond", "lower"), [(6.0, 12.0), (12.0, 12.0), (0.01, 12.0), (11.99, 12.0), (6.0, 40.0)])
+def test_lines_along_a_peel_end_where_its_parts_end(bond, lower, elements):
+    made = peel.Problem(**(PEEL | {"bond_length": bond, "substrate_length": lower, "elements": elements})).specimen()
+    assert made.X.size == elements + 1
+    assert np.all(np.diff(made.X) > 0)
+    assert {0.0, bond, lower, 15.0} <= set(made.X)
+    assert np.sum(made.bond_elements) == pytest.approx(bond, rel=1e-12)
+    longest, mean = np.max(np.diff(made.X)), made.X[-1] / elements
+    assert longest < (1.2 if elements >= 150 else 3) * mean
+
+
+@given(thickness=st.floats(1e-3, 1e3), first=st.floats(1e-4, 1e4))
+def test_layers_are_the_fewest_that_begin_thin_enough(thickness, first):
+    tops = peel.layers(thickness, first)
+    heights = np.diff(tops)
+    assert tops[0] == 0.0 and tops[-1] == pytest.approx(thickness, rel=1e-14)
+    assert heights[0] <= first * (1 + 1e-6)
+    assert heights[1:] == pytest.approx(2 * heights[:-1], rel=1e-9)
+    assert heights.size == 1 or thickness > first * (2 ** (heights.size - 1) - 1)

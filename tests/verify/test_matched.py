@@ -1,0 +1,49 @@
+"""What a matched interface leaves out, from fields whose tilt and slip are known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from verify.law import Bilinear
+from verify.matched import left_out
+from verify.result import Snapshot
+
+LAW = Bilinear(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0, contact=True)
+LENGTH, LOADED_AT, TILT, SLIP, LOAD = 6.0, 8.0, 0.03, 0.2, 3.0
+
+
+def grids(low, high, displacement):
+    """Elements of length 1.5 in the layer between two heights, with 3 x 3 samples of u(X, Y)."""
+    X_e, t = np.arange(4) * 1.5, np.linspace(0.0, 1.0, 3)
+    X = np.broadcast_to((X_e[:, None] + 1.5 * t)[:, :, None], (4, 3, 3))
+    Y = np.broadcast_to(low + (high - low) * t, (4, 3, 3))
+    return np.stack([X, Y], axis=-1), np.stack(np.broadcast_arrays(*displacement(X, Y)), axis=-1)
+
+
+@pytest.fixture
+def snapshot():
+    """The lower surface lies on a parabola that is steepest, TILT, at its right end; the upper one has slid by SLIP."""
+    upper = grids(0.0, 0.5, lambda X, Y: (SLIP + 0 * X, 5 * Y))
+    lower = grids(-1.0, 0.0, lambda X, Y: (0 * X, np.tan(TILT) * X**2 / (2 * LENGTH)))
+    deep = grids(-2.0, -1.0, lambda X, Y: (0 * X, 9 * X))
+    X, u = (np.concatenate(parts) for parts in zip(upper, lower, deep, strict=True))
+    s_q = LOADED_AT - LENGTH + np.linspace(0.0, LENGTH, 601)
+    gap_q = np.full(601, 0.5 * (LAW.g_peak + LAW.g_open))
+    return Snapshot(1.0, LOAD, s_q, gap_q, np.full(601, 1.5), np.zeros(601), X, u, np.zeros(X.shape[:3]))
+
+
+def test_tilt_slip_and_pull_are_those_of_the_surfaces(snapshot):
+    found = left_out((snapshot,), LAW, LOADED_AT, width=2.0)
+    assert found.tilt == pytest.approx(TILT, rel=1e-12)
+    gap = snapshot.gap_q[0]
+    assert found.gap * LAW.g_open == pytest.approx(gap - (gap * np.cos(TILT) - SLIP * np.sin(TILT)), rel=1e-12)
+    rise = 1.5 * (np.sqrt(1 + np.tan(TILT) ** 2) - 1) / np.tan(TILT) * LENGTH  # integral of 1.5 sin(turn)
+    assert found.pull == pytest.approx(2.0 * rise / LOAD, rel=1e-5)
+
+
+def test_only_what_pulls_counts_and_the_worst_field_is_told(snapshot):
+    idle = replace(snapshot, gap_q=np.full(601, 2 * LAW.g_open), traction_q=np.zeros(601))
+    assert left_out((idle,), LAW, LOADED_AT) == left_out((), LAW, LOADED_AT)
+    assert left_out((idle, snapshot), LAW, LOADED_AT) == left_out((snapshot,), LAW, LOADED_AT)
+    assert "0.03 rad" in str(left_out((snapshot,), LAW, LOADED_AT))

@@ -1,0 +1,87 @@
+"""What a matched interface leaves out: the tilt of the lower surface, and what the upper one slides along it there.
+
+The DOLFINx model pairs points for good and measures gap and traction along the undeformed normal. Where the lower
+surface has turned by theta and a pair has slid apart by s lengthwise, the gap g along the current normal is
+g cos(theta) - s sin(theta), and the tractions pull lengthwise by p sin(theta). Both are read from the fields that a run
+keeps, and are a bound of what a code with a moving projection may find otherwise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import trapezoid
+
+from verify.law import Bilinear
+from verify.result import Snapshot
+
+#: A point pulls where its traction is more than this part of the strength.
+PULLS = 0.01
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """The largest values over the fields that were kept.
+
+    ``tilt``: turn of the lower surface in radians, where the interface pulls. ``gap``: change of the gap over g_u, in
+    the process zone. ``pull``: lengthwise resultant of the tractions over the load.
+    """
+
+    tilt: float
+    gap: float
+    pull: float
+
+    def __str__(self) -> str:
+        return (
+            f"matched interface: the lower surface tilts by {self.tilt:.2g} rad at most where it is pulled; along its "
+            f"current normal gaps would change by {self.gap:.1g} of g_u, and the tractions would pull lengthwise by "
+            f"{self.pull:.1g} of the load"
+        )
+
+
+def left_out(snapshots: tuple[Snapshot, ...], law: Bilinear, loaded_at: float, width: float = 1.0) -> LeftOut:
+    """What the fields of a run with a matched interface say of it.
+
+    Parameters
+    ----------
+    loaded_at : X of the loaded end, from which the snapshots count distances; the bodies meet on Y = 0.
+    """
+    found = [_of(snapshot, law, loaded_at, width) for snapshot in snapshots]
+    return LeftOut(*(max(values, default=0.0) for values in zip(*found, strict=True))) if found else LeftOut(0, 0, 0)
+
+
+def _of(snapshot: Snapshot, law: Bilinear, loaded_at: float, width: float) -> tuple[float, float, float]:
+    below_X, below_u, turn = _surface(snapshot, upper=False)
+    above_X, above_u, _ = _surface(snapshot, upper=True)
+    X_q = np.abs(loaded_at - snapshot.s_q)
+    turn_q = np.interp(X_q, below_X, turn)
+    slid_q = np.interp(X_q, above_X, above_u[:, 0]) - np.interp(X_q, below_X, below_u[:, 0])
+    g_q, p_q = snapshot.gap_q, snapshot.traction_q
+    zone_q = (g_q > law.g_peak) & (g_q < law.g_open)
+    change_q = g_q * (1.0 - np.cos(turn_q)) + slid_q * np.sin(turn_q)
+    order = np.argsort(X_q)
+    pull = width * float(trapezoid((p_q * np.sin(turn_q))[order], X_q[order]))
+    return (
+        float(np.max(np.abs(turn_q[np.abs(p_q) > PULLS * law.strength]), initial=0.0)),
+        float(np.max(np.abs(change_q[zone_q]), initial=0.0)) / law.g_open,
+        abs(pull / snapshot.load) if snapshot.load else 0.0,
+    )
+
+
+def _surface(snapshot: Snapshot, upper: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """X (n,), displacements (n, 2) and turn (n,) along a body's side of Y = 0, element by element, X rising."""
+    X_euvi, v = snapshot.X_euvi, 0 if upper else -1
+    Y_euv = X_euvi[..., 1]
+    on_side = np.all(np.abs(Y_euv[:, :, v]) < 1e-9 * np.ptp(Y_euv), axis=1)
+    on_side &= (Y_euv.mean(axis=(1, 2)) > 0.0) == upper
+    X_eu, u_eui = X_euvi[on_side][:, :, v, 0], snapshot.u_euvi[on_side][:, :, v]
+    order = np.argsort(X_eu[:, 0])
+    X_eu, u_eui = X_eu[order], u_eui[order]
+    t_u = np.linspace(0.0, 1.0, X_eu.shape[1])
+    powers = np.arange(t_u.size)
+    slopes_uc = powers * t_u[:, None] ** np.maximum(powers - 1, 0)
+    slopes_uv = slopes_uc @ np.linalg.inv(t_u[:, None] ** powers)  # exact for the polynomial through the samples
+    du_eui = np.einsum("uv,evi->eui", slopes_uv, u_eui) / (X_eu[:, -1:] - X_eu[:, :1])[..., None]
+    turn_eu = np.arctan2(du_eui[..., 1], 1.0 + du_eui[..., 0])
+    return X_eu.ravel(), u_eui.reshape(-1, 2), turn_eu.ravel()
