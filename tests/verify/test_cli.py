@@ -59,6 +59,9 @@ REFUSED = {
     "solve dcb-czm1 --method lefm --out a-file": "--out: must be a folder that can be written to, got 'a-file'",
     "solve dcb-czm1 --colour red": "--colour",
     "solve peel-120 --method beam": "specimen.kind: must be \"dcb\" for beam, got 'peel' (peel: not available yet)",
+    "solve peel-60 --method dolfinx --set dolfinx.elements=2": (
+        "dolfinx.elements: must be >= 3, one on each part of the specimen, got 2"
+    ),
     "verify peel-120": "peel-120: must be a dcb for verify (peel: not available yet)",
     "verify dcb-czm1 dcb-czm3": "dcb-czm3:",
     "verify dcb-czm1 dcb-czm1": "SCENE: must have different names, got 'dcb-czm1' more than once",
