@@ -94,7 +94,8 @@ def test_two_ranks_give_the_peel_of_one():
     alone, together = curve(1, PEEL), curve(2, PEEL)
     assert alone["status"] == together["status"] == "complete"
     assert (together["dofs"], together["elements"]) == (alone["dofs"], alone["elements"])
-    assert_same_curve(together["rows"], alone["rows"], "tip_opening", "face_slope_top", "face_energy", "interface_force")
+    identities = "tip_opening", "face_slope_top", "face_energy", "interface_force"
+    assert_same_curve(together["rows"], alone["rows"], *identities)
     assert together["fields"] == pytest.approx(alone["fields"], rel=1e-6)
 
 
