@@ -69,7 +69,7 @@ class Comparison:
     @property
     def peak_shift(self) -> float:
         """How much later, in opening over that of B, the peak of A comes."""
-        return _ratio(self.a.peak_opening, self.b.peak_opening) - 1.0
+        return _ratio(self.a.peak_opening - self.b.peak_opening, self.b.peak_opening)
 
     @property
     def energy_difference(self) -> float:
@@ -170,4 +170,4 @@ def _wave(scaled: list[Points], peak_opening: float) -> tuple[float, float]:
 
 
 def _ratio(value: float, reference: float) -> float:
-    return value / reference if reference else np.nan
+    return value / reference if reference else 0.0 if value == 0.0 else np.nan

@@ -28,7 +28,8 @@ def envelope(opening: ArrayLike, load: ArrayLike) -> tuple[np.ndarray, np.ndarra
     top = np.maximum.accumulate(d)[:-1]
     new = np.flatnonzero(d[1:] > top) + 1
     start, before = d[new - 1], top[new - 1]
-    back = start < before
+    kept = np.append(0, new[:-1])
+    back = (start < before) | (P[new - 1] != P[kept])  # a jump at the very largest opening is one as well
     share = np.where(back, (before - start) / np.where(back, d[new] - start, 1.0), 0.0)
     landing = P[new - 1] + share * (P[new] - P[new - 1])
     keep = np.stack((back, np.ones_like(back)), axis=1).ravel()

@@ -27,6 +27,14 @@ def test_envelope_drops_vertically_at_a_snap_back():
     np.testing.assert_allclose(P, [0.0, 2.0, 1.25, 1.5])
 
 
+def test_envelope_keeps_a_vertical_drop():
+    """The limit of a snap-back that goes back ever less, and what a test under displacement control records."""
+    d, P = envelope([0.0, 1.0, 1.0, 1.5], [0.0, 2.0, 1.25, 1.5])
+    np.testing.assert_array_equal([d, P], [[0.0, 1.0, 1.0, 1.5], [0.0, 2.0, 1.25, 1.5]])
+    near = envelope([0.0, 1.0, 1.0 - 1e-9, 1.5], [0.0, 2.0, 1.25, 1.5])
+    np.testing.assert_allclose([d, P], near, rtol=1e-8)
+
+
 def test_envelope_forgets_unloading():
     d = [0.0, 1.0, 2.0, 1.0, 0.0, 1.0, 2.0, 3.0]
     P = [0.0, 3.0, 2.0, 1.0, 0.0, 1.0, 2.0, 1.0]
@@ -41,7 +49,8 @@ def test_envelope_never_goes_back_and_starts_where_the_path_does(points):
     x, y = envelope(d, P)
     assert np.all(np.diff(x) >= 0.0) and x[0] == d[0] and y[0] == P[0]
     assert x[-1] == d.max() and set(d[d >= d[0]]) >= set(x[1:])
-    np.testing.assert_array_equal(envelope(x, y)[0][[0, -1]], x[[0, -1]])
+    at = np.linspace(x[0], x[-1], 50)
+    np.testing.assert_array_equal(load_at(envelope(x, y), at), load_at((x, y), at))
 
 
 def _checks():

@@ -93,7 +93,11 @@ REFUSED = [
     ("opening,load\n", Reading(), ": must hold at least 2 points of different opening, got 0"),
     ("opening,load\n0,0\n", Reading(), ": must hold at least 2 points of different opening, got 1"),
     ("opening,load\n1,0\n1,2\n", Reading(), ": must hold at least 2 points of different opening, got 2"),
-    ("opening,load\n0,0\n-1,2\n", Reading(), ": the openings must go above 0, got at most 0; a scale of -1 turns signs"),
+    (
+        "opening,load\n0,0\n-1,2\n",
+        Reading(),
+        ": the openings must go above 0, got at most 0; a scale of -1 turns signs",
+    ),
     ("opening,load\n3,1\n1,2\n0,0\n", Reading(), ": the opening must grow from the first point on, got the largest, 3"),
     ("X,U2,RF2\n0,0,0\n1,1,1\n", Reading(), ":1: the header must name opening and load, got X, U2, RF2;"),
     ("\nX,U2,RF2\n0,0,0\n", Reading("U2", "RF3"), ":2: the header must name RF3, got X, U2, RF2;"),
@@ -153,6 +157,8 @@ def test_what_is_written_is_read(points, separator, comma, header, file) -> None
     comma = comma and separator != ","
     lines = [separator.join(map(repr, point)) for point in points]
     text = "\n".join(line.replace(".", ",") if comma else line for line in lines)
-    d, P = read_curve(file((separator.join("abc") + "\n" if header else "") + text), Reading("a", "c") if header else Reading(1, 3))
+    d, P = read_curve(
+        file((separator.join("abc") + "\n" if header else "") + text), Reading("a", "c") if header else Reading(1, 3)
+    )
     np.testing.assert_array_equal(d, [point[0] for point in points])
     np.testing.assert_array_equal(P, [point[2] for point in points])

@@ -1,0 +1,347 @@
+"""Two curves against each other: identities of the numbers, and the command."""
+
+from __future__ import annotations
+
+import json
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+
+from verify.cli import main
+from verify.compare import checks, compare
+from verify.compare_words import complaints, remarks, table
+from verify.curve import curve_error, load_at
+from verify.curve_file import CurveError
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "regression_test"
+MAPPED = ["--opening-a", "U2", "--load-a", "RF2", "--opening-scale-a", "-2", "--load-scale-a", "-1e3"]
+
+
+def bond(d):
+    """A rounded peak and a long branch."""
+    return d / (0.1 + d**2)
+
+
+def sampled(n: int, end: float = 3.0):
+    d = end * np.linspace(0.0, 1.0, n) ** 1.5
+    return d, bond(d)
+
+
+@st.composite
+def paths(draw):
+    """Paths from the origin to the opening 3, with snap-backs, and a load above 0."""
+    steps = draw(st.lists(st.tuples(st.floats(-0.4, 1.0), st.floats(0.05, 2.0)), min_size=3, max_size=25))
+    d = np.clip(np.cumsum([step for step, _ in steps]), -1.0, 2.9)
+    return np.concatenate(([0.0], d, [3.0])), np.array([0.0, *(P for _, P in steps), 1.0])
+
+
+@given(paths())
+def test_a_curve_is_itself(curve):
+    found = compare(curve, curve)
+    assert found.curve_error == found.peak_difference == found.peak_shift == found.energy_difference == 0.0
+    assert all(check.passed for check in checks(found, 0.0, 0.0, 0.0))
+
+
+@given(paths(), st.floats(-0.9, 3.0))
+def test_a_scaled_load_is_off_by_its_scale(curve, e):
+    d, P = curve
+    found = compare((d, (1 + e) * P), curve)
+    assert found.curve_error == pytest.approx(abs(e), abs=1e-12)
+    assert found.peak_difference == pytest.approx(e, abs=1e-12) and found.peak_shift == 0.0
+    if abs(found.b.work) > 1e-3:
+        assert found.energy_difference == pytest.approx(np.sign(found.b.work) * e, abs=1e-9)
+
+
+@given(paths(), paths())
+def test_roles_are_symmetric(a, b):
+    """The same distance, over the size of the other; ratios are reciprocal."""
+    ab, ba = compare(a, b), compare(b, a)
+    sizes = [np.sqrt(np.sum(load**2)) for load in (ab.load_b_n, ab.load_a_n)]
+    assert ab.curve_error * sizes[0] == pytest.approx(ba.curve_error * sizes[1], rel=1e-9, abs=1e-12)
+    assert (1 + ab.peak_difference) * (1 + ba.peak_difference) == pytest.approx(1.0, rel=1e-12)
+    assert ab.worst[1:] == ba.worst[:0:-1]
+    assert ab.a.work == ba.b.work and ab.a.peak_opening == ba.b.peak_opening
+
+
+@given(paths(), paths(), st.integers(-200, 200), st.integers(-200, 200))
+def test_nothing_depends_on_units(a, b, length, force):
+    """To the last digit in units of powers of two, which round nothing."""
+    plain, scaled = compare(a, b), compare(*((2.0**length * d, 2.0**force * P) for d, P in (a, b)))
+    for name in ("curve_error", "peak_difference", "peak_shift", "oscillation_rms", "excess_variation"):
+        np.testing.assert_equal(getattr(scaled, name), getattr(plain, name))
+    assert scaled.a.work == plain.a.work * 2.0 ** (length + force)
+
+
+def test_the_error_is_that_of_the_definition():
+    a, b = sampled(80), (np.linspace(0, 3, 50), 1.1 * bond(np.linspace(0, 2.7, 50)))
+    assert compare(a, b).curve_error == pytest.approx(curve_error(a, b), rel=1e-12)
+    assert compare(a, b, 1.7).curve_error == pytest.approx(curve_error(a, b, 1.7), rel=1e-12)
+
+
+def test_resampling_changes_little_and_with_second_order():
+    found = [compare(sampled(n), sampled(20001)) for n in (101, 201, 401)]
+    errors = [f.curve_error for f in found]
+    assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 1.9) and errors[-1] < 3e-5
+    assert abs(found[-1].peak_difference) < 1e-4 and abs(found[-1].energy_difference) < 1e-5
+
+
+def test_a_snap_back_drops_vertically():
+    """A stepped curve, as displacement control shows it, is the envelope of the path that snaps back."""
+    snap = np.array([0.0, 1.0, 0.5, 1.5, 3.0]), np.array([0.0, 2.0, 1.0, 2.0, 0.5])
+    step = np.array([0.0, 1.0, 1.0, 1.5, 3.0]), np.array([0.0, 2.0, 1.5, 2.0, 0.5])
+    found = compare(snap, step)
+    assert found.curve_error == pytest.approx(0.0, abs=1e-15) and found.peak_difference == 0.0
+    # the work differs by what lies between the drop and the loop: 0.5 [(2 + 1) / 2 - (1 + 1.5) / 2]
+    assert found.b.work - found.a.work == pytest.approx(0.5 * (1.5 - 1.25))
+
+
+def test_only_the_part_up_to_the_end_counts():
+    d, P = sampled(300)
+    off = np.where(d > 1.5, 0.5 * P, P)
+    assert compare((d, off), (d, P), 1.2).curve_error == 0.0 < 0.1 < compare((d, off), (d, P)).curve_error
+    early = compare((d, P), (d, P), 0.2)
+    assert early.b.peak_opening == 0.2 and early.b.work == pytest.approx(0.5 * np.log((0.1 + 0.2**2) / 0.1), rel=1e-3)
+
+
+def test_a_curve_that_stops_early_is_not_close():
+    d, P = sampled(300)
+    half = d < 1.5
+    found = compare((d[half], P[half]), (d, P))
+    assert found.curve_error < 1e-5 and not found.reaches and found.end == d[half][-1]
+    assert [check.passed for check in checks(found, 0.01, 0.01)] == [True, True, False]
+    assert checks(found) == []
+    (words,) = remarks(found)
+    assert words.startswith(f"A ends at the opening {d[half][-1]:.6g}, before 3; an end of ")
+    end = float(words.split("an end of ")[1].split()[0])
+    assert all(check.passed for check in checks(compare((d[half], P[half]), (d, P), end), 0.01))
+
+
+@given(st.floats(1e-30, 1e30))
+def test_the_end_that_is_proposed_can_be_used(last):
+    whole = np.array([0.0, 2.0]) * last, np.array([0.0, 1.0])
+    found = compare((np.array([0.0, 1.0]) * last, np.array([0.0, 0.5])), whole)
+    end = float(remarks(found)[0].split("an end of ")[1].split()[0])
+    assert compare((np.array([0.0, 1.0]) * last, np.array([0.0, 0.5])), whole, end).reaches
+
+
+def test_a_beginning_that_is_left_out_is_an_error():
+    d, P = sampled(3000)
+    first = compare((d[50:], P[50:]), (d, P))
+    assert first.curve_error < 1e-4 and remarks(first) == []
+    late = compare((d[1000:], P[1000:]), (d, P))
+    assert late.curve_error > 0.1 and "A begins at the opening 0.577" in remarks(late)[0]
+
+
+def test_oscillation_needs_points_to_be_told_by():
+    d = np.linspace(0, 3, 600)
+    wave = bond(d) * (1 + 0.02 * np.sin(40 * d))
+    assert compare((d, wave), (d, bond(d))).oscillation_rms == pytest.approx(0.02 / np.sqrt(2), rel=0.03)
+    few = d[::80]
+    assert np.isnan(compare((few, bond(few)), (d, bond(d))).oscillation_rms)
+    assert np.isnan(compare((d, wave), (d, bond(d)), 0.4).oscillation_rms)
+
+
+def test_loads_at_openings_and_where_they_differ_most():
+    d = np.linspace(0, 3, 601)
+    bump = bond(d) - 0.2 * np.exp(-(((d - 1.2) / 0.05) ** 2))
+    found = compare((d, bump), (d, bond(d)))
+    assert found.worst == pytest.approx((1.2, bond(1.2) - 0.2, bond(1.2)), abs=2e-3)
+    assert found.loads_at([0.5, 3.0]) == [(x, load_at((d, bump), x), load_at((d, bond(d)), x)) for x in (0.5, 3.0)]
+    with pytest.raises(CurveError, match="at: must be > 0 and <= 3, the end of the comparison, got 3.1"):
+        found.loads_at([3.1])
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "end", "words"),
+    [
+        (([0, 1], [0, 1]), ([2, 3], [1, 1]), None, "A and B: must have openings in common, got 0 to 1 and 2 to 3"),
+        (([2, 3], [1, 1]), ([0, 3], [0, 1]), 1.5, "A and B: must have openings in common, got 2 to 3 and 0 to 1.5"),
+        (([0, 1], [0, 1]), ([0, 1], [0, -1]), None, "B: the loads up to 1 must go above 0, got at most 0"),
+        (([0, 1], [0, 1]), ([0, 1], [0, 1]), 1.1, "end: must be > 0 and <= 1, the last opening of B, got 1.1"),
+        (([0, 1], [0, 1]), ([0, 1], [0, 1]), 0.0, "end: must be > 0 and <= 1"),
+    ],
+)
+def test_what_cannot_be_compared(a, b, end, words):
+    a, b = ((np.array(d, float), np.array(P, float)) for d, P in (a, b))
+    with pytest.raises(CurveError, match=words):
+        compare(a, b, end)
+
+
+def test_words_name_every_broken_tolerance():
+    d, P = sampled(200)
+    found = compare((d, 1.05 * P), (d, P))
+    judged = checks(found, 0.01, 0.1, 0.02)
+    assert complaints(found, judged) == ["curve error 5 %, more than 1 %", "energy differs by 5 %, more than 2 %"]
+    lines = table(found, [(1.0, 1.05, 1.0)], judged)
+    assert [line.split("  ")[0] for line in lines if "FAILS" in line] == ["curve error", "energy"]
+    assert any(line.startswith("load at 1 ") and line.endswith("+5 %") for line in lines)
+
+
+# --- the command ---
+
+
+def command(folder: Path, *arguments: str) -> int:
+    try:
+        return main(["compare", *arguments])
+    except SystemExit as end:  # argparse
+        return int(end.code or 0)
+
+
+@pytest.fixture
+def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    for name in ("abaqus.csv", "expected.csv"):
+        (tmp_path / name).write_bytes((EXAMPLE / name).read_bytes())
+    return tmp_path
+
+
+def test_other_columns_and_units_are_mapped(files: Path, capsys: pytest.CaptureFixture) -> None:
+    tolerances = ["--curve-tol", "0.001", "--peak-tol", "0.001", "--energy-tol", "0.001"]
+    assert command(files, "abaqus.csv", "expected.csv", *MAPPED, *tolerances) == 0
+    assert capsys.readouterr().out.count("holds") == 4
+    by_number = ["--opening-b", "2", "--load-b", "3", "--opening-scale-b", "-2", "--load-scale-b=-1000"]
+    assert command(files, "expected.csv", "abaqus.csv", *by_number, *tolerances) == 0
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "words"),
+    [
+        (["--curve-tol", "1e-4"], "curve error 0.04968 %, more than 0.01 %"),
+        (["--tolerance", "1e-4"], "curve error 0.04968 %, more than 0.01 %"),
+        (["--peak-tol", "5e-4"], "peak load differs by 0.06162 %, more than 0.05 %"),
+        (["--energy-tol", "1e-4"], "energy differs by 0.01319 %, more than 0.01 %"),
+    ],
+)
+def test_each_tolerance_judges(tolerance, words, files: Path, capsys: pytest.CaptureFixture) -> None:
+    assert command(files, "abaqus.csv", "expected.csv", *MAPPED) == 0
+    assert command(files, "abaqus.csv", "expected.csv", *MAPPED, *tolerance) == 1
+    assert words in capsys.readouterr().err
+
+
+REFUSED = {
+    "abaqus.csv expected.csv": "abaqus.csv:3: the header must name opening and load, got X, U2, RF2",
+    "abaqus.csv expected.csv --opening-a U3 --load-a RF2": "abaqus.csv:3: the header must name U3, got X, U2, RF2",
+    "abaqus.csv expected.csv --opening-a U2 --load-a RF2": "the openings must go above 0, got at most 0; a scale of -1",
+    "expected.csv abaqus.csv --opening-b 2 --load-b 4": "abaqus.csv:4: has 3 columns, got column number 4",
+    "expected.csv expected.csv --end 3.5": "end: must be > 0 and <= 3, the last opening of B, got 3.5",
+    "expected.csv expected.csv --at 1,4": "at: must be > 0 and <= 3, the end of the comparison, got 4",
+    "expected.csv expected.csv --at 1,x": "argument --at: must be a finite number, got 'x'",
+    "expected.csv expected.csv --load-scale-a 0": "--load-scale-a: must be a finite number other than 0, got '0'",
+    "expected.csv expected.csv --load-scale-b nan": "argument --load-scale-b: must be a finite number, got 'nan'",
+    "expected.csv expected.csv --peak-tol -1": "argument --peak-tol: must be a number >= 0, got '-1'",
+    "expected.csv expected.csv --out expected.csv": "--out: must be a folder that can be written to",
+    "expected.csv . --curve-tol 1": "curve.csv: must be a file with a curve, got: No such file or directory",
+}
+
+
+@pytest.mark.parametrize("line", REFUSED)
+def test_bad_input(line: str, files: Path, capsys: pytest.CaptureFixture) -> None:
+    before = sorted(files.rglob("*"))
+    assert command(files, *line.split()) == 2
+    said = capsys.readouterr()
+    assert REFUSED[line] in said.err and said.out == "" and sorted(files.rglob("*")) == before
+
+
+class Page(HTMLParser):
+    """Counts elements and checks that they are closed in order."""
+
+    EMPTY = ("meta", "br", "link")
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open, self.count = [], {}
+        self.feed(text)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.count[tag] = self.count.get(tag, 0) + 1
+        if tag not in self.EMPTY:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.count[tag] = self.count.get(tag, 0) + 1
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def test_out_holds_the_numbers_and_the_page(files: Path, capsys: pytest.CaptureFixture) -> None:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("jinja2")
+    (files / "<b>&.csv").write_bytes((files / "expected.csv").read_bytes())
+    arguments = ["abaqus.csv", "<b>&.csv", *MAPPED, "--peak-tol", "1e-4", "--at", "0.5,1", "--out", "here"]
+    assert command(files, *arguments) == 1
+    found = json.loads((files / "here" / "comparison.json").read_text())
+    assert found["curve_error"] == pytest.approx(4.968e-4, rel=1e-3)
+    assert found["a"]["columns"] == {"opening": "U2", "load": "RF2"} and found["a"]["scales"]["load"] == -1e3
+    assert not found["passed"] and not found["checks"]["peak-load"]["passed"] and found["checks"]["end"]["passed"]
+    assert [load["opening"] for load in found["loads"]] == [0.5, 1.0]
+    text = (files / "here" / "comparison.html").read_text(encoding="utf-8")
+    page = Page(text)
+    assert page.count["svg"] == 2 and "<b>&" not in text and "&lt;b&gt;&amp;.csv" in text
+    assert "A is not within the tolerances." in text and "+0.06162 %" in text
+    assert "http" not in text.replace("http://www.w3.org", "")  # self-contained
+
+
+def test_numbers_are_written_without_matplotlib(files: Path, monkeypatch, capsys: pytest.CaptureFixture) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    for name in [name for name in sys.modules if name.startswith(("verify.report", "matplotlib."))]:
+        monkeypatch.delitem(sys.modules, name)
+    assert command(files, "expected.csv", "expected.csv", "--out", "here") == 0
+    assert [path.name for path in (files / "here").iterdir()] == ["comparison.json"]
+    assert "no page without matplotlib" in capsys.readouterr().err
+
+
+CELL = st.one_of(
+    st.sampled_from(
+        [
+            "",
+            "0",
+            "1",
+            "2,5",
+            "-1",
+            "nan",
+            "inf",
+            "1e308",
+            "-1e308",
+            "5e-324",
+            "1e-300",
+            "x",
+            '"',
+            "opening",
+            "load",
+            "#",
+        ]
+    ),
+    st.floats().map(repr),
+    st.text(max_size=5),
+)
+TABLES = st.lists(st.lists(CELL, max_size=4), max_size=8).flatmap(
+    lambda rows: st.sampled_from([",", ";", "\t", " ", ", "]).map(
+        lambda separator: "\n".join(separator.join(row) for row in rows)
+    )
+)
+NUMBERS = st.lists(st.tuples(st.floats(), st.floats()), max_size=6).map(
+    lambda points: "opening,load\n0,0\n" + "\n".join(f"{d!r},{P!r}" for d, P in points)
+)
+CONTENTS = st.one_of(TABLES, NUMBERS, st.text()).map(lambda text: text.encode("utf-8", "surrogatepass")) | st.binary()
+
+
+@given(a=CONTENTS, b=CONTENTS | st.just(b"opening,load\n0,0\n1,2\n3,1\n"))
+@example(a=b"opening,load\n0,0\n1,1e308\n2,-1e308\n", b=b"opening,load\n0,0\n5e-324,5e-324\n")
+@example(a=b"opening,load\n0,0\n1,1e308\n2,1e308\n", b=b"opening,load\n0,0\n1,1e-308\n2,1e-308\n")
+@example(a=b"opening,load\n-1e308,0\n1e308,1e308\n", b=b"opening,load\n0,0\n1,1\n")
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+@pytest.mark.filterwarnings("error")
+def test_no_content_of_a_file_ends_in_a_traceback(a: bytes, b: bytes, files: Path, capsys) -> None:
+    (files / "a.csv").write_bytes(a)
+    (files / "b.csv").write_bytes(b)
+    code = command(files, "a.csv", "b.csv", "--curve-tol", "0.1", "--peak-tol", "0.1", "--energy-tol", "0.1")
+    said = capsys.readouterr()
+    assert code in (0, 1, 2)
+    assert (code == 2) == (said.out == "") and (code == 0 or said.err.startswith("debond: "))

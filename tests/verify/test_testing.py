@@ -1,0 +1,292 @@
+"""The helper for other projects' tests: what it takes, what it lets pass, and what it says."""
+
+from __future__ import annotations
+
+import doctest
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import verify.testing
+from verify.testing import Reading, assert_curves_close
+
+PROJECT = Path(__file__).parents[2]
+EXAMPLE = PROJECT / "examples" / "regression_test"
+D = np.linspace(0.0, 3.0, 301)
+P = D / (0.1 + D**2)
+
+
+@dataclass
+class Frame:
+    """As much of a data frame as matters."""
+
+    data: dict
+
+    @property
+    def columns(self) -> np.ndarray:
+        return np.array(list(self.data))
+
+    def __getitem__(self, name: str) -> list:
+        return self.data[name]
+
+
+@dataclass
+class Run:
+    opening: np.ndarray
+    load: np.ndarray
+
+
+def table(**columns: np.ndarray) -> np.ndarray:
+    out = np.zeros(len(D), dtype=[(name, float) for name in columns])
+    for name, values in columns.items():
+        out[name] = values
+    return out
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    np.savetxt(tmp_path / "curve.csv", np.stack((D, P), axis=1), delimiter=",", header="opening,load", comments="")
+    return tmp_path / "curve.csv"
+
+
+FORMS = {
+    "pair of arrays": (D, P),
+    "pair of lists": [D.tolist(), P.tolist()],
+    "array (2, n)": np.stack((D, P)),
+    "mapping": {"load": P, "opening": D},
+    "capitals": {"LOAD": P, "Opening": D},
+    "structured array": table(other=0 * D, load=P, opening=D),
+    "record array": table(other=0 * D, load=P, opening=D).view(np.recarray),
+    "data frame": Frame({"load": P.tolist(), "opening": D.tolist()}),
+    "result": Run(D, P),
+    "objects": (D.astype(object), P.astype(object)),
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_forms_of_a_curve(form: str, file: Path) -> None:
+    for other in ((D, P), file, str(file), file.parent):
+        assert_curves_close(FORMS[form], other, curve=1e-12, peak=1e-12, energy=1e-12)
+        assert_curves_close(other, FORMS[form], curve=1e-12, peak=1e-12, energy=1e-12)
+    with pytest.raises(AssertionError):
+        assert_curves_close(FORMS[form], (D, 1.01 * P), curve=0.009)
+
+
+@pytest.mark.parametrize(
+    "reading", [Reading("U2", "RF2", -1e3, 0.5), Reading("u2", 3, -1e3, 0.5), Reading(2, 3, -1e3, 0.5)]
+)
+def test_columns_and_units(reading: Reading, tmp_path: Path) -> None:
+    columns = {"X": 0 * D, "U2": -D / 1e3, "RF2": 2 * P}
+    path = tmp_path / "abaqus.csv"
+    np.savetxt(path, np.stack(list(columns.values()), axis=1), delimiter=", ", header="X, U2, RF2", comments="")
+    for foreign in (columns, table(**columns), Frame(columns), path):
+        assert_curves_close(foreign, (D, P), actual_as=reading, curve=1e-12)
+        assert_curves_close((D, P), foreign, expected_as=reading, curve=1e-12)
+        with pytest.raises(ValueError, match="opening"):
+            assert_curves_close(foreign, (D, P), curve=1.0)
+
+
+def test_integers_do_not_overflow() -> None:
+    d = np.array([0, 100, 200], dtype=np.int16)
+    load = np.array([0, 30000, 15000], dtype=np.int16)
+    assert_curves_close((d, load), (d.astype(float), 1e6 * load), actual_as=Reading(load_scale=1e6), curve=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("limits", "words"),
+    [
+        ({"curve": 0.0049}, "curve error 0.5 %, more than 0.49 %"),
+        ({"peak": 0.0049}, "peak load differs by 0.5 %, more than 0.49 %"),
+        ({"energy": 0.0049}, "energy differs by 0.5 %, more than 0.49 %"),
+    ],
+)
+def test_every_tolerance_has_two_sides(limits: dict, words: str) -> None:
+    (name, limit) = next(iter(limits.items()))
+    for sign in (1, -1):
+        assert_curves_close((D, (1 + sign * 0.005) * P), (D, P), **{name: 0.0051})
+        with pytest.raises(AssertionError, match=words):
+            assert_curves_close((D, (1 + sign * 0.005) * P), (D, P), **limits)
+
+
+def test_the_message_says_where_and_by_how_much() -> None:
+    bump = P - 0.3 * np.exp(-(((D - 1.2) / 0.05) ** 2))
+    with pytest.raises(AssertionError) as failure:
+        assert_curves_close((1.02 * D, bump), (D, P), curve=0.01, peak=0.01, energy=0.5)
+    first, head, *lines = str(failure.value).splitlines()
+    assert first.startswith("actual is not close to expected: curve error ") and first.endswith(" %, more than 1 %")
+    assert head.split() == ["actual", "expected", "difference"]
+    cells = {line.split("  ")[0]: line.split()[-7:] for line in lines}
+    at = next(name for name in cells if name.startswith("largest deviation, at "))
+    opening = float(at.split()[-1])
+    assert abs(opening - 1.02 * 1.2) < 0.01
+    a, b = (float(word) for word in next(line for line in lines if line.startswith(at)).split()[4:6])
+    assert b == pytest.approx(opening / (0.1 + opening**2), rel=1e-4) and 0.25 < b - a < 0.32
+    peak = next(line for line in lines if line.startswith("opening at peak"))
+    assert peak.split()[-2] == "+2"
+    assert "FAILS" in lines[0] and "holds" in next(line for line in lines if line.startswith("energy"))
+
+
+def test_a_run_that_stops_early_is_no_success() -> None:
+    half = D <= 1.5
+    with pytest.raises(
+        AssertionError, match="actual ends at the opening 1.5, before 3; an end of 1.5 judges the common"
+    ):
+        assert_curves_close((D[half], P[half]), (D, P), curve=0.01)
+    assert_curves_close((D[half], P[half]), (D, P), curve=0.01, end=1.5)
+    assert_curves_close((D, P), (D[half], P[half]), curve=0.01)
+
+
+def test_a_code_that_finds_no_load_is_wrong_and_not_invalid() -> None:
+    with pytest.raises(AssertionError, match="curve error 100 %"):
+        assert_curves_close((D, 0 * P), (D, P), curve=0.5)
+    with pytest.raises(AssertionError, match="a load scale of -1 turns its sign"):
+        assert_curves_close((D, -P), (D, P), curve=0.5)
+
+
+GOOD = (D, P)
+INVALID = {
+    "no tolerance": (GOOD, GOOD, {}, TypeError, "needs a tolerance: curve, peak or energy"),
+    "negative": (GOOD, GOOD, {"peak": -0.1}, ValueError, "peak: must be >= 0 and finite, got -0.1"),
+    "not a number": (GOOD, GOOD, {"curve": np.nan}, ValueError, "curve: must be >= 0 and finite, got nan"),
+    "text": (GOOD, GOOD, {"curve": "1 %"}, TypeError, "curve: must be a number, got '1 %'"),
+    "truth": (GOOD, GOOD, {"energy": True}, TypeError, "energy: must be a number, got True"),
+    "end": (GOOD, GOOD, {"curve": 1, "end": 4}, ValueError, "end: must be > 0 and <= 3, the last opening of expected"),
+    "end text": (GOOD, GOOD, {"curve": 1, "end": "3"}, TypeError, "end: must be a number, got '3'"),
+    "end nan": (GOOD, GOOD, {"curve": 1, "end": np.nan}, ValueError, "end: must be > 0"),
+    "reading": (
+        GOOD,
+        GOOD,
+        {"curve": 1, "actual_as": ("U2", "RF2")},
+        TypeError,
+        "actual_as: must be a Reading, got tuple",
+    ),
+    "names of nothing": (
+        GOOD,
+        GOOD,
+        {"curve": 1, "expected_as": Reading("U2")},
+        TypeError,
+        "expected_as: columns are chosen in a file or a table, got tuple",
+    ),
+    "transposed": (
+        np.stack(GOOD, 1),
+        GOOD,
+        {"curve": 1},
+        TypeError,
+        "actual: must be .* an array of shape \\(301, 2\\)",
+    ),
+    "three": ((D, P, P), GOOD, {"curve": 1}, TypeError, "actual: must be .* got tuple"),
+    "nothing": (None, GOOD, {"curve": 1}, TypeError, "actual: must be .* got NoneType"),
+    "number": (GOOD, 3.0, {"curve": 1}, TypeError, "expected: must be .* got float"),
+    "lengths": (
+        (D, P[:-1]),
+        GOOD,
+        {"curve": 1},
+        ValueError,
+        "actual: opening and load must be of one length, got 301 and",
+    ),
+    "dimension": ((D, P[:, None]), GOOD, {"curve": 1}, ValueError, "actual, load: must be of one dimension"),
+    "strings": ((D, ["a"] * 301), GOOD, {"curve": 1}, TypeError, "actual, load: must be real numbers"),
+    "complex": ((D, P + 1j), GOOD, {"curve": 1}, TypeError, "actual, load: must be real numbers, got complex128"),
+    "nothings": ((D, [None] * 301), GOOD, {"curve": 1}, ValueError, "actual: must hold finite numbers, got 0 and nan"),
+    "objects": ((D, [{}] * 301), GOOD, {"curve": 1}, TypeError, "actual, load: must be numbers"),
+    "ragged": ((D, [[1], [1, 2]]), GOOD, {"curve": 1}, ValueError, "actual, load: must be numbers"),
+    "nan": (
+        (D, np.where(D == 3, np.nan, P)),
+        GOOD,
+        {"curve": 1},
+        ValueError,
+        "actual: must hold finite numbers, got 3 and nan",
+    ),
+    "one point": (
+        ([1], [1]),
+        GOOD,
+        {"curve": 1},
+        ValueError,
+        "actual: must hold at least 2 points of different opening",
+    ),
+    "empty": (
+        ([], []),
+        GOOD,
+        {"curve": 1},
+        ValueError,
+        "actual: must hold at least 2 points of different opening, got 0",
+    ),
+    "no column": ({"opening": D}, GOOD, {"curve": 1}, ValueError, "actual: must have a column 'load', got opening"),
+    "which column": (
+        {"opening": D, "Load": P, "LOAD": P},
+        GOOD,
+        {"curve": 1},
+        ValueError,
+        "actual: must have one column 'load', got opening, Load, LOAD",
+    ),
+    "number of a column": (
+        {"opening": D, "load": P},
+        GOOD,
+        {"curve": 1, "actual_as": Reading(1, 3)},
+        ValueError,
+        "actual: has 2 columns, got column number 3",
+    ),
+    "no file": ("no.csv", GOOD, {"curve": 1}, ValueError, "no.csv: must be a file with a curve, got: No such file"),
+    "no load": (GOOD, (D, 0 * P), {"curve": 1}, ValueError, "expected: the loads up to 3 must go above 0"),
+    "apart": ((D + 5, P), GOOD, {"curve": 1}, ValueError, "actual and expected: must have openings in common"),
+}
+
+
+@pytest.mark.parametrize("case", INVALID)
+def test_what_is_no_comparison_is_no_mere_failure(case: str) -> None:
+    actual, expected, options, error, words = INVALID[case]
+    with pytest.raises(error, match=words):
+        assert_curves_close(actual, expected, **options)
+
+
+def test_the_example_of_the_docstring() -> None:
+    found = doctest.testmod(verify.testing, optionflags=doctest.ELLIPSIS)
+    assert found.attempted >= 6 and found.failed == 0
+
+
+def test_the_example_of_the_readme(tmp_path: Path) -> None:
+    """As it is it passes, and with one wrong digit it fails in the line that calls, not in ours."""
+    for folder in ("right", "wrong"):
+        (tmp_path / folder).mkdir()
+        for file in EXAMPLE.glob("*.*"):
+            text = file.read_text()
+            (tmp_path / folder / file.name).write_text(
+                text.replace("e-04\n", "e-03\n", 1) if folder == "wrong" else text
+            )
+    command = [sys.executable, "-m", "pytest", "-q", "--import-mode=importlib", "-p", "no:cacheprovider"]
+    command += ["-c", os.devnull, "--rootdir", str(tmp_path), str(tmp_path)]
+    environment = {**os.environ, "PYTHONPATH": str(PROJECT), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+    run = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=120)
+    assert run.returncode == 1 and "1 failed, 1 passed" in run.stdout, run.stdout
+    assert "wrong/test_my_code.py" in run.stdout and "actual is not close to expected: curve error" in run.stdout
+    assert "verify/testing.py" not in run.stdout
+
+
+ALONE = """
+import sys
+
+class Numpy:
+    def find_spec(self, name, path=None, target=None):
+        package = name.partition(".")[0]
+        if package not in sys.stdlib_module_names and package not in ("numpy", "verify"):
+            raise ModuleNotFoundError(package)
+
+sys.meta_path.insert(0, Numpy())
+from verify.testing import Reading, assert_curves_close
+assert_curves_close(sys.argv[1], sys.argv[2], actual_as=Reading("U2", "RF2", -2, -1e3), curve=0.002)
+try:
+    assert_curves_close(sys.argv[1], sys.argv[2], actual_as=Reading("U2", "RF2", -2, -1e3), curve=0.0002)
+except AssertionError:
+    print("told apart")
+"""
+
+
+def test_it_needs_numpy_alone() -> None:
+    command = [sys.executable, "-c", ALONE, str(EXAMPLE / "abaqus.csv"), str(EXAMPLE / "expected.csv")]
+    run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(PROJECT)})
+    assert run.stdout == "told apart\n", run.stderr
