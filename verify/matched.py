@@ -8,13 +8,15 @@ keeps, and are a bound of what a code with a moving projection may find otherwis
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 from scipy.integrate import trapezoid
 
+from verify.checks import law_of
 from verify.law import Bilinear
-from verify.result import Snapshot
+from verify.result import Result, Snapshot
+from verify.schema import Scene
 
 #: A point pulls where its traction is more than this part of the strength.
 PULLS = 0.01
@@ -32,12 +34,14 @@ class LeftOut:
     gap: float
     pull: float
 
-    def __str__(self) -> str:
-        return (
-            f"matched interface: the lower surface tilts by {self.tilt:.2g} rad at most where it is pulled; along its "
-            f"current normal gaps would change by {self.gap:.1g} of g_u, and the tractions would pull lengthwise by "
-            f"{self.pull:.1g} of the load"
-        )
+
+def summary(scene: Scene, result: Result) -> dict[str, float]:
+    """What ``result.json`` says of it: tilt, gap and pull, or nothing where the method follows the surfaces."""
+    if result.method != "dolfinx" or not result.snapshots:
+        return {}
+    specimen = scene.specimen
+    loaded_at = specimen.strip_length if specimen.kind == "peel" else 0.0
+    return asdict(left_out(result.snapshots, law_of(scene), loaded_at, specimen.width))
 
 
 def left_out(snapshots: tuple[Snapshot, ...], law: Bilinear, loaded_at: float, width: float = 1.0) -> LeftOut:

@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from verify import __version__, process_zone
+from verify import __version__, matched, process_zone
 from verify.checks import run_checks
 from verify.effects import simulated
 from verify.folder import CurveWriter, write_fields, write_json
@@ -159,6 +159,7 @@ def summary(scene: Scene, result: Result, checks: tuple[Check, ...]) -> dict[str
         "peak_memory_mb": result.peak_memory_mb,
         "effects": simulated(scene, result.method),
         "process_zone": process_zone.summary(scene, result),
+        "matched_interface": matched.summary(scene, result),
         "checks": {c.name: _verdict(c) for c in checks},
         "versions": versions(),
         "machine": machine(),

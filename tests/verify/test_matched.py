@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from verify.law import Bilinear
-from verify.matched import left_out
-from verify.result import Snapshot
+from verify.matched import left_out, summary
+from verify.result import Result, Snapshot, steps_from_rows
+from verify.scene import load_scene
 
 LAW = Bilinear(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0, contact=True)
 LENGTH, LOADED_AT, TILT, SLIP, LOAD = 6.0, 8.0, 0.03, 0.2, 3.0
@@ -46,4 +47,12 @@ def test_only_what_pulls_counts_and_the_worst_field_is_told(snapshot):
     idle = replace(snapshot, gap_q=np.full(601, 2 * LAW.g_open), traction_q=np.zeros(601))
     assert left_out((idle,), LAW, LOADED_AT) == left_out((), LAW, LOADED_AT)
     assert left_out((idle, snapshot), LAW, LOADED_AT) == left_out((snapshot,), LAW, LOADED_AT)
-    assert "0.03 rad" in str(left_out((snapshot,), LAW, LOADED_AT))
+
+
+@pytest.mark.parametrize(("name", "loaded_at"), [("peel-60", 150.0), ("dcb-czm1", 0.0)])
+def test_only_the_method_whose_interface_is_matched_has_something_to_say(snapshot, name, loaded_at):
+    scene = load_scene(name)
+    fields = replace(snapshot, s_q=np.abs(snapshot.s_q - LOADED_AT + loaded_at))
+    result = Result("dolfinx", steps_from_rows([]), snapshots=(fields,))
+    assert summary(scene, result)["tilt"] == pytest.approx(TILT, rel=1e-12)
+    assert summary(scene, replace(result, method="nurbs")) == summary(scene, replace(result, snapshots=())) == {}
