@@ -10,7 +10,9 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 from dolfinx import fem
 from mpi4py import MPI
 
+from fem_reference import peel
 from fem_reference.dcb import Problem
+from fem_reference.material import Moduli
 from fem_reference.model import build_model
 
 SMALL = Problem(
@@ -177,3 +179,96 @@ def test_an_element_ends_where_the_precrack_ends(elements, precrack):
     assert lines[0] == 0.0
     assert lines[-1] == SMALL.length
     assert np.all(np.diff(lines) > 0)
+
+
+PEEL = peel.Problem(
+    strip_length=7.0,
+    strip_thickness=0.5,
+    substrate_length=5.0,
+    substrate_thickness=1.2,
+    bond_length=3.0,
+    width=1.5,
+    strip=Moduli(130.0, 9.0, 5.0, 0.3),
+    substrate=Moduli(11.0, 11.0, 4.0, 0.2),
+    strength=0.04,
+    toughness=0.002,
+    ductility=5.0,
+    elements=11,
+)
+
+
+@pytest.fixture(scope="module")
+def peeled():
+    return build_model(PEEL, lambda name: nullcontext(), MPI.COMM_SELF)
+
+
+def stretched(model, upper, lower):
+    """Uniform strain E11 of either body, linear in X."""
+    return displacement(model, lambda X, Y, up: (np.where(up, upper, lower) * X, 0.0 * Y))
+
+
+def test_strip_and_substrate_have_their_own_material_and_size(peeled):
+    for number, moduli, area in ((0, PEEL.strip, 7.0 * 0.5), (1, PEEL.substrate, 5.0 * 1.2)):
+        e = [0.0, 0.0]
+        e[number] = 0.05
+        peeled.displace(stretched(peeled, *e))
+        E11 = 0.05 + 0.5 * 0.05**2
+        W = 0.5 * moduli.stiffness_IJ("stress")[0, 0] * E11**2
+        assert fem.assemble_scalar(peeled.energy) == pytest.approx(W * area * PEEL.width, rel=1e-12)
+        assert fem.assemble_scalar(peeled.face_energy) == pytest.approx(0.0, abs=1e-12 * W)
+
+
+def test_right_ends_count_in_the_j_integral_and_left_ends_against_it(peeled):
+    """Stretched more towards the right, each body has more energy there."""
+    half = displacement(peeled, lambda X, Y, up: (np.where(up, 0.01, 0.02) * X**2, 0.0 * Y))
+    peeled.displace(half)
+    expected = 0.0
+    for moduli, slope, height in ((PEEL.strip, 0.02 * 7.0, 0.5), (PEEL.substrate, 0.04 * 5.0, 1.2)):
+        E11 = slope + 0.5 * slope**2
+        expected += 0.5 * moduli.stiffness_IJ("stress")[0, 0] * E11**2 * height
+    assert fem.assemble_scalar(peeled.face_energy) == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_load_of_a_peel_is_on_the_end_of_the_strip(peeled):
+    X, Y = peeled.X_nI.T
+    on_face_n = (np.abs(X - 7.0) < 1e-9) & (Y > -1e-9) & peeled.upper_n
+    assert not np.any(peeled.load_n[~on_face_n]) and not np.any(peeled.slope_n[~peeled.upper_n])
+    u_n = displacement(peeled, lambda X, Y, up: (0 * X, np.where(up, 0.3 * X + 0.1 * Y, 9.0)))
+    assert peeled.load_n @ u_n == pytest.approx(0.3 * 7.0 + 0.1 * 0.25, rel=1e-13)
+    assert peeled.slope_n @ u_n == pytest.approx(0.3, rel=1e-12)
+    assert np.sum(peeled.load_n[1::2]) == pytest.approx(1.0, rel=1e-13)
+
+
+def test_the_base_is_clamped_and_one_point_of_the_strip_held_lengthwise(peeled):
+    X, Y = peeled.X_nI.T
+    base_n = ~peeled.upper_n & (np.abs(Y + 1.2) < 1e-9)
+    held_n = peeled.free_n == 0
+    assert np.all(held_n[base_n])
+    (strip,) = np.flatnonzero(held_n & ~base_n)
+    assert (X[strip], Y[strip]) == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert strip % 2 == 0 and peeled.upper_n[strip]
+    assert not np.any(peeled.tie_n)
+
+
+def test_the_strip_is_bonded_on_the_left_and_free_beyond(peeled):
+    assert 0.0 < np.min(peeled.X_q) and np.max(peeled.X_q) < PEEL.bond_length
+    assert np.sum(peeled.bond.weight_q) == pytest.approx(PEEL.width * PEEL.bond_length, rel=1e-13)
+    u_n = displacement(peeled, lambda X, Y, up: (X, np.where(up, 0.1 * X**2, 0.05 * X)))
+    assert peeled.bond.gap(u_n) == pytest.approx(0.1 * peeled.X_q**2 - 0.05 * peeled.X_q, rel=1e-12)
+
+
+def test_tangent_of_a_peel_is_the_derivative_of_its_residual(peeled):
+    rng = np.random.default_rng(3)
+    u_n = displacement(peeled, lambda X, Y, up: (-0.2 * Y * X, np.where(up, 0.02 * (X - 1) ** 2 * np.sign(X - 1), 0)))
+    u_n = peeled.free_n * (u_n + 1e-4 * rng.standard_normal(u_n.size))
+    k_q = np.maximum(peeled.bond.gap(u_n), 0.0)
+    assert np.min(peeled.bond.gap(u_n)) < 0 and np.any((k_q > peeled.law.g_peak) & (k_q < peeled.law.g_open))
+    direction_n = peeled.free_n * rng.standard_normal(u_n.size)
+    h = 1e-8
+    ahead_n, behind_n = (peeled.residual(u_n + s * h * direction_n, 0.0, 0.5 * k_q) for s in (1, -1))
+    change_n = (ahead_n - behind_n) / (2 * h)
+    A = peeled.tangent(u_n, 0.5 * k_q)
+    x, y = A.createVecs()
+    x.array[:] = direction_n
+    A.mult(x, y)
+    assert np.linalg.norm(y.array - change_n) < 1e-6 * np.linalg.norm(change_n)
