@@ -68,7 +68,7 @@ def test_roles_are_symmetric(a, b):
     assert ab.a.work == ba.b.work and ab.a.peak_opening == ba.b.peak_opening
 
 
-@given(paths(), paths(), st.integers(-200, 200), st.integers(-200, 200))
+@given(paths(), paths(), st.integers(-200, 200), st.integers(-700, 700))
 def test_nothing_depends_on_units(a, b, length, force):
     """To the last digit in units of powers of two, which round nothing."""
     plain, scaled = compare(a, b), compare(*((2.0**length * d, 2.0**force * P) for d, P in (a, b)))
@@ -106,6 +106,13 @@ def test_only_the_part_up_to_the_end_counts():
     assert compare((d, off), (d, P), 1.2).curve_error == 0.0 < 0.1 < compare((d, off), (d, P)).curve_error
     early = compare((d, P), (d, P), 0.2)
     assert early.b.peak_opening == 0.2 and early.b.work == pytest.approx(0.5 * np.log((0.1 + 0.2**2) / 0.1), rel=1e-3)
+
+
+def test_the_path_counts_until_it_first_comes_to_the_end():
+    loop = np.array([0.0, 2.0, 0.5, 3.0]), np.array([0.0, 2.0, 0.0, 1.0])
+    found = compare(loop, loop, 1.5).a
+    assert (found.peak_opening, found.peak_load, found.work) == (1.5, 1.5, 1.125)
+    assert compare(loop, loop, 2.5).a.work == pytest.approx(2.0 - 1.5 + 0.5 * 2.0 * 0.8)
 
 
 def test_a_curve_that_stops_early_is_not_close():

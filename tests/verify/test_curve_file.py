@@ -24,6 +24,8 @@ LAYOUTS = {
     "semicolons and decimal commas": "opening;load\n0;0\n1,5;2,5\n3;1,25\n",
     "tabs and decimal commas": "opening\tload\n0\t0\n1,5\t2,5\n3\t1,25\n",
     "blanks and decimal commas": "0 0\n1,5 2,5\n3 1,25\n",
+    "decimal commas in every cell": "0,0 0,0\n1,5 2,5\n3,0 1,25\n",
+    "separators at the end of rows": "opening,load\n0,0,\n1.5,2.5,\n3,1.25,,\n",
     "semicolons and points": "opening;load\n0;0\n1.5;2.5\n3;1.25\n",
     "byte order mark": "\ufeffopening,load\n0,0\n1.5,2.5\n3,1.25\n",
     "carriage returns": "opening,load\r\n0,0\r\n1.5,2.5\r\n3,1.25\r\n",
