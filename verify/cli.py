@@ -260,7 +260,7 @@ def _scenes(options: argparse.Namespace) -> int:
         scene = load_scene(name)
         law, specimen, opening = scene.interface, scene.specimen, max(scene.load.opening)
         print(
-            f"{name:18} {specimen.kind}, {scene.effects.kinematics} kinematics, strength {law.strength:g}, "
+            f"{name:24} {specimen.kind}, {scene.effects.kinematics} kinematics, strength {law.strength:g}, "
             f"toughness {law.toughness:g}, opened to {opening:g} ({scene.units})"
         )
     return 0
