@@ -78,7 +78,8 @@ class Comparison:
     @property
     def worst(self) -> tuple[float, float, float]:
         """Opening at which the loads differ most, load of A and of B there."""
-        i = int(np.argmax(np.abs(self.load_a_n - self.load_b_n)))
+        with np.errstate(all="ignore"):
+            i = int(np.argmax(np.abs(self.load_a_n - self.load_b_n)))
         return float(self.opening_n[i]), float(self.load_a_n[i]), float(self.load_b_n[i])
 
     def loads_at(self, openings: Sequence[float]) -> list[tuple[float, float, float]]:
@@ -91,7 +92,8 @@ class Comparison:
         outside = [at for at in openings if not 0.0 < at <= self.end]
         if outside:
             raise CurveError(f"at: must be > 0 and <= {self.end:.6g}, the end of the comparison, got {outside[0]:g}")
-        loads = [load_at((part.opening, part.load), openings).tolist() for part in (self.a, self.b)]
+        with np.errstate(all="ignore"):
+            loads = [load_at((part.opening, part.load), openings).tolist() for part in (self.a, self.b)]
         return list(zip(openings, *loads, strict=True))
 
 
