@@ -349,7 +349,7 @@ CONTENTS = st.one_of(TABLES, NUMBERS, st.text()).map(lambda text: text.encode("u
 def test_no_content_of_a_file_ends_in_a_traceback(a: bytes, b: bytes, files: Path, capsys) -> None:
     (files / "a.csv").write_bytes(a)
     (files / "b.csv").write_bytes(b)
-    code = command(files, "a.csv", "b.csv", "--curve-tol", "0.1", "--peak-tol", "0.1", "--energy-tol", "0.1", "--at", "1")
+    code = command(files, "a.csv", "b.csv", "--curve-tol", "0.1", "--peak-tol", "0.1", "--energy-tol", "0.1")
     said = capsys.readouterr()
     assert code in (0, 1, 2)
     assert (code == 2) == (said.out == "") and (code == 0 or said.err.startswith("debond: "))
