@@ -141,7 +141,7 @@ def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
         spare = (problem.dofs - least) // (unknowns(arms(n, 1, 1), q) - least)
         options = [arms(n), arms(n + 1), arms(n, spare, spare), arms(n, spare + 1, spare + 1)]
         if not problem.symmetry:
-            alike = problem.mismatch == 1.0 and problem.interface_rule != "lumped"
+            alike = abs(problem.mismatch - 1.0) < 1e-9 and problem.interface_rule != "lumped"
             options[2:2] = [((n, 0), (n + 1, 0))] if alike else []
             options += [arms(n, spare, spare + 1)] if alike else []
         missed = [abs(unknowns(option, q) - problem.dofs) for option in options]

@@ -43,7 +43,7 @@ REFUSED = {
     "solve dcb-czm1 --dofs 79": "discretization.dofs: must be >= 80 for nurbs of degree 3, got 79",
     "solve dcb-czm1 --method lagrange --dofs 111": "discretization.dofs: must be >= 112 for lagrange of degree 3, got",
     "solve dcb-czm1 --dofs 80 --set load.opening=0.3": (
-        "discretization.dofs: a mesh of this basis and degree needs at least 112 unknowns, got 80"
+        "discretization.dofs: a mesh of this basis and degree needs at least 96 unknowns, got 80"
     ),
     "solve dcb-czm1 --method beam --dofs 500": (
         '--dofs: is only for --method "tspline", "nurbs" or "lagrange", got 500 for beam'

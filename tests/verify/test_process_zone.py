@@ -101,7 +101,7 @@ def test_methods_without_a_mesh_have_nothing_to_warn_of(method):
 def test_a_mesh_that_is_too_coarse_is_warned_of_and_the_one_advised_is_not(method):
     (text,) = warnings(load_scene("dcb-czm2", ["discretization.dofs=160"]), method)
     assert text.startswith("process zone 0.73 mm < element ")
-    few = {"tspline": 300, "nurbs": 600, "lagrange": 1200}[method]
+    few = {"tspline": 300, "nurbs": 600, "lagrange": 1600}[method]
     (text,) = warnings(load_scene("dcb-czm2", [f"discretization.dofs={few}"]), method)
     assert re.match(r"process zone 0.73 mm spans 2\.\d elements of 0\.[23]\d* mm, fewer than 3", text)
     advised = int(re.search(r"discretization\.dofs = (\d+)", text)[1])
