@@ -200,9 +200,6 @@ def _verify(options: argparse.Namespace) -> int:
                 scenes.append((source, load_scene(source)))
         except Refusal as error:
             wrong.append(str(error))
-    for source, scene in scenes:
-        if scene.specimen.kind == "peel":
-            wrong.append(f"{source}: must be a dcb for verify (peel: not available yet); debond solve takes it")
     names = [*(scene.name for _, scene in scenes), *(plate.name for plate in plates)]
     twice = sorted({name for name in names if names.count(name) > 1})
     wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]

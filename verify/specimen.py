@@ -47,8 +47,17 @@ class Dcb(Section):
         return self.precrack
 
     @property
+    def extent(self) -> float:
+        """Distance from the loaded end to the far end of the bond."""
+        return self.length
+
+    @property
     def loaded_thickness(self) -> float:
         return self.arm_thickness
+
+    def place(self, s: float) -> float:
+        """Coordinate X of what is ``s`` away from the loaded end."""
+        return s
 
 
 class Peel(Section):
@@ -88,8 +97,17 @@ class Peel(Section):
         return self.strip_length - self.bond_length
 
     @property
+    def extent(self) -> float:
+        """Distance from the loaded end to the far end of the bond."""
+        return self.strip_length
+
+    @property
     def loaded_thickness(self) -> float:
         return self.strip_thickness
+
+    def place(self, s: float) -> float:
+        """Coordinate X of what is ``s`` away from the loaded end."""
+        return self.strip_length - s
 
 
 def specimen_kind(value: object) -> str:

@@ -62,7 +62,6 @@ REFUSED = {
     "solve peel-60 --method dolfinx --set dolfinx.elements=2": (
         "dolfinx.elements: must be >= 3, one on each part of the specimen, got 2"
     ),
-    "verify peel-120": "peel-120: must be a dcb for verify (peel: not available yet)",
     "verify dcb-czm1 dcb-czm3": "dcb-czm3:",
     "verify dcb-czm1 dcb-czm1": "SCENE: must have different names, got 'dcb-czm1' more than once",
     "verify --jobs 0": "argument --jobs: must be an integer >= 1, got '0'",

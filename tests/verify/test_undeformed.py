@@ -11,7 +11,7 @@ from matplotlib.figure import Figure  # noqa: E402
 
 from verify.report.entry import Entry  # noqa: E402
 from verify.report.style import drawing, line  # noqa: E402
-from verify.report.undeformed import bond_element, draw, followed, undeformed  # noqa: E402
+from verify.report.undeformed import bond_element, draw, followed, undeformed, zone_at  # noqa: E402
 from verify.result import Result, Snapshot  # noqa: E402
 from verify.scene import load_scene  # noqa: E402
 from verify.verdict import Run  # noqa: E402
@@ -47,7 +47,7 @@ def drawn(given: Snapshot, frame=FRAME):
     """Points of all that was drawn, by name."""
     with drawing():
         axes = Figure(figsize=(6, 1)).add_subplot()
-        draw(axes, given, "black", frame)
+        draw(axes, given, "black", frame, zone_at(SCENE, given))
     parts: dict[str, list[np.ndarray]] = {}
     for artist in axes.lines:
         parts.setdefault(artist.get_label(), []).append(artist.get_xydata())

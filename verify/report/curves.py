@@ -113,7 +113,7 @@ def j_figure(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
         svg = to_svg(figure, key, f"J-integral over toughness against opening, {scene.name}")
     return Panel(
         svg,
-        "J-integral from the slopes of the loaded faces. Once the precrack's tip is fully open it must equal the "
+        "J-integral from the slopes of the loaded faces. Once the tip of the bond is fully open it must equal the "
         "toughness, whatever the shape of the traction law: an identity, not a comparison.",
     )
 
@@ -133,7 +133,7 @@ def energies(scene: Scene, entry: Entry, key: str) -> Panel | None:
         for low, high, ink, alpha, label in (
             (np.zeros(len(x)), lost, "phase-solve", 0.55, "dissipated"),
             (lost, held, "zone", 0.8, "stored in the interface"),
-            (held, lost + stored, "phase-assembly", 0.45, "stored in the arms"),
+            (held, lost + stored, "phase-assembly", 0.45, "stored in the bodies"),
         ):
             axes.fill_between(x, low, high, color=colour(ink), alpha=alpha, linewidth=0, zorder=1, label=label)
         axes.plot(x, work, color=colour("ink"), linewidth=1.2, dashes=(5, 2), label="work of the load")

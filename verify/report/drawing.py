@@ -38,7 +38,7 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
         _supports(axes, body.length * scale)
         _dimensions(axes, scene, units, scale, thickness)
         if zone is not None and zone[1] > zone[0]:
-            _process_zone(axes, zone, units, scale, thickness)
+            mark_zone(axes, zone[0] * scale, zone[1] * scale, thickness + 0.42, zone_label(zone, units))
         svg = to_svg(figure, key, f"Side view of the specimen of {scene.name}")
     exaggeration = thickness / (body.arm_thickness * scale)
     thick = f"lengths to scale, arms {number(exaggeration, 2)} times too thick" if exaggeration > 1.001 else "to scale"
@@ -63,10 +63,14 @@ def _bodies(axes: Axes, length: float, precrack: float, thickness: float) -> Non
 
 def _loads(axes: Axes, thickness: float) -> None:
     for sign, label in ((1, "P, +Δ/2"), (-1, "P, −Δ/2")):
-        foot, tip = sign * thickness / 2, sign * (thickness + 0.36)
-        arrow = {"arrowstyle": "-|>", "color": colour("bad"), "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
-        axes.annotate("", (0, tip), (0, foot), arrowprops=arrow, zorder=5)
+        pull(axes, (0, sign * thickness / 2), sign * (thickness / 2 + 0.36))
         axes.text(-0.1, sign * (thickness + 0.22), label, ha="right", va="center", color=colour("bad"))
+
+
+def pull(axes: Axes, foot: tuple[float, float], length: float) -> None:
+    """The arrow of a load that acts across the specimen."""
+    arrow = {"arrowstyle": "-|>", "color": colour("bad"), "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", (foot[0], foot[1] + length), foot, arrowprops=arrow, zorder=5)
 
 
 def _supports(axes: Axes, length: float) -> None:
@@ -89,31 +93,29 @@ def _dimensions(axes: Axes, scene: Scene, units: Units, scale: float, thickness:
     body, below = scene.specimen, -thickness - 0.44
     a, length = body.precrack * scale, body.length * scale
     length_of, thick, wide = (quantity(v, units.length) for v in (body.length, body.arm_thickness, body.width))
-    _measure(axes, 0, a, below, f"precrack {quantity(body.precrack, units.length)}")
-    _measure(axes, a, length, below, f"interface {quantity(body.length - body.precrack, units.length)}", "accent")
+    measure(axes, 0, a, below, f"precrack {quantity(body.precrack, units.length)}")
+    measure(axes, a, length, below, f"interface {quantity(body.length - body.precrack, units.length)}", "accent")
     whole = f"length {length_of}; two arms of thickness {thick}, width {wide}"
-    _measure(axes, 0, length, below - 0.25, whole)
+    measure(axes, 0, length, below - 0.25, whole)
 
 
-def _measure(axes: Axes, start: float, end: float, y: float, label: str, ink: str = "muted") -> None:
+def measure(axes: Axes, start: float, end: float, y: float, label: str, ink: str = "muted") -> None:
+    """A line with arrows at both ends and its label below."""
     arrow = {"arrowstyle": "<->", "color": colour(ink), "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", (end, y), (start, y), arrowprops=arrow)
     axes.text((start + end) / 2, y - 0.035, label, ha="center", va="top", color=colour(ink), fontsize=7.5)
 
 
-def _process_zone(axes: Axes, zone: tuple[float, float, float], units: Units, scale: float, thickness: float) -> None:
+def zone_label(zone: tuple[float, float, float], units: Units) -> str:
+    """Its opening and length in words."""
     start, end, opening = zone
-    ends = (start * scale, end * scale)
-    axes.plot(ends, (0, 0), color=colour("zone"), linewidth=4.0, zorder=6, solid_capstyle="butt")
-    label = (
-        f"process zone at opening {quantity(opening, units.length, 3)}: {quantity(end - start, units.length, 2)} long"
-    )
-    axes.annotate(
-        label,
-        ((start + end) / 2 * scale, 0.03),
-        ((start + end) / 2 * scale, thickness + 0.42),
-        ha="center",
-        va="center",
-        fontsize=7.5,
-        arrowprops={"arrowstyle": "-", "color": colour("muted"), "linewidth": 0.6},
-    )
+    length = quantity(end - start, units.length, 2)
+    return f"process zone at opening {quantity(opening, units.length, 3)}: {length} long"
+
+
+def mark_zone(axes: Axes, start: float, end: float, y: float, label: str) -> None:
+    """The process zone on the interface, Y = 0, and its label at height ``y``."""
+    axes.plot((start, end), (0, 0), color=colour("zone"), linewidth=4.0, zorder=6, solid_capstyle="butt")
+    line = {"arrowstyle": "-", "color": colour("muted"), "linewidth": 0.6}
+    middle = (start + end) / 2
+    axes.annotate(label, (middle, 0.03), (middle, y), ha="center", va="center", fontsize=7.5, arrowprops=line)

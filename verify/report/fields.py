@@ -51,7 +51,8 @@ def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, sm
     zone = process_zone(group[0][1])
     with drawing():
         figure, axes = panel(THIRD, 2.35, left=0.5) if small else panel(HALF, 2.65)
-        axes.set(xlabel=axis("position along the specimen", units.length), ylabel=axis("normal traction", units.stress))
+        axes.set_xlabel(axis("distance from the loaded end", units.length))
+        axes.set_ylabel(axis("normal traction", units.stress))
         for entry, snapshot in group:
             options = {**entry.line.options(), "marker": ".", "markersize": 2.6 if entry.line.width < 3 else 0}
             axes.plot(snapshot.s_q, snapshot.traction_q, **options)
@@ -90,9 +91,10 @@ def _inside(s: np.ndarray, values: np.ndarray, window: tuple[float, float]) -> n
 
 def _window(scene: Scene, group: Sequence[tuple[Entry, Snapshot]]) -> tuple[float, float]:
     zones = [zone for _, snapshot in group if (zone := process_zone(snapshot)) is not None]
-    bonded = scene.specimen.length - scene.specimen.precrack
+    body = scene.specimen
+    bonded = body.extent - body.free_length
     if not zones:
-        return scene.specimen.precrack, scene.specimen.precrack + 0.15 * bonded
+        return body.free_length, body.free_length + 0.15 * bonded
     start, end = min(z[0] for z in zones), max(z[1] for z in zones)
     length = max(end - start, 0.02 * bonded)
-    return max(start - 0.35 * length, 0.0), min(end + 1.1 * length, scene.specimen.length)
+    return max(start - 0.35 * length, 0.0), min(end + 1.1 * length, body.extent)

@@ -45,9 +45,9 @@ def rows(count: int, height: float, below: float) -> tuple[Figure, list[tuple[Ax
 def zoom(scene: Scene, snapshots: Sequence[Snapshot], height: float) -> tuple[Limits, Limits]:
     """Limits of the enlarged part, around the first process zone; its frame is ``height`` inches high, to scale."""
     body = scene.specimen
-    zone = next((z for s in snapshots if (z := process_zone(s)) is not None), (body.precrack, body.precrack))
-    width = min(max(1.7 * (zone[1] - zone[0]), 5 * body.arm_thickness), 0.3 * body.length)
-    middle = min(sum(zone) / 2, body.length - width / 2)
+    zone = next((z for s in snapshots if (z := process_zone(s)) is not None), (body.free_length, body.free_length))
+    width = min(max(1.7 * (zone[1] - zone[0]), 5 * body.loaded_thickness), 0.3 * body.extent)
+    middle = body.place(min(sum(zone) / 2, body.extent - width / 2))
     reach = width * height / CLOSE / 2
     return (middle - width / 2, middle + width / 2), (-reach, reach)
 

@@ -63,7 +63,7 @@ def _scale(figure: Figure, limit: float, label: str) -> None:
 def _frame(scene: Scene, group: Sequence[tuple[Entry, Snapshot]]) -> tuple[Limits, Limits]:
     """Limits of the full view; grown in one direction where the row would be too low or too high at true scale."""
     x_ni = np.concatenate([(np.asarray(s.X_euvi) + np.asarray(s.u_euvi)).reshape(-1, 2) for _, s in group])
-    pad = 0.01 * scene.specimen.length
+    pad = 0.01 * scene.specimen.extent
     left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
     height = max(2.06 * float(np.abs(x_ni[:, 1]).max()) + pad, LOWEST / WHOLE * (right - left))
     right = max(right, left + WHOLE / HIGHEST * height)

@@ -8,7 +8,7 @@ from itertools import groupby
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
-from verify.report import cost, curves, drawing, fields, meshes, published, undeformed, zones
+from verify.report import cost, curves, drawing, fields, meshes, peel_drawing, published, undeformed, zones
 from verify.report.entry import Entry, entries
 from verify.report.style import Panel
 from verify.report.summary import KINDS, Tally, headline, tally
@@ -96,6 +96,7 @@ def section(report: SceneReport, anchor: str) -> Section:
     drawn = tuple(entry for entry in found if entry.agreement is not None)
     checks = report.checks
     groups = fields.shared_snapshots(drawn)
+    draw_specimen = {"dcb": drawing.specimen, "peel": peel_drawing.specimen}[report.scene.specimen.kind]
     return Section(
         anchor=anchor,
         report=report,
@@ -103,7 +104,7 @@ def section(report: SceneReport, anchor: str) -> Section:
         sentence=sentence(report.scene),
         headline=headline(len(checks), sum(not check.passed for check in checks), 1).removesuffix(" on 1 scene"),
         inputs=tuple((k, tuple(row[1:] for row in g)) for k, g in groupby(inputs(report.scene), itemgetter(0))),
-        specimen=drawing.specimen(report.scene, f"{anchor}-specimen", _zone(groups)),
+        specimen=draw_specimen(report.scene, f"{anchor}-specimen", _zone(groups)),
         figures=_figures(report, drawn, groups, anchor),
         checks=tuple((tally(kind, checks), _check_groups(kind, checks)) for kind in KINDS),
         rows=tuple(_run_row(entry, report.scene) for entry in found),

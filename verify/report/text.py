@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup, escape
 
 from verify.effects import simulated
+from verify.specimen import MATERIALS
 
 if TYPE_CHECKING:
     from verify.scene import Scene
     from verify.schema import Discretization
+    from verify.specimen import Dcb, Material, Peel
 
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 NO_VALUE = "no value"
@@ -122,14 +124,22 @@ def sentence(scene: Scene) -> str:
     """What was solved, and with which effects, in words."""
     units, specimen = Units.of(scene.units), scene.specimen
     openings = " → ".join(number(v, 4) for v in programme(scene))
+    moved = f"to {openings} {units.length}".rstrip()
+    law, done = f"a {scene.interface.law} traction law", f"{_body(specimen, units.length)} {moved}"
+    return f"{done}, in plane {specimen.plane}, with {law} and {_effects(scene)}."
+
+
+def _body(specimen: Dcb | Peel, unit: str) -> str:
+    """The specimen and what is done to it."""
+    if specimen.kind == "peel":
+        lengths = ("strip_length", "strip_thickness", "substrate_length", "substrate_thickness", "bond_length")
+        strip, thick, substrate, depth, bond = (quantity(getattr(specimen, name), unit) for name in lengths)
+        bodies = f"A strip of {strip} by {thick}, bonded over {bond} to a clamped substrate of {substrate} by {depth},"
+        return f"{bodies} is peeled off by lifting its free end"
     length, thick, crack = (
-        quantity(value, units.length) for value in (specimen.length, specimen.arm_thickness, specimen.precrack)
+        quantity(value, unit) for value in (specimen.length, specimen.arm_thickness, specimen.precrack)
     )
-    body = f"A double cantilever beam with arms of {length} by {thick} and a precrack of {crack}"
-    opened = f"is opened to {openings} {units.length}".rstrip()
-    return (
-        f"{body} {opened}, in plane {specimen.plane}, with a {scene.interface.law} traction law and {_effects(scene)}."
-    )
+    return f"A double cantilever beam with arms of {length} by {thick} and a precrack of {crack} is opened"
 
 
 def _effects(scene: Scene) -> str:
@@ -140,9 +150,13 @@ def _effects(scene: Scene) -> str:
             words[kinematics] + (", chosen automatically" if asked.kinematics == "auto" else ""),
             "irreversible damage" if asked.irreversible else "reversible damage (nothing is dissipated)",
             "contact on closing" if asked.contact else "no contact",
-            "one arm against the symmetry plane" if asked.symmetry else "both arms modelled",
+            "one arm against the symmetry plane" if asked.symmetry else f"both {_bodies(scene)} modelled",
         )
     )
+
+
+def _bodies(scene: Scene) -> str:
+    return "bodies" if scene.specimen.kind == "peel" else "arms"
 
 
 def modelled(scene: Scene, method: str) -> str:
@@ -153,7 +167,7 @@ def modelled(scene: Scene, method: str) -> str:
         (
             f"{effects['kinematics']} kinematics",
             *(() if method == "lefm" else (f"{damage} damage", "contact" if effects["contact"] else "no contact")),
-            "one arm" if effects["symmetry"] else "both arms",
+            "one arm" if effects["symmetry"] else f"both {_bodies(scene)}",
         )
     )
 
@@ -164,11 +178,16 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
     specimen, law, mesh = scene.specimen, scene.interface, scene.discretization
     g_u = 2 * law.toughness / law.strength
     rows = [
-        ("specimen", "length", quantity(specimen.length, units.length)),
-        ("specimen", "arm thickness", quantity(specimen.arm_thickness, units.length)),
-        ("specimen", "precrack", quantity(specimen.precrack, units.length)),
-        ("specimen", "width", quantity(specimen.width, units.length)),
-        *(("material", name, quantity(value, unit)) for name, value, unit in _moduli(scene, units)),
+        *(
+            ("specimen", name.replace("_", " "), quantity(value, units.length))
+            for name, value in specimen
+            if isinstance(value, float)
+        ),
+        *(
+            (body, name, quantity(value, unit))
+            for body in MATERIALS[specimen.kind]
+            for name, value, unit in _moduli(getattr(scene, body), units)
+        ),
         ("interface", "strength p_max", quantity(law.strength, units.stress)),
         ("interface", "toughness G_Ic", quantity(law.toughness, units.toughness)),
         ("interface", "full opening g_u = 2 G_Ic / p_max", quantity(g_u, units.length)),
@@ -190,9 +209,8 @@ def _points(mesh: Discretization) -> str:
     return f"{mesh.interface_points} per element, {mesh.interface_rule}"
 
 
-def _moduli(scene: Scene, units: Units) -> list[tuple[str, float, str]]:
-    """Elastic constants that the scene gives."""
-    material = scene.material
+def _moduli(material: Material, units: Units) -> list[tuple[str, float, str]]:
+    """Elastic constants as they are given."""
     names = (
         ("young", "Young's modulus", units.stress),
         ("poisson", "Poisson's ratio", ""),

@@ -1,6 +1,6 @@
 """Undeformed meshes: the elements of every run, T-meshes and their T-junctions, the process zone to scale.
 
-The arms are drawn apart by a constant width of ink, so that the T-junctions on both sides of the bond are seen; the
+The bodies are drawn apart by a constant width of ink, so that the T-junctions on both sides of the bond are seen; the
 process zone is a band between them.
 """
 
@@ -61,8 +61,14 @@ def followed(scene: Scene, drawn: Sequence[Entry], key: str) -> Panel | None:
     return Panel(svg, f"{head} Drawn as above.", "wide")
 
 
+def zone_at(scene: Scene, snapshot: Snapshot) -> Limits | None:
+    """Where the process zone begins and ends along X; None where nothing is damaged."""
+    zone = process_zone(snapshot)
+    return None if zone is None else tuple(sorted(map(scene.specimen.place, zone)))
+
+
 def bond_element(snapshot: Snapshot, zone: Limits) -> float:
-    """Longest element side on the bond, of either arm, that reaches into the process zone; NaN where there is none."""
+    """Longest element side on the bond, of either body, that reaches into the process zone; NaN where there is none."""
     X_eki = _corners(snapshot)
     ends_nki = np.stack([X_eki, np.roll(X_eki, -1, axis=1)], axis=2).reshape(-1, 2, 2)
     near = _ON_BOND * np.ptp(X_eki[..., 0])
@@ -71,7 +77,7 @@ def bond_element(snapshot: Snapshot, zone: Limits) -> float:
     return float(np.diff(x_nk[met], axis=1).max(initial=0.0)) or float("nan")
 
 
-def draw(axes: Axes, snapshot: Snapshot, ink: str, frame: tuple[Limits, Limits]) -> None:
+def draw(axes: Axes, snapshot: Snapshot, ink: str, frame: tuple[Limits, Limits], zone: Limits | None) -> None:
     """The mesh within a frame, which the axes get as their limits: elements, T-mesh, T-junctions, process zone."""
     x, y = frame
     height = axes.get_position().height * axes.figure.get_size_inches()[1]
@@ -87,7 +93,7 @@ def draw(axes: Axes, snapshot: Snapshot, ink: str, frame: tuple[Limits, Limits])
         points_ni = points_nki[seen(points_nki, frame), 0]
         if len(points_ni):
             axes.plot(*points_ni.T, linestyle="none", label="T-junctions", **{**JUNCTIONS, "markersize": 1.8})
-    if (zone := process_zone(snapshot)) is not None:
+    if zone is not None:
         axes.plot(zone, (0.0, 0.0), label="zone", **_ZONE)
     axes.set(xlim=frame[0], ylim=frame[1])
 
@@ -102,13 +108,14 @@ def _picture(
         figure, pairs = rows(len(titled), height, _FOOT)
         for (whole, close), (entry, snapshot, name) in zip(pairs, titled, strict=True):
             part = zoom(scene, [snapshot] if moving else [s for _, s, _ in titled], height - _APART)
-            draw(whole, snapshot, colour(entry.line.colour), whole_frame)
-            draw(close, snapshot, colour(entry.line.colour), part)
+            zone = zone_at(scene, snapshot)
+            for axes, frame in ((whole, whole_frame), (close, part)):
+                draw(axes, snapshot, colour(entry.line.colour), frame, zone)
             mark(whole, (part[0], whole.get_ylim()))
             whole.spines["left"].set_visible(False)
             for axes in (whole, close):
                 axes.set_yticks([])
-            whole.set_title(f"{name}: {_counted(snapshot, units)}", color=colour(entry.line.colour))
+            whole.set_title(f"{name}: {_counted(snapshot, zone, units)}", color=colour(entry.line.colour))
         pairs[-1][0].set_xlabel(axis("position", units.length))
         pairs[-1][1].set_xlabel(axis("position, enlarged", units.length))
         _legend(figure, any(len(snapshot.line_nki) for _, snapshot, _ in titled))
@@ -117,7 +124,7 @@ def _picture(
 
 def _explained(titled: Sequence[tuple[Entry, Snapshot, str]], stretch: float) -> str:
     left = f"on the left {number(stretch, 2)} times too thick" if stretch > 1.01 else "on the left to scale"
-    text = f"Arms {left}, on the right to scale; drawn apart, with the process zone between them."
+    text = f"Bodies {left}, on the right to scale; drawn apart, with the process zone between them."
     if any(len(snapshot.junction_ni) for _, snapshot, _ in titled):
         text += (
             " Of T-splines the lines of the T-mesh are drawn over the Bézier elements. A line that ends at a T-junction"
@@ -126,11 +133,10 @@ def _explained(titled: Sequence[tuple[Entry, Snapshot, str]], stretch: float) ->
     return text
 
 
-def _counted(snapshot: Snapshot, units: Units) -> str:
+def _counted(snapshot: Snapshot, zone: Limits | None, units: Units) -> str:
     """Elements in all and in the process zone, and T-junctions, in words."""
     text = f"{len(snapshot.X_euvi)} elements"
     text += f", {junctions} T-junctions" if (junctions := len(snapshot.junction_ni)) else ""
-    zone = process_zone(snapshot)
     element = bond_element(snapshot, zone) if zone is not None else float("nan")
     if np.isfinite(element):
         count = number((zone[1] - zone[0]) / element, 2)
@@ -174,7 +180,7 @@ def _corners(snapshot: Snapshot) -> np.ndarray:
 def _frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[tuple[Limits, Limits], float, float]:
     """Limits of the full view, height of a row in inches, and how much the specimen is stretched through its arms."""
     x_ni = np.concatenate([np.asarray(s.X_euvi).reshape(-1, 2) for s in snapshots])
-    pad = 0.01 * scene.specimen.length
+    pad = 0.01 * scene.specimen.extent
     left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
     reach = 1.06 * float(np.abs(x_ni[:, 1]).max())
     right = max(right, left + WHOLE / (HIGHEST - _APART) * 2 * reach)
