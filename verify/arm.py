@@ -7,7 +7,7 @@ since its supports carry nothing and the tractions stay vertical; so these four 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,12 +26,27 @@ class Arm:
     stretch: float
     finite: bool
 
-    def rates(self, y: np.ndarray, k: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Rates (..., 4) and their derivative (..., 4, 4) at states ``y`` (..., 4) on a foundation of force c + k v.
+    @property
+    def states(self) -> int:
+        return 4
+
+    def linear(self) -> Arm:
+        return replace(self, finite=False)
+
+    def gap(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Half the gap to the mirror image, which is the deflection, (...,), and its derivative (..., 4)."""
+        d = np.zeros_like(y)
+        d[..., V] = 1.0
+        return y[..., V], d
+
+    def rates(self, y: np.ndarray, on: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rates (..., 4) and their derivative (..., 4, 4) at states ``y`` (..., 4) on a foundation of force c + k v,
+        ``on`` (..., 3) with k and c first.
 
         Linear: Timoshenko, v' = phi + V / (kappa G A). Finite: geometrically exact, r' = (1 + eps) t + gamma n
         (Reissner 1972, eqs. 1-9), with N = V sin(phi) = EA eps and Q = V cos(phi) = kappa G A gamma.
         """
+        k, c = on[..., 0], on[..., 1]
         d = np.zeros((*y.shape, 4))
         d[..., PHI, MOMENT] = 1.0
         d[..., FORCE, V] = k
@@ -52,13 +67,13 @@ class Arm:
         d[..., MOMENT, FORCE] = -along - force * soft * sin * cos
         return sin + force * d[..., V, FORCE], -force * along
 
-    def energy(self, y: np.ndarray) -> np.ndarray:
+    def energy(self, y: np.ndarray, on: np.ndarray) -> np.ndarray:
         """Strain energy per unit length (...,), in units of EI / h^2."""
         force, phi = y[..., FORCE], y[..., PHI]
         axial, shear = (force * np.sin(phi), force * np.cos(phi)) if self.finite else (0.0, force)
         return 0.5 * (y[..., MOMENT] ** 2 + self.stretch * axial**2 + self.shear * shear**2)
 
-    def decay(self, k: float, force: float) -> float:
-        """Fastest rate of the exponentials exp(r x) on a foundation of stiffness ``k`` under the force ``force``."""
-        roots = np.roots([1.0, -k * self.shear, k])
+    def decay(self, on: np.ndarray, force: float) -> float:
+        """Fastest rate of the exponentials exp(r x) on the foundation ``on`` (3,) under the force ``force``."""
+        roots = np.roots([1.0, -on[0] * self.shear, on[0]])
         return float(np.sqrt(max(np.abs(roots).max(), abs(force) if self.finite else 0.0)))

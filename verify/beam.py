@@ -1,10 +1,12 @@
-"""The cohesive beam: the arm of a DCB as a shear-flexible beam on the bilinear law, solved to rounding.
+"""The cohesive beam: a shear-flexible beam on the bilinear law, solved to rounding.
 
-By symmetry one arm is enough, the gap is twice its deflection. In each zone (free, open, softening, elastic, contact)
-the equations are smooth, and linear for linear kinematics; the mesh keeps its nodes on the ends of the zones, so that
-nothing is ever integrated across a kink. The path is followed by the place of the damage front, which only advances:
-snap-backs of load or opening are no event. Since the traction is continuous from zone to zone, a small error in the
-place of an end of a zone does not change the solution to first order, and Newton on states and ends is quadratic.
+It is the arm of a DCB, one of which is enough by symmetry, the gap being twice its deflection; or the strip of a peel
+test, on the interface in series with the substrate as a foundation of two parameters (``verify.layer``). In each zone
+(free, open, softening, elastic, contact) the equations are smooth, and linear for linear kinematics; the mesh keeps its
+nodes on the ends of the zones, so that nothing is ever integrated across a kink. The path is followed by the place of
+the damage front, which only advances: snap-backs of load or opening are no event. Since the traction is continuous from
+zone to zone, a small error in the place of an end of a zone does not change the solution to first order, and Newton on
+states and ends is quadratic.
 
 Source: Skec, Alfano, Jelenic (2019), Int. J. Fract. 215, 67-89, for the linear beam; here with contact, a free far
 end, and with geometrically exact kinematics.
@@ -13,7 +15,7 @@ end, and with geometrically exact kinematics.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,17 +23,20 @@ from verify.arm import SHEAR_CORRECTION, Arm
 from verify.equilibrium import Model, intact
 from verify.front import Pace, follow
 from verify.law import Bilinear
+from verify.layer import Layer
 from verify.rows import Units, row, snapshot
-from verify.zones import Foundation
+from verify.strip import Strip
+from verify.zones import Ends, Foundation
 
 
 @dataclass(frozen=True)
 class BeamProblem:
-    """A double cantilever beam under a monotone opening.
+    """A double cantilever beam, or a strip that is peeled off a ``substrate``, under a monotone opening.
 
-    ``young`` is the effective axial modulus (plane strain: E / (1 - nu^2); orthotropic: E1), ``shear`` the shear
-    modulus (orthotropic: G12). ``opening`` is the end of the programme, or the programme; it must not unload.
-    ``irreversible`` false books what damage costs as stored. ``points`` is roughly the number of rows.
+    A strip has the length and the thickness of an arm, and the length that is not bonded is its precrack. ``young`` is
+    the effective axial modulus (plane strain: E / (1 - nu^2); orthotropic: E1), ``shear`` the shear modulus
+    (orthotropic: G12). ``opening`` is the end of the programme, or the programme; it must not unload. ``irreversible``
+    false books what damage costs as stored. ``points`` is roughly the number of rows.
     """
 
     length: float
@@ -50,6 +55,7 @@ class BeamProblem:
     points: int = 150
     irreversible: bool = True
     snapshot_openings: tuple[float, ...] = ()
+    substrate: Layer | None = None
 
     @property
     def law(self) -> Bilinear:
@@ -85,10 +91,20 @@ class Solution:
 
 
 def model(problem: BeamProblem) -> Model:
-    """Scale a problem by the arm thickness and the bending stiffness."""
+    """Scale a problem by the arm thickness and the bending stiffness.
+
+    The substrate is left out beyond the loaded end of the strip.
+    """
     h, bending, area = problem.arm_thickness, problem.bending, problem.width * problem.arm_thickness
     arm = Arm(bending / (SHEAR_CORRECTION * problem.shear * area * h**2), 1.0 / 12.0, problem.kinematics == "finite")
-    return Model(arm, Foundation.of(problem.law, problem.width, h, bending), problem.precrack / h, problem.length / h)
+    base = Foundation.of(problem.law, problem.width, h, bending, 1 if problem.substrate else 2)
+    ends = Ends(problem.precrack / h, problem.length / h)
+    if problem.substrate is None:
+        return Model(arm, base, ends)
+    k, g = problem.substrate.beneath(bending / problem.width, problem.law.stiffness)
+    unit = problem.width * h**2 / bending
+    strip = Strip(arm, k * unit * h**2, g * unit)
+    return Model(strip, base, replace(ends, edge=max(0.0, problem.length - problem.substrate.length) / h))
 
 
 def solve(problem: BeamProblem, on_step: Callable[[Mapping[str, float]], None] | None = None) -> Solution:

@@ -1,4 +1,4 @@
-"""Gauss collocation for a boundary value problem y' = f(y) of four states on elements that the caller places.
+"""Gauss collocation for a boundary value problem y' = f(y) of a few states on elements that the caller places.
 
 The stages of every element are eliminated first (all elements at once), which leaves one banded system for the states
 at the nodes. Nothing is shot across the domain: growing and decaying solutions are both harmless.
@@ -8,12 +8,14 @@ Source: Ascher, Mattheij, Russell (1995), Numerical Solution of Boundary Value P
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from scipy.linalg import solve_banded
 
 STAGES = 8
-STATES = 4
+
+Rows: TypeAlias = tuple[np.ndarray, np.ndarray]
 
 
 def _tableau(stages: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -41,14 +43,22 @@ _LOCAL = np.concatenate(([0.0], ABSCISSAE, [1.0]))
 
 @dataclass(frozen=True)
 class Field:
-    """A piecewise polynomial of four states.
+    """A piecewise polynomial of a states.
 
-    x : (n + 1,) nodes; node : (n + 1, 4) states there; stage : (n, s, 4) states at the Gauss points of the elements.
+    x : (n + 1,) nodes; node : (n + 1, a) states there; stage : (n, s, a) states at the Gauss points of the elements.
     """
 
     x: np.ndarray
     node: np.ndarray
     stage: np.ndarray
+
+    @staticmethod
+    def zero(x: np.ndarray, states: int) -> Field:
+        return Field(x, np.zeros((len(x), states)), np.zeros((len(x) - 1, STAGES, states)))
+
+    @property
+    def states(self) -> int:
+        return self.node.shape[1]
 
     @property
     def stage_x(self) -> np.ndarray:
@@ -61,13 +71,13 @@ class Field:
         return np.diff(self.x)[:, None] * WEIGHTS
 
     def samples(self) -> tuple[np.ndarray, np.ndarray]:
-        """Every node and Gauss point in order: positions (m,) and states (m, 4)."""
+        """Every node and Gauss point in order: positions (m,) and states (m, a)."""
         x = np.concatenate((self.x[:-1, None], self.stage_x), axis=1).ravel()
-        y = np.concatenate((self.node[:-1, None], self.stage), axis=1).reshape(-1, STATES)
+        y = np.concatenate((self.node[:-1, None], self.stage), axis=1).reshape(-1, self.states)
         return np.append(x, self.x[-1]), np.vstack((y, self.node[-1]))
 
     def at(self, x: np.ndarray) -> np.ndarray:
-        """States (..., 4) at ``x`` (...)."""
+        """States (..., a) at ``x`` (...)."""
         e = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, len(self.x) - 2)
         length = self.x[e + 1] - self.x[e]
         local = (x - self.x[e]) / np.where(length > 0.0, length, 1.0)
@@ -76,8 +86,7 @@ class Field:
 
     def on(self, x: np.ndarray) -> Field:
         """The same function on other nodes."""
-        moved = Field(x, np.zeros((len(x), STATES)), np.zeros((len(x) - 1, STAGES, STATES)))
-        return Field(x, self.at(x), self.at(moved.stage_x))
+        return Field(x, self.at(x), self.at(Field.zero(x, self.states).stage_x))
 
     def plus(self, change: Field, factor: float = 1.0) -> Field:
         return Field(self.x, self.node + factor * change.node, self.stage + factor * change.stage)
@@ -88,58 +97,60 @@ class Linearised:
     """One Newton linearisation: transfer of a change across each element, and of the stages by the left node."""
 
     x: np.ndarray
-    transfer: np.ndarray  # (n, 4, 4)
-    defect: np.ndarray  # (n, 4)
-    stage_transfer: np.ndarray  # (n, s, 4, 4)
-    stage_defect: np.ndarray  # (n, s, 4)
+    transfer: np.ndarray  # (n, a, a)
+    defect: np.ndarray  # (n, a)
+    stage_transfer: np.ndarray  # (n, s, a, a)
+    stage_defect: np.ndarray  # (n, s, a)
 
 
 def linearise(field: Field, f: np.ndarray, df: np.ndarray) -> Linearised:
-    """Eliminate the stages, given the rates ``f`` (n, s, 4) and their derivative ``df`` (n, s, 4, 4) at the stages."""
-    n, s = f.shape[:2]
+    """Eliminate the stages, given the rates ``f`` (n, s, a) and their derivative ``df`` (n, s, a, a) at the stages."""
+    n, s, states = f.shape
     length = np.diff(field.x)
-    system = -np.einsum("e,ij,ejab->eiajb", length, MATRIX, df).reshape(n, s * STATES, s * STATES)
-    system += np.eye(s * STATES)
+    system = -np.einsum("e,ij,ejab->eiajb", length, MATRIX, df).reshape(n, s * states, s * states)
+    system += np.eye(s * states)
     residual = field.stage - field.node[:-1, None] - np.einsum("e,ij,eja->eia", length, MATRIX, f)
-    right = np.concatenate((np.broadcast_to(np.tile(np.eye(STATES), (s, 1)), (n, s * STATES, STATES)),
-                            -residual.reshape(n, s * STATES, 1)), axis=2)
-    solved = np.linalg.solve(system, right).reshape(n, s, STATES, STATES + 1)
+    right = np.concatenate((np.broadcast_to(np.tile(np.eye(states), (s, 1)), (n, s * states, states)),
+                            -residual.reshape(n, s * states, 1)), axis=2)
+    solved = np.linalg.solve(system, right).reshape(n, s, states, states + 1)
     carried = np.einsum("e,j,ejab,ejbc->eac", length, WEIGHTS, df, solved)
     defect = field.node[:-1] - field.node[1:] + np.einsum("e,j,eja->ea", length, WEIGHTS, f) + carried[..., -1]
-    return Linearised(field.x, np.eye(STATES) + carried[..., :-1], defect, solved[..., :-1], solved[..., -1])
+    return Linearised(field.x, np.eye(states) + carried[..., :-1], defect, solved[..., :-1], solved[..., -1])
 
 
-def change(linear: Linearised, left: tuple[int, float], right: tuple[tuple[int, float], ...],
-           control: tuple[int, int, float], homogeneous: bool = False) -> Field:
+def change(linear: Linearised, left: Rows, right: Rows, control: tuple[int, np.ndarray, float],
+           homogeneous: bool = False) -> Field:
     """Newton change of a field.
 
-    ``left`` = (state, value) at the first node, ``right`` = two of them at the last, ``control`` = (node, state,
-    value); values are those of the change. ``homogeneous`` drops the defects: the tangent of the path.
+    ``left`` and ``right`` = conditions (b, a) on the states at the first and the last node and their values (b,);
+    ``control`` = (node, condition (a,), value). As many conditions as states; values are those of the change.
+    ``homogeneous`` drops the defects: the tangent of the path.
     """
-    n = len(linear.transfer)
+    n, states = linear.defect.shape
+    begins = len(left[1])
     defect = np.zeros_like(linear.defect) if homogeneous else linear.defect
-    below, above = 5, 6
-    band = np.zeros((below + above + 1, STATES * (n + 1)))
-    rhs = np.zeros(STATES * (n + 1))
+    below, above = states + begins, 2 * states - 1 - begins
+    band = np.zeros((below + above + 1, states * (n + 1)))
+    rhs = np.zeros(states * (n + 1))
+    a = np.arange(states)
 
     def put(row, column, value):
         band[above + row - column, column] = value
 
+    def conditions(row, node, rows, values):
+        place = row + np.arange(len(values))
+        put(place[:, None], states * node + a, rows)
+        rhs[place] = values
+
     e = np.arange(n)
-    first_row = STATES * e + np.where(e < control[0], 1, 2)
-    a = np.arange(STATES)
+    first_row = states * e + begins + (e >= control[0])
     rows = first_row[:, None, None] + a[:, None]
-    put(rows, STATES * e[:, None, None] + a, -linear.transfer)
-    put(first_row[:, None] + a, STATES * (e[:, None] + 1) + a, 1.0)
+    put(rows, states * e[:, None, None] + a, -linear.transfer)
+    put(first_row[:, None] + a, states * (e[:, None] + 1) + a, 1.0)
     rhs[first_row[:, None] + a] = defect
-    put(0, left[0], 1.0)
-    rhs[0] = left[1]
-    row = STATES * control[0] + 1
-    put(row, STATES * control[0] + control[1], 1.0)
-    rhs[row] = control[2]
-    for i, (state, value) in enumerate(right):
-        put(STATES * n + 2 + i, STATES * n + state, 1.0)
-        rhs[STATES * n + 2 + i] = value
-    node = solve_banded((below, above), band, rhs).reshape(n + 1, STATES)
+    conditions(0, 0, *left)
+    conditions(states * control[0] + begins, control[0], control[1][None], np.array([control[2]]))
+    conditions(states * n + begins + 1, n, *right)
+    node = solve_banded((below, above), band, rhs).reshape(n + 1, states)
     stage = np.einsum("eiab,eb->eia", linear.stage_transfer, node[:-1])
     return Field(linear.x, node, stage if homogeneous else stage + linear.stage_defect)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from verify.arm import FORCE, MOMENT, Arm, V
-from verify.collocation import STAGES, STATES, Field, change, linearise
-from verify.zones import ELASTIC, Foundation, Zones, find, mesh, peak_force, start
+from verify.collocation import Field, Rows, change, linearise
+from verify.strip import LAYER_SHEAR, Strip
+from verify.zones import CONTACT, ELASTIC, Ends, Foundation, Zones, find, mesh, peak_force
 
 TOLERANCE = 1e-11
 ELSEWHERE = 1e-7
@@ -19,10 +20,16 @@ MAX_ITERATIONS = 40
 class Model:
     """The problem in the units of the arm."""
 
-    arm: Arm
+    arm: Arm | Strip
     base: Foundation
-    precrack: float
-    length: float
+    ends: Ends
+
+    def nothing_at_ends(self, field: Field) -> tuple[Rows, Rows]:
+        """Conditions of the change at both ends: no moment, no shear of a layer, and no force at the far one."""
+        layer = [LAYER_SHEAR] if self.arm.states > LAYER_SHEAR else []
+        unit = np.eye(self.arm.states)
+        first, last = [MOMENT, *layer], [FORCE, MOMENT, *layer]
+        return (unit[first], -field.node[0, first]), (unit[last], -field.node[-1, last])
 
 
 @dataclass(frozen=True)
@@ -42,11 +49,20 @@ class State:
 
 @dataclass(frozen=True)
 class Control:
-    """The deflection ``value`` at ``at``. ``front`` fixes the place of the damage front; None lets it follow."""
+    """The deflection of the loaded end, where ``at`` is 0, or the gap (of one arm) there: ``value``. ``front`` fixes
+    the place of the damage front; None lets it follow."""
 
     at: float
     value: float
     front: float | None
+
+
+def controlled(m: Model, y: np.ndarray, at: float) -> tuple[float, np.ndarray]:
+    """What a control at ``at`` prescribes, at states ``y`` (a,), and its derivative (a,)."""
+    if at > 0.0:
+        gap, by = m.arm.gap(y)
+        return float(gap), by
+    return float(y[V]), np.eye(m.arm.states)[V]
 
 
 def settle(m: Model, guess: Field, zones: Zones, control: Control) -> State | None:
@@ -62,18 +78,19 @@ def _newton(m: Model, field: Field, zones: Zones, control: Control) -> State | N
     for iteration in range(1, MAX_ITERATIONS + 1):
         x, kind = mesh(m.arm, m.base, zones, peak_force(field))
         field = field.on(x)
-        linear = linearise(field, *m.arm.rates(field.stage, m.base.k[kind][:, None], m.base.c[kind][:, None]))
+        linear = linearise(field, *m.arm.rates(field.stage, m.base.on[kind][:, None]))
         node = int(np.searchsorted(x, control.at))
-        left, right = field.node[0], field.node[-1]
-        delta = change(linear, (MOMENT, -left[MOMENT]), ((FORCE, -right[FORCE]), (MOMENT, -right[MOMENT])),
-                       (node, V, control.value - field.node[node, V]))
+        left, right = m.nothing_at_ends(field)
+        value, by = controlled(m, field.node[node], control.at)
+        delta = change(linear, left, right, (node, by, control.value - value))
         field = field.plus(delta)
         if not np.all(np.isfinite(field.node)):
             return None
         if _settled(field, delta):
-            tangent = change(linear, (MOMENT, 0.0), ((FORCE, 0.0), (MOMENT, 0.0)), (node, V, 1.0), homogeneous=True)
+            left, right = ((rows, np.zeros_like(values)) for rows, values in (left, right))
+            tangent = change(linear, left, right, (node, by, 1.0), homogeneous=True)
             return State(field, kind, tangent, _front(m, field, kind, control), iteration)
-        zones = find(m.arm, m.base, field, kind, m.precrack, control.front)
+        zones = find(m.arm, m.base, field, kind, m.ends, control.front)
     return None
 
 
@@ -89,13 +106,13 @@ def _settled(field: Field, delta: Field) -> bool:
 def _front(m: Model, field: Field, kind: np.ndarray, control: Control) -> float:
     if control.front is not None:
         return control.front
-    zones = find(m.arm, m.base, field, kind, m.precrack, None)
-    return float(zones.bound[:-1][zones.kind >= ELASTIC][0])
+    zones = find(m.arm, m.base, field, kind, m.ends, None)
+    return float(zones.bound[:-1][np.isin(zones.kind, (ELASTIC, CONTACT))][0])
 
 
 def resettle(m: Model, state: State, guess: Field, control: Control) -> State | None:
     """Newton from a guess on the mesh of ``state``, in the zones that the guess has."""
-    return settle(m, guess, find(m.arm, m.base, guess, state.kind, m.precrack, control.front), control)
+    return settle(m, guess, find(m.arm, m.base, guess, state.kind, m.ends, control.front), control)
 
 
 def intact(m: Model) -> State:
@@ -104,16 +121,14 @@ def intact(m: Model) -> State:
     The penalty is raised tenfold a time, from the stiffness of the open side, so that the zones of contact are found
     however stiff it is.
     """
-    elastic, penalty = m.base.k[3:]
+    elastic, penalty = m.base.k[[ELASTIC, CONTACT]]
     n = max(0, int(np.ceil(np.log10(penalty / elastic)))) if penalty > elastic else 0
-    field = Field(np.array([0.0, m.length]), np.zeros((2, STATES)), np.zeros((1, STAGES, STATES)))
-    zones, state = start(m.precrack, m.length), None
+    field = Field.zero(np.array([0.0, m.ends.length]), m.arm.states)
+    precrack, zones, state = m.ends.precrack, m.ends.untouched(), None
     for stiffness in np.geomspace(elastic, penalty, n + 1) if n else [penalty]:
-        k = np.append(m.base.k[:4], stiffness)
-        base = Foundation(k, m.base.c, m.base.v_peak, m.base.v_open, m.base.contact)
-        part = Model(Arm(m.arm.shear, m.arm.stretch, False), base, m.precrack, m.length)
-        state = settle(part, field, zones, Control(m.precrack, m.base.v_peak, m.precrack))
+        part = replace(m, arm=m.arm.linear(), base=m.base.closing(stiffness))
+        state = settle(part, field, zones, Control(precrack, m.base.v_peak, precrack))
         if state is None:
             raise ArithmeticError("the zones of contact of the undamaged arm were not found")
-        field, zones = state.field, find(part.arm, base, state.field, state.kind, m.precrack, m.precrack)
+        field, zones = state.field, find(part.arm, part.base, state.field, state.kind, m.ends, precrack)
     return state

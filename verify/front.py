@@ -9,8 +9,8 @@ import numpy as np
 
 from verify.arm import FORCE, V
 from verify.collocation import Field
-from verify.equilibrium import Control, Model, State, resettle, settle
-from verify.zones import FREE, OPEN, SOFTENING, find
+from verify.equilibrium import Control, Model, State, controlled, resettle, settle
+from verify.zones import OPEN, SOFTENING, find
 
 #: A front that must step less than this part of the length does not advance.
 SMALLEST_STEP = 1e-7
@@ -46,22 +46,23 @@ def follow(m: Model, elastic: State, pace: Pace) -> Iterator[State | str | None]
         yield state
     largest = np.inf
     while not _reached(state, pace):
-        if m.length - state.front < SEPARATED * (m.length - m.precrack):
+        if m.ends.length - state.front < SEPARATED * (m.ends.length - m.ends.precrack):
             yield f"stopped: separated, the arms hold together over less than {SEPARATED:.1%} of the bond"
             return
         stride = pace.stride / np.hypot(*pace.rate(state.tangent)) / _per_front(m, state)
-        ds = min(stride, largest, 0.2 * (m.length - state.front))
+        ds = min(stride, largest, 0.2 * (m.ends.length - state.front))
         new = _step(m, state, ds)
         if new is None or (ds > stride / 64.0 and pace.turned(state, new) > pace.turn):
             largest = 0.5 * ds
-            if largest < SMALLEST_STEP * m.length:
-                yield f"stopped: the damage front did not advance beyond {state.front / m.length:.4g} of the length"
+            if largest < SMALLEST_STEP * m.ends.length:
+                place = state.front / m.ends.length
+                yield f"stopped: the damage front did not advance beyond {place:.4g} of the length"
                 return
             if new is None:
                 yield None
             continue
         largest = ds * np.clip(0.6 * pace.turn / max(pace.turned(state, new), 1e-12), 0.5, 2.0)
-        new = _land(m, state, new, m.precrack, m.base.v_open)
+        new = _land(m, state, new, m.ends.precrack, m.base.v_open)
         state = _land(m, state, new, 0.0, pace.end)
         yield state
     yield "complete"
@@ -78,9 +79,9 @@ def _undamaged(m: Model, elastic: State, pace: Pace) -> Iterator[State]:
     for share in np.linspace(0.0, 1.0, n + 1)[1:]:
         scale = share / (share - 1.0 / n) if share > 1.5 / n else share
         guess = Field(state.field.x, scale * state.field.node, scale * state.field.stage)
-        state = resettle(m, state, guess, Control(m.precrack, share * m.base.v_peak, m.precrack))
+        state = resettle(m, state, guess, Control(m.ends.precrack, share * m.base.v_peak, m.ends.precrack))
         if state is not None and state.field.node[0, V] > pace.end:
-            state = resettle(m, state, state.field, Control(0.0, pace.end, m.precrack))
+            state = resettle(m, state, state.field, Control(0.0, pace.end, m.ends.precrack))
         if state is None:
             raise ArithmeticError("the undamaged arm was not solved")
         yield state
@@ -89,10 +90,10 @@ def _undamaged(m: Model, elastic: State, pace: Pace) -> Iterator[State]:
 
 
 def _per_front(m: Model, state: State) -> float:
-    """How far the tangent's unit goes for a unit advance of the front: -v' there over the tangent's v."""
-    at = np.array([state.front])
-    slope = m.arm.rates(state.field.at(at), np.zeros(1), np.zeros(1))[0][0, V]
-    return float(-slope / state.tangent.at(at)[0, V])
+    """How far the tangent's unit goes for a unit advance of the front: the fall of the gap there over its change."""
+    y = state.field.at(np.array(state.front))
+    by = m.arm.gap(y)[1]
+    return float(-by @ m.arm.rates(y, np.zeros(3))[0] / (by @ state.tangent.at(np.array(state.front))))
 
 
 def _step(m: Model, state: State, ds: float) -> State | None:
@@ -109,7 +110,7 @@ def _step(m: Model, state: State, ds: float) -> State | None:
     if np.any(state.kind == OPEN) and ds > 0.25 * zone:
         guesses.reverse()
     for guess, kind in guesses:
-        new = settle(m, guess, find(m.arm, m.base, guess, kind, m.precrack, front), control)
+        new = settle(m, guess, find(m.arm, m.base, guess, kind, m.ends, front), control)
         if new is not None:
             return new
     return None
@@ -117,12 +118,11 @@ def _step(m: Model, state: State, ds: float) -> State | None:
 
 def _moved(m: Model, state: State, ds: float) -> tuple[Field, np.ndarray]:
     """The field further along by ``ds``, the arm in front of it going straight on, and the kind of its elements."""
-    inside = state.field.x + ds < m.length
-    x = np.concatenate(([0.0], state.field.x[inside] + ds, [m.length]))
-    kind = np.concatenate(([FREE], state.kind[inside[:-1]]))
-    blank = Field(x, np.zeros((len(x), 4)), np.zeros((len(x) - 1, state.field.stage.shape[1], 4)))
-    first = state.field.node[:1]
-    slope = m.arm.rates(first, np.zeros(1), np.zeros(1))[0][0, V]
+    inside = state.field.x + ds < m.ends.length
+    x = np.concatenate(([0.0], state.field.x[inside] + ds, [m.ends.length]))
+    kind = np.concatenate((state.kind[:1], state.kind[inside[:-1]]))
+    blank = Field.zero(x, m.arm.states)
+    slope = m.arm.rates(state.field.node[0], np.zeros(3))[0][V]
 
     def there(at: np.ndarray) -> np.ndarray:
         y = state.field.at(np.maximum(at - ds, 0.0))
@@ -133,8 +133,9 @@ def _moved(m: Model, state: State, ds: float) -> tuple[Field, np.ndarray]:
 
 
 def _land(m: Model, old: State, new: State, at: float, target: float) -> State:
-    """The state between two at which the deflection at ``at`` meets ``target``; ``new`` where it does not pass it."""
-    low, high, before, after = 0.0, new.front - old.front, _deflection(old, at), _deflection(new, at)
+    """The state between two at which what is controlled at ``at`` meets ``target``; ``new`` where it does not pass."""
+    low, high = 0.0, new.front - old.front
+    before, after = (controlled(m, state.field.at(np.array(at)), at)[0] for state in (old, new))
     if not before < target * (1.0 - 1e-9) < after:
         return new
     for _ in range(40):
@@ -142,14 +143,10 @@ def _land(m: Model, old: State, new: State, at: float, target: float) -> State:
         trial = _step(m, old, ds)
         if trial is None:
             return new
-        value = _deflection(trial, at)
-        rate = float(trial.tangent.at(np.array([at]))[0, V])
+        value, by = controlled(m, trial.field.at(np.array(at)), at)
+        rate = float(by @ trial.tangent.at(np.array(at)))
         landed = resettle(m, trial, trial.ahead((target - value) / rate), Control(at, target, None))
         if landed is not None and old.front <= landed.front <= new.front:
             return landed
         low, high, before, after = (low, ds, before, value) if value > target else (ds, high, value, after)
     return new
-
-
-def _deflection(state: State, at: float) -> float:
-    return float(state.field.at(np.array([at]))[0, V])

@@ -10,18 +10,21 @@ import numpy as np
 
 from verify.arm import FORCE, V
 from verify.law import Bilinear
-from verify.zones import CONTACT, ELASTIC, FREE, OPEN, SOFTENING
+from verify.strip import SURFACE, Strip
+from verify.zones import BARE, CONTACT, ELASTIC, FREE, OPEN, SOFTENING
 
 if TYPE_CHECKING:
     from verify.beam import BeamProblem
+    from verify.collocation import Field
     from verify.equilibrium import Model, State
 
 
 @dataclass(frozen=True)
 class Units:
-    """Length h, force EI / h^2, energy EI / h, and what of the problem a row needs."""
+    """Length h, force EI / h^2, energy EI / h, the number of arms, and what of the problem a row needs."""
 
     h: float
+    arms: int
     force: float
     width: float
     law: Bilinear
@@ -31,33 +34,41 @@ class Units:
     @staticmethod
     def of(problem: BeamProblem) -> Units:
         h, bending = problem.arm_thickness, problem.bending
-        griffith = np.sqrt(problem.width * problem.toughness * bending) / problem.precrack
-        return Units(h, bending / h**2, problem.width, problem.law, problem.irreversible, griffith * h**2 / bending)
+        arms = 1 if problem.substrate else 2
+        griffith = np.sqrt(2.0 / arms * problem.width * problem.toughness * bending) / problem.precrack
+        force = bending / h**2
+        return Units(h, arms, force, problem.width, problem.law, problem.irreversible, griffith / force)
 
     def deflection(self, opening: float) -> float:
-        return opening / (2.0 * self.h)
+        return opening / (self.arms * self.h)
+
+    def gap(self, m: Model, y: np.ndarray) -> np.ndarray:
+        """Gap (...,) at states (..., a), in the unit of length of the scene."""
+        return self.arms * self.h * m.arm.gap(y)[0]
 
 
 def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None) -> dict[str, float]:
     """Curve and evidence columns of a state; without the row ``before``, of the unloaded specimen.
 
     Work: Hermite rule with the exact slopes of the path. Interface energies: exact integrals of piecewise polynomials.
-    J identity of this beam: J w = 2 P |v'(0)| - 2 W(0), with v' the slope of the deflection (shear included, what
-    du_y/dX of a face is) and W the strain energy per length at the loaded section, both arms.
+    J identity of this beam: J w = n (P |v'(0)| - W(0)), with v' the slope of the deflection (shear included, what
+    du_y/dX of a face is) and W the strain energy per length at the loaded section, of n arms; of a strip less the
+    energy per length of the substrate at its right edge, and plus that at its left one. It is the first integral of the
+    equations, which depend on the place at these edges and at the end of the precrack alone.
     """
-    slope = float(-state.tangent.node[0, FORCE] / (2.0 * units.h * state.tangent.node[0, V])) * units.force
+    slope = float(-state.tangent.node[0, FORCE] / (units.arms * units.h * state.tangent.node[0, V])) * units.force
     if before is None:
         return _unloaded(m, units, slope)
     field, kind, h = state.field, state.kind, units.h
-    first = field.node[:1]
-    rate = m.arm.rates(first, np.zeros(1), np.zeros(1))[0][0, V]
-    opening, load = 2.0 * h * first[0, V], -first[0, FORCE] * units.force
+    first = field.node[0]
+    rate = float(m.arm.rates(first, np.zeros(3))[0][V])
+    opening, load = units.arms * h * first[V], -first[FORCE] * units.force
     step = opening - before["opening"]
     energies = _energies(units, m, state)
     return {
         "opening": opening,
         "load": load,
-        "crack_length": h * max([m.precrack, *field.x[1:][kind == OPEN]]),
+        "crack_length": h * max([m.ends.precrack, *field.x[1:][kind == OPEN]]),
         "stored_energy": energies["bulk"] + energies["cohesive"] + energies["contact"],
         "dissipated_energy": energies["dissipated"],
         "external_work": before["external_work"]
@@ -65,11 +76,11 @@ def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None
         + step**2 / 12.0 * (before["load_slope"] - slope),
         "newton_iterations": float(state.iterations),
         "load_slope": slope,
-        "tip_opening": 2.0 * h * float(field.at(np.array([m.precrack]))[0, V]),
-        "end_opening": 2.0 * h * float(field.at(np.array([m.length]))[0, V]),
+        "tip_opening": float(units.gap(m, field.at(np.array(m.ends.precrack)))),
+        "end_opening": float(units.gap(m, field.node[-1])),
         "face_slope_top": rate,
-        "face_slope_bottom": -rate,
-        "face_energy": 2.0 * float(m.arm.energy(first)[0]) * units.force / units.width,
+        "face_slope_bottom": -rate if units.arms == 2 else 0.0,
+        "face_energy": _face_energy(m, field) * units.arms * units.force / units.width,
         "interface_force": energies["resultant"],
         "bulk_energy": energies["bulk"],
         "cohesive_energy": energies["cohesive"],
@@ -97,29 +108,38 @@ def _unloaded(m: Model, units: Units, slope: float) -> dict[str, float]:
         "cohesive_energy",
         "contact_energy",
     )
-    return {**dict.fromkeys(names, 0.0), "crack_length": m.precrack * units.h, "load_slope": slope}
+    return {**dict.fromkeys(names, 0.0), "crack_length": m.ends.precrack * units.h, "load_slope": slope}
+
+
+def _face_energy(m: Model, field: Field) -> float:
+    """Energy per unit length at the loaded face, and of a substrate at its right edge less that at its left one."""
+    face = float(m.arm.energy(field.node[0], np.zeros(3)))
+    if not isinstance(m.arm, Strip):
+        return face
+    right, left = field.at(np.array(m.ends.edge)), field.node[-1]
+    return face + 0.5 * m.arm.bed * float(right[SURFACE] ** 2 - left[SURFACE] ** 2)
 
 
 def _law(units: Units, kind: np.ndarray, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Traction and area under the envelope, by the zone that was solved (not by the sign of a gap of no size)."""
     law = units.law
     below = law.penalty if law.contact else law.stiffness
-    k = np.array([0.0, 0.0, law.softening, law.stiffness, below])[kind]
+    k = np.array([0.0, 0.0, law.softening, law.stiffness, below, 0.0])[kind]
     traction = k * gap - np.where(kind == SOFTENING, law.softening * law.g_open, 0.0)
-    return traction, np.where(kind >= ELASTIC, 0.5 * k * gap**2, law.area(gap))
+    return traction, np.where(np.isin(kind, (ELASTIC, CONTACT)), 0.5 * k * gap**2, law.area(gap))
 
 
 def _energies(units: Units, m: Model, state: State) -> dict[str, float]:
     field, kind = state.field, state.kind[:, None]
-    dx, gap = field.stage_dx, 2.0 * units.h * field.stage[..., V]
+    dx, gap = field.stage_dx, units.gap(m, field.stage)
     traction, area = _law(units, np.broadcast_to(kind, gap.shape), gap)
     w_dx = units.width * units.h * dx
     back = 0.5 * traction * gap if units.irreversible else area
     sealed = CONTACT if units.law.contact else -1
-    bonded = kind != FREE
+    bonded = ~np.isin(kind, (FREE, BARE))
     lost = np.where(np.isin(kind, (OPEN, SOFTENING)), area - back, 0.0)
     return {
-        "bulk": 2.0 * units.force * units.h * float(np.sum(m.arm.energy(field.stage) * dx)),
+        "bulk": units.arms * units.force * units.h * float(np.sum(m.arm.energy(field.stage, m.base.on[kind]) * dx)),
         "cohesive": float(np.sum(np.where(bonded & (kind != sealed), back, 0.0) * w_dx)),
         "contact": float(np.sum(np.where(kind == sealed, back, 0.0) * w_dx)),
         "dissipated": float(np.sum(lost * w_dx)),
@@ -129,9 +149,9 @@ def _energies(units: Units, m: Model, state: State) -> dict[str, float]:
 
 def snapshot(units: Units, m: Model, state: State, values: Mapping[str, float]) -> dict[str, object]:
     """The interface of a state at the Gauss points of its mesh; a beam has no field to show."""
-    bonded = state.kind != FREE
+    bonded = ~np.isin(state.kind, (FREE, BARE))
     kind = np.repeat(state.kind[bonded], state.field.stage.shape[1])
-    gap = 2.0 * units.h * state.field.stage[bonded][..., V].ravel()
+    gap = units.gap(m, state.field.stage[bonded]).ravel()
     history = np.where(kind == ELASTIC, 0.0, np.maximum(gap, 0.0))
     return {
         "opening": values["opening"],

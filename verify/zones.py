@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from verify.arm import FORCE, Arm, V
+from verify.arm import FORCE, Arm
 from verify.collocation import Field
 from verify.law import Bilinear
+from verify.strip import Strip
 
-FREE, OPEN, SOFTENING, ELASTIC, CONTACT = range(5)
+FREE, OPEN, SOFTENING, ELASTIC, CONTACT, BARE = range(6)  # bare: free, and nothing beneath
 
 #: Beyond the last sign change whose wave still carries this part of p_max the law is taken as elastic. The wave acts
 #: back on the front by the square of it. One that is followed already is kept down to the second number, lest it
@@ -20,54 +21,83 @@ SMALLEST_WAVE = 1e-6, 1e-8
 
 @dataclass(frozen=True)
 class Foundation:
-    """The law in the units of the arm: force c + k v in each of the five zones, v at damage onset and when open."""
+    """The law in the units of the arm, of v, the gap over the number of arms that make it.
 
-    k: np.ndarray  # (5,)
-    c: np.ndarray  # (5,)
+    ``on`` (6, 3) in each of the zones the k and c of the force c + k v, and whether there is a substrate beneath;
+    ``v_peak`` at damage onset, ``v_open`` when open.
+    """
+
+    on: np.ndarray
     v_peak: float
     v_open: float
     contact: bool
 
     @staticmethod
-    def of(law: Bilinear, width: float, h: float, bending: float) -> Foundation:
-        scale = width * h**3 / bending
+    def of(law: Bilinear, width: float, h: float, bending: float, arms: int) -> Foundation:
+        scale, unit = width * h**3 / bending, arms * h
         below = law.penalty if law.contact else law.stiffness
-        k = 2.0 * h * scale * np.array([0.0, 0.0, law.softening, law.stiffness, below])
-        c = scale * np.array([0.0, 0.0, -law.softening * law.g_open, 0.0, 0.0])
-        return Foundation(k, c, law.g_peak / (2.0 * h), law.g_open / (2.0 * h), law.contact)
+        k = unit * scale * np.array([0.0, 0.0, law.softening, law.stiffness, below, 0.0])
+        c = scale * np.array([0.0, 0.0, -law.softening * law.g_open, 0.0, 0.0, 0.0])
+        beneath = np.array([1.0, 1.0, 1.0, 1.0, 1.0, 0.0])
+        on = np.stack((k, c, beneath), axis=1)
+        return Foundation(on, law.g_peak / unit, law.g_open / unit, law.contact)
+
+    @property
+    def k(self) -> np.ndarray:
+        return self.on[:, 0]
+
+    def closing(self, k: float) -> Foundation:
+        """The same with another stiffness of the contact."""
+        on = self.on.copy()
+        on[CONTACT, 0] = k
+        return replace(self, on=on)
+
+
+@dataclass(frozen=True)
+class Ends:
+    """Where the arm changes whatever it does: the end of the precrack, the far end, and ``edge`` (0 for none), from
+    which on there is a substrate beneath."""
+
+    precrack: float
+    length: float
+    edge: float = 0.0
+
+    def untouched(self) -> Zones:
+        """Nothing damaged, nothing in contact."""
+        return _full([self.edge, self.precrack, self.length], [BARE, FREE, ELASTIC])
 
 
 @dataclass(frozen=True)
 class Zones:
-    """``bound`` (n + 1,) ends of the zones along the arm, ``kind`` (n,) what each is. Zones may be empty."""
+    """``bound`` (n + 1,) ends of the zones along the arm, ``kind`` (n,) what each is."""
 
     bound: np.ndarray
     kind: np.ndarray
 
 
-def start(precrack: float, length: float) -> Zones:
-    """Nothing damaged, nothing in contact."""
-    return Zones(np.array([0.0, precrack, length]), np.array([FREE, ELASTIC]))
-
-
-def find(arm: Arm, base: Foundation, field: Field, kind_e: np.ndarray, precrack: float, front: float | None) -> Zones:
+def find(
+    arm: Arm | Strip, base: Foundation, field: Field, kind_e: np.ndarray, ends: Ends, front: float | None
+) -> Zones:
     """Zones of a field. ``front`` is where damage begins; None looks for it too (at least the end of the precrack)."""
+    precrack = ends.precrack
     x, y = field.samples()
     kind = np.append(np.repeat(kind_e, field.stage.shape[1] + 1), kind_e[-1])
-    slope = arm.rates(y, base.k[kind], base.c[kind])[0][:, V]
-    v = y[:, V]
+    v, by = arm.gap(y)
+    slope = np.sum(by * arm.rates(y, base.on[kind])[0], axis=-1)
     if front is None:
         front = _last_above(x, v, slope, base.v_peak, precrack, x[-1])
     tip = _last_above(x, v, slope, base.v_open, precrack, front)
-    followed = np.count_nonzero(np.diff(kind_e[kind_e >= ELASTIC]))
+    followed = np.count_nonzero(np.diff(kind_e[np.isin(kind_e, (ELASTIC, CONTACT))]))
     strain = np.abs(v) * np.maximum(base.k[kind] / base.k[ELASTIC], 1.0) / base.v_peak
     crossings = _waves(x, v, slope, front, followed, strain) if base.contact else []
     beyond = [ELASTIC if i % 2 == 0 else CONTACT for i in range(len(crossings) + 1)]
-    bound = [0.0, precrack, tip, front, *crossings, x[-1]]
-    kinds = [FREE, OPEN, SOFTENING, *beyond]
-    full = np.diff(bound) > 0.0
-    full[0] = True
-    return Zones(np.append(0.0, np.array(bound)[1:][full]), np.array(kinds)[full])
+    return _full([ends.edge, precrack, tip, front, *crossings, x[-1]], [BARE, FREE, OPEN, SOFTENING, *beyond])
+
+
+def _full(right: list[float], kinds: list[int]) -> Zones:
+    """Zones by their right ends, without the empty ones."""
+    full = np.diff(right, prepend=0.0) > 0.0
+    return Zones(np.append(0.0, np.array(right)[full]), np.array(kinds)[full])
 
 
 def _last_above(x, v, slope, level, low, high) -> float:
@@ -115,11 +145,11 @@ def _root(x, v, slope) -> float:
     return float(x[0] + h * t)
 
 
-def mesh(arm: Arm, base: Foundation, zones: Zones, force: float) -> tuple[np.ndarray, np.ndarray]:
+def mesh(arm: Arm | Strip, base: Foundation, zones: Zones, force: float) -> tuple[np.ndarray, np.ndarray]:
     """Nodes (n + 1,) and the kind (n,) of every element: graded to both ends of each zone, where the layers are."""
     nodes, kinds = [0.0], []
     for low, high, kind in zip(zones.bound[:-1], zones.bound[1:], zones.kind, strict=True):
-        inner = low + (high - low) * _graded(2.0 / max(arm.decay(base.k[kind], force), 1e-300), high - low)
+        inner = low + (high - low) * _graded(2.0 / max(arm.decay(base.on[kind], force), 1e-300), high - low)
         inner[-1] = high
         nodes.extend(inner)
         kinds.extend([kind] * len(inner))

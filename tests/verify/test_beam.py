@@ -158,10 +158,10 @@ def test_softening_state_is_the_closed_form():
 def test_derivative_of_the_rates(finite):
     """Against central differences, at states bent far beyond any specimen."""
     arm, rng = Arm(0.24, 1 / 12, finite), np.random.default_rng(1)
-    y, k, c = rng.normal(size=(50, 4)), rng.normal(size=50), rng.normal(size=50)
+    y, on = rng.normal(size=(50, 4)), rng.normal(size=(50, 3))
     step = 1e-6 * np.eye(4)
-    numeric = [(arm.rates(y + e, k, c)[0] - arm.rates(y - e, k, c)[0]) / 2e-6 for e in step]
-    np.testing.assert_allclose(arm.rates(y, k, c)[1], np.stack(numeric, axis=-1), rtol=1e-7, atol=1e-8)
+    numeric = [(arm.rates(y + e, on)[0] - arm.rates(y - e, on)[0]) / 2e-6 for e in step]
+    np.testing.assert_allclose(arm.rates(y, on)[1], np.stack(numeric, axis=-1), rtol=1e-7, atol=1e-8)
 
 
 @pytest.mark.parametrize("name", ["czm1_linear", "czm2_finite"])
