@@ -21,7 +21,7 @@ import numpy as np
 
 from verify.arm import SHEAR_CORRECTION, Arm
 from verify.equilibrium import Model, intact
-from verify.front import Pace, follow
+from verify.front import SEPARATED, Pace, follow
 from verify.law import Bilinear
 from verify.layer import Layer
 from verify.rows import Units, row, snapshot
@@ -82,12 +82,14 @@ class BeamProblem:
 
 @dataclass(frozen=True)
 class Solution:
-    """Rows (curve and evidence columns), how the run ended, snapshots as plain dictionaries, steps that were halved."""
+    """Rows (curve and evidence columns), how the run ended and what is worth saying of it, snapshots as plain
+    dictionaries, steps that were halved."""
 
     rows: tuple[Mapping[str, float], ...]
     status: str
     snapshots: tuple[Mapping[str, object], ...]
     rejected_steps: int = 0
+    ending: str = ""
 
 
 def model(problem: BeamProblem) -> Model:
@@ -134,4 +136,5 @@ def solve(problem: BeamProblem, on_step: Callable[[Mapping[str, float]], None] |
             wanted = [opening for opening in wanted if opening > rows[-1]["opening"] * (1.0 + 1e-9)]
         if on_step:
             on_step(rows[-1])
-    return Solution(tuple(rows), status, tuple(snapshots), rejected)
+    ending = f"separated at opening {rows[-1]['opening']:.6g}" if status == SEPARATED else ""
+    return Solution(tuple(rows), "complete" if ending else status, tuple(snapshots), rejected, ending)

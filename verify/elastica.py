@@ -14,7 +14,7 @@ from scipy.special import elliprd, elliprf
 
 @dataclass(frozen=True)
 class Arms:
-    """Points (n,) of the curve of two such arms: load, crack length, S, and dP/d(opening)."""
+    """Points (n,) of the curve of one or two such arms: load, crack length, S, and dP/d(opening)."""
 
     load: np.ndarray
     crack: np.ndarray
@@ -42,41 +42,41 @@ def shape(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return 2.0 * np.sqrt(S) * rf, 2.0 * S**1.5 * (rf - square * rd / 3.0)
 
 
-def onset(EI: float, Gw: float, crack: float) -> float:
-    """Opening at which a crack begins to run: 2 P S = G w."""
-    t = _root(lambda t: _growing(EI, Gw, t)[2] - crack, 1)
-    return float(_growing(EI, Gw, t)[1][0])
+def onset(EI: float, Gw: float, crack: float, arms: int) -> float:
+    """Opening at which a crack begins to run: P S = G w, an arm."""
+    t = _root(lambda t: _growing(EI, Gw, t, arms)[2] - crack, 1)
+    return float(_growing(EI, Gw, t, arms)[1][0])
 
 
-def fixed_crack(EI: float, crack: float, opening: np.ndarray) -> Arms:
-    """Arms of the length ``crack`` at openings (n,) >= 0."""
+def fixed_crack(EI: float, crack: float, opening: np.ndarray, arms: int) -> Arms:
+    """Arms of the length ``crack`` at openings (n,) >= 0, the sum of theirs."""
     bent = opening > 0.0
     S, P = np.zeros_like(opening), np.zeros_like(opening)
-    slope = np.full_like(opening, 1.5 * EI / crack**3)
-    t = _root(lambda t: _fixed(EI, crack, t)[1] - opening[bent], np.count_nonzero(bent))
-    S[bent], P[bent] = sine(t)[0], _fixed(EI, crack, t)[0]
-    slope[bent] = _slope(lambda t: _fixed(EI, crack, t), t)
+    slope = np.full_like(opening, 3.0 * EI / (arms * crack**3))
+    t = _root(lambda t: _fixed(EI, crack, t, arms)[1] - opening[bent], np.count_nonzero(bent))
+    S[bent], P[bent] = sine(t)[0], _fixed(EI, crack, t, arms)[0]
+    slope[bent] = _slope(lambda t: _fixed(EI, crack, t, arms), t)
     return Arms(P, np.full_like(opening, crack), S, slope)
 
 
-def growing_crack(EI: float, Gw: float, opening: np.ndarray) -> Arms:
-    """Arms whose crack is in equilibrium, 2 P S = G w, at openings (n,) > 0."""
-    t = _root(lambda t: _growing(EI, Gw, t)[1] - opening, len(opening))
-    P, _, crack = _growing(EI, Gw, t)
-    return Arms(P, crack, sine(t)[0], _slope(lambda t: _growing(EI, Gw, t)[:2], t))
+def growing_crack(EI: float, Gw: float, opening: np.ndarray, arms: int) -> Arms:
+    """Arms whose crack is in equilibrium, P S = G w an arm, at openings (n,) > 0."""
+    t = _root(lambda t: _growing(EI, Gw, t, arms)[1] - opening, len(opening))
+    P, _, crack = _growing(EI, Gw, t, arms)
+    return Arms(P, crack, sine(t)[0], _slope(lambda t: _growing(EI, Gw, t, arms)[:2], t))
 
 
-def _fixed(EI: float, crack: float, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _fixed(EI: float, crack: float, t: np.ndarray, arms: int) -> tuple[np.ndarray, np.ndarray]:
     """Load and opening of a crack of given length."""
     length, deflection = shape(t)
-    return EI * length**2 / (2.0 * crack**2), 2.0 * crack * deflection / length
+    return EI * length**2 / (2.0 * crack**2), arms * crack * deflection / length
 
 
-def _growing(EI: float, Gw: float, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _growing(EI: float, Gw: float, t: np.ndarray, arms: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Load, opening and length of a crack in equilibrium."""
     S, (length, deflection) = sine(t)[0], shape(t)
-    unit = np.sqrt(EI * S / Gw)
-    return Gw / (2.0 * S), 2.0 * unit * deflection, unit * length
+    unit = np.sqrt(0.5 * arms * EI * S / Gw)
+    return Gw / (arms * S), arms * unit * deflection, unit * length
 
 
 def _root(function: Callable[[np.ndarray], np.ndarray], n: int) -> np.ndarray:

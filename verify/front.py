@@ -16,7 +16,10 @@ from verify.zones import OPEN, SOFTENING, find
 SMALLEST_STEP = 1e-7
 
 #: The arms are separated when they hold together over less than this part of the bond.
-SEPARATED = 1e-3
+LEAST_BOND = 1e-3
+
+#: How a path ends that has come there.
+SEPARATED = "separated"
 
 
 @dataclass(frozen=True)
@@ -46,8 +49,8 @@ def follow(m: Model, elastic: State, pace: Pace) -> Iterator[State | str | None]
         yield state
     largest = np.inf
     while not _reached(state, pace):
-        if m.ends.length - state.front < SEPARATED * (m.ends.length - m.ends.precrack):
-            yield f"stopped: separated, the arms hold together over less than {SEPARATED:.1%} of the bond"
+        if m.ends.length - state.front < LEAST_BOND * (m.ends.length - m.ends.precrack):
+            yield SEPARATED
             return
         stride = pace.stride / np.hypot(*pace.rate(state.tangent)) / _per_front(m, state)
         ds = min(stride, largest, 0.2 * (m.ends.length - state.front))

@@ -37,6 +37,21 @@ class Layer:
     C22: float
     C66: float
 
+    @classmethod
+    def of(
+        cls, length: float, thickness: float, E1: float, E2: float, G12: float, nu12: float, plane: str = "stress"
+    ) -> Layer:
+        """From elastic constants; in plane strain the third direction is like the second (E3 = E2, nu13 = nu23 = nu12).
+
+        The compliances 1 / E1, -nu12 / E1 and 1 / E2 lose in plane strain what a stress across the plane takes off.
+        """
+        across = E2 if plane == "strain" else 0.0
+        s11 = 1.0 / E1 - across * (nu12 / E1) ** 2
+        s12 = -nu12 / E1 - across * nu12**2 / (E1 * E2)
+        s22 = 1.0 / E2 - across * (nu12 / E2) ** 2
+        rest = s11 * s22 - s12**2
+        return cls(length, thickness, s22 / rest, -s12 / rest, s11 / rest, G12)
+
     def stiffness(self, q: complex) -> complex:
         """Pressure over deflection K (force per area and length) of the wave number ``q`` > 0 (1 / length)."""
         depth = q * self.thickness if abs(q) * self.thickness < DEEPEST else DEEPEST

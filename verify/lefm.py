@@ -1,11 +1,12 @@
-"""The DCB by linear elastic fracture mechanics: no process zone, the crack runs as soon as G reaches G_Ic.
+"""DCB and peel test by linear elastic fracture mechanics: no process zone, the crack runs as soon as G reaches G_Ic.
 
-Four theories, each a compliance and a condition of growth:
+Five theories, each a compliance and a condition of growth, of n arms: two of a DCB, or the strip of a peel test alone.
 
-simple     opening = 2 P a^3 / (3 E I), P_c = sqrt(w G E I) / a: the arms are clamped at the crack tip
-corrected  the same with a + chi h for a: the tip rotates, the arms shear
-factors    corrected, with the factors F and N for moderately large openings
-elastica   2 P sin(theta) = G w: exact for inextensible clamped arms, however far they bend
+simple     opening = n P a^3 / (3 E I), P_c = sqrt(2 w G E I / n) / a: the arms are clamped at the crack tip
+corrected  the same with a + chi h for a: the tip rotates, the arms shear (DCB)
+factors    corrected, with the factors F and N for moderately large openings (DCB)
+elastica   n P sin(theta) = G w: exact for inextensible clamped arms, however far they bend
+kendall    P + P^2 / (2 E A) = G w: a strip that stretches and does not resist bending, peeled upright (peel)
 
 The limit of the cohesive solutions for a strength without bounds, never their target.
 """
@@ -19,7 +20,8 @@ import numpy as np
 
 from verify import elastica
 
-THEORIES = ("simple", "corrected", "factors", "elastica")
+#: Theories by the number of arms.
+THEORIES = {2: ("simple", "corrected", "factors", "elastica"), 1: ("simple", "elastica", "kendall")}
 
 #: Coefficients of the factors without load blocks: F = 1 - F2 (opening / a)^2, N = 1 - N2 (opening / a)^2.
 F2, N2 = 3.0 / 10.0, 9.0 / 35.0
@@ -27,11 +29,14 @@ F2, N2 = 3.0 / 10.0, 9.0 / 35.0
 
 @dataclass(frozen=True)
 class LefmProblem:
-    """A double cantilever beam under a monotone opening.
+    """A double cantilever beam, or with one of ``arms`` a strip on a rigid base, under a monotone opening.
+
+    A strip has the length and the thickness of an arm, and the length that is not bonded is its precrack.
 
     ``young``, ``transverse``, ``shear``: moduli along and across the arm (plane strain: E / (1 - nu^2)) and in shear.
 
-    ``theory`` is one of THEORIES or ``auto``: corrected for linear kinematics, factors for finite.
+    ``theory`` is one of THEORIES or ``auto``: corrected for linear kinematics, factors for finite; for a strip simple
+    and elastica.
     ``points`` is the number of rows after the first.
     """
 
@@ -47,6 +52,7 @@ class LefmProblem:
     kinematics: str = "linear"
     theory: str = "auto"
     points: int = 150
+    arms: int = 2
 
     @property
     def bending(self) -> float:
@@ -59,13 +65,15 @@ class LefmProblem:
 
     @property
     def named_theory(self) -> str:
-        return self.theory if self.theory != "auto" else "factors" if self.kinematics == "finite" else "corrected"
+        usual = {2: ("corrected", "factors"), 1: ("simple", "elastica")}[self.arms]
+        return self.theory if self.theory != "auto" else usual[self.kinematics == "finite"]
 
 
 @dataclass(frozen=True)
 class Solution:
     rows: tuple[Mapping[str, float], ...]
     status: str = "complete"
+    ending: str = ""
 
 
 @dataclass(frozen=True)
@@ -99,17 +107,18 @@ def solve(problem: LefmProblem, on_step: Callable[[Mapping[str, float]], None] |
 
     Raises
     ------
-    ValueError : the programme unloads, or the theory has no such name
+    ValueError : the programme unloads, or the theory is none of this specimen
     """
     end, theory = _end(problem), problem.named_theory
-    if theory not in THEORIES:
-        raise ValueError(f"theory: must be one of {', '.join(THEORIES)}, got {theory}")
-    loading, growth = (_elastica if theory == "elastica" else _factors if theory == "factors" else _beam)(problem, end)
+    if theory not in THEORIES[problem.arms]:
+        raise ValueError(f"theory: must be one of {', '.join(THEORIES[problem.arms])}, got {theory}")
+    solvers = {"elastica": _elastica, "factors": _factors, "kendall": _kendall}
+    loading, growth = solvers.get(theory, _beam)(problem, end)
     beyond = growth.crack > problem.length
     rows = _rows(problem, loading, Branch(*(getattr(growth, name)[~beyond] for name in _names(growth))))
     for row in rows if on_step else ():
         on_step(row)
-    return Solution(rows, "stopped: separated, the crack has reached the end" if beyond.any() else "complete")
+    return Solution(rows, ending=f"separated at opening {rows[-1]['opening']:.6g}" if beyond.any() else "")
 
 
 def _names(branch: Branch) -> tuple[str, ...]:
@@ -134,18 +143,18 @@ def _split(problem: LefmProblem, onset: float, end: float) -> tuple[np.ndarray, 
 def _beam(problem: LefmProblem, end: float) -> tuple[Branch, Branch]:
     """Simple and corrected beam theory; ``A`` is the effective crack length.
 
-    Growth: opening = 2/3 A^2 sqrt(G w / E I), so P ~ opening^(-1/2).
+    Growth: opening = A^2 / 3 sqrt(2 n G w / E I), so P ~ opening^(-1/2).
     """
-    EI, Gw = problem.bending, problem.resistance
+    EI, Gw, arms = problem.bending, problem.resistance, problem.arms
     more = chi(problem) * problem.arm_thickness if problem.named_theory == "corrected" else 0.0
-    reach = 2.0 / 3.0 * np.sqrt(Gw / EI)
+    reach = np.sqrt(2.0 * arms * Gw / EI) / 3.0
     first, then = _split(problem, reach * (problem.precrack + more) ** 2, end)
     A = np.full_like(first, problem.precrack + more)
-    stiffness = 3.0 * EI / (2.0 * A**3)
+    stiffness = 3.0 * EI / (arms * A**3)
     loading = Branch(first, stiffness * first, np.full_like(first, problem.precrack), stiffness,
                      0.5 * stiffness * first**2, -stiffness * first * A**2 / (2.0 * EI))
     A = np.sqrt(then / reach)
-    P = np.sqrt(Gw * EI) / A
+    P = np.sqrt(2.0 / arms * Gw * EI) / A
     growth = Branch(then, P, A - more, -0.5 * P / then, 0.5 * P * then, -P * A**2 / (2.0 * EI))
     return loading, growth
 
@@ -233,14 +242,33 @@ def _fixed_point(step, value):
 
 
 def _elastica(problem: LefmProblem, end: float) -> tuple[Branch, Branch]:
-    """2 P sin(theta) = G w on growth; before it, the elastica of the length of the precrack."""
-    EI, Gw, a0 = problem.bending, problem.resistance, problem.precrack
-    first, then = _split(problem, elastica.onset(EI, Gw, a0), end)
+    """n P sin(theta) = G w on growth; before it, the elastica of the length of the precrack."""
+    EI, Gw, a0, arms = problem.bending, problem.resistance, problem.precrack, problem.arms
+    first, then = _split(problem, elastica.onset(EI, Gw, a0, arms), end)
+    both = (first, elastica.fixed_crack(EI, a0, first, arms)), (then, elastica.growing_crack(EI, Gw, then, arms))
     parts = []
-    for opening, arm in ((first, elastica.fixed_crack(EI, a0, first)), (then, elastica.growing_crack(EI, Gw, then))):
-        stored = arm.load * (2.0 * arm.sine * arm.crack - opening)  # E I phi'^2 / 2 = P (S - sin phi), both arms
+    for opening, arm in both:
+        stored = arm.load * (arms * arm.sine * arm.crack - opening)  # E I phi'^2 / 2 = P (S - sin phi), of each arm
         parts.append(Branch(opening, arm.load, arm.crack, arm.load_slope, stored, -arm.sine))
     return parts[0], parts[1]
+
+
+def _kendall(problem: LefmProblem, end: float) -> tuple[Branch, Branch]:
+    """A strip that stretches and does not bend: loose until it stands upright, pulled, then peeled at a constant load.
+
+    (P / w) (1 - cos(theta)) + (P / w)^2 / (2 E h) = G at an angle theta of 90 degrees (Kendall 1975, J. Phys. D 8,
+    1449-1452, eq. 2). Its face has no slope to tell.
+    """
+    a0, Gw, EA = problem.precrack, problem.resistance, problem.young * problem.width * problem.arm_thickness
+    load = 2.0 * Gw / (1.0 + np.sqrt(1.0 + 2.0 * Gw / EA))  # not EA (sqrt(1 + 2 Gw / EA) - 1), which cancels
+    first, then = _split(problem, a0 * (1.0 + load / EA), end)
+    P = EA * np.maximum(first / a0 - 1.0, 0.0)
+    loading = Branch(first, P, np.full_like(first, a0), np.where(first > a0, EA / a0, 0.0), 0.5 * P**2 * a0 / EA,
+                     np.full_like(first, np.nan))
+    crack = then / (1.0 + load / EA)
+    constant = np.full_like(then, load)
+    growth = Branch(then, constant, crack, np.zeros_like(then), 0.5 * load**2 * crack / EA, np.full_like(then, np.nan))
+    return loading, growth
 
 
 def _rows(problem: LefmProblem, loading: Branch, growth: Branch) -> tuple[dict[str, float], ...]:
@@ -258,7 +286,8 @@ def _rows(problem: LefmProblem, loading: Branch, growth: Branch) -> tuple[dict[s
     }
     if problem.named_theory == "factors":
         columns["external_work"] = _work(problem, loading, growth)
-    else:
-        columns |= {"face_slope_top": both["face_slope"], "face_slope_bottom": -both["face_slope"],
+    elif problem.named_theory != "kendall":
+        other = -both["face_slope"] if problem.arms == 2 else np.zeros_like(dissipated)
+        columns |= {"face_slope_top": both["face_slope"], "face_slope_bottom": other,
                     "face_energy": np.zeros_like(dissipated)}
     return tuple({name: float(column[i]) for name, column in columns.items()} for i in range(len(dissipated)))

@@ -82,8 +82,6 @@ def solve(scene: Scene, method: str, on_step: OnStep | None = None) -> Result:
 
 def require(scene: Scene, method: str) -> None:
     """Raise ``Unsuitable`` where the method is not made for the scene, ``NotRun`` where this machine lacks it."""
-    if scene.specimen.kind == "peel" and method not in (*WITH_DOFS, "dolfinx"):
-        raise Unsuitable(f"specimen.kind: must be \"dcb\" for {method}, got 'peel' (peel: not available yet)")
     if method == "dolfinx":
         _require_elements(scene)
     if method == "dolfinx" and not dolfinx_installed():
@@ -262,20 +260,14 @@ def _beam(scene: Scene, method: str, on_step: OnStep) -> Result:
     from verify.beam import solve as solve_beam
 
     watch = Stopwatch()
-    keys, constants = problem_keys(scene, method), elastic_constants(scene.material)
-    taken = {field.name for field in fields(BeamProblem)} & set(keys)
-    problem = BeamProblem(
-        young=axial_modulus(scene),
-        shear=constants["G12"],
-        points=counted_steps(scene),
-        **{name: keys[name] for name in taken},
-    )
+    problem = BeamProblem(**_known(BeamProblem, _analytical_keys(scene, method)))
     with watch.phase("solve"):
         solution = solve_beam(problem, on_step)
     return Result(
         method=method,
         steps=steps_from_rows(solution.rows),
         status=solution.status,
+        ending=solution.ending,
         rejected_steps=solution.rejected_steps,
         snapshots=tuple(Snapshot(**snapshot) for snapshot in solution.snapshots),
         seconds=watch.seconds(),
@@ -287,15 +279,36 @@ def lefm_problem(scene: Scene) -> LefmProblem:
     """What ``verify.lefm`` solves of a scene."""
     from verify.lefm import LefmProblem
 
-    keys, constants = problem_keys(scene, "lefm"), elastic_constants(scene.material)
-    taken = {field.name for field in fields(LefmProblem)} & set(keys)
-    return LefmProblem(
-        young=axial_modulus(scene),
-        transverse=constants["E2"],
-        shear=constants["G12"],
-        points=counted_steps(scene),
-        **{name: keys[name] for name in taken},
-    )
+    return LefmProblem(**_known(LefmProblem, _analytical_keys(scene, "lefm")))
+
+
+def _analytical_keys(scene: Scene, method: str) -> dict[str, Any]:
+    """What beam and LEFM call by the same names; a strip is an arm, whose precrack is the length that is not bonded."""
+    specimen, own = scene.specimen, {}
+    if specimen.kind == "peel":
+        from verify.layer import Layer
+
+        base = elastic_constants(scene.substrate)
+        layer = Layer.of(specimen.substrate_length, specimen.substrate_thickness, plane=specimen.plane, **base)
+        own = {"substrate": layer, "arms": 1}
+    material = scene.strip if own else scene.material
+    constants = elastic_constants(material)
+    return {
+        **_common_keys(scene, method),
+        "length": specimen.extent,
+        "arm_thickness": specimen.loaded_thickness,
+        "precrack": specimen.free_length,
+        "young": axial_modulus(material, specimen.plane),
+        "transverse": constants["E2"],
+        "shear": constants["G12"],
+        "points": counted_steps(scene),
+        **own,
+    }
+
+
+def _known(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of ``keys`` that a problem has."""
+    return {field.name: keys[field.name] for field in fields(problem) if field.name in keys}
 
 
 def _lefm(scene: Scene, method: str, on_step: OnStep) -> Result:
@@ -311,15 +324,16 @@ def _lefm(scene: Scene, method: str, on_step: OnStep) -> Result:
         method=method,
         steps=steps_from_rows(solution.rows),
         status=solution.status,
+        ending=solution.ending,
         seconds=watch.seconds(),
         peak_memory_mb=peak_memory_mb(),
     )
 
 
-def axial_modulus(scene: Scene) -> float:
+def axial_modulus(material: Material, plane: str) -> float:
     """Stiffness against stretching along the arm; in plane strain E1 / (1 - nu13 nu31), E3 = E2 and nu13 = nu12."""
-    c = elastic_constants(scene.material)
-    return c["E1"] if scene.specimen.plane == "stress" else c["E1"] / (1 - c["nu12"] ** 2 * c["E2"] / c["E1"])
+    c = elastic_constants(material)
+    return c["E1"] if plane == "stress" else c["E1"] / (1 - c["nu12"] ** 2 * c["E2"] / c["E1"])
 
 
 def _result(method: str, solution: Any, watch: Stopwatch) -> Result:

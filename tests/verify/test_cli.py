@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify import methods
+from verify import lefm, methods
 from verify.cli import main
 
 PROJECT = Path(__file__).resolve().parents[2]
@@ -58,7 +58,6 @@ REFUSED = {
     ),
     "solve dcb-czm1 --method lefm --out a-file": "--out: must be a folder that can be written to, got 'a-file'",
     "solve dcb-czm1 --colour red": "--colour",
-    "solve peel-120 --method beam": "specimen.kind: must be \"dcb\" for beam, got 'peel' (peel: not available yet)",
     "solve peel-60 --method dolfinx --set dolfinx.elements=2": (
         "dolfinx.elements: must be >= 3, one on each part of the specimen, got 2"
     ),
@@ -146,10 +145,24 @@ def test_a_scene_of_ones_own_is_a_path(folder: Path) -> None:
     assert json.loads((folder / "here" / "result.json").read_text())["scene"]["name"] == "dcb-own"
 
 
-def test_a_run_that_stops_early_exits_with_one(folder: Path, capsys: pytest.CaptureFixture) -> None:
-    assert main(["solve", "dcb-czm1-linear", "--method", "lefm", "--set", "load.opening=20", "--out", "here"]) == 1
-    assert json.loads((folder / "here" / "result.json").read_text())["status"].startswith("stopped: separated")
-    assert "stopped: separated" in capsys.readouterr().err
+def test_a_run_that_stops_early_exits_with_one(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    def stops(*args: object) -> lefm.Solution:
+        return lefm.Solution(whole(*args).rows[:20], "stopped: for no reason")
+
+    whole = lefm.solve
+    monkeypatch.setattr(lefm, "solve", stops)
+    assert main(["solve", "dcb-czm1-linear", "--method", "lefm", "--out", "here"]) == 1
+    assert json.loads((folder / "here" / "result.json").read_text())["status"] == "stopped: for no reason"
+    assert "stopped: for no reason" in capsys.readouterr().err
+
+
+def test_a_specimen_that_separates_is_complete(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    assert main(["solve", "dcb-czm1-linear", "--method", "lefm", "--set", "load.opening=20", "--out", "here"]) == 0
+    about = json.loads((folder / "here" / "result.json").read_text())
+    assert about["status"] == "complete" and about["ending"].startswith("separated at opening ")
+    assert capsys.readouterr().out.splitlines()[-1].startswith("complete, separated at opening ")
 
 
 def test_without_dolfinx_there_is_a_sentence_and_three_ways(
