@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from iga.body import Body
+from iga.cohesive import BilinearLaw
 from iga.interface import Interface
 from iga.lumped import lumped
 from iga.problem import Debonding
@@ -41,27 +44,47 @@ def _everywhere(
     (middle,) = face.coefficients(np.arange(face.sides), np.full(face.sides, 0.5), 0)
     X_c = problem.pose.own(np.einsum("cb,cbi->ci", middle, face.bezier_points(P_AI)))[:, 0]
     bonded = np.flatnonzero((X_c > min(extent)) & (X_c < max(extent)))
-    xi, w = rule
-    return np.repeat(bonded, len(xi)), np.tile(xi, len(bonded)), np.tile(w, len(bonded))
+    return everywhere(bonded, rule)
 
 
 def _interface(
     problem: Debonding, bodies: tuple[Body, ...], c_q: np.ndarray, xi_q: np.ndarray, w_q: np.ndarray
 ) -> Interface:
     face, P_AI, alone = _slave(problem, bodies), control_points(bodies), len(bodies) == 1
-    r0, r1 = face.coefficients(c_q, xi_q, 1)
-    X_qi, tangent_qi = (np.einsum("qb,qbi->qi", r, face.bezier_points(P_AI)[c_q]) for r in (r0, r1))
-    return Interface(
-        N_qa=face.functions(c_q, r0),
-        conn_qa=face.conn_ca[c_q],
-        dA_q=np.linalg.norm(tangent_qi, axis=1) * w_q * problem.width,
-        X_qi=X_qi,
-        P_AI=P_AI,
-        law=problem.law,
-        master=None if alone else _facing(bodies, 1 - slave_number(problem, bodies)),
+    master = None if alone else _facing(bodies, 1 - slave_number(problem, bodies))
+    return replace(
+        between(face, master, P_AI, problem.law, (c_q, xi_q, w_q), problem.width),
         mirror_i=problem.pose.axes_kI[1] if alone else None,
         frozen=problem.kinematics == "linear",
     )
+
+
+def between(
+    slave: Surface,
+    master: Surface | None,
+    P_AI: np.ndarray,
+    law: BilinearLaw,
+    places: tuple[np.ndarray, np.ndarray, np.ndarray],
+    width: float = 1.0,
+) -> Interface:
+    """Interface between any two surfaces, each a chain of element sides.
+
+    Parameters
+    ----------
+    P_AI : (n_A, 2) control points of the whole model, in which both surfaces are numbered.
+    places : sides c_q, parameters xi_q and weights w_q (n_q,) of the points on the slave (see `everywhere`).
+    """
+    c_q, xi_q, w_q = places
+    r0, r1 = slave.coefficients(c_q, xi_q, 1)
+    X_qi, tangent_qi = (np.einsum("qb,qbi->qi", r, slave.bezier_points(P_AI, c_q)) for r in (r0, r1))
+    dA_q = np.linalg.norm(tangent_qi, axis=1) * w_q * width
+    return Interface(slave.functions(c_q, r0), slave.conn_ca[c_q], dA_q, X_qi, P_AI, law, master)
+
+
+def everywhere(c: np.ndarray, rule: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Sides, parameters and weights (n_q,) of the points of a rule on every one of some sides."""
+    xi, w = rule
+    return np.repeat(c, len(xi)), np.tile(xi, len(c)), np.tile(w, len(c))
 
 
 def control_points(bodies: tuple[Body, ...]) -> np.ndarray:

@@ -13,11 +13,13 @@ from functools import cached_property
 import numpy as np
 
 from iga.cohesive import BilinearLaw
-from iga.projection import Pairing, closest_points, nearest_samples
+from iga.projection import FREE, HELD, Pairing, closest_points, nearest_samples
 from iga.surface import Surface, normal
 
 #: Part of the model's size within which surfaces count as touching where nothing has moved.
 TOUCHING = 1e-9
+#: Part of a side beyond its end that is none.
+AT_END = 1e-9
 
 
 @dataclass(frozen=True)
@@ -76,13 +78,12 @@ class Interface:
     @cached_property
     def home(self) -> Home:
         """Reference places on the master; only where there is one."""
-        pairing = pair(self)
-        (r,) = self.master.coefficients(pairing.c_q, pairing.xi_q, 0)
-        N_qb = self.master.functions(pairing.c_q, r)
-        Y_qi = (N_qb[:, None] @ self.local_AI[self.master.conn_ca[pairing.c_q]])[:, 0]
-        apart_qi = self.at_slave(self.local_AI) - Y_qi
+        X_qi = self.at_slave(self.local_AI)
+        there = partner(self.master, pair(self), X_qi, self.local_AI)
+        Y_qi = (there.M_qb[:, None] @ self.local_AI[self.master.conn_ca[there.c_q]])[:, 0]
+        apart_qi = X_qi - Y_qi
         touching = np.linalg.norm(apart_qi, axis=1) < TOUCHING * np.ptp(self.local_AI, axis=0).max()
-        return Home(pairing.c_q, N_qb, Y_qi, np.where(touching[:, None], 0.0, apart_qi))
+        return Home(there.c_q, there.M_qb, Y_qi, np.where(touching[:, None], 0.0, apart_qi))
 
     def at_slave(self, v_Ai: np.ndarray) -> np.ndarray:
         """A field of the control points (n_A, 2) at the slave points (n_q, 2)."""
@@ -90,23 +91,47 @@ class Interface:
 
 
 @dataclass(frozen=True)
+class Partner:
+    """Places on the master, for points beyond its ends or on a kink on the straight continuation of a side.
+
+    ``c_q`` sides; ``M_qb`` and ``dM_qb`` (n_q, n_b) functions there and their derivatives; ``t_qi`` and ``t_xi_qi``
+    (n_q, 2) derivatives of the position, the second one nothing on a continuation; ``share_q`` (n_q,) part of a point's
+    area that faces the master, ``fading_q`` (n_q,) its logarithmic derivative along the surface.
+    """
+
+    c_q: np.ndarray
+    M_qb: np.ndarray
+    dM_qb: np.ndarray
+    t_qi: np.ndarray
+    t_xi_qi: np.ndarray
+    share_q: np.ndarray
+    fading_q: np.ndarray
+
+
+@dataclass(frozen=True)
 class Contact:
     """Gaps and their variations in one configuration.
 
-    ``g_q`` (n_q,), ``n_qi`` (n_q, 2) master normals, ``on_q`` False for points beyond the ends of the master.
-    ``conn_qa`` (n_q, n_a) lists the control points of slave and master side that a point touches; ``V_qrd`` (n_q, r, 2
-    n_a) holds the row of the first variation, ``dg = V_0 du``, and, where the geometry is not frozen, the rows T and
-    Nb of the second (see `stiffness`) with ``m_q`` and ``kappa_q``.
+    ``g_q`` (n_q,), ``n_qi`` (n_q, 2) master normals, ``share_q`` (n_q,) part of each point's area that faces the
+    master. ``conn_qa`` (n_q, n_a) lists the control points of slave and master side that a point touches; ``V_qrd``
+    (n_q, r, 2 n_a) holds the row of the first variation, ``dg = V_0 du``, and, where the geometry is not frozen, the
+    rows T and Nb of the second (see `stiffness`) with ``m_q``, ``kappa_q`` and ``fading_q``.
     """
 
     pairing: Pairing | None
     g_q: np.ndarray
     n_qi: np.ndarray
-    on_q: np.ndarray
+    share_q: np.ndarray
     conn_qa: np.ndarray
     V_qrd: np.ndarray
     m_q: np.ndarray | None = None
     kappa_q: np.ndarray | None = None
+    fading_q: np.ndarray | None = None
+
+    @property
+    def on_q(self) -> np.ndarray:
+        """Points (n_q,) that face the master; the others are free."""
+        return self.share_q > 0.0
 
     def rates(self, v_d: np.ndarray) -> np.ndarray:
         """Rates (n_q,) of the gaps when the displacements change by v_d."""
@@ -126,36 +151,64 @@ def pair(interface: Interface) -> Pairing | None:
     return closest_points(interface.master, X_qi, interface.local_AI, start)
 
 
+def partner(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarray) -> Partner:
+    """Where the points x_qi (n_q, 2) meet the master with the control points y_AI (n_A, 2).
+
+    Beyond the ends of a side, at ``eta`` from there, the surface goes on along its tangent, ``y + eta y'``: the gap is
+    then as smooth as the motion, its variation complete, and the forces are in balance. Up to `HELD` a point beyond an
+    end of the chain carries all its traction, from `FREE` on nothing, and in between its share falls smoothly: what it
+    stands for slides off the master little by little.
+    """
+    c_q, xi_q = pairing.c_q, pairing.xi_q
+    r0, r1, r2 = master.coefficients(c_q, xi_q, 2)
+    Q_qbi = master.bezier_points(y_AI, c_q)
+    t_qi, t_xi_qi = ((r[:, None] @ Q_qbi)[:, 0] for r in (r1, r2))
+    share_q, fading_q = np.ones(len(c_q)), np.zeros(len(c_q))
+    edge = np.flatnonzero((xi_q == 0.0) | (xi_q == 1.0))
+    if edge.size:
+        t, way = t_qi[edge], np.where(xi_q[edge] == 1.0, 1.0, -1.0)
+        d = x_qi[edge] - (r0[edge][:, None] @ Q_qbi[edge])[:, 0]
+        eta = np.sum(d * t, -1) / np.sum(t * t, -1)
+        r0[edge] += eta[:, None] * r1[edge]
+        t_xi_qi[edge] = np.where((way * eta > AT_END)[:, None], 0.0, t_xi_qi[edge])
+        at_end = master.following(c_q[edge], way.astype(int)) == c_q[edge]
+        share, rate = _share(np.where(at_end, way * eta, 0.0))
+        share_q[edge], fading_q[edge] = share, way * rate
+    M_qb, dM_qb = (master.functions(c_q, r) for r in (r0, r1))
+    return Partner(c_q, M_qb, dM_qb, t_qi, t_xi_qi, share_q, fading_q)
+
+
 def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Contact:
     """Gaps in the configuration u_d (2 n_A,), searching from the pairing ``guess``."""
     if interface.master is None:
         return _known(interface, u_d)
     master, u_Ai = interface.master, u_d.reshape(-1, 2)
-    x_AI = interface.local_AI if interface.frozen else interface.local_AI + u_Ai
-    pairing = guess if interface.frozen else closest_points(master, interface.at_slave(x_AI), x_AI, guess)
-    r0, r1, r2 = master.coefficients(pairing.c_q, pairing.xi_q, 2)
-    Q_qbi = master.bezier_points(x_AI)[pairing.c_q]
-    t_qi, t_xi_qi = ((r[:, None] @ Q_qbi)[:, 0] for r in (r1, r2))
-    n_qi = normal(t_qi, master.outward)
-    conn_qa = np.concatenate([interface.conn_qa, master.conn_ca[pairing.c_q]], axis=1)
-    M_qb = master.functions(pairing.c_q, r0)
-    D_qa = np.concatenate([interface.N_qa, -M_qb], axis=1)
-    g_q = np.sum((_slid(interface, pairing.c_q, M_qb) + _jump(D_qa, u_Ai[conn_qa])) * n_qi, -1)
+    y_AI = interface.local_AI if interface.frozen else interface.local_AI + u_Ai
+    x_qi = interface.at_slave(y_AI)
+    pairing = guess if interface.frozen else closest_points(master, x_qi, y_AI, guess)
+    there = partner(master, pairing, x_qi, y_AI)
+    n_qi = normal(there.t_qi, master.outward)
+    conn_qa = np.concatenate([interface.conn_qa, master.conn_ca[there.c_q]], axis=1)
+    D_qa = np.concatenate([interface.N_qa, -there.M_qb], axis=1)
+    g_q = np.sum((_slid(interface, there.c_q, there.M_qb) + _jump(D_qa, u_Ai[conn_qa])) * n_qi, -1)
     G_qd = _along(D_qa, n_qi)
     if interface.frozen:
-        return Contact(pairing, g_q, n_qi, pairing.on_q, conn_qa, G_qd[:, None])
-    moving_qa = np.concatenate([np.zeros_like(interface.N_qa), master.functions(pairing.c_q, r1)], axis=1)
-    V_qrd = np.stack([G_qd, _along(D_qa, t_qi), _along(moving_qa, n_qi)], axis=1)
-    m_q, kappa_q = np.sum(t_qi * t_qi, -1), np.sum(n_qi * t_xi_qi, -1)
-    return Contact(pairing, g_q, n_qi, pairing.on_q, conn_qa, V_qrd, m_q, kappa_q)
+        return Contact(pairing, g_q, n_qi, there.share_q, conn_qa, G_qd[:, None])
+    moving_qa = np.concatenate([np.zeros_like(interface.N_qa), there.dM_qb], axis=1)
+    V_qrd = np.stack([G_qd, _along(D_qa, there.t_qi), _along(moving_qa, n_qi)], axis=1)
+    m_q, kappa_q = np.sum(there.t_qi**2, -1), np.sum(n_qi * there.t_xi_qi, -1)
+    return Contact(pairing, g_q, n_qi, there.share_q, conn_qa, V_qrd, m_q, kappa_q, there.fading_q)
 
 
 def traction(
     interface: Interface, contact: Contact, k_q: np.ndarray, closed_q: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Traction, tangent and new history at all points; a point beyond the ends of the master is free."""
+    """Traction, tangent and new history at all points; a point that has left the master is free.
+
+    Traction and tangent are those of the share of each point that faces the master, over its whole area.
+    """
     p, dp, k_new = interface.law.traction(contact.g_q, k_q, closed_q)
-    return np.where(contact.on_q, p, 0.0), np.where(contact.on_q, dp, 0.0), np.where(contact.on_q, k_new, k_q)
+    return contact.share_q * p, contact.share_q * dp, np.where(contact.on_q, k_new, k_q)
 
 
 def forces(interface: Interface, contact: Contact, p_q: np.ndarray, n_dof: int) -> np.ndarray:
@@ -165,10 +218,14 @@ def forces(interface: Interface, contact: Contact, p_q: np.ndarray, n_dof: int) 
 
 
 def stiffness(interface: Interface, contact: Contact, p_q: np.ndarray, dp_q: np.ndarray) -> np.ndarray:
-    """Complete tangent of each point (n_q, 2 n_a, 2 n_a), ``K = int p' G'G dGamma + int p D(dg) dGamma``, symmetric.
+    """Complete tangent of each point (n_q, 2 n_a, 2 n_a), ``K = int p' G'G dGamma + int p D(dg) dGamma``.
 
     With y' = t, m = t.t, kappa = n.y'', a = m - g kappa, T = t.(dx - dy), Nb = n.dy', the second variation of the gap
     is ``D(dg) = -1/a [T Nb + Nb T + g Nb Nb + (kappa / m) T T]`` (Wriggers 2006, sec. 9.1, in the present notation).
+
+    Symmetric but for points that slide off the master: their share changes with the place on its continuation,
+    ``d eta = (T + g Nb) / m``, and the force along the normal with it. There is no force along the surface that would
+    make it symmetric: what slides off loses its bond and is not drawn.
     """
     V = contact.V_qrd
     c_qrs = np.zeros((len(V), V.shape[1], V.shape[1]))
@@ -179,6 +236,9 @@ def stiffness(interface: Interface, contact: Contact, p_q: np.ndarray, dp_q: np.
         c_qrs[:, 1, 1] = f * contact.kappa_q / contact.m_q
         c_qrs[:, 1, 2] = c_qrs[:, 2, 1] = f
         c_qrs[:, 2, 2] = f * contact.g_q
+        slides = p_q * interface.dA_q * contact.fading_q / contact.m_q
+        c_qrs[:, 0, 1] += slides
+        c_qrs[:, 0, 2] += slides * contact.g_q
     return V.swapaxes(1, 2) @ (c_qrs @ V)
 
 
@@ -203,7 +263,17 @@ def _known(interface: Interface, u_d: np.ndarray) -> Contact:
     D_qa = 2.0 * N_qa if interface.twin_qa is None else np.concatenate([N_qa, -N_qa], axis=1)
     n_qi = np.broadcast_to(interface.mirror_i, interface.X_qi.shape)
     g_q = np.sum((D_qa[:, None] @ u_d.reshape(-1, 2)[conn_qa])[:, 0] * n_qi, -1)
-    return Contact(None, g_q, n_qi, np.ones(interface.points, dtype=bool), conn_qa, _along(D_qa, n_qi)[:, None])
+    return Contact(None, g_q, n_qi, np.ones(interface.points), conn_qa, _along(D_qa, n_qi)[:, None])
+
+
+def _share(over: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Share of a point beyond an end by ``over``, in parts of the side, and its logarithmic derivative.
+
+    ``(1 - s)^2 (1 + 2 s)``, s from 0 at `HELD` to 1 at `FREE`.
+    """
+    s = np.clip((over - HELD) / (FREE - HELD), 0.0, 1.0)
+    left = np.where(s < 1.0, 1.0 - s, 1.0)
+    return (1.0 - s) ** 2 * (1.0 + 2.0 * s), -6.0 * np.where(s < 1.0, s, 0.0) / (left * (1.0 + 2.0 * s) * (FREE - HELD))
 
 
 def _jump(D_qa: np.ndarray, u_qai: np.ndarray) -> np.ndarray:

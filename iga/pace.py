@@ -103,8 +103,9 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
     """
     law, path = system.interface.law, point.tangent
     left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
-    g_q = point.response.contact.g_q
-    event = next_event(law, g_q, point.state.k_q, path.rate_q) if direction > 0.0 else None
+    g_q, on_q = point.response.contact.g_q, point.response.contact.on_q
+    k_q = np.where(on_q, point.state.k_q, law.g_u)  # no law has a kink for a point that is free
+    event = next_event(law, g_q, k_q, path.rate_q) if direction > 0.0 else None
     if not np.any(path.growing_q):
         exact = abs(left) < 1.001 * pace.length
         away = (left if exact else np.copysign(pace.length, left)) / opening_rate

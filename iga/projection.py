@@ -9,6 +9,14 @@ from scipy.spatial import cKDTree
 
 from iga.surface import Surface
 
+#: Sample points of the broad phase: so many on a side, and no more than this on the whole surface.
+SAMPLES, MOST = 8, 1024
+#: A point that crosses more sides than this from its last pairing has lost it.
+CROSSINGS = 8
+#: Parts of the side at an end by which a point may be beyond it: up to the first it is held as if the surface went on
+#: straight, from the second on it is free.
+HELD, FREE = 0.1, 0.3
+
 
 @dataclass(frozen=True)
 class Pairing:
@@ -19,12 +27,17 @@ class Pairing:
     on_q: np.ndarray
 
 
-def nearest_samples(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, samples: int = 8) -> Pairing:
-    """Broad phase: the nearest of a few sample points on every side, by a k-d tree."""
-    c = np.repeat(np.arange(surface.sides), samples)
-    xi = np.tile((np.arange(samples) + 0.5) / samples, surface.sides)
+def nearest_samples(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray) -> Pairing:
+    """Broad phase: the nearest of some sample points spread over the sides, by a k-d tree.
+
+    They are no more than `MOST`, so that the cost of a point has a bound, however many sides there are.
+    """
+    number = min(SAMPLES * surface.sides, MOST)
+    along = (np.arange(number) + 0.5) * (surface.sides / number)
+    c = along.astype(int)
+    xi = along - c
     (r,) = surface.coefficients(c, xi, 0)
-    y = np.einsum("qb,qbi->qi", r, surface.bezier_points(y_AI)[c])
+    y = np.einsum("qb,qbi->qi", r, surface.bezier_points(y_AI, c))
     _, nearest = cKDTree(y).query(x_qi)
     return Pairing(c[nearest], xi[nearest], np.ones(len(x_qi), dtype=bool))
 
@@ -35,8 +48,10 @@ def closest_points(
     """Project points on the surface: ``(x - y(xi)) . y'(xi) = 0`` by Newton, from the pairing before.
 
     A point that runs off a side goes on from the end of the neighbour; at the two ends of the chain it is held there
-    and marked as off. At a kink between two sides, where it would jump for ever, it stays on the kink. Where the
-    curvature makes Newton's denominator useless, ``|y'|^2`` alone takes its place (Gauss-Newton).
+    and marked as off. At a kink between two sides, where it would jump for ever, it stays on the kink. Points that have
+    lost their partner (that are free of the ends, have crossed many sides, lie deeper in the body than a side is long,
+    or stand where the distance is not least) are searched for on the whole surface. Only sides that are met are looked
+    at.
 
     Parameters
     ----------
@@ -50,35 +65,72 @@ def closest_points(
     -------
     Pairing of all points.
     """
-    Q_cbi = surface.bezier_points(y_AI)
-    c, xi = guess.c_q.copy(), guess.xi_q.copy()
-    crossings, off = np.zeros(len(c), dtype=int), np.zeros(len(c), dtype=bool)
-    active = np.arange(len(c))
+    found, apart_q, lost_q = _walk(surface, x_qi, y_AI, guess, CROSSINGS, tolerance, iterations)
+    q = np.flatnonzero(lost_q)
+    if q.size == 0:
+        return found
+    start, crossings = nearest_samples(surface, x_qi[q], y_AI), CROSSINGS + 2 * surface.sides // MOST
+    again, apart, _ = _walk(surface, x_qi[q], y_AI, start, crossings, tolerance, iterations + crossings)
+    nearer = apart < apart_q[q]
+    for old_q, new_q in ((found.c_q, again.c_q), (found.xi_q, again.xi_q), (found.on_q, again.on_q)):
+        old_q[q[nearer]] = new_q[nearer]
+    return found
+
+
+def _walk(
+    surface: Surface,
+    x_qi: np.ndarray,
+    y_AI: np.ndarray,
+    guess: Pairing,
+    crossings: int,
+    tolerance: float,
+    iterations: int,
+) -> tuple[Pairing, np.ndarray, np.ndarray]:
+    """Pairing next to a guess, how far apart it is (infinite where there is none), and which points have lost theirs.
+
+    On a side Newton is kept between the places where the distance is known to fall and to rise. Where the curvature
+    makes its denominator useless, ``|y'|^2`` alone takes its place (Gauss-Newton).
+    """
+    c_q, xi_q, on_q = guess.c_q.copy(), guess.xi_q.copy(), np.ones(len(x_qi), dtype=bool)
+    apart_q, lost_q = np.full(len(x_qi), np.inf), np.ones(len(x_qi), dtype=bool)
+    # the points under way: where they are, between which places the distance is least, and how they came to their side
+    q, x, c, xi, Q = np.arange(len(x_qi)), x_qi, c_q, xi_q, surface.bezier_points(y_AI, c_q)
+    low, high = np.full(len(q), -1.0), np.full(len(q), 2.0)  # both off the side: nothing is known
+    crossed, came, aside = np.zeros(len(q), dtype=int), np.zeros(len(q), dtype=int), np.zeros(len(q))
     for _ in range(iterations):
-        d_xi = _newton_step(surface, x_qi[active], Q_cbi, c[active], xi[active])
-        goal = xi[active] + d_xi
-        step = (goal > 1.0).astype(int) - (goal < 0.0)
-        neighbour = c[active] + step
-        at_end = (neighbour < 0) | (neighbour >= surface.sides)
-        cross = (step != 0) & ~at_end & (crossings[active] < surface.sides)
-        back_and_forth = cross & (xi[active] == np.where(step > 0, 1.0, 0.0)) & (crossings[active] > 4)
-        cross &= ~back_and_forth
-        xi[active] = np.where(cross, np.where(step > 0, 0.0, 1.0), np.clip(goal, 0.0, 1.0))
-        c[active] = np.where(cross, neighbour, c[active])
-        crossings[active] += cross
-        off[active] = at_end & (step != 0) & (np.abs(goal - xi[active]) > tolerance)
-        active = active[cross | ((np.abs(d_xi) > tolerance) & (step == 0))]
-        if active.size == 0:
+        r0, r1, r2 = surface.coefficients(c, xi, 2)
+        y, t, t_xi = ((r[:, None] @ Q)[:, 0] for r in (r0, r1, r2))
+        d = x - y
+        m, pull = np.sum(t * t, -1), np.sum(d * t, -1)
+        a = m - np.sum(d * t_xi, -1)
+        step = ((xi == 1.0) & (pull > 0.0)).astype(int) - ((xi == 0.0) & (pull < 0.0))
+        low, high = np.where(pull > 0.0, xi, low), np.where(pull < 0.0, xi, high)
+        goal = xi + pull / np.where(a > 0.1 * m, a, m)
+        goal = np.clip(np.where((goal >= low) & (goal <= high), goal, 0.5 * (low + high)), 0.0, 1.0)
+        at_end = (step != 0) & (surface.following(c, step) == c)
+        # on a kink, seen from both sides: the side whose normal is nearer keeps the point
+        on_kink = (step != 0) & (step == -came)
+        steps_back = on_kink & (aside < np.abs(pull) / np.sqrt(m))
+        stays = at_end | on_kink | ((step == 0) & (np.abs(goal - xi) <= tolerance))
+        over = np.where(step != 0, np.abs(pull) / m, 0.0)
+        leaps = (step != 0) & ~stays & (over > 2.0)
+        entry = np.where(leaps, 0.5, (step < 0).astype(float))
+        xi_next = np.where(step == 0, goal, np.where(at_end | (on_kink & ~steps_back), xi, entry))
+        further = surface.following(c, step * np.where(leaps, over, 1.0).astype(int))
+        c_next = np.where(at_end | (on_kink & ~steps_back), c, further)
+        c_q[q], xi_q[q], on_q[q] = c_next, xi_next, ~at_end | (over <= tolerance)
+        within = surface.outward * (t[:, 1] * d[:, 0] - t[:, 0] * d[:, 1]) < -m
+        lost_q[q] = ~stays | within | (at_end & (over > FREE)) | ((step == 0) & (a <= 0.0))
+        apart_q[q] = np.where(stays & ((step != 0) | (a > 0.0)), np.sqrt(np.sum(d * d, -1)), np.inf)
+        crosses = (step != 0) & ~stays
+        going = ~stays & (crossed + crosses <= crossings)
+        if not np.any(going):
             break
-    return Pairing(c, xi, ~off)
-
-
-def _newton_step(
-    surface: Surface, x_qi: np.ndarray, Q_cbi: np.ndarray, c_q: np.ndarray, xi_q: np.ndarray
-) -> np.ndarray:
-    r0, r1, r2 = surface.coefficients(c_q, xi_q, 2)
-    y, t, t_xi = (np.einsum("qb,qbi->qi", r, Q_cbi[c_q]) for r in (r0, r1, r2))
-    d = x_qi - y
-    m = np.sum(t * t, -1)
-    a = m - np.sum(d * t_xi, -1)
-    return np.sum(d * t, -1) / np.where(a > 0.1 * m, a, m)
+        low, high = np.where(crosses, -1.0, low), np.where(crosses, 2.0, high)
+        came, aside = np.where(crosses & ~leaps, step, 0), np.abs(pull) / np.sqrt(m)
+        q, x, c, xi, Q, low, high, crossed, came, aside, moved = (
+            v[going] for v in (q, x, c_next, xi_next, Q, low, high, crossed + crosses, came, aside, crosses)
+        )
+        if np.any(moved):
+            Q[moved] = surface.bezier_points(y_AI, c[moved])
+    return Pairing(c_q, xi_q, on_q), apart_q, lost_q

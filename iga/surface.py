@@ -34,13 +34,27 @@ class Surface:
         return len(self.w_cb)
 
     @cached_property
+    def closed(self) -> bool:
+        """The last side ends where the first one begins, in the same functions."""
+        end, start = self.C_cab[-1][:, -1], self.C_cab[0][:, 0]
+        ends, starts = np.abs(end) > NOTHING, np.abs(start) > NOTHING
+        return self.sides > 1 and set(self.conn_ca[-1][ends]) == set(self.conn_ca[0][starts])
+
+    @cached_property
     def polynomial(self) -> bool:
         """All weights equal one: nothing to divide by."""
         return bool(np.allclose(self.w_cb, 1.0, rtol=0.0, atol=1e-13))
 
-    def bezier_points(self, x_AI: np.ndarray) -> np.ndarray:
-        """Homogeneous Bezier points (n_c, p + 1, 2) of a configuration x_AI (n_A, 2) of the control points."""
-        return self.C_cab.swapaxes(1, 2) @ x_AI[self.conn_ca]
+    def bezier_points(self, x_AI: np.ndarray, c_q: np.ndarray | None = None) -> np.ndarray:
+        """Homogeneous Bezier points (n_c, p + 1, 2) of a configuration x_AI (n_A, 2) of the control points.
+
+        Of the sides c_q (n_q,) alone where they are told: (n_q, p + 1, 2).
+        """
+        if c_q is None:
+            return self.C_cab.swapaxes(1, 2) @ x_AI[self.conn_ca]
+        if len(c_q) > self.sides:
+            return self.bezier_points(x_AI)[c_q]
+        return self.C_cab[c_q].swapaxes(1, 2) @ x_AI[self.conn_ca[c_q]]
 
     def coefficients(self, c_q: np.ndarray, xi_q: np.ndarray, orders: int) -> tuple[np.ndarray, ...]:
         """Rational Bernstein values and derivatives (n_q, p + 1) at xi_q on the sides c_q, up to the order asked for.
@@ -57,6 +71,11 @@ class Surface:
         if orders > 1:
             r.append((B[2] - 2.0 * W[1] * r[1] - W[2] * r[0]) / W[0])
         return tuple(r)
+
+    def following(self, c_q: np.ndarray, number_q: np.ndarray) -> np.ndarray:
+        """Sides (n_q,) so many further on, or back; no further than the ends of a chain that has ends."""
+        further = c_q + number_q
+        return further % self.sides if self.closed else np.clip(further, 0, self.sides - 1)
 
     def functions(self, c_q: np.ndarray, r_qb: np.ndarray) -> np.ndarray:
         """Basis functions (n_q, p + 1), in the order of ``conn_ca[c_q]``, from coefficients r_qb on the sides c_q."""

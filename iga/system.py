@@ -230,10 +230,10 @@ def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.nd
 
 def energies(system: System, state: State, response: Response) -> tuple[float, float, float, float]:
     """Energy stored in the bulk, in cohesion and in contact, and dissipated, at a state with its history committed."""
-    interface = system.interface
-    shares = interface.law.energies(response.contact.g_q, state.k_q)
-    cohesive, contact_energy, dissipated = (float(interface.dA_q @ share_q) for share_q in shares)
-    return response.bulk_energy, cohesive, contact_energy, dissipated
+    interface, share_q = system.interface, response.contact.share_q
+    cohesive_q, contact_q, dissipated_q = interface.law.energies(response.contact.g_q, state.k_q)
+    held = (float(interface.dA_q @ (share_q * stored_q)) for stored_q in (cohesive_q, contact_q))
+    return response.bulk_energy, *held, float(interface.dA_q @ dissipated_q)
 
 
 def factorise(response: Response) -> BandLU | None:

@@ -66,7 +66,7 @@ def tangent(
     kink : the one that the state stands on; ``slope`` is the mean of both sides where these have one sign.
     """
     law, g_q = system.interface.law, response.contact.g_q
-    soft_q = on_envelope(system, state, g_q)
+    soft_q = on_envelope(system, state, g_q) & response.contact.on_q
     growing_q = soft_q if direction > 0.0 or not law.irreversible else np.zeros_like(soft_q)
     flat_q = np.abs(g_q) <= NO_GAP * law.g_max
     closed_q = state.closed_q

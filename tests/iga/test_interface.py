@@ -11,7 +11,7 @@ from iga.dcb import Problem, build
 from iga.extraction import Mesh
 from iga.interface import contact, dofs, forces, pair, rounding, stiffness, traction
 from iga.lagrange import lagrange_rectangle
-from iga.projection import closest_points, nearest_samples
+from iga.projection import FREE, closest_points, nearest_samples
 from iga.surface import surface
 from tests.iga.test_splines import quarter_annulus
 
@@ -194,8 +194,11 @@ def test_a_point_off_the_master_is_free():
     u = np.zeros((system.n_dof // 2, 2))
     u[: len(u) // 2] = [1.0, 0.1]
     touch = contact(interface, u.ravel(), system.start().pairing)
-    gone = interface.X_qi[:, 0] + 1.0 > PROBLEM.length
+    X = interface.master.bezier_points(interface.P_AI)[-1, :, 0]
+    beyond = interface.X_qi[:, 0] + 1.0 - PROBLEM.length
+    gone = beyond > FREE * (X[-1] - X[0])
     assert np.array_equal(~touch.on_q, gone) and gone.any()
+    assert np.array_equal(~touch.pairing.on_q, beyond > 0.0)
     p, dp, k = traction(interface, touch, np.zeros(interface.points), touch.g_q < 0)
     assert np.all(p[gone] == 0) and np.all(dp[gone] == 0) and np.all(k[gone] == 0)
 
