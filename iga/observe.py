@@ -20,7 +20,7 @@ from iga.system import energies
 def row(specimen: Specimen, point: Point) -> dict[str, float]:
     """Numbers of one converged point; forces and energies for the whole width, ``face_energy`` per unit width.
 
-    ``reaction_x`` and ``reaction_y`` are the sums of what the springs carry that hold the rigid motions.
+    ``reaction_x`` and ``reaction_y`` are what springs and clamps carry besides the resultant of the loads.
     """
     system, state, response = specimen.system, point.state, point.response
     bulk_energy, cohesive, contact_energy, dissipated = energies(system, state, response)
@@ -47,6 +47,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         **_balance(specimen, point, held_Ai),
         "reaction_x": float(reaction_x),
         "reaction_y": float(reaction_y),
+        **({} if system.free_d.all() else _clamp(specimen, point, held_Ai)),
         "bulk_energy": bulk_energy,
         "cohesive_energy": cohesive,
         "contact_energy": contact_energy,
@@ -115,6 +116,23 @@ def _balance(specimen: Specimen, point: Point, support_Ai: np.ndarray) -> dict[s
         "interface_force": float(pull_qi[:, 1].sum()),
         "load_moment": x_face * state.load + float(np.sum(held_Ai[:, 0] * R_Ai[:, 1] - held_Ai[:, 1] * R_Ai[:, 0])),
         "interface_moment": float(np.sum(x_qi[:, 1] * pull_qi[:, 0] - x_qi[:, 0] * pull_qi[:, 1])),
+    }
+
+
+def _clamp(specimen: Specimen, point: Point, held_Ai: np.ndarray) -> dict[str, float]:
+    """Reactions less the load, moment of the clamp, and what acts lengthwise on the upper body: tractions, springs."""
+    system, state, pose, touch = specimen.system, point.state, specimen.pose, point.response.contact
+    fixed_Ai = pose.components(np.where(system.free_d, 0.0, point.response.internal_d).reshape(-1, 2))
+    held_Ai, load_Ai = pose.components(held_Ai), pose.components(state.load * system.load_d.reshape(-1, 2))
+    reaction_x, reaction_y = np.sum(held_Ai + fixed_Ai + load_Ai, axis=0)
+    P_Ai = pose.own(system.interface.P_AI)
+    pull = float((point.response.p_q * system.interface.dA_q) @ pose.components(touch.n_qi)[:, 0])  # on the master
+    return {
+        "reaction_x": float(reaction_x),
+        "reaction_y": float(reaction_y),
+        "clamp_moment": float(np.sum(P_Ai[:, 0] * fixed_Ai[:, 1] - P_Ai[:, 1] * fixed_Ai[:, 0])),
+        "interface_pull": -pull if specimen.upper_is_slave else pull,
+        "anchor_pull": float(held_Ai[specimen.bodies[0].points, 0].sum()),
     }
 
 

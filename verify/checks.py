@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from verify import process_zone
+from verify.effects import simulated
 from verify.law import Bilinear
 from verify.result import Result
 from verify.schema import Scene
@@ -21,9 +23,21 @@ J_TOLERANCE = 0.005
 #: deviation (1.0 to 1.9 % on the packaged scenes) measures the mesh and not the solver; its tolerance is the curve's.
 J_TOLERANCE_LAGRANGE = 0.02
 ENERGY_TOLERANCE = 0.005
+#: While the tip of a bond that ends on the substrate is not open yet: the traction ends there, and the surface beyond
+#: rises with an infinite slope (Flamant: log of the distance), which the elements beyond the bond smooth over. Measured
+#: with 3700 unknowns: 0.4 to 0.9 %; with those elements as short as on the bond 0.2 to 0.4 %.
+ONSET_TOLERANCE = 0.01
+#: Of load sin(theta) / (G_Ic w): besides the mesh, what the ends of strip and substrate hold of the energy.
+ANGLE_TOLERANCE = 0.01
+AT_THE_END = 1e-9  # part of the length within which the process zone has come to the far end
 REST = 1e-12  # part of the largest work below which there is none
 BALANCE_TOLERANCE = 1e-8
 DISSIPATION_TOLERANCE = 0.02
+
+#: Checks that hold as well as the mesh resolves the process zone.
+OF_THE_ZONE = ("j-integral", "j-onset", "growth-angle")
+#: What stands behind a check that is no identity.
+KINDS = {"growth-angle": "analytical"}
 
 
 def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, ...]:
@@ -37,21 +51,27 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
     values: list[tuple[str, Callable[[Scene, Steps], float | None], float, str]] = [
         ("completed", _missing_part, 1e-9, "The run reached the end of the load programme, or the specimen separated."),
         ("j-integral", j_deviation, j_tolerance, "The J-integral of the specimen is the area under the law."),
+        ("j-onset", j_onset, ONSET_TOLERANCE, "The same before the tip of the bond is fully open."),
+        ("growth-load", growth_load, j_tolerance, "While the crack grows the load is at least G_Ic times the width."),
+        ("growth-angle", growth_angle, ANGLE_TOLERANCE, "In the end load sin(theta) is G_Ic times the width."),
         ("energy-ledger", energy_gap, ENERGY_TOLERANCE, "External work is stored or dissipated, nothing is lost."),
         ("interface-force", interface_gap, BALANCE_TOLERANCE, "The interface tractions carry the load."),
         ("moment-balance", moment_gap, BALANCE_TOLERANCE, "Load and interface tractions have equal moments."),
-        ("reactions", support_forces, BALANCE_TOLERANCE, "The supports carry nothing."),
+        ("clamp-moment", clamp_gap, BALANCE_TOLERANCE, "Load and clamp have equal moments."),
+        ("lengthwise", lengthwise_gap, BALANCE_TOLERANCE, "What tilted tractions pull lengthwise, the anchor holds."),
+        ("reactions", support_forces, BALANCE_TOLERANCE, "The supports carry the load and nothing else."),
         ("dissipation", dissipation_gap, DISSIPATION_TOLERANCE, "A new length of crack costs G_Ic times the width."),
     ]
+    resolved = not measures_the_mesh(scene, result)
     separated = result.complete and result.ending.startswith("separated")
     found = (
         (name, 0.0 if separated and value is _missing_part else value(scene, result.steps), *rest)
         for name, value, *rest in values
     )
     return tuple(
-        Check(name, subject or result.method, worst, tolerance, "exact", meaning)
+        Check(name, subject or result.method, worst, tolerance, KINDS.get(name, "exact"), meaning)
         for name, worst, tolerance, meaning in found
-        if worst is not None
+        if worst is not None and (resolved or name not in OF_THE_ZONE)
     )
 
 
@@ -62,13 +82,80 @@ def law_of(scene: Scene) -> Bilinear:
 
 
 def j_deviation(scene: Scene, steps: Steps) -> float | None:
-    """Worst |J - integral of p dg| / G_Ic over the steps on the way up.
+    """Worst |J - integral of p dg| / G_Ic over the steps on the way up; see `j_onset` for what is left to that.
 
     J w = load (|s_top| + |s_bottom|) - w sum over the faces of the integral of W dY, with s the mean slope du_y/dX of
     the loaded face; it equals the area under the law up to the opening at the tip of the precrack (Rice 1968, J. Appl.
     Mech. 35, with dead tractions on the faces), less the area up to the gap at the far end, which a short ligament has
     as well. With damage it holds while the interface loads, not while it unloads.
+
+    The end faces of a peel are both ends of strip and substrate, but for those at their left with a minus; its base
+    gives no term, being fixed.
     """
+    gap = _j_gap(scene, steps)
+    return None if gap is None else _worst(gap[~_before_opening(scene, steps)])
+
+
+def j_onset(scene: Scene, steps: Steps) -> float | None:
+    """The same over the steps before the tip is fully open, of a bond that ends where the substrate goes on."""
+    gap, onset = _j_gap(scene, steps), _before_opening(scene, steps)
+    return None if gap is None or not onset.any() else _worst(gap[onset])
+
+
+def growth_load(scene: Scene, steps: Steps) -> float | None:
+    """Largest part of G_Ic w by which the load falls short of it while the crack of a peel grows.
+
+    ``J w = load s - w sum of the face energies = G_Ic w`` with the slope s = du_y/dX = lambda sin(theta) of the loaded
+    face, whose stretch lambda is 1 for a face without a lengthwise load: s <= 1, but for linear kinematics.
+    """
+    growing = _growing(scene, steps)
+    if growing is None or not growing.any() or simulated(scene, "")["kinematics"] == "linear":
+        return None
+    least = scene.interface.toughness * scene.specimen.width
+    return _worst(np.minimum(steps["load"][growing] / least - 1.0, 0.0))
+
+
+def growth_angle(scene: Scene, steps: Steps) -> float | None:
+    """load sin(theta) / (G_Ic w) - 1 at the last step at which the crack of a peel grows.
+
+    Of an inextensible strip on a rigid substrate (Rivlin 1944 for theta = 90 degrees; elastica): what is left of J is
+    the energy density on the ends of strip and substrate.
+    """
+    growing = _growing(scene, steps)
+    if growing is None or not growing.any() or "face_slope_top" not in steps:
+        return None
+    last = np.flatnonzero(growing)[-1]
+    pull = steps["load"][last] * abs(steps["face_slope_top"][last])
+    return float(pull / (scene.interface.toughness * scene.specimen.width) - 1.0)
+
+
+def measures_the_mesh(scene: Scene, result: Result) -> bool:
+    """Whether too few elements of a peel span the process zone, as it was measured, for J to judge the solver."""
+    if scene.specimen.kind != "peel":
+        return False
+    return process_zone.measured(result) / process_zone.element_length(scene, result.method) < process_zone.ENOUGH
+
+
+def _growing(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """Steps (n_steps,) of a peel at which a whole process zone travels: its tip is open, and its front in the bond."""
+    if scene.specimen.kind != "peel" or not _has(steps, "tip_opening", "damage_front"):
+        return None
+    open_ = steps["tip_opening"] > law_of(scene).g_open
+    inside = steps["damage_front"] < (1.0 - AT_THE_END) * scene.specimen.extent
+    return open_ & inside & loading(steps) & far_from_end(scene, steps)
+
+
+def _before_opening(scene: Scene, steps: Steps) -> np.ndarray:
+    """Steps (n_steps,) before the tip is fully open, none where both bodies end with the bond."""
+    body = scene.specimen
+    inside = body.kind == "peel" and body.bond_length < body.substrate_length
+    if not inside or "tip_opening" not in steps:
+        return np.zeros(steps["opening"].size, dtype=bool)
+    return steps["tip_opening"] <= law_of(scene).g_open
+
+
+def _j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """(J - integral of p dg) / G_Ic at every step (n_steps,), 0 where that need not hold."""
     if not _has(steps, "face_slope_top", "face_slope_bottom", "face_energy", "tip_opening"):
         return None
     slopes = np.abs(steps["face_slope_top"]) + np.abs(steps["face_slope_bottom"])
@@ -76,7 +163,7 @@ def j_deviation(scene: Scene, steps: Steps) -> float | None:
     law = law_of(scene)
     area = law.area(steps["tip_opening"]) - law.area(steps.get("end_opening", np.zeros(J.size)))
     valid = loading(steps) if scene.effects.irreversible else np.ones(J.size, dtype=bool)
-    return _worst((J - area)[valid & far_from_end(scene, steps)] / scene.interface.toughness)
+    return np.where(valid & far_from_end(scene, steps), J - area, 0.0) / scene.interface.toughness
 
 
 def far_from_end(scene: Scene, steps: Steps) -> np.ndarray:
@@ -120,8 +207,22 @@ def moment_gap(scene: Scene, steps: Steps) -> float | None:
     return _worst((steps["load_moment"] + steps["interface_moment"]) / _scale(lever * _peak(steps["load"])))
 
 
+def clamp_gap(scene: Scene, steps: Steps) -> float | None:
+    """Worst sum of the moments of load and clamp over the moment of the peak load about the flush end of a peel."""
+    if not _has(steps, "load_moment", "clamp_moment"):
+        return None
+    return _worst((steps["load_moment"] + steps["clamp_moment"]) / _scale(scene.specimen.extent * _peak(steps["load"])))
+
+
+def lengthwise_gap(scene: Scene, steps: Steps) -> float | None:
+    """Worst sum of what acts lengthwise on a strip over the peak load: tractions on a tilted master, and the anchor."""
+    if not _has(steps, "interface_pull", "anchor_pull"):
+        return None
+    return _worst((steps["interface_pull"] + steps["anchor_pull"]) / _scale(_peak(steps["load"])))
+
+
 def support_forces(scene: Scene, steps: Steps) -> float | None:
-    """Worst support reaction over the peak load."""
+    """Worst sum of the support reactions, less the load that they carry, over the peak load."""
     if not _has(steps, "reaction_x", "reaction_y"):
         return None
     return _worst(np.hypot(steps["reaction_x"], steps["reaction_y"]) / _scale(_peak(steps["load"])))

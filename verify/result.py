@@ -33,10 +33,13 @@ EVIDENCE_COLUMNS = (
     "face_slope_bottom",
     "face_energy",  # sum over the loaded faces of the integral of W dY, per unit width
     "interface_force",  # vertical resultant of the interface tractions on the upper arm
-    "reaction_x",  # sums of the support reactions
+    "reaction_x",  # sums of the support reactions, besides what balances the resultant of the loads
     "reaction_y",
     "load_moment",  # moment about the origin, current configuration, of load and supports on the upper arm
     "interface_moment",  # and of the interface tractions on the upper arm
+    "clamp_moment",  # and of a clamp
+    "interface_pull",  # resultant along the specimen of the interface tractions on a body that is not clamped
+    "anchor_pull",  # and of what keeps that body from sliding along the other
     "bulk_energy",
     "cohesive_energy",
     "contact_energy",

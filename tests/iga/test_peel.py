@@ -78,13 +78,24 @@ def test_the_interface_carries_the_load(peel):
 def test_little_pulls_the_strip_lengthwise(peel):
     """The tractions stand on the master, which tilts: the substrate less than the strip."""
     load = column(peel, "load").max()
-    assert np.max(np.abs(column(peel, "reaction_x"))) < 0.03 * load
+    pull = column(peel, "interface_pull")
+    assert np.max(np.abs(pull)) < 0.03 * load
+    assert np.max(np.abs(pull + column(peel, "anchor_pull"))) < 1e-8 * load
+
+
+def test_the_clamp_carries_the_load_and_its_moment(peel):
+    """Force and moment of all that holds the bodies: the base of the substrate, and the spring of the strip."""
+    load = column(peel, "load").max()
+    assert np.max(np.abs(column(peel, "reaction_x"))) < 1e-8 * load
     assert np.max(np.abs(column(peel, "reaction_y"))) < 1e-8 * load
+    moment = column(peel, "load_moment") + column(peel, "clamp_moment")
+    assert np.max(np.abs(moment)) < 1e-8 * load * PEEL.strip_length
+    assert np.max(np.abs(column(peel, "clamp_moment"))) > 0.9 * load * PEEL.strip_length
 
 
 def test_in_linear_kinematics_the_spring_carries_nothing():
     solution = solve(replace(PEEL, kinematics="linear", dofs=700, opening=(0.5,), steps=6))
-    assert np.max(np.abs(column(solution, "reaction_x"))) < 1e-8 * column(solution, "load").max()
+    assert np.max(np.abs(column(solution, "anchor_pull"))) < 1e-8 * column(solution, "load").max()
 
 
 def test_peak_and_plateau_of_an_independent_computation():
@@ -102,6 +113,8 @@ def test_rows_are_the_same_in_any_pose(kinematics):
     small = {
         "reaction_x": "load",
         "reaction_y": "load",
+        "interface_pull": "load",
+        "anchor_pull": "load",
         "interface_moment": "load_moment",
         "end_opening": "tip_opening",
     }
