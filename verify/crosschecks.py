@@ -21,6 +21,8 @@ CROSS_CODE = {"tspline": 0.005, "tspline-adaptive": 0.005, "nurbs": 0.005, "lagr
 CLOSE = ("tspline", "tspline-adaptive", "nurbs", "dolfinx", "dolfinx-p3")
 #: A linear beam leaves out what a slender arm hardly has; the finite one also the St. Venant-Kirchhoff bulk.
 ANALYTICAL = {"linear": 0.002, "finite": 0.005}
+#: Under a strip it leaves out how the corner of a substrate gives way: 0.41 % of the curve where the bond begins there.
+ON_SUBSTRATE = 0.015
 #: Runs that are held against published values: all but the coarse ones of a sequence of meshes, and LEFM.
 JUDGED = (*CROSS_CODE, "dolfinx", "dolfinx-p3", "beam")
 
@@ -35,7 +37,7 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
     end = max(scene.load.opening)
     usable = {method: result for method, result in results.items() if result.load.size > 1 and end > 0}
     kinematics = simulated(scene, "beam")["kinematics"]
-    fine = ANALYTICAL[kinematics]
+    fine = ON_SUBSTRATE if scene.specimen.kind == "peel" else ANALYTICAL[kinematics]
     analytical = {**CROSS_CODE, **dict.fromkeys(CLOSE, fine)}
     checks = []
     for method, tolerance in analytical.items():

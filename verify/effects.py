@@ -9,7 +9,8 @@ from verify.schema import Scene
 
 FINITE_ABOVE_DEGREES = 5.0
 
-#: What a method cannot choose: the DOLFINx model has both arms, the beam one; LEFM has no interface.
+#: What a method cannot choose: the DOLFINx model has both arms, the beam one; LEFM has no interface. Beneath the strip
+#: of a peel test the beam has its substrate, too.
 _FIXED: dict[str, dict[str, Any]] = {
     "dolfinx": {"symmetry": False},
     "beam": {"symmetry": True},
@@ -41,4 +42,5 @@ def simulated(scene: Scene, method: str) -> dict[str, Any]:
     asked = scene.effects.model_dump()
     if asked["kinematics"] == "auto":
         asked["kinematics"] = "finite" if degrees(end_rotation(scene)) > FINITE_ABOVE_DEGREES else "linear"
-    return asked | _FIXED.get(method, {})
+    fixed = _FIXED.get(method, {})
+    return asked | ({**fixed, "symmetry": False} if method == "beam" and scene.specimen.kind == "peel" else fixed)

@@ -15,8 +15,9 @@ from verify.zones import OPEN, SOFTENING, find
 #: A front that must step less than this part of the length does not advance.
 SMALLEST_STEP = 1e-7
 
-#: The arms are separated when they hold together over less than this part of the bond.
-LEAST_BOND = 1e-3
+#: The specimen has separated when it holds together over less than this part of the bond, or when its load has come
+#: down to this part of the largest and falls on as it opens: a strip goes on turning about its last bit for long.
+LITTLE = 1e-3
 
 #: How a path ends that has come there.
 SEPARATED = "separated"
@@ -41,15 +42,22 @@ class Pace:
         a, b = np.array(self.rate(old.tangent)), np.array(self.rate(new.tangent))
         return float(np.abs(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)))
 
+    def fading(self, state: State) -> bool:
+        """Whether the load falls as the opening grows."""
+        opening, load = self.rate(state.tangent)
+        return opening * load < 0.0
+
 
 def follow(m: Model, elastic: State, pace: Pace) -> Iterator[State | str | None]:
     """The converged states in order, None for a step that was halved, and at last how it ended."""
     state = elastic
     for state in _undamaged(m, elastic, pace):
         yield state
-    largest = np.inf
+    largest, peak = np.inf, 0.0
     while not _reached(state, pace):
-        if m.ends.length - state.front < LEAST_BOND * (m.ends.length - m.ends.precrack):
+        load, bond = -state.field.node[0, FORCE], m.ends.length - m.ends.precrack
+        peak = max(peak, load)
+        if m.ends.length - state.front < LITTLE * bond or (load <= LITTLE * peak and pace.fading(state)):
             yield SEPARATED
             return
         stride = pace.stride / np.hypot(*pace.rate(state.tangent)) / _per_front(m, state)

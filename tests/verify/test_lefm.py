@@ -152,3 +152,66 @@ def test_refuses_unloading(opening):
 def test_refuses_openings_beyond_the_factors():
     with pytest.raises(ValueError, match="elastica"):
         solve(replace(DCB, arm_thickness=0.01, opening=10.0, theory="factors"))
+
+
+STRIP = replace(DCB, length=150.0, arm_thickness=2.0, precrack=30.0, young=250e3, opening=6.0, arms=1)
+
+
+@pytest.mark.parametrize("theory", ALL[1])
+def test_rows_of_a_strip(theory):
+    """Work, slope and dissipation belong together, as for two arms."""
+    s = steps(replace(STRIP, theory=theory, points=2000, opening=60.0 if theory == "kendall" else 6.0))
+    assert set(CURVE_COLUMNS) <= set(s) and s["crack_length"][0] == 30.0 and s["dissipated_energy"][-1] > 0.0
+    gap = s["external_work"] - s["stored_energy"] - s["dissipated_energy"]
+    assert np.abs(gap).max() < 1e-12 * s["external_work"][-1]
+    h, P, growing = np.diff(s["opening"]), s["load"], s["dissipated_energy"] > 1e-9
+    work = h * (P[1:] + P[:-1]) / 2 + h**2 / 12 * (s["load_slope"][:-1] - s["load_slope"][1:])
+    one_branch = (growing[:-1] == growing[1:]) & ((s["load"][:-1] > 0.0) == (s["load"][1:] > 0.0))
+    assert np.abs(np.diff(s["external_work"]) - work)[one_branch].max() < 1e-9 * s["external_work"][-1]
+
+
+def test_strip_begins_to_peel_at_the_plate_limit():
+    s = steps(replace(STRIP, theory="simple"))
+    assert s["load"].max() == pytest.approx(np.sqrt(2 * 0.1 * STRIP.bending) / 30.0, rel=1e-12)
+    at = int(s["load"].argmax())
+    assert s["opening"][at] == pytest.approx(s["load"][at] * 30.0**3 / (3 * STRIP.bending), rel=1e-12)
+    assert steps(replace(STRIP, theory="elastica"))["load"].max() == pytest.approx(s["load"].max(), rel=2e-3)
+
+
+@pytest.mark.parametrize("theory", ["simple", "elastica"])
+def test_strip_grows_at_the_toughness(theory):
+    s = steps(replace(STRIP, theory=theory))
+    J = s["load"] * np.abs(s["face_slope_top"])
+    assert J[s["dissipated_energy"] > 1e-9] == pytest.approx(0.1, rel=1e-12) and np.all(s["face_slope_bottom"] == 0.0)
+
+
+def test_a_strip_is_an_arm_of_a_dcb_of_twice_the_toughness():
+    for theory in ("simple", "elastica"):
+        one = steps(replace(STRIP, theory=theory))
+        two = steps(replace(STRIP, theory=theory, arms=2, toughness=0.2, opening=12.0))
+        assert one["load"] == pytest.approx(two["load"], rel=1e-9)
+        assert 2 * one["opening"] == pytest.approx(two["opening"], rel=1e-12)
+
+
+def test_upright_strips_meet():
+    """Elastica and Kendall, of a strip that bends and stretches next to nothing: P = G w."""
+    thin = replace(STRIP, arm_thickness=0.02, opening=60.0)
+    loads = [steps(replace(thin, theory=theory))["load"][-1] for theory in ("elastica", "kendall")]
+    assert loads == pytest.approx([0.1, 0.1], rel=1e-3)
+
+
+def test_kendall_of_a_strip_that_stretches():
+    s = steps(replace(STRIP, young=0.5, opening=60.0, theory="kendall"))
+    P = s["load"][-1]
+    assert P + P**2 / (2 * 0.5 * 2.0) == pytest.approx(0.1, rel=1e-12) and P < 0.96 * 0.1
+    assert s["opening"][-1] == pytest.approx(s["crack_length"][-1] * (1 + P / (0.5 * 2.0)), rel=1e-12)
+
+
+@pytest.mark.parametrize(("arms", "theory"), [(1, "corrected"), (1, "factors"), (2, "kendall")])
+def test_refuses_theories_of_the_other_specimen(arms, theory):
+    with pytest.raises(ValueError, match="theory"):
+        solve(replace(STRIP, arms=arms, theory=theory))
+
+
+def test_theory_of_a_strip_follows_the_kinematics():
+    assert STRIP.named_theory == "simple" and replace(STRIP, kinematics="finite").named_theory == "elastica"
