@@ -108,11 +108,11 @@ def growth_load(scene: Scene, steps: Steps) -> float | None:
     ``J w = load s - w sum of the face energies = G_Ic w`` with the slope s = du_y/dX = lambda sin(theta) of the loaded
     face, whose stretch lambda is 1 for a face without a lengthwise load: s <= 1, but for linear kinematics.
     """
-    growing = _growing(scene, steps)
-    if growing is None or not growing.any() or simulated(scene, "")["kinematics"] == "linear":
+    steady = growing(scene, steps)
+    if not steady.any() or simulated(scene, "")["kinematics"] == "linear":
         return None
     least = scene.interface.toughness * scene.specimen.width
-    return _worst(np.minimum(steps["load"][growing] / least - 1.0, 0.0))
+    return _worst(np.minimum(steps["load"][steady] / least - 1.0, 0.0))
 
 
 def growth_angle(scene: Scene, steps: Steps) -> float | None:
@@ -121,10 +121,10 @@ def growth_angle(scene: Scene, steps: Steps) -> float | None:
     Of an inextensible strip on a rigid substrate (Rivlin 1944 for theta = 90 degrees; elastica): what is left of J is
     the energy density on the ends of strip and substrate.
     """
-    growing = _growing(scene, steps)
-    if growing is None or not growing.any() or "face_slope_top" not in steps:
+    steady = growing(scene, steps)
+    if not steady.any() or "face_slope_top" not in steps:
         return None
-    last = np.flatnonzero(growing)[-1]
+    last = np.flatnonzero(steady)[-1]
     pull = steps["load"][last] * abs(steps["face_slope_top"][last])
     return float(pull / (scene.interface.toughness * scene.specimen.width) - 1.0)
 
@@ -136,10 +136,13 @@ def measures_the_mesh(scene: Scene, result: Result) -> bool:
     return process_zone.measured(result) / process_zone.element_length(scene, result.method) < process_zone.ENOUGH
 
 
-def _growing(scene: Scene, steps: Steps) -> np.ndarray | None:
-    """Steps (n_steps,) of a peel at which a whole process zone travels: its tip is open, and its front in the bond."""
+def growing(scene: Scene, steps: Steps) -> np.ndarray:
+    """Steps (n_steps,) of a peel at which a whole process zone travels, from the open tip to its front in the bond.
+
+    None of another specimen, or where the columns do not tell.
+    """
     if scene.specimen.kind != "peel" or not _has(steps, "tip_opening", "damage_front"):
-        return None
+        return np.zeros(steps["opening"].size, dtype=bool)
     open_ = steps["tip_opening"] > law_of(scene).g_open
     inside = steps["damage_front"] < (1.0 - AT_THE_END) * scene.specimen.extent
     return open_ & inside & loading(steps) & far_from_end(scene, steps)

@@ -50,7 +50,7 @@ def parser() -> argparse.ArgumentParser:
         return sub
 
     sub = command("verify", _verify, "Every method on every scene, all checks, one report.", "verify dcb-czm1 --jobs 2")
-    what = "packaged name, scene file, or .iga mesh for a plane problem; default: the scenes for all methods"
+    what = "packaged name, scene file, or .iga mesh for a plane problem; default: those of the paper"
     sub.add_argument("scenes", nargs="*", metavar="SCENE", help=what)
     sub.add_argument("--out", type=Path, default=Path("debond-report"), metavar="DIR", help="default: debond-report")
     finer = (
@@ -192,7 +192,7 @@ def _verify(options: argparse.Namespace) -> int:
     if mpi_size() > 1:
         raise Refusal(f"verify: must be started in 1 process, without mpirun, got {mpi_size()}")
     scenes, plates, wrong = [], [], []
-    for source in options.scenes or verified_scenes():
+    for source in options.scenes or verified_scenes(options.full):
         try:
             if source.lower().endswith(".iga"):
                 plates.append(load_plate(source))

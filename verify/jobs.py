@@ -13,6 +13,7 @@ from queue import Queue
 from threading import Event
 from typing import TextIO
 
+from verify.checks import OF_THE_ZONE
 from verify.folder import read_result
 from verify.methods import NotRun, require
 from verify.progress import Progress
@@ -46,9 +47,9 @@ class Job:
         return ["solve", self.source, "--method", self.method, *sets, *fields, "--out", str(self.folder(out))]
 
     def meant_for(self, check: Check) -> bool:
-        """On the coarse meshes of a sequence the J-integral measures the mesh and not the solver."""
+        """On the coarse meshes of a sequence what rests on the J-integral measures the mesh and not the solver."""
         coarse = [override.partition("=")[0] for override in self.overrides] == ["discretization.dofs"]
-        return not (coarse and check.name == "j-integral")
+        return not (coarse and check.name in OF_THE_ZONE)
 
     def folder(self, out: Path) -> Path:
         return out / self.scene.name / self.variant

@@ -13,8 +13,10 @@ from verify.convergence import assess
 from verify.crosschecks import cross_checks, peak_load
 from verify.jobs import Job, Outcome, run_all
 from verify.methods import METHODS, WITH_DOFS
+from verify.paper import peel, peel_statements, statements
 from verify.paper import plan as figures
-from verify.paper import statements
+from verify.paper.comparison import lines
+from verify.paper.peel import PeelStudy
 from verify.paper.study import Study as Figures
 from verify.paper.study import measured
 from verify.plane_rates import Convergence, rate_checks, rates
@@ -54,16 +56,18 @@ def verify(
     plates : meshes from CAD, on which plane problems with exact solutions are solved
     """
     plan = [job for source, scene in scenes for job in planned(source, scene, full)]
-    more = figures.planned(scenes) if full else figures.planned(())
-    outcomes = {outcome.job: outcome for outcome in run_all(list(dict.fromkeys([*plan, *more.jobs])), out, jobs)}
+    beams, strips = (figure.planned(scenes if full else ()) for figure in (figures, peel))
+    asked = list(dict.fromkeys([*plan, *beams.jobs, *strips.jobs]))
+    outcomes = {outcome.job: outcome for outcome in run_all(asked, out, jobs)}
     reports = tuple(
         scene_report(scene, [outcomes[job] for job in plan if job.scene is scene], out) for _, scene in scenes
     )
     page, quadrature = out / "report.html", study() if full else None
-    paper = measured(more, outcomes) if full else None
+    paper = measured(beams, outcomes) if full else None
+    peels = peel.measured(strips, outcomes) if full else None
     planes = tuple(plane_study(plate) for plate in plates)
     bases = rates() if full else ()
-    _write_report(reports, page, quadrature, paper, planes, bases)
+    _write_report(reports, page, quadrature, paper, planes, bases, peels)
     checks = [(report.scene.name, check) for report in reports for check in report.checks]
     checks += [(found.name, check) for found in planes for check in found.checks]
     checks += [("plane elasticity", check) for check in rate_checks(bases)]
@@ -72,7 +76,9 @@ def verify(
     if quadrature is not None:
         print(finding(quadrature))
     if paper is not None:
-        print("\n".join(statements.lines(paper)))
+        print("\n".join(lines("Figures 6 to 8", paper.left_out, statements.statements(paper))))
+    if peels is not None:
+        print("\n".join(lines("Figure 9", peels.left_out, peel_statements.statements(peels))))
     passed = sum(check.passed for _, check in checks)
     print(f"{passed} of {len(checks)} checks hold: {page}")
     return passed == len(checks)
@@ -82,9 +88,10 @@ def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
     """The runs of one scene."""
     for method in METHODS:
         yield Job(source, scene, method, method)
-    if full:
+    if full and scene.specimen.kind == "dcb":
         yield figures.cubic(source, scene)
         yield Job(source, scene, "tspline", "tspline-adaptive", ADAPTIVE)
+    if full:
         for parts in (2, 4):
             dofs = scene.discretization.dofs // parts
             yield Job(source, scene, "nurbs", f"nurbs-{dofs}", (f"discretization.dofs={dofs}",))
@@ -149,6 +156,7 @@ def _write_report(
     paper: Figures | None,
     planes: tuple[PlaneStudy, ...],
     bases: tuple[Convergence, ...],
+    peels: PeelStudy | None,
 ) -> None:
     """The page; without the packages that it needs the checks are still worth printing."""
     try:
@@ -156,4 +164,4 @@ def _write_report(
     except ImportError as error:
         print(f"debond: no report: {error.name} is missing; pip install 'debond[report]'", file=sys.stderr)
         return
-    write(reports, page, environment(), quadrature, paper, planes, bases)
+    write(reports, page, environment(), quadrature, paper, planes, bases, peels)

@@ -16,6 +16,7 @@ from verify.jobs import Job, Outcome, run_all
 from verify.methods import WITH_DOFS
 from verify.paper import plan as plans
 from verify.paper import statements
+from verify.paper.comparison import lines
 from verify.paper.plan import LAWS, Case, planned
 from verify.paper.study import Reference, Study, Trial, limit, measured, trial
 from verify.result import Result
@@ -190,7 +191,7 @@ def test_without_a_scene_of_the_paper_it_says_so(tmp_path):
     plan = planned([("dcb-czm1-linear", load_scene("dcb-czm1-linear")), ("mine.toml", load_scene("dcb-czm1"))])
     assert list(plan.jobs) == []
     study = measured(plan, {})
-    assert statements.lines(study) == [
+    assert lines("Figures 6 to 8", study.left_out, statements.statements(study)) == [
         "Figures 6 to 8 of the paper: left out: none of its scenes (dcb-czm1, dcb-czm2) is among those given"
     ]
     pytest.importorskip("jinja2")

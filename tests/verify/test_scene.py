@@ -151,7 +151,8 @@ def test_packaged_scenes_are_those_of_the_paper_and_benchmarks() -> None:
     names = {"dcb-czm1", "dcb-czm2", "dcb-czm1-linear", "dcb-czm2-linear"}
     peels = {"peel-60", "peel-80", "peel-100", "peel-120", "peel-as-printed", "peel-soft"}
     assert set(packaged_scenes()) == names | peels | set(BENCHMARKS)
-    assert set(verified_scenes()) == names
+    assert set(verified_scenes()) == {*names, "peel-120"}
+    assert set(verified_scenes(full=True)) == {*names, "peel-60", "peel-80", "peel-100", "peel-120"}
     for name in peels:
         assert load_scene(name).name == name
     for name in names:

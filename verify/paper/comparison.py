@@ -9,8 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from verify.paper.plan import Case
-from verify.paper.study import Study, distance
+from verify.paper.study import AnyCase, Trials, distance
 
 #: What is seen in a figure: curves whose relative L2 distance is below this lie within the width of a drawn line.
 VISIBLE = 0.01
@@ -71,7 +70,7 @@ class Statement:
         return f"{100 * value:.2g} %" if self.unit == "fraction" else f"{value:.3g}"
 
 
-def ratio(study: Study, better: Case, worse: Case, measure: str, subject: str) -> Comparison:
+def ratio(study: Trials, better: AnyCase, worse: AnyCase, measure: str, subject: str) -> Comparison:
     """How many times more the worse one has; undecided where the difference is within the reference's own."""
     trials = [study.trial(case) for case in (better, worse)]
     low, high = (nan if t is None else getattr(t, measure) for t in trials)
@@ -82,7 +81,7 @@ def ratio(study: Study, better: Case, worse: Case, measure: str, subject: str) -
     return Comparison(subject, high / low if low > 0.0 else nan, holds)
 
 
-def unseen(study: Study, one: Case, other: Case, subject: str) -> Comparison:
+def unseen(study: Trials, one: AnyCase, other: AnyCase, subject: str) -> Comparison:
     """Distance of two curves, which holds where it cannot be seen."""
     apart = distance(study.trial(one), study.trial(other))
     return Comparison(subject, apart, below(apart))
@@ -91,6 +90,13 @@ def unseen(study: Study, one: Case, other: Case, subject: str) -> Comparison:
 def below(value: float) -> bool | None:
     """Whether nothing of it is seen; None where there is no value."""
     return bool(value < VISIBLE) if isfinite(value) else None
+
+
+def lines(title: str, left_out: str, found: Sequence[Statement]) -> list[str]:
+    """One line a statement, for the terminal; or why there is none."""
+    if left_out:
+        return [f"{title} of the paper: {left_out}"]
+    return [f"{s.verdict:18} {s.text}: {s.extent}" for s in found]
 
 
 def counted(found: Sequence[Statement]) -> str:

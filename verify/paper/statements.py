@@ -27,13 +27,6 @@ def statements(study: Study) -> tuple[Statement, ...]:
     return tuple(_all(study)) if study.trials else ()
 
 
-def lines(study: Study) -> list[str]:
-    """One line a statement, for the terminal."""
-    if study.left_out:
-        return [f"Figures 6 to 8 of the paper: {study.left_out}"]
-    return [f"{s.verdict:18} {s.text}: {s.extent}" for s in statements(study)]
-
-
 def _all(study: Study) -> Iterator[Statement]:
     yield _zone(study)
     for better, worse in pairwise(NAMES):

@@ -1,11 +1,12 @@
-"""What came of the runs behind Figures 6, 7 and 8, measured against a converged curve of the same law."""
+"""What came of the runs behind the figures, measured against a converged curve of the same problem."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import isfinite, nan
+from typing import Protocol
 
 import numpy as np
 
@@ -13,11 +14,20 @@ from verify import lefm
 from verify.curve import Curve, curve_error, oscillation, peak
 from verify.jobs import Job, Outcome
 from verify.methods import lefm_problem
-from verify.paper.plan import LAWS, Case, Plan, Problem
+from verify.paper.plan import LAWS, Plan
 from verify.process_zone import expected
 from verify.result import Result
 from verify.scene import load_scene
 from verify.schema import Scene
+
+
+class AnyCase(Protocol):
+    """What a run is meant to show: hashable, with the problem that it solves."""
+
+    basis: str
+
+    @property
+    def problem(self) -> Hashable: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +50,7 @@ class Trial:
     peak : largest load over that of the reference, minus 1
     """
 
-    case: Case
+    case: AnyCase
     result: Result | None
     status: str
     error: float = nan
@@ -60,28 +70,26 @@ class Trial:
     def seconds(self) -> float:
         return float(((self.result and self.result.seconds) or {}).get("total", nan))
 
+    @property
+    def peak_load(self) -> float:
+        return peak_load(self.result) if self.drawable else nan
+
 
 @dataclass(frozen=True, eq=False)
-class Study:
-    """All trials, with what they are held against.
+class Trials:
+    """All trials of a figure, with what they are held against.
 
+    scenes : by name
     references : by problem, those that are known
-    limits : LEFM by law
-    zones : how many elements span the process zone, by basis, law and unknowns
+    limits : LEFM by scene
     """
 
     scenes: Mapping[str, Scene]
     trials: tuple[Trial, ...]
-    references: Mapping[Problem, Reference]
+    references: Mapping[Hashable, Reference]
     limits: Mapping[str, Curve]
-    zones: Mapping[tuple[str, str, int], float]
 
-    @property
-    def left_out(self) -> str:
-        """Why there is nothing in it, where there is nothing."""
-        return "" if self.trials else f"left out: none of its scenes ({', '.join(LAWS)}) is among those given"
-
-    def trial(self, case: Case) -> Trial | None:
+    def trial(self, case: AnyCase) -> Trial | None:
         return self._by_case.get(case)
 
     def values(self, name: str) -> tuple:
@@ -89,14 +97,32 @@ class Study:
         return tuple(dict.fromkeys(getattr(trial.case, name) for trial in self.trials))
 
     @cached_property
-    def _by_case(self) -> dict[Case, Trial]:
+    def _by_case(self) -> dict[AnyCase, Trial]:
         return {trial.case: trial for trial in self.trials}
+
+
+@dataclass(frozen=True, eq=False)
+class Study(Trials):
+    """Those of Figures 6, 7 and 8; ``zones``: how many elements span the process zone, by basis, law and unknowns."""
+
+    zones: Mapping[tuple[str, str, int], float]
+
+    @property
+    def left_out(self) -> str:
+        """Why there is nothing in it, where there is nothing."""
+        return left_out(self, LAWS)
+
+
+def left_out(study: Trials, scenes: Iterable[str]) -> str:
+    """Why there is nothing in a study, where there is nothing."""
+    return "" if study.trials else f"left out: none of its scenes ({', '.join(scenes)}) is among those given"
 
 
 def measured(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Study:
     """The study of a plan whose jobs are done."""
     scenes = dict(plan.scenes)
-    found = {problem: reference(outcomes[coarse], outcomes[fine]) for problem, coarse, fine in plan.references}
+    names = {"dolfinx": "cubic DOLFINx elements", "nurbs": "NURBS on one arm"}
+    found = {problem: reference(outcomes[coarse], outcomes[fine], names) for problem, coarse, fine in plan.references}
     references = {problem: one for problem, one in found.items() if one is not None}
     zones = {
         (case.basis, case.law, case.dofs): expected(load_scene(case.law, case.overrides), case.basis).elements
@@ -107,21 +133,23 @@ def measured(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Study:
     return Study(scenes, trials, references, {law: limit(scene) for law, scene in scenes.items()}, zones)
 
 
-def reference(coarse: Outcome, fine: Outcome) -> Reference | None:
-    """What the two fine runs of a problem give; nothing where one of them did not come to its end."""
+def reference(coarse: Outcome, fine: Outcome, names: Mapping[str, str]) -> Reference | None:
+    """What the two fine runs of a problem give; nothing where one of them did not come to its end.
+
+    ``names`` says what their mesh is, by method.
+    """
     before, result = coarse.result, fine.result
     if before is None or result is None or not (before.complete and result.complete):
         return None
-    name = "cubic DOLFINx elements" if fine.job.method == "dolfinx" else "NURBS on one arm"
     return Reference(
-        f"{name}, {result.dofs} unknowns",
+        f"{names[fine.job.method]}, {result.dofs} unknowns",
         result,
         curve_error(curve(before), curve(result)),
         oscillation(curve(before), curve(result))["rms"],
     )
 
 
-def trial(case: Case, outcome: Outcome, against: Reference | None) -> Trial:
+def trial(case: AnyCase, outcome: Outcome, against: Reference | None) -> Trial:
     """Measure one run; one that stopped, or that has nothing to be held against, only keeps its status."""
     result = outcome.result
     if result is None:
@@ -136,7 +164,7 @@ def trial(case: Case, outcome: Outcome, against: Reference | None) -> Trial:
         error=curve_error(curve(result), curve(against.result)),
         oscillation=wave["rms"],
         variation=wave["excess_variation"],
-        peak=_peak(result) / _peak(against.result) - 1.0,
+        peak=peak_load(result) / peak_load(against.result) - 1.0,
     )
 
 
@@ -162,7 +190,8 @@ def distance(one: Trial | None, other: Trial | None) -> float:
     return curve_error(curve(one.result), curve(other.result))
 
 
-def _peak(result: Result) -> float:
+def peak_load(result: Result) -> float:
+    """Largest load, between the steps too where their slopes are known."""
     slope = result.steps.get("load_slope")
     usable = slope is not None and all(isfinite(value) for value in slope)
     return peak(curve(result), slope if usable else None)[1]

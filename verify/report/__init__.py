@@ -8,11 +8,12 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from verify.paper.peel import PeelStudy
 from verify.paper.study import Study as Figures
 from verify.plane_rates import Convergence
 from verify.plane_study import PlaneStudy
 from verify.quadrature_study import Study
-from verify.report import paper_section, plane, plane_rates, study
+from verify.report import paper_section, peel_section, plane, plane_rates, study
 from verify.report.section import section
 from verify.report.style import custom_properties
 from verify.report.summary import summarise
@@ -32,6 +33,7 @@ def write(
     paper: Figures | None = None,
     planes: Sequence[PlaneStudy] = (),
     rates: tuple[Convergence, ...] = (),
+    peels: PeelStudy | None = None,
 ) -> None:
     """Write the page.
 
@@ -44,6 +46,7 @@ def write(
     paper : the runs behind the figures of the paper, where they were made
     planes : the studies of plane problems, one a mesh file
     rates : the convergence of the bases in plane elasticity, where it was measured
+    peels : the runs behind Figure 9 of the paper, where they were made
     """
     sections = tuple(section(report, f"scene-{i + 1}") for i, report in enumerate(reports))
     plane_sections = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(planes))
@@ -64,6 +67,7 @@ def write(
         rates=rates_section,
         quadrature=None if quadrature is None else study.section(quadrature, "quadrature"),
         paper=None if paper is None else paper_section.section(paper, "figures"),
+        peels=None if peels is None else peel_section.section(peels, "figure-9"),
         environment=dict(environment),
         light=Markup(custom_properties(dark=False)),
         dark=Markup(custom_properties(dark=True)),

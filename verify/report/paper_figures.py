@@ -87,7 +87,7 @@ def _load(study: Study, case: Case, key: str) -> Panel:
         figure, axes = panel(THIRD, 2.5)
         _background(study, case.law, axes)
         axes.plot(*study.limits[case.law], **line("lefm").options())
-        _path(axes, trial, line(case.basis))
+        draw_path(axes, trial, line(case.basis))
         _frame(study, case, axes)
         svg = to_svg(figure, key, f"Load against opening, {name}, {case.dofs} unknowns")
     return Panel(svg, f"{name}. {_told(trial)}", "third")
@@ -163,7 +163,8 @@ def _background(study: Study, law: str, axes: Axes) -> None:
         axes.plot(*curve(reference.result), **REFERENCE.options())
 
 
-def _path(axes: Axes, trial: Trial | None, style: Line) -> None:
+def draw_path(axes: Axes, trial: Trial | None, style: Line) -> None:
+    """The path of a run, its envelope, and a cross where it stopped."""
     if trial is None or not trial.drawable:
         return
     d, P = curve(trial.result)
