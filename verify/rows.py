@@ -30,6 +30,7 @@ class Units:
     law: Bilinear
     irreversible: bool
     reference_load: float  # LEFM, in units of the force
+    scale: np.ndarray  # (2,) opening and load at which LEFM begins, in the units of the scene
 
     @staticmethod
     def of(problem: BeamProblem) -> Units:
@@ -37,7 +38,8 @@ class Units:
         arms = 1 if problem.substrate else 2
         griffith = np.sqrt(2.0 / arms * problem.width * problem.toughness * bending) / problem.precrack
         force = bending / h**2
-        return Units(h, arms, force, problem.width, problem.law, problem.irreversible, griffith / force)
+        scale = np.array([arms * griffith * problem.precrack**3 / (3.0 * bending), griffith])
+        return Units(h, arms, force, problem.width, problem.law, problem.irreversible, griffith / force, scale)
 
     def deflection(self, opening: float) -> float:
         return opening / (self.arms * self.h)
@@ -50,7 +52,8 @@ class Units:
 def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None) -> dict[str, float]:
     """Curve and evidence columns of a state; without the row ``before``, of the unloaded specimen.
 
-    Work: Hermite rule with the exact slopes of the path. Interface energies: exact integrals of piecewise polynomials.
+    Work: along every step a cubic over its chord, with the exact slopes of the path. Interface energies: exact
+    integrals of piecewise polynomials.
     J identity of this beam: J w = n (P |v'(0)| - W(0)), with v' the slope of the deflection (shear included, what
     du_y/dX of a face is) and W the strain energy per length at the loaded section, of n arms; of a strip less the
     energy per length of the substrate at its right edge, and plus that at its left one. It is the first integral of the
@@ -63,7 +66,7 @@ def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None
     first = field.node[0]
     rate = float(m.arm.rates(first, np.zeros(3))[0][V])
     opening, load = units.arms * h * first[V], -first[FORCE] * units.force
-    step = opening - before["opening"]
+    heading = float(np.copysign(1.0, state.tangent.node[0, V]))
     energies = _energies(units, m, state)
     return {
         "opening": opening,
@@ -72,10 +75,10 @@ def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None
         "stored_energy": energies["bulk"] + energies["cohesive"] + energies["contact"],
         "dissipated_energy": energies["dissipated"],
         "external_work": before["external_work"]
-        + step / 2.0 * (before["load"] + load)
-        + step**2 / 12.0 * (before["load_slope"] - slope),
+        + _work(units, before, {"opening": opening, "load": load, "load_slope": slope, "heading": heading}),
         "newton_iterations": float(state.iterations),
         "load_slope": slope,
+        "heading": heading,
         "tip_opening": float(units.gap(m, field.at(np.array(m.ends.precrack)))),
         "end_opening": float(units.gap(m, field.node[-1])),
         "face_slope_top": rate,
@@ -98,6 +101,7 @@ def _unloaded(m: Model, units: Units, slope: float) -> dict[str, float]:
         "external_work",
         "newton_iterations",
         "load_slope",
+        "heading",
         "tip_opening",
         "end_opening",
         "face_slope_top",
@@ -108,7 +112,21 @@ def _unloaded(m: Model, units: Units, slope: float) -> dict[str, float]:
         "cohesive_energy",
         "contact_energy",
     )
-    return {**dict.fromkeys(names, 0.0), "crack_length": m.ends.precrack * units.h, "load_slope": slope}
+    return {**dict.fromkeys(names, 0.0), "crack_length": m.ends.precrack * units.h, "load_slope": slope, "heading": 1.0}
+
+
+def _work(units: Units, before: Mapping[str, float], row: Mapping[str, float]) -> float:
+    """Work of a step: below its chord, and between chord and path, which also turns round.
+
+    The path is taken as the cubic over the chord, both axes scaled, that has the directions of the path at its ends.
+    """
+    chord = np.array([row["opening"] - before["opening"], row["load"] - before["load"]]) / units.scale
+    rises = []
+    for end in (before, row):
+        along = end["heading"] * np.array([1.0, end["load_slope"]]) / units.scale
+        rises.append((chord[0] * along[1] - chord[1] * along[0]) / (chord @ along))
+    between = (chord @ chord) / 12.0 * (rises[0] - rises[1]) * units.scale.prod()
+    return 0.5 * (before["load"] + row["load"]) * chord[0] * units.scale[0] + between
 
 
 def _face_energy(m: Model, field: Field) -> float:
