@@ -50,6 +50,17 @@ def test_a_stale_pairing_is_as_good_as_a_fresh_one(sides, rng):
         assert np.mean(away < 1e-9) > 0.8 and away.max() < 7.0
 
 
+@pytest.mark.parametrize("xi", [0.0, 1e-16, 1e-9, 1.0 - 1e-9, 1.0 - 1e-16, 1.0])
+@pytest.mark.parametrize("x", [2.997, 3.003])
+def test_a_point_leaves_its_side_from_next_to_an_end_as_from_the_end(xi, x):
+    """An end of the side that is near is no sign that the partner is."""
+    top, y = wavy(7)
+    point = np.array([[x, 0.9]])
+    c = 2 if xi > 0.5 else 3
+    found, fresh = (closest_points(top, point, y, start) for start in (at(c, xi, 1), at(int(x), 0.5, 1)))
+    assert position(top, found, y) == pytest.approx(position(top, fresh, y), abs=1e-12)
+
+
 def test_a_point_comes_back_to_a_straight_surface_after_any_way(rng):
     mesh = lagrange_rectangle(np.linspace(0.0, 400.0, 401), np.array([0.0, 1.0]), 2)
     top = surface(mesh, mesh.chains["top"], 0)
