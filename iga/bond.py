@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,13 +20,39 @@ RULES = {"gauss": gauss, "lobatto": lobatto}
 #: Surface by which each body, upper and lower, meets the other.
 FACING = ("bottom", "top")
 
+#: Part of a side that is too little to touch.
+SLIVER = 1e-6
 
-def bond(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float]) -> Interface:
-    """Interface over the ``extent`` (from, to) in the specimen's own coordinate along it; one body meets its mirror."""
+
+def bond(
+    problem: Debonding,
+    bodies: tuple[Body, ...],
+    extent: tuple[float, float],
+    touching: tuple[float, float] | None = None,
+) -> Interface:
+    """Interface over the ``extent`` (from, to) in the specimen's own coordinate along it; one body meets its mirror.
+
+    Beyond the bond the bodies may touch from end to end of ``touching``, which holds the extent, at p + 1 points a
+    side. Lumped partners are one to one, and only on the bond.
+    """
     if problem.interface_rule == "lumped":
         return lumped(_interface(problem, bodies, *_everywhere(problem, bodies, extent, gauss(problem.degree + 1))))
     rule = RULES[problem.interface_rule](problem.interface_points)
-    return _interface(problem, bodies, *_everywhere(problem, bodies, extent, rule))
+    held = _everywhere(problem, bodies, extent, rule)
+    if touching is None:
+        return _interface(problem, bodies, *held)
+    free = [
+        _between(problem, bodies, part, gauss(problem.degree + 1))
+        for part in ((min(touching), min(extent)), (max(extent), max(touching)))
+    ]
+    c_q, xi_q, w_q = (np.concatenate(parts) for parts in zip(held, *free, strict=True))
+    whole = _interface(problem, bodies, c_q, xi_q, w_q)
+    return replace(whole, bonded_q=np.arange(len(c_q)) < len(held[0]))
+
+
+def closes(programme: Sequence[float]) -> bool:
+    """Whether a programme of openings goes down anywhere: elsewhere no gap that has opened closes again."""
+    return any(after < before for before, after in zip((0.0, *programme), programme, strict=False))
 
 
 def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float]) -> Interface:
@@ -45,6 +72,18 @@ def _everywhere(
     X_c = problem.pose.own(np.einsum("cb,cbi->ci", middle, face.bezier_points(P_AI)))[:, 0]
     bonded = np.flatnonzero((X_c > min(extent)) & (X_c < max(extent)))
     return everywhere(bonded, rule)
+
+
+def _between(
+    problem: Debonding, bodies: tuple[Body, ...], part: tuple[float, float], rule: tuple[np.ndarray, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same on what lies of each side in a ``part`` of the specimen, as if its parameter ran evenly."""
+    face, P_AI = _slave(problem, bodies), control_points(bodies)
+    X_cI = problem.pose.own(face.bezier_points(P_AI)[:, [0, -1]] / face.w_cb[:, [0, -1], None])[..., 0]
+    at_ck = np.clip((np.array(part) - X_cI[:, :1]) / (X_cI[:, 1:] - X_cI[:, :1]), 0.0, 1.0)
+    start, length = at_ck.min(1), np.ptp(at_ck, axis=1)
+    c_q, xi_q, w_q = everywhere(np.flatnonzero(length > SLIVER), rule)
+    return c_q, start[c_q] + length[c_q] * xi_q, length[c_q] * w_q
 
 
 def _interface(

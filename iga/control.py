@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from iga.interface import dofs
+from iga.interface import dofs, holding
 from iga.system import Response, State, System
 
 #: Value at a state with its response, gradient by the displacements (n_dof,), derivative by the load.
@@ -54,9 +54,10 @@ def dissipation_control(system: System) -> Control:
     interface = system.interface
 
     def control(state: State, response: Response) -> tuple[float, np.ndarray, float]:
-        g_q = response.contact.g_q
-        dissipated = float(interface.dA_q @ interface.law.energies(g_q, response.k_q)[2])
-        rate_q = np.where((g_q >= response.k_q) & (g_q > interface.law.g_max) & (g_q < interface.law.g_u), 1.0, 0.0)
+        g_q, law = response.contact.g_q, interface.law
+        dissipated = float(interface.dA_q @ law.energies(g_q, response.k_q)[2])
+        growing_q = (g_q >= response.k_q) & (g_q > law.g_max) & (g_q < law.g_u) & holding(interface, response.contact)
+        rate_q = np.where(growing_q, 1.0, 0.0)
         return dissipated, _weighted_gaps(system, response, rate_q * interface.law.dissipation_rate), 0.0
 
     return control
@@ -68,7 +69,8 @@ def arc_length_control(system: System, start: Response, du_d: np.ndarray) -> Con
     A local arc length (May and Duan 1997): the zone alone counts, and whatever its unit, the load does not.
     """
     interface = system.interface
-    rate_q = np.where(start.k_q < interface.law.g_u, start.contact.rates(du_d), 0.0)
+    whole_q = (start.k_q < interface.law.g_u) & holding(interface, start.contact)
+    rate_q = np.where(whole_q, start.contact.rates(du_d), 0.0)
     rate_q = rate_q / (np.sqrt(interface.dA_q @ rate_q**2 * interface.dA_q.sum()) or 1.0)
     g0_q = start.contact.g_q
 

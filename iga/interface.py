@@ -48,6 +48,9 @@ class Interface:
     Nothing is searched either where ``master`` is None: ``mirror_i`` (2,) or (n_q, 2) is the unit normal and partners
     are known, the control points ``twin_qa`` that take the same functions and lie at the same places, or, without
     these, the mirror image of the slave in the straight line that it lies on: then the gap is twice the distance to it.
+
+    ``bonded_q`` (n_q,) is False for points that only touch: nothing holds them, and they have no history. All are
+    bonded where it is left out.
     """
 
     N_qa: np.ndarray
@@ -60,6 +63,7 @@ class Interface:
     mirror_i: np.ndarray | None = None
     frozen: bool = False
     twin_qa: np.ndarray | None = None
+    bonded_q: np.ndarray | None = None
 
     @property
     def points(self) -> int:
@@ -208,7 +212,13 @@ def traction(
     Traction and tangent are those of the share of each point that faces the master, over its whole area.
     """
     p, dp, k_new = interface.law.traction(contact.g_q, k_q, closed_q)
-    return contact.share_q * p, contact.share_q * dp, np.where(contact.on_q, k_new, k_q)
+    carries_q = np.where(holding(interface, contact) | (closed_q & interface.law.contact), contact.share_q, 0.0)
+    return carries_q * p, carries_q * dp, np.where(holding(interface, contact), k_new, k_q)
+
+
+def holding(interface: Interface, contact: Contact) -> np.ndarray:
+    """Points (n_q,) that cohesion can hold: bonded ones that face the master. They alone have kinks and damage."""
+    return contact.on_q if interface.bonded_q is None else contact.on_q & interface.bonded_q
 
 
 def forces(interface: Interface, contact: Contact, p_q: np.ndarray, n_dof: int) -> np.ndarray:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from iga.control import gap_control
+from iga.interface import holding
 from iga.newton import Equilibrium, Newton, equilibrium
 from iga.system import Phase, State, System
 
@@ -34,7 +35,8 @@ def landed(
 
     ``old`` is the state before the step. Where there is no such kink, or no equilibrium at it, the equilibrium stays.
     """
-    law, g_q = system.interface.law, found.response.contact.g_q
+    law, touch = system.interface.law, found.response.contact
+    g_q = np.where(holding(system.interface, touch), touch.g_q, 0.0)
     broken = bool(np.any(g_q >= law.g_u))
     gap = law.g_u if broken else law.g_max
     softening = -law.strength / (law.g_u - law.g_max)

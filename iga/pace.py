@@ -8,6 +8,7 @@ import numpy as np
 
 from iga.control import Control, arc_length_control, dissipation_control, gap_control, opening_control
 from iga.events import next_event
+from iga.interface import holding
 from iga.point import Point
 from iga.system import System
 
@@ -103,8 +104,8 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
     """
     law, path = system.interface.law, point.tangent
     left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
-    g_q, on_q = point.response.contact.g_q, point.response.contact.on_q
-    k_q = np.where(on_q, point.state.k_q, law.g_u)  # no law has a kink for a point that is free
+    touch = point.response.contact
+    g_q, k_q = touch.g_q, np.where(holding(system.interface, touch), point.state.k_q, law.g_u)  # no kink for the others
     event = next_event(law, g_q, k_q, path.rate_q) if direction > 0.0 else None
     if not np.any(path.growing_q):
         exact = abs(left) < 1.001 * pace.length

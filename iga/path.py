@@ -101,7 +101,8 @@ def by_way_of_zero(programme: Sequence[float]) -> tuple[float, ...]:
 def _separated(system: System, point: Point, reach: float, peak: float) -> bool:
     """Most of the bond is broken, and nothing is left that carries: no load, and none that the path is to bring."""
     interface = system.interface
-    broken = float(interface.dA_q @ (point.state.k_q >= interface.law.g_u)) / float(interface.dA_q.sum())
+    area_q = interface.dA_q if interface.bonded_q is None else interface.dA_q * interface.bonded_q
+    broken = float(area_q @ (point.state.k_q >= interface.law.g_u)) / float(area_q.sum())
     small = SEPARATED * peak
     falling = point.tangent.d_load < 0.0 or abs(point.slope) * reach <= small
     return broken > 0.5 and abs(point.state.load) <= small and falling

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from iga.body import Body, bodies, mean_row
-from iga.bond import bond, control_points, probe, slave_number
+from iga.bond import bond, closes, control_points, probe, slave_number
 from iga.material import orthotropic
 from iga.peel_meshes import meshes, tmeshes
 from iga.pose import Pose
@@ -62,7 +62,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
         springs_rd, spring_r = _support(problem, strip, pose, P_AI.size)
         system = System(
             solids=joined([solid for body in pair for solid in body.solids]),
-            interface=bond(problem, pair, extent),
+            interface=bond(problem, pair, extent, _touching(problem)),
             kinematics=problem.kinematics,
             load_d=mean_row(strip.faces["right"], pose.axes_kI[1], P_AI.size),
             free_d=_free(substrate, P_AI.size),
@@ -98,6 +98,12 @@ def _free(substrate: Body, n_dof: int) -> np.ndarray:
     free_Ai = np.ones((n_dof // 2, 2), dtype=bool)
     free_Ai[substrate.surface("bottom").conn_ca] = False
     return free_Ai.ravel()
+
+
+def _touching(problem: Problem) -> tuple[float, float] | None:
+    """How far strip and substrate may touch, beyond the bond as well; None where no gap closes there."""
+    face = min(problem.strip_length, problem.substrate_length)
+    return (face, 0.0) if problem.contact and closes(problem.opening) and face > problem.bond_length else None
 
 
 def _support(problem: Problem, strip: Body, pose: Pose, n_dof: int) -> tuple[np.ndarray, np.ndarray]:

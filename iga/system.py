@@ -20,7 +20,7 @@ from iga.bulk import (
     relative,
     stiffness_entries,
 )
-from iga.interface import Contact, Interface, contact, dofs, forces, pair, stiffness, traction
+from iga.interface import Contact, Interface, contact, dofs, forces, holding, pair, stiffness, traction
 from iga.interface import rounding as interface_rounding
 from iga.kinematics import KINEMATICS
 from iga.projection import Pairing
@@ -230,10 +230,11 @@ def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.nd
 
 def energies(system: System, state: State, response: Response) -> tuple[float, float, float, float]:
     """Energy stored in the bulk, in cohesion and in contact, and dissipated, at a state with its history committed."""
-    interface, share_q = system.interface, response.contact.share_q
-    cohesive_q, contact_q, dissipated_q = interface.law.energies(response.contact.g_q, state.k_q)
-    held = (float(interface.dA_q @ (share_q * stored_q)) for stored_q in (cohesive_q, contact_q))
-    return response.bulk_energy, *held, float(interface.dA_q @ dissipated_q)
+    interface, touch = system.interface, response.contact
+    cohesive_q, contact_q, dissipated_q = interface.law.energies(touch.g_q, state.k_q)
+    cohesive = float(interface.dA_q @ (np.where(holding(interface, touch), touch.share_q, 0.0) * cohesive_q))
+    contact_energy = float(interface.dA_q @ (touch.share_q * contact_q))
+    return response.bulk_energy, cohesive, contact_energy, float(interface.dA_q @ dissipated_q)
 
 
 def factorise(response: Response) -> BandLU | None:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.banded import BandLU
+from iga.interface import holding
 from iga.landing import Kink
 from iga.system import Phase, Response, State, System, factorise, respond
 
@@ -66,7 +67,7 @@ def tangent(
     kink : the one that the state stands on; ``slope`` is the mean of both sides where these have one sign.
     """
     law, g_q = system.interface.law, response.contact.g_q
-    soft_q = on_envelope(system, state, g_q) & response.contact.on_q
+    soft_q = on_envelope(system, state, g_q) & holding(system.interface, response.contact)
     growing_q = soft_q if direction > 0.0 or not law.irreversible else np.zeros_like(soft_q)
     flat_q = np.abs(g_q) <= NO_GAP * law.g_max
     closed_q = state.closed_q
