@@ -67,7 +67,7 @@ def curve(ranks, program=PROGRAM):
         [mpirun, "-n", str(ranks), sys.executable, "-c", program],
         capture_output=True,
         text=True,
-        timeout=240,
+        timeout=600,
         env=os.environ | settings,
         cwd=Path(__file__).parents[2],
     )
@@ -75,17 +75,18 @@ def curve(ranks, program=PROGRAM):
     return json.loads(done.stdout.split("RESULT")[1])
 
 
-def test_two_and_three_ranks_give_the_curve_of_one():
+@pytest.mark.parametrize("ranks", [2, pytest.param(3, marks=pytest.mark.slow)])
+def test_more_ranks_give_the_curve_of_one(ranks):
+    """Three are slow where there are not as many cores: ranks wait for one another."""
     alone = curve(1)
     assert alone["status"] == "complete"
     assert np.min(np.diff([row["opening"] for row in alone["snapping"] if row["opening"] > 0.5])) < 0
-    for ranks in (2, 3):
-        together = curve(ranks)
-        assert together["status"] == "complete"
-        assert together["dofs"] == alone["dofs"]
-        for which in ("rows", "snapping"):
-            assert_same_curve(together[which], alone[which])
-        assert together["fields"] == pytest.approx(alone["fields"], rel=1e-6)
+    together = curve(ranks)
+    assert together["status"] == "complete"
+    assert together["dofs"] == alone["dofs"]
+    for which in ("rows", "snapping"):
+        assert_same_curve(together[which], alone[which])
+    assert together["fields"] == pytest.approx(alone["fields"], rel=1e-6)
 
 
 @pytest.mark.slow
