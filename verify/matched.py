@@ -20,6 +20,8 @@ from verify.schema import Scene
 
 #: A point pulls where its traction is more than this part of the strength.
 PULLS = 0.01
+#: What is left out counts for nothing up to here: within this two codes that share nothing must draw the same curve.
+NEGLIGIBLE = 0.005
 
 
 @dataclass(frozen=True)
@@ -34,14 +36,34 @@ class LeftOut:
     gap: float
     pull: float
 
+    @property
+    def bound(self) -> float:
+        """Part of G_Ic, or of the load, by which a code that follows the surfaces may differ.
+
+        No traction is above p_max = 2 G_Ic / g_u: a change of the gap by ``gap`` g_u changes the area under the law by
+        no more than 2 ``gap`` G_Ic.
+        """
+        return float(np.max([2.0 * self.gap, self.pull]))  # NaN stays NaN, and is not valid
+
+    @property
+    def valid(self) -> bool:
+        """Whether the interface may stay matched; not where the bound is unknown."""
+        return self.bound <= NEGLIGIBLE
+
 
 def summary(scene: Scene, result: Result) -> dict[str, float]:
     """What ``result.json`` says of it: tilt, gap and pull, or nothing where the method follows the surfaces."""
+    found = of_run(scene, result)
+    return {} if found is None else asdict(found)
+
+
+def of_run(scene: Scene, result: Result) -> LeftOut | None:
+    """What a run leaves out; None where its method follows the surfaces, or where no fields were kept."""
     if result.method != "dolfinx" or not result.snapshots:
-        return {}
+        return None
     specimen = scene.specimen
     loaded_at = specimen.strip_length if specimen.kind == "peel" else 0.0
-    return asdict(left_out(result.snapshots, law_of(scene), loaded_at, specimen.width))
+    return left_out(result.snapshots, law_of(scene), loaded_at, specimen.width)
 
 
 def left_out(snapshots: tuple[Snapshot, ...], law: Bilinear, loaded_at: float, width: float = 1.0) -> LeftOut:
@@ -52,7 +74,7 @@ def left_out(snapshots: tuple[Snapshot, ...], law: Bilinear, loaded_at: float, w
     loaded_at : X of the loaded end, from which the snapshots count distances; the bodies meet on Y = 0.
     """
     found = [_of(snapshot, law, loaded_at, width) for snapshot in snapshots]
-    return LeftOut(*(max(values, default=0.0) for values in zip(*found, strict=True))) if found else LeftOut(0, 0, 0)
+    return LeftOut(*(float(np.max(values)) for values in zip(*found, strict=True))) if found else LeftOut(0, 0, 0)
 
 
 def _of(snapshot: Snapshot, law: Bilinear, loaded_at: float, width: float) -> tuple[float, float, float]:

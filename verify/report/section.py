@@ -8,7 +8,7 @@ from itertools import groupby
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
-from verify.report import cost, curves, drawing, fields, meshes, peel_drawing, published, undeformed, zones
+from verify.report import cost, curves, drawing, fields, matched, meshes, peel_drawing, published, undeformed, zones
 from verify.report.entry import Entry, entries
 from verify.report.style import Panel
 from verify.report.summary import KINDS, Tally, headline, tally
@@ -76,6 +76,7 @@ class Section:
     figures: tuple[Figures, ...]
     checks: tuple[tuple[Tally, tuple[CheckGroup, ...]], ...]
     rows: tuple[RunRow, ...]
+    matched: tuple[str, ...]  # what a matched interface leaves out
     zones: tuple[zones.ZoneRow, ...]
     published: tuple[published.PublishedRow, ...]
     compared: tuple[Entry, ...]  # columns of what was published
@@ -108,6 +109,7 @@ def section(report: SceneReport, anchor: str) -> Section:
         figures=_figures(report, drawn, groups, anchor),
         checks=tuple((tally(kind, checks), _check_groups(kind, checks)) for kind in KINDS),
         rows=tuple(_run_row(entry, report.scene) for entry in found),
+        matched=matched.sentences(report.scene, found),
         zones=zones.rows(report.scene, found),
         published=published.rows(report.scene, found),
         compared=published.compared(found),

@@ -1,0 +1,38 @@
+"""What a matched interface leaves out of a peel test, in a sentence for every run that has one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import degrees
+
+from verify import matched
+from verify.effects import simulated
+from verify.report.entry import Entry
+from verify.report.text import number, percent
+from verify.scene import Scene
+
+
+def sentences(scene: Scene, found: Sequence[Entry]) -> tuple[str, ...]:
+    """One for each DOLFINx run of a peel test with finite kinematics; with linear ones no code follows the surfaces."""
+    if scene.specimen.kind != "peel" or simulated(scene, "dolfinx")["kinematics"] == "linear":
+        return ()
+    runs = (entry for entry in found if entry.method == "dolfinx" and entry.agreement is not None)
+    return tuple(_sentence(scene, entry) for entry in runs)
+
+
+def _sentence(scene: Scene, entry: Entry) -> str:
+    found = matched.of_run(entry.run.scene or scene, entry.result)
+    how = f"{entry.label} keeps its pairs of points and measures gaps along the undeformed normal"
+    if found is None:
+        return f"{how}; what that leaves out is not known, as the run kept no fields"
+    what = (
+        f"In the fields that were kept the substrate tilts by at most {number(degrees(found.tilt), 2)}° where it is "
+        f"pulled; along its own normal gaps would change by {percent(found.gap)} of g_u in the process zone, and "
+        f"tractions would pull lengthwise with {percent(found.pull)} of the load"
+    )
+    if found.valid:
+        return f"{how}. {what}. For that G_Ic and load are off by no more than {percent(found.bound)}"
+    return (
+        f"{how}. {what}. Not valid here: for that G_Ic and load may be off by {percent(found.bound)}, more than "
+        f"{percent(matched.NEGLIGIBLE)}, and how far a code that follows the surfaces is from it tells nothing"
+    )
