@@ -58,7 +58,7 @@ def parser() -> argparse.ArgumentParser:
         "rules, and the figures of the paper"
     )
     sub.add_argument("--full", action="store_true", help=finer)
-    sub.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help="runs at a time")
+    _sweep_options(sub)
 
     text = "One scene by one method: T-splines, NURBS, Lagrange or DOLFINx elements, a beam, LEFM."
     example = "solve dcb-czm1 --method tspline --set discretization.adaptive=true"
@@ -73,7 +73,7 @@ def parser() -> argparse.ArgumentParser:
     sub = command("hard", _hard, "The cases on which cohesive codes stop or go wrong.", "hard coarse-czm2 --jobs 2")
     sub.add_argument("names", nargs="*", metavar="NAME", help="hard cases; default: all")
     sub.add_argument("--out", type=Path, default=Path("debond-hard"), metavar="DIR", help="default: debond-hard")
-    sub.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help="cases at a time")
+    _sweep_options(sub)
 
     text = "Two load-opening curves: error, peak, energy; of runs, or of anybody's code."
     example = "compare my.csv run --opening-a U2 --load-a RF2 --curve-tol 0.01"
@@ -91,6 +91,13 @@ def parser() -> argparse.ArgumentParser:
     sub = command("test", _test, "Run the tests; arguments go to pytest.", "test -k curve")
     sub.add_argument("rest", nargs=argparse.REMAINDER, metavar="ARG")
     return top
+
+
+def _sweep_options(sub: argparse.ArgumentParser) -> None:
+    sub.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help="runs at a time")
+    where = "let the workers of a dask cluster do the runs; they must see the same files"
+    sub.add_argument("--scheduler", metavar="ADDRESS", help=where)
+    sub.add_argument("--dry-run", action="store_true", help="print the runs and the time that they would take")
 
 
 def _compare_options(sub: argparse.ArgumentParser) -> None:
@@ -187,7 +194,7 @@ def _verify(options: argparse.Namespace) -> int:
     from verify.plane_study import load_plate
     from verify.run import mpi_size
     from verify.scene import load_scene, verified_scenes
-    from verify.verification import verify
+    from verify.verification import verify, would_run
 
     if mpi_size() > 1:
         raise Refusal(f"verify: must be started in 1 process, without mpirun, got {mpi_size()}")
@@ -205,17 +212,26 @@ def _verify(options: argparse.Namespace) -> int:
     wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]
     if wrong:
         raise Refusal("\n".join(wrong))
+    if options.dry_run:
+        return _listed(would_run(scenes, options.out, options.jobs, options.full))
     _folder(options.out)
-    return 0 if verify(scenes, options.out, options.jobs, options.full, plates) else FAILED
+    return 0 if verify(scenes, options.out, options.jobs, options.full, plates, options.scheduler) else FAILED
 
 
 def _hard(options: argparse.Namespace) -> int:
     from verify.hard.cases import chosen
-    from verify.hard.suite import hard
+    from verify.hard.suite import dry_run, hard
 
     cases = chosen(options.names)
+    if options.dry_run:
+        return _listed(dry_run(cases, options.out, options.jobs))
     _folder(options.out)
-    return 0 if hard(cases, options.out, options.jobs) else FAILED
+    return 0 if hard(cases, options.out, options.jobs, options.scheduler) else FAILED
+
+
+def _listed(lines: Sequence[str]) -> int:
+    print("\n".join(lines))
+    return 0
 
 
 def _compare(options: argparse.Namespace) -> int:

@@ -13,13 +13,13 @@ LINES_EVERY_SECONDS = 10.0
 class Progress:
     """Counts up to ``total``; ``advance`` to where the work is now.
 
-    On a terminal with tqdm a bar, otherwise a line when there is news after ten seconds.
+    On a terminal with tqdm a bar, otherwise a line when there is news after ten seconds; both with the time left.
     """
 
     def __init__(self, title: str, total: float, quiet: bool = False) -> None:
         self._title, self._total, self._done = title, total, 0.0
         self._quiet = quiet
-        self._said = monotonic()
+        self._start = self._said = monotonic()
         self._bar = None if quiet else _bar(title, total)
 
     def __enter__(self) -> Self:
@@ -36,7 +36,7 @@ class Progress:
             self._bar.set_postfix_str(news, refresh=False)
             self._bar.update(min(step, self._total - self._bar.n))
         elif not self._quiet and monotonic() - self._said > LINES_EVERY_SECONDS:
-            self.line(f"{self._title}: {done / self._total:4.0%} {news}")
+            self.line(f"{self._title}: {done / self._total:4.0%}{self.left} {news}")
 
     def line(self, text: str) -> None:
         """A whole line, above the bar where there is one."""
@@ -45,6 +45,21 @@ class Progress:
             self._bar.write(text, file=sys.stderr)
         elif not self._quiet:
             print(text, file=sys.stderr, flush=True)
+
+    @property
+    def left(self) -> str:
+        """The time that the rest takes at the rate so far: ", 3 min 20 s left", or nothing where none can be told."""
+        if not 0.0 < self._done < self._total:
+            return ""
+        return f", {duration((monotonic() - self._start) * (self._total / self._done - 1.0))} left"
+
+
+def duration(seconds: float) -> str:
+    """A time in two units at most: 8.2 s, 3 min 20 s, 2 h 5 min."""
+    if seconds < 99.5:
+        return f"{seconds:.2g} s" if seconds < 9.95 else f"{seconds:.0f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest} s" if minutes < 99 else f"{minutes // 60} h {minutes % 60} min"
 
 
 def _bar(title: str, total: float) -> Any:

@@ -11,7 +11,7 @@ from pathlib import Path
 from verify.checks import run_checks
 from verify.convergence import assess
 from verify.crosschecks import cross_checks, peak_load
-from verify.jobs import Job, Outcome, run_all
+from verify.jobs import Job, Outcome, dry_run, run_all
 from verify.methods import METHODS, WITH_DOFS
 from verify.paper import peel, peel_statements, statements
 from verify.paper import plan as figures
@@ -25,7 +25,7 @@ from verify.plane_study import lines as plane_lines
 from verify.plane_study import study as plane_study
 from verify.quadrature_study import Study, finding, study
 from verify.run import machine, versions
-from verify.scene import Scene, parse_scene
+from verify.scene import Scene
 from verify.table import check_table, failures, overview
 from verify.verdict import Check, Run, SceneReport
 
@@ -43,22 +43,25 @@ ADAPTIVE = ("discretization.adaptive=true", "discretization.dofs=700")
 
 
 def verify(
-    scenes: Sequence[tuple[str, Scene]], out: Path, jobs: int, full: bool = False, plates: Sequence[Plate] = ()
+    scenes: Sequence[tuple[str, Scene]],
+    out: Path,
+    jobs: int,
+    full: bool = False,
+    plates: Sequence[Plate] = (),
+    scheduler: str | None = None,
 ) -> bool:
     """Run everything, write ``out``/report.html, print the checks; whether all of them hold.
 
     Parameters
     ----------
     scenes : each with the name or path that it was loaded from
-    jobs : runs at a time
+    jobs : runs at a time; with the address of a dask ``scheduler`` its workers do them
     full : finer and coarser meshes as well, the study of the interface rules, the figures of the paper, and the
         rates of the bases in plane elasticity
     plates : meshes from CAD, on which plane problems with exact solutions are solved
     """
-    plan = [job for source, scene in scenes for job in planned(source, scene, full)]
-    beams, strips = (figure.planned(scenes if full else ()) for figure in (figures, peel))
-    asked = list(dict.fromkeys([*plan, *beams.jobs, *strips.jobs]))
-    outcomes = {outcome.job: outcome for outcome in run_all(asked, out, jobs)}
+    plan, beams, strips = _plans(scenes, full)
+    outcomes = {outcome.job: outcome for outcome in run_all(_all_jobs(plan, beams, strips), out, jobs, scheduler)}
     reports = tuple(
         scene_report(scene, [outcomes[job] for job in plan if job.scene is scene], out) for _, scene in scenes
     )
@@ -82,6 +85,20 @@ def verify(
     passed = sum(check.passed for _, check in checks)
     print(f"{passed} of {len(checks)} checks hold: {page}")
     return passed == len(checks)
+
+
+def would_run(scenes: Sequence[tuple[str, Scene]], out: Path, jobs: int, full: bool = False) -> list[str]:
+    """The runs of a verification with their times, a line each; nothing is run."""
+    return dry_run(_all_jobs(*_plans(scenes, full)), out, jobs)
+
+
+def _plans(scenes: Sequence[tuple[str, Scene]], full: bool) -> tuple[list[Job], figures.Plan, peel.PeelPlan]:
+    plan = [job for source, scene in scenes for job in planned(source, scene, full)]
+    return plan, figures.planned(scenes if full else ()), peel.planned(scenes if full else ())
+
+
+def _all_jobs(plan: Sequence[Job], beams: figures.Plan, strips: peel.PeelPlan) -> list[Job]:
+    return list(dict.fromkeys([*plan, *beams.jobs, *strips.jobs]))
 
 
 def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
@@ -138,7 +155,7 @@ def environment() -> dict[str, str]:
 
 def _as_run(outcome: Outcome, out: Path) -> Run:
     job, result = outcome.job, outcome.result
-    scene = parse_scene(job.scene.model_dump(), job.overrides) if job.overrides else job.scene
+    scene = job.solved
     mesh = {"dolfinx": scene.dolfinx, **dict.fromkeys(WITH_DOFS, scene.discretization)}.get(job.method)
     name = NAMES[job.method] + (f" p={mesh.degree}" if mesh else "")
     adaptive = job.method == "tspline" and scene.discretization.adaptive

@@ -100,9 +100,9 @@ def test_a_case_leaves_curves_and_a_verdict(tmp_path: Path) -> None:
     assert verdict.passed and verdict.completed == 2
     assert {check.name for check in verdict.checks} == {"completed", "finite", "ledger", "loads"}
     assert [(number.name, number.value) for number in verdict.numbers] == [("more", 7.0)]
-    assert read_verdict(tmp_path / "fake" / "nurbs") == verdict
+    assert read_verdict(tmp_path) == verdict
     for name in ("a", "b"):
-        folder = tmp_path / "fake" / "nurbs" / name
+        folder = tmp_path / name
         assert {"curve.csv", "evidence.csv", "result.json"} <= {path.name for path in folder.iterdir()}
 
 
@@ -125,7 +125,7 @@ def test_a_crash_of_the_solver_is_a_run_that_fails(tmp_path: Path) -> None:
         raise RuntimeError("no luck")
 
     assert {"completed", "judged"} <= failed(FAKE, tmp_path, solver)
-    assert "no luck" in read_verdict(tmp_path / "fake" / "nurbs").runs[0].status
+    assert "no luck" in read_verdict(tmp_path).runs[0].status
 
 
 def test_a_criterion_that_cannot_be_computed_fails(tmp_path: Path) -> None:
@@ -255,12 +255,13 @@ def test_an_unknown_case_is_refused_with_a_suggestion(tmp_path: Path, capsys: py
 def in_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cells without processes, solved by the stub; the Lagrange one dies."""
 
-    def cell(case: Case, basis: str, out: Path, running, stopped) -> Cell:
-        if basis == "lagrange":
-            return Cell(case, basis, None, "signal 9")
-        return Cell(case, basis, run_case(case, basis, out, stub))
+    def run_all(cases: list[Case], out: Path, *how) -> Iterator[Cell]:
+        for one, basis in ((case, basis) for case in cases for basis in case.bases):
+            dies = basis == "lagrange"
+            verdict = None if dies else run_case(one, basis, out / one.name / basis, stub)
+            yield Cell(one, basis, verdict, "signal 9" if dies else "")
 
-    monkeypatch.setattr(suite, "_cell", cell)
+    monkeypatch.setattr(suite, "run_all", run_all)
 
 
 def test_a_crash_costs_one_cell(in_process: None, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
@@ -272,21 +273,20 @@ def test_a_crash_costs_one_cell(in_process: None, tmp_path: Path, capsys: pytest
 
 
 def test_all_cells_hold_and_what_fails_is_said_in_full(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    cells = [Cell(FAKE, basis, run_case(FAKE, basis, tmp_path, stub)) for basis in BASES]
+    cells = [Cell(FAKE, basis, run_case(FAKE, basis, tmp_path / basis, stub)) for basis in BASES]
     assert suite.failures(cells) == []
     first = matrix(cells)[1].split()
     assert first[:8] == ["fake", BASES[0], "ok", "2", "of", "2", "60", "4"] and first[9] == "1.0e+06"
-    bad = Cell(FAKE, "nurbs", run_case(FAKE, "nurbs", tmp_path, faulty(external_work=0.1)))
+    bad = Cell(FAKE, "nurbs", run_case(FAKE, "nurbs", tmp_path / "nurbs", faulty(external_work=0.1)))
     lines = suite.failures([bad])
     assert len(lines) == 2 and all("ledger" in line and "(<= 1.0e-02)" in line for line in lines)
 
 
 def test_a_process_that_dies_leaves_its_last_words(tmp_path: Path) -> None:
-    from threading import Event
-
-    cell = suite._cell(replace(FAKE, name="no-such-case"), "nurbs", tmp_path, set(), Event())
+    (cell,) = suite.run_all([replace(FAKE, name="no-such-case", bases=("nurbs",))], tmp_path, 1)
     assert cell.verdict is None and not cell.passed
-    assert cell.why.startswith("exit 1: KeyError: 'no-such-case'")
+    assert cell.why == "failed: KeyError: 'no-such-case'"
+    assert "KeyError" in (tmp_path / "no-such-case" / "nurbs" / "log.txt").read_text()
 
 
 def test_the_page_links_figures_and_curves_and_escapes_texts(in_process: None, tmp_path: Path) -> None:
@@ -308,9 +308,9 @@ def test_a_single_path_is_drawn_with_its_envelope(in_process: None, tmp_path: Pa
 
 
 def test_a_verdict_with_nan_is_read_back_as_a_failure(tmp_path: Path) -> None:
-    run_case(FAKE, "nurbs", tmp_path, faulty(stored_energy=np.nan))
-    json.loads((tmp_path / "fake/nurbs/verdict.json").read_text())
-    read = read_verdict(tmp_path / "fake" / "nurbs")
+    run_case(FAKE, "nurbs", tmp_path / "nurbs", faulty(stored_energy=np.nan))
+    json.loads((tmp_path / "nurbs" / "verdict.json").read_text())
+    read = read_verdict(tmp_path / "nurbs")
     assert not read.passed and np.isnan(next(c.value for c in read.checks if c.name == "ledger"))
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify import jobs, methods, verification
+from verify import methods, sweep, verification
 from verify.cli import main
 from verify.crosschecks import cross_checks
 from verify.jobs import Job, Outcome
@@ -87,7 +87,7 @@ def test_a_crash_costs_one_run_and_fails(
 def test_a_killed_process_is_named_by_its_signal(
     scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(jobs, "_call", lambda command, log, running: -11)
+    monkeypatch.setattr(sweep, "call", lambda *how: -11)
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
     assert reports[0].runs[0].left_out == "failed: signal 11"
@@ -98,8 +98,11 @@ def test_an_earlier_result_does_not_pass_for_a_crashed_run(
 ) -> None:
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert verify([(LINEAR, scene)], tmp_path, jobs=1)
-    monkeypatch.setattr(jobs, "_call", lambda command, log, running: -9)
+    monkeypatch.setattr(sweep, "call", lambda *how: -9)
+    assert verify([(LINEAR, scene)], tmp_path, jobs=1), "nothing has changed: there is nothing to run"
+    monkeypatch.setattr("verify.fingerprint.source", lambda packages, own=(): "another version")
     assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert not (tmp_path / LINEAR / "lefm" / "curve.csv").exists()
 
 
 def test_a_failing_check_fails_the_whole(scene: Scene, reports: list, tmp_path: Path, monkeypatch) -> None:
@@ -192,7 +195,7 @@ def test_full_makes_the_figures_of_the_paper_where_their_scenes_are_given(
     """All runs in one pool, none twice; a run that nobody could make takes part in no statement and fails nothing."""
     asked: list[Job] = []
 
-    def run_all(plan: list[Job], out: Path, jobs: int) -> list[Outcome]:
+    def run_all(plan: list[Job], out: Path, *how) -> list[Outcome]:
         asked.extend(plan)
         return [Outcome(job, None, "not run: by nobody") for job in plan]
 

@@ -54,9 +54,8 @@ class Verdict:
         return sum(line.status.startswith("complete") for line in self.runs)
 
 
-def run_case(case: Case, basis: str, out: Path, solver: Solver = solve) -> Verdict:
-    """Run every variant of a case into ``out``/case/basis/variant and write ``verdict.json`` beside them."""
-    folder = out / case.name / basis
+def run_case(case: Case, basis: str, folder: Path, solver: Solver = solve) -> Verdict:
+    """Run every variant of a case into a folder of its own in ``folder``, and write ``verdict.json`` beside them."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "verdict.json").unlink(missing_ok=True)
     trials = {}
@@ -124,8 +123,8 @@ def _ending(result: Result) -> str:
 
 def main(arguments: Sequence[str]) -> int:
     """``python -m verify.hard.one CASE BASIS DIR``."""
-    name, basis, out = arguments
-    return 0 if run_case(CASES[name], basis, Path(out)).passed else 1
+    name, basis, folder = arguments
+    return 0 if run_case(CASES[name], basis, Path(folder)).passed else 1
 
 
 if __name__ == "__main__":

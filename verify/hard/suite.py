@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
-from threading import Event
 
 import numpy as np
 
+from verify.estimate import seconds
+from verify.fingerprint import digest, fingerprint, source
 from verify.hard.case import Case
 from verify.hard.one import Verdict, read_verdict
-from verify.progress import Progress
+from verify.pools import pool
+from verify.sweep import FOLDER, Done, Task, listed, sweep
 from verify.table import check_table
-
-CELL_TIMEOUT_SECONDS = 1800
-PROJECT = Path(__file__).resolve().parents[2]
 
 
 @dataclass(frozen=True)
@@ -41,9 +37,9 @@ class Cell:
         return f"{self.case.name}/{self.basis}"
 
 
-def hard(cases: Sequence[Case], out: Path, jobs: int) -> bool:
+def hard(cases: Sequence[Case], out: Path, jobs: int, scheduler: str | None = None) -> bool:
     """Run the cases, write ``out``/report.html, print the matrix; whether every row holds."""
-    found = {(cell.case.name, cell.basis): cell for cell in run_all(cases, out, jobs)}
+    found = {(cell.case.name, cell.basis): cell for cell in run_all(cases, out, jobs, scheduler)}
     cells = [found[case.name, basis] for case in cases for basis in case.bases]
     _write_page(cells, out)
     print("\n".join([*matrix(cells), "", *failures(cells)]))
@@ -52,53 +48,36 @@ def hard(cases: Sequence[Case], out: Path, jobs: int) -> bool:
     return len(rows) == len(cases)
 
 
-def run_all(cases: Sequence[Case], out: Path, jobs: int) -> Iterator[Cell]:
-    """Every case on every basis in a pool; the cells as they come."""
-    running: set[subprocess.Popen] = set()
-    stopped = Event()
-    pool = ThreadPoolExecutor(jobs)
-    try:
-        pairs = [(case, basis) for case in cases for basis in case.bases]
-        futures = [pool.submit(_cell, case, basis, out, running, stopped) for case, basis in pairs]
-        with Progress("hard", len(futures)) as progress:
-            for count, future in enumerate(as_completed(futures), 1):
-                cell = future.result()
-                progress.line(f"{cell.case.name} {cell.basis}: {_in_short(cell)}")
-                progress.advance(count)
-                yield cell
-    finally:  # also on an interrupt
-        stopped.set()
-        pool.shutdown(wait=False, cancel_futures=True)
-        for process in list(running):
-            process.terminate()
+def run_all(cases: Sequence[Case], out: Path, jobs: int, scheduler: str | None = None) -> Iterator[Cell]:
+    """Every case on every basis, ``jobs`` at a time or through a dask scheduler; the cells as they come."""
+    pairs = {task(case, basis): (case, basis) for case in cases for basis in case.bases}
+    with pool(jobs, scheduler) as workers:
+        for done in sweep(list(pairs), out, workers, "hard", lambda done: _in_short(_cell(*pairs[done.task], done))):
+            yield _cell(*pairs[done.task], done)
 
 
-def _cell(case: Case, basis: str, out: Path, running: set[subprocess.Popen], stopped: Event) -> Cell:
-    """One process: a crash costs this cell and no other."""
-    if stopped.is_set():
-        return Cell(case, basis, None, "not run")
-    folder = out / case.name / basis
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "verdict.json").unlink(missing_ok=True)
-    paths = [str(PROJECT), *filter(None, [os.environ.get("PYTHONPATH")])]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)}
-    command = [sys.executable, "-P", "-m", "verify.hard.one", case.name, basis, str(out)]
-    with (folder / "log.txt").open("w+") as log:
-        with subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, env=environment) as process:
-            running.add(process)
-            try:
-                code = process.wait(CELL_TIMEOUT_SECONDS)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                code = process.wait()
-            finally:
-                running.discard(process)
-        log.seek(0)
-        said = log.read().strip().splitlines()
-    if (folder / "verdict.json").exists():
-        return Cell(case, basis, read_verdict(folder))
-    why = f"signal {-code}" if code < 0 else f"exit {code}"
-    return Cell(case, basis, None, f"{why}: {said[-1]}" if said else why)
+def dry_run(cases: Sequence[Case], out: Path, jobs: int) -> list[str]:
+    """The cells with their times, a line each."""
+    return listed([task(case, basis) for case in cases for basis in case.bases], out, jobs)
+
+
+def task(case: Case, basis: str) -> Task:
+    """One case on one basis as a sweep does it: all its variants in one process."""
+    scenes = [(variant.name, variant.scene) for variant in case.variants()]
+    own = source(own=("hard",))
+    return Task(
+        f"{case.name}/{basis}",
+        digest(case.name, own, [(name, fingerprint(scene, basis)) for name, scene in scenes]),
+        ("verify.hard.one", case.name, basis, FOLDER),
+        "verdict.json",
+        seconds=sum(seconds(scene, basis) for _, scene in scenes),
+    )
+
+
+def _cell(case: Case, basis: str, done: Done) -> Cell:
+    if (done.folder / "verdict.json").exists():
+        return Cell(case, basis, read_verdict(done.folder))
+    return Cell(case, basis, None, done.why)
 
 
 def matrix(cells: Sequence[Cell]) -> list[str]:
