@@ -120,7 +120,13 @@ def _done(tasks: Sequence[Task], store: Store, pool: Pool) -> Iterator[tuple[Tas
     waiting, running = list({task.key: task for task in tasks}.values()), {}
     try:
         while waiting or running:
-            for task in _next(waiting, list(running.values()), pool.slots() - len(running)):
+            try:
+                room = pool.slots() - len(running)
+            except OSError as error:  # a scheduler that is gone; what it had begun ends by itself
+                room, lost = 0, {task.key for task in waiting}
+                waiting.clear()
+                yield from ((task, f"failed: {error}") for task in tasks if task.key in lost)
+            for task in _next(waiting, list(running.values()), room):
                 waiting.remove(task)
                 running[_submitted(task, store, pool)] = task
             for future in wait(running, return_when=FIRST_COMPLETED).done:

@@ -1,0 +1,293 @@
+"""The sweep engine: whole or absent, whoever is killed; what is there is not done again."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from verify.fingerprint import digest, fingerprint, source
+from verify.jobs import Job
+from verify.pools import pool
+from verify.progress import duration
+from verify.scene import load_scene
+from verify.store import NAME, Store, link, opened
+from verify.sweep import FOLDER, Done, Task, _next, listed, sweep
+
+PROJECT = Path(__file__).resolve().parents[2]
+
+#: Leaves its process id at once, waits until it is let go where it is asked to, and says in its folder that it ran.
+PROGRAM = """
+import os, sys, time
+from pathlib import Path
+folder, name, marks, ending = Path(sys.argv[1]), sys.argv[2], Path(sys.argv[3]), sys.argv[4]
+with (marks / f"{name}.runs").open("a") as runs:
+    print(os.getpid(), file=runs)
+if ending == "waits":
+    while not (marks / "go").exists():
+        time.sleep(0.02)
+if ending == "dies":
+    sys.exit("the last words")
+(folder / "proof").write_text(name)
+sys.exit(1 if ending == "fails" else 0)
+"""
+
+#: An engine in a process of its own, which can be killed: python -c ENGINE OUT MARKS SCHEDULER NAME:ENDING ...
+ENGINE = """
+import sys
+from pathlib import Path
+sys.path.insert(0, {here!r})
+from test_sweep import runs, task
+out, marks, scheduler, *words = sys.argv[1:]
+tasks = [task(*word.split(":"), Path(marks)) for word in words]
+for done in runs(tasks, Path(out), 1, scheduler or None):
+    print(done.task.place, done.why, flush=True)
+"""
+
+
+@pytest.fixture
+def marks(tmp_path: Path) -> Path:
+    folder = tmp_path / "marks"
+    folder.mkdir()
+    return folder
+
+
+def task(name: str, ending: str, marks: Path, lane: str = "") -> Task:
+    """A run that needs no solver."""
+    program = marks / "stand_in.py"
+    if not program.exists():
+        beside = marks / f"stand_in.{os.getpid()}"
+        beside.write_text(PROGRAM)
+        beside.rename(program)
+    return Task(f"scene/{name}", digest(name), ("stand_in", FOLDER, name, str(marks), ending), "proof", lane)
+
+
+def runs(tasks: list[Task], out: Path, jobs: int, scheduler: str | None = None) -> list[Done]:
+    with pool(jobs, scheduler) as workers:
+        return list(sweep(tasks, out, workers, "test", lambda done: done.why or "done"))
+
+
+@pytest.fixture(autouse=True)
+def _stand_in(marks: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(marks))
+
+
+def started(marks: Path, name: str) -> list[int]:
+    """Process ids of all runs of a name so far."""
+    file = marks / f"{name}.runs"
+    return [int(line) for line in file.read_text().split()] if file.exists() else []
+
+
+def until(found, seconds: float = 60.0) -> None:
+    deadline = time.monotonic() + seconds
+    while not found():
+        assert time.monotonic() < deadline, "nothing happens"
+        time.sleep(0.02)
+
+
+def alive(pid: int) -> bool:
+    """Whether a process runs; one that has ended and that nobody has asked for counts as ended."""
+    status = Path(f"/proc/{pid}/status")
+    return status.exists() and "State:\tZ" not in status.read_text()
+
+
+def test_what_is_there_is_not_done_again(tmp_path: Path, marks: Path, capsys: pytest.CaptureFixture) -> None:
+    out, first = tmp_path / "out", [task("a", "ends", marks)]
+    assert [(done.why, done.at_hand) for done in runs(first, out, 1)] == [("", False)]
+    both = [*first, task("b", "fails", marks)]
+    assert {done.task.place: (done.why, done.at_hand) for done in runs(both, out, 2)} == {
+        "scene/a": ("", True),
+        "scene/b": ("", False),
+    }
+    assert len(started(marks, "a")) == len(started(marks, "b")) == 1
+    assert (out / "scene" / "a" / "proof").read_text() == "a"
+    assert os.readlink(out / "scene" / "a") == f"../{NAME}/{first[0].key}"
+    assert "1 of 2 runs are at hand" in capsys.readouterr().err
+
+
+def test_a_run_that_dies_is_kept_for_reading_and_done_again(tmp_path: Path, marks: Path) -> None:
+    (done,) = runs([task("a", "dies", marks)], tmp_path, 1)
+    assert done.why == "failed: the last words" and not done.at_hand
+    assert "the last words" in (tmp_path / "scene" / "a" / "log.txt").read_text()
+    (done,) = runs([task("a", "ends", marks)], tmp_path, 1)
+    assert not done.why and len(started(marks, "a")) == 2
+    assert [path.name for path in (tmp_path / NAME).iterdir() if path.is_dir()] == [task("a", "ends", marks).key]
+
+
+def test_a_killed_worker_costs_its_run(tmp_path: Path, marks: Path) -> None:
+    """SIGKILL in the middle: the others are whole, the second call does the one that is missing."""
+    tasks = [task("a", "waits", marks), task("b", "ends", marks), task("c", "ends", marks)]
+    engine = subprocess.Popen(engine_command(tmp_path, marks, "", *tasks), stdout=subprocess.PIPE, text=True)
+    until(lambda: started(marks, "a"))
+    os.kill(started(marks, "a")[0], signal.SIGKILL)
+    said, _ = engine.communicate(timeout=60)
+    assert said.splitlines() == ["scene/a failed: signal 9", "scene/b ", "scene/c "]
+    (marks / "go").touch()
+    found = {done.task.place: done.at_hand for done in runs(tasks, tmp_path, 1)}
+    assert found == {"scene/a": False, "scene/b": True, "scene/c": True}
+    assert [len(started(marks, name)) for name in "abc"] == [2, 1, 1]
+
+
+def test_a_killed_engine_leaves_whole_folders_and_no_process(tmp_path: Path, marks: Path) -> None:
+    tasks = [task("a", "ends", marks), task("b", "waits", marks), task("c", "ends", marks)]
+    engine = subprocess.Popen(engine_command(tmp_path, marks, "", *tasks), stdout=subprocess.DEVNULL)
+    until(lambda: started(marks, "b"))
+    (child,) = started(marks, "b")
+    engine.kill()
+    engine.wait()
+    until(lambda: not alive(child))
+    store = Store(tmp_path / NAME)
+    assert [store.whole(one.key) for one in tasks] == [True, False, False]
+    (marks / "go").touch()
+    found = {done.task.place: (done.why, done.at_hand) for done in runs(tasks, tmp_path, 1)}
+    assert found == {"scene/a": ("", True), "scene/b": ("", False), "scene/c": ("", False)}
+    assert [len(started(marks, name)) for name in "abc"] == [1, 2, 1]
+    assert sorted(path.name for path in store.root.iterdir() if path.is_dir()) == sorted(one.key for one in tasks)
+
+
+def engine_command(out: Path, marks: Path, scheduler: str, *tasks: Task) -> list[str]:
+    words = [f"{one.program[2]}:{one.program[4]}" for one in tasks]
+    code = ENGINE.format(here=str(Path(__file__).parent))
+    return [sys.executable, "-c", code, str(out), str(marks), scheduler, *words]
+
+
+@pytest.fixture
+def cluster(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """A scheduler and a worker in processes of their own, and a client that gives up soon."""
+    pytest.importorskip("distributed", reason="dask.distributed is not installed; it is an optional extra")
+    monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "3s")
+    file, quiet = tmp_path / "scheduler.json", {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    paths = os.pathsep.join([str(PROJECT), os.environ["PYTHONPATH"]])
+    environment = os.environ | {"PYTHONPATH": paths}
+    scheduler = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard"]
+    worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--nthreads", "1", "--no-dashboard"]
+    place = ["--scheduler-file", str(file), "--local-directory", str(tmp_path)]
+    processes = [subprocess.Popen([*scheduler, "--scheduler-file", str(file)], env=environment, **quiet)]
+    until(file.exists)
+    processes.append(subprocess.Popen([*worker, *place], env=environment, **quiet))
+    try:
+        yield lambda: json.loads(file.read_text())["address"], processes
+    finally:
+        for process in reversed(processes):
+            process.terminate()
+        for process in processes:
+            process.wait(30)
+
+
+@pytest.mark.slow
+def test_runs_through_dask_whose_worker_is_killed(tmp_path: Path, marks: Path, cluster) -> None:
+    """The worker's keeper starts another, which does the run again; nothing is left for a second call."""
+    address, out = cluster[0](), tmp_path / "out"
+    tasks = [task("a", "waits", marks), task("b", "ends", marks)]
+    engine = subprocess.Popen(engine_command(out, marks, address, *tasks), stdout=subprocess.PIPE, text=True)
+    until(lambda: started(marks, "a"))
+    (child,) = started(marks, "a")
+    os.kill(int(Path(f"/proc/{child}/stat").read_text().rpartition(")")[2].split()[1]), signal.SIGKILL)
+    until(lambda: not alive(child))
+    (marks / "go").touch()
+    said, _ = engine.communicate(timeout=120)
+    assert sorted(said.splitlines()) == ["scene/a ", "scene/b "]
+    assert all(done.at_hand for done in runs(tasks, out, 1))
+
+
+@pytest.mark.slow
+def test_a_killed_scheduler_costs_what_was_not_whole(tmp_path: Path, marks: Path, cluster) -> None:
+    find, (scheduler, _) = cluster
+    tasks, out = [task("a", "ends", marks), task("b", "waits", marks), task("c", "ends", marks)], tmp_path / "out"
+    engine = subprocess.Popen(engine_command(out, marks, find(), *tasks), stdout=subprocess.PIPE, text=True)
+    until(lambda: started(marks, "b"))
+    scheduler.kill()
+    said, _ = engine.communicate(timeout=120)
+    ends = [tuple(line.split(" ")[:2]) for line in said.splitlines()]
+    assert ends == [("scene/a", ""), ("scene/b", "failed:"), ("scene/c", "failed:")]
+    (marks / "go").touch()
+    assert {done.task.place: done.at_hand for done in runs(tasks, out, 1)}["scene/a"]
+    assert all(Store(out / NAME).whole(one.key) for one in tasks)
+
+
+def test_a_scheduler_that_does_not_answer_is_refused(capsys: pytest.CaptureFixture, tmp_path: Path) -> None:
+    from verify.cli import main
+
+    assert main(["hard", "units", "--scheduler", "nowhere", "--out", str(tmp_path)]) == 2
+    assert "debond: --scheduler: " in capsys.readouterr().err
+
+
+def test_a_lane_goes_one_by_one_and_first() -> None:
+    free = [Task(name, name, (), "proof") for name in "abc"]
+    lane = [Task(name, name, (), "proof", "lane") for name in "xyz"]
+    assert _next([*free, *lane], [], 2) == [lane[0], free[0]]
+    assert _next([*free, *lane[1:]], [lane[0]], 2) == free[:2]
+    assert _next(lane[1:], [lane[0]], 1) == []
+
+
+def test_an_output_folder_belongs_to_one_engine(tmp_path: Path, marks: Path) -> None:
+    from verify.refusal import Refusal
+
+    with opened(tmp_path), pytest.raises(Refusal, match="no other debond is at work"):
+        runs([task("a", "ends", marks)], tmp_path, 1)
+    assert not started(marks, "a")
+
+
+def test_a_folder_of_an_earlier_version_is_moved_aside(tmp_path: Path, marks: Path) -> None:
+    (tmp_path / "scene" / "a").mkdir(parents=True)
+    (tmp_path / "scene" / "a" / "mine").touch()
+    runs([task("a", "ends", marks)], tmp_path, 1)
+    assert (tmp_path / "scene" / "a.earlier" / "mine").exists() and (tmp_path / "scene" / "a" / "proof").exists()
+
+
+def test_an_output_folder_can_be_moved(tmp_path: Path, marks: Path) -> None:
+    runs([task("a", "ends", marks)], tmp_path / "old", 1)
+    (tmp_path / "old").rename(tmp_path / "new")
+    assert (tmp_path / "new" / "scene" / "a" / "proof").exists()
+
+
+def test_a_copy_where_there_are_no_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*how, **options):
+        raise OSError("no links here")
+
+    (tmp_path / "whole").mkdir()
+    (tmp_path / "whole" / "proof").touch()
+    monkeypatch.setattr(Path, "symlink_to", refused)
+    link(tmp_path, "scene/a", tmp_path / "whole")
+    assert (tmp_path / "scene" / "a" / "proof").exists() and not (tmp_path / "scene" / "a").is_symlink()
+
+
+def test_a_dry_run_lists_what_is_missing(tmp_path: Path, marks: Path) -> None:
+    tasks = [task(name, "ends", marks) for name in "abc"]
+    runs(tasks[:1], tmp_path, 1)
+    lines = listed(tasks, tmp_path, 2)
+    assert "at hand" in lines[0] and "about 1 s" in lines[1]
+    assert lines[-1] == "2 of 3 runs to do, 2 at a time: about 1 s"
+    assert not started(marks, "b")
+
+
+def test_the_hash_tells_what_a_result_rests_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = load_scene("dcb-czm1")
+    same = fingerprint(scene, "nurbs")
+    assert same == fingerprint(load_scene("dcb-czm1"), "nurbs")
+    others = [
+        fingerprint(load_scene("dcb-czm1", ["interface.strength=4.001"]), "nurbs"),
+        fingerprint(scene, "tspline"),
+        fingerprint(scene, "nurbs", "repeat 1"),
+    ]
+    job = Job("dcb-czm1", scene, "nurbs", "a", ("discretization.dofs=500",))
+    others += [job.task().key, Job("dcb-czm1", scene, "nurbs", "a", ("discretization.dofs=501",)).task().key]
+    for name, value in (("machine", {"processor": "another"}), ("versions", {"numpy": "1"})):
+        monkeypatch.setattr(f"verify.fingerprint.{name}", lambda value=value: value)
+        others.append(fingerprint(scene, "nurbs"))
+        monkeypatch.undo()
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    others.append(fingerprint(scene, "nurbs"))
+    assert len({same, *others}) == 1 + len(others)
+    assert source(("iga",)) != source(("fem_reference",)) != source()
+
+
+def test_durations_read_well() -> None:
+    words = [duration(s) for s in (0.25, 8.24, 42.0, 200.0, 7500.0)]
+    assert words == ["0.25 s", "8.2 s", "42 s", "3 min 20 s", "2 h 5 min"]
