@@ -141,13 +141,14 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
     with phase("basis"):
         displacement = displacements(bodies, problem.degree)
         weak = weak_form(problem, specimen, bodies, displacement)
+    with phase("compile"):
         bulk = compile_forms(weak.bulk, weak.maps)
         internal, load, slope = (_vector(blocks, weak) for blocks in (weak.internal, weak.load, weak.slope))
         energy, face_energy = compile_forms([weak.energy, weak.face_energy], weak.maps)
     bcs, free_n = supports(specimen, displacement)
     tie_n = tie(specimen, displacement)
     with phase("assembly"):
-        bond, X_q = _bond(problem, weak, free_n)
+        bond, X_q = _bond(problem, weak, free_n, phase)
         narrow = create_block_matrix(bulk)
         add_block_matrix(narrow, bulk, bcs)
         tie_matrix = outer(tie_n, narrow)
@@ -198,16 +199,18 @@ def _vector(blocks: list, weak: WeakForm) -> BlockVector:
     return BlockVector(compile_forms(blocks, weak.maps))
 
 
-def _bond(problem: Debonding, weak: WeakForm, free_n: np.ndarray) -> tuple[Bond, np.ndarray]:
+def _bond(problem: Debonding, weak: WeakForm, free_n: np.ndarray, phase: Phase) -> tuple[Bond, np.ndarray]:
     """The bond's matrices, and the positions of its points: integrals over a point's share, divided by the share."""
-    gap = [compile_forms(weak.gap, weak.maps)]
-    weight_q = _vector([weak.weight], weak).assemble()
+    with phase("compile"):
+        gap = [compile_forms(weak.gap, weak.maps)]
+        weight, position = (_vector([form], weak) for form in (weak.weight, weak.position))
+    weight_q = weight.assemble()
     G = create_block_matrix(gap)
     add_block_matrix(G, gap, ())
     share = G.createVecLeft()
     share.array[:] = 1.0 / weight_q
     G.diagonalScale(L=share)
-    X_q = _vector([weak.position], weak).assemble() / weight_q
+    X_q = position.assemble() / weight_q
     return Bond(without_zeros(G), problem.width * weight_q, free_n), X_q
 
 

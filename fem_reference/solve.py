@@ -7,6 +7,7 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 
 from mpi4py import MPI
+from petsc4py import PETSc
 
 from fem_reference.assembled import owned
 from fem_reference.fields import field_sampler
@@ -30,6 +31,7 @@ class Solution:
     ending: str  # "separated at opening ...", or nothing to say
     condition: float  # of the tangents; 0 where it was not looked at
     snapshots: tuple[dict, ...]
+    nonzeros: int = 0  # entries of the tangent that are stored
 
 
 def solve_debonding(
@@ -43,11 +45,11 @@ def solve_debonding(
     Parameters
     ----------
     on_step : called on the first rank with the row of every converged step; the first row is the unloaded specimen.
-    phase : context manager that times a part of the work: "mesh", "basis" (compiling the forms too), "assembly",
-        "factor", "solve".
+    phase : context manager that times a part of the work: "mesh", "basis", "compile" (the forms, or reading what has
+        been compiled before), "assembly", "factor", "solve".
     """
     model = build_model(problem, phase, comm)
-    with phase("basis"):
+    with phase("compile"):
         sample = field_sampler(model)
     rows: list[dict[str, float]] = []
     snapshots: list[dict | None] = []
@@ -77,4 +79,5 @@ def solve_debonding(
         ending=ending,
         condition=0.0,
         snapshots=tuple(s for s in snapshots if s is not None),
+        nonzeros=int(model.tangent_matrix.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"]),
     )

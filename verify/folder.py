@@ -87,6 +87,8 @@ def read_result(folder: Path) -> Result:
         snapshots=read_fields(folder / "fields.npz"),
         seconds=known["seconds"],
         peak_memory_mb=known["peak_memory_mb"],
+        nonzeros=known.get("nonzeros", 0),
+        jit_seconds=known.get("jit_seconds", 0.0),
     )
 
 

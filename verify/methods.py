@@ -339,7 +339,7 @@ def axial_modulus(material: Material, plane: str) -> float:
 def _result(method: str, solution: Any, watch: Stopwatch) -> Result:
     """``solution``: rows, dofs, elements, rejected_steps, status, snapshots, as both field solvers return them.
 
-    And ending and condition, from a solver that knows them.
+    And ending, condition and nonzeros, from a solver that knows them.
     """
     return Result(
         method=method,
@@ -353,6 +353,8 @@ def _result(method: str, solution: Any, watch: Stopwatch) -> Result:
         snapshots=tuple(Snapshot(**snapshot) for snapshot in solution.snapshots),
         seconds=watch.seconds(),
         peak_memory_mb=peak_memory_mb(),
+        nonzeros=getattr(solution, "nonzeros", 0),
+        jit_seconds=watch.compile,
     )
 
 
