@@ -81,6 +81,7 @@ def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None
         "heading": heading,
         "tip_opening": float(units.gap(m, field.at(np.array(m.ends.precrack)))),
         "end_opening": float(units.gap(m, field.node[-1])),
+        "damage_front": h * max(m.ends.precrack, state.front),
         "face_slope_top": rate,
         "face_slope_bottom": -rate if units.arms == 2 else 0.0,
         "face_energy": _face_energy(m, field) * units.arms * units.force / units.width,
@@ -104,6 +105,7 @@ def _unloaded(m: Model, units: Units, slope: float) -> dict[str, float]:
         "heading",
         "tip_opening",
         "end_opening",
+        "damage_front",
         "face_slope_top",
         "face_slope_bottom",
         "face_energy",
@@ -112,7 +114,8 @@ def _unloaded(m: Model, units: Units, slope: float) -> dict[str, float]:
         "cohesive_energy",
         "contact_energy",
     )
-    return {**dict.fromkeys(names, 0.0), "crack_length": m.ends.precrack * units.h, "load_slope": slope, "heading": 1.0}
+    start = dict.fromkeys(("crack_length", "damage_front"), m.ends.precrack * units.h)
+    return {**dict.fromkeys(names, 0.0), **start, "load_slope": slope, "heading": 1.0}
 
 
 def _work(units: Units, before: Mapping[str, float], row: Mapping[str, float]) -> float:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.checks import law_of, run_checks
+from verify.checks import growing, law_of, run_checks
 from verify.methods import solve
 from verify.result import Result
 from verify.scene import Scene, load_scene
@@ -115,6 +115,51 @@ def test_a_bond_to_the_end_of_the_substrate_has_no_onset_of_its_own() -> None:
     result = made_up(scene)
     assert {check.name for check in run_checks(scene, result)} == ALWAYS
     assert "j-integral" in failed(scene, changed(result, "face_slope_top", 1.02, 0.0, EARLY))
+
+
+def test_what_the_far_end_holds_is_not_released(scene: Scene) -> None:
+    """An end that still holds 0.8 % of G_Ic: the load may fall short by as much, the pull must."""
+    law, last = law_of(scene), slice(-1, None)
+    held = changed(made_up(scene), "end_opening", 0.0, law.g_peak * (0.008 * law.ductility) ** 0.5, last)
+    G = scene.interface.toughness
+    assert law.area(held.steps["end_opening"][-1]) == pytest.approx(0.008 * G)
+    value = {check.name: check.value for check in run_checks(scene, held)}["growth-angle"]
+    assert value == pytest.approx(1.0 / 0.992 - 1.0, rel=1e-6)
+    least = changed(held, "load", 0.0, 0.993 * G, last)
+    assert "growth-load" not in failed(scene, least)
+    assert "growth-load" in failed(scene, changed(held, "load", 0.0, 0.98 * G, last))
+
+
+def growth(scene: Scene, result: Result) -> tuple[np.ndarray, np.ndarray]:
+    """sin(theta) and load / (G_Ic w) at the steps at which the crack grows."""
+    steady = growing(scene, result.steps)
+    sine = np.minimum(np.abs(result.steps["face_slope_top"][steady]), 1.0)
+    return sine, result.load[steady] / (scene.interface.toughness * scene.specimen.width)
+
+
+def test_the_load_on_a_growing_crack_comes_down_as_the_strip_rises() -> None:
+    """load sin(theta) = G_Ic w from 67 to 77 degrees, by the elastica; its load is 1.08 to 1.02 times G_Ic w."""
+    scene = load_scene("peel-soft", ["strip.young=250", "discretization.steps=15"])
+    result = solve(scene, "beam")
+    sine, load = growth(scene, result)
+    assert np.degrees(np.arcsin(sine[[0, -1]])) == pytest.approx([67.3, 77.4], abs=0.5)
+    assert np.all(np.diff(load) < 0.0) and load * sine == pytest.approx(1.0, abs=5e-4)
+    assert {"growth-load", "growth-angle"} <= {check.name for check in run_checks(scene, result)}
+    assert failed(scene, result) == set()
+    assert failed(scene, changed(result, "load", 0.98)) >= {"growth-angle", "j-integral"}
+
+
+@pytest.mark.parametrize("method", ["beam", pytest.param("nurbs", marks=pytest.mark.slow)])
+def test_no_load_on_an_upright_strip_is_below_the_toughness(method: str) -> None:
+    """All of the growth of peel-soft: the load is G_Ic w but for load / (2 E h w), and 2 % less is too little."""
+    scene = load_scene("peel-soft", ["discretization.steps=15"])
+    result = solve(scene, method)
+    sine, load = growth(scene, result)
+    assert sine.size > 5 and sine.min() > 0.99
+    assert load == pytest.approx(1.0, abs=0.0011 if method == "beam" else 0.005)
+    assert "growth-load" not in failed(scene, result)
+    less = {check.name: check for check in run_checks(scene, changed(result, "load", 0.98))}["growth-load"]
+    assert not less.passed and less.value == pytest.approx(0.02, abs=1e-3 if method == "beam" else 5e-3)
 
 
 def test_linear_kinematics_bounds_no_load() -> None:
