@@ -70,6 +70,15 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--out", type=Path, metavar="DIR", help="default: debond-out/SCENE-METHOD")
     sub.add_argument("--fields", action="store_true", help="keep fields of a few steps in fields.npz")
 
+    text = "What accuracy costs in time: every method on ever finer meshes, one chart."
+    sub = command("cost", _cost, text, "cost dcb-czm1 --out cost")
+    sub.add_argument("scene", metavar="SCENE", help="a packaged name or a file")
+    sub.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help="replace a key")
+    sub.add_argument("--out", type=Path, default=Path("debond-cost"), metavar="DIR", help="default: debond-cost")
+    alone = "runs of the reference at a time; what is timed runs alone"
+    sub.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help=alone)
+    sub.add_argument("--dry-run", action="store_true", help="print the runs and the time that they would take")
+
     sub = command("hard", _hard, "The cases on which cohesive codes stop or go wrong.", "hard coarse-czm2 --jobs 2")
     sub.add_argument("names", nargs="*", metavar="NAME", help="hard cases; default: all")
     sub.add_argument("--out", type=Path, default=Path("debond-hard"), metavar="DIR", help="default: debond-hard")
@@ -216,6 +225,21 @@ def _verify(options: argparse.Namespace) -> int:
         return _listed(would_run(scenes, options.out, options.jobs, options.full))
     _folder(options.out)
     return 0 if verify(scenes, options.out, options.jobs, options.full, plates, options.scheduler) else FAILED
+
+
+def _cost(options: argparse.Namespace) -> int:
+    from verify.cost.study import cost, would_run
+    from verify.run import mpi_size
+    from verify.scene import load_scene
+
+    if mpi_size() > 1:
+        raise Refusal(f"cost: must be started in 1 process, without mpirun, got {mpi_size()}")
+    scene = load_scene(options.scene, options.overrides)
+    what = (options.scene, scene, options.overrides, options.out, options.jobs)
+    if options.dry_run:
+        return _listed(would_run(*what))
+    _folder(options.out)
+    return 0 if cost(*what) is not None else FAILED
 
 
 def _hard(options: argparse.Namespace) -> int:

@@ -1,0 +1,62 @@
+// The work-precision chart: draws the rows that the page carries, on any two of their quantities.
+(() => {
+  const data = JSON.parse(document.getElementById("rows").textContent);
+  const chart = document.getElementById("chart"), note = document.getElementById("point");
+  const [across, up] = ["across", "up"].map((id) => document.getElementById(id));
+  const hidden = new Set(), W = 760, H = 420, L = 64, B = 44, T = 12, R = 16;
+  const make = (name, attributes, parent, text) => {
+    const node = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+    if (text !== undefined) node.textContent = text;
+    parent.append(node);
+    return node;
+  };
+  const shapes = {
+    0: "M0-6L2-2L6-2L3 1L4 6L0 3L-4 6L-3 1L-6-2L-2-2Z", 1: "M-5-4L5-4L0 5Z", 2: "M-4-4L4-4L4 4L-4 4Z",
+    3: "M-4.5 0A4.5 4.5 0 1 0 4.5 0A4.5 4.5 0 1 0-4.5 0Z", 4: "M0-5.5L5.5 0L0 5.5L-5.5 0Z", 5: "M-5-2L-2-2L-2-5L2-5L2-2L5-2L5 2L2 2L2 5L-2 5L-2 2L-5 2Z",
+  };
+  const short = (x) => (x >= 1e4 || x < 1e-3 ? x.toExponential(0) : String(Number(x.toPrecision(3))));
+  const scale = (values, from, to) => {
+    const [low, high] = [Math.min(...values) / 1.2, Math.max(...values) * 1.2].map(Math.log10);
+    const at = (v) => from + ((Math.log10(v) - low) / (high - low || 1)) * (to - from);
+    const ticks = [];
+    for (let e = Math.floor(low); e <= high; e++)
+      for (const m of [1, 2, 5]) if (Math.log10(m) + e >= low && Math.log10(m) + e <= high) ticks.push(m * 10 ** e);
+    return { at, ticks };
+  };
+  const draw = () => {
+    chart.replaceChildren();
+    const value = (row, axis) => row[axis.value] * (axis.selectedOptions[0].dataset.scale || 1);
+    const shown = data.rows.filter((row) => !hidden.has(row.method) && value(row, across) > 0 && value(row, up) > 0);
+    if (!shown.length) return;
+    const x = scale(shown.map((row) => value(row, across)), L, W - R), y = scale(shown.map((row) => value(row, up)), H - B, T);
+    for (const tick of x.ticks) {
+      make("line", { x1: x.at(tick), x2: x.at(tick), y1: T, y2: H - B, stroke: "var(--rule)", "stroke-width": 0.6 }, chart);
+      make("text", { x: x.at(tick), y: H - B + 16, "text-anchor": "middle", fill: "var(--muted)", "font-size": 11 }, chart, short(tick));
+    }
+    for (const tick of y.ticks) {
+      make("line", { x1: L, x2: W - R, y1: y.at(tick), y2: y.at(tick), stroke: "var(--rule)", "stroke-width": 0.6 }, chart);
+      make("text", { x: L - 6, y: y.at(tick) + 4, "text-anchor": "end", fill: "var(--muted)", "font-size": 11 }, chart, short(tick));
+    }
+    make("text", { x: (L + W - R) / 2, y: H - 8, "text-anchor": "middle", fill: "var(--ink)", "font-size": 12 }, chart, across.selectedOptions[0].text);
+    const turn = `rotate(-90 14 ${(T + H - B) / 2})`;
+    make("text", { x: 14, y: (T + H - B) / 2, transform: turn, "text-anchor": "middle", fill: "var(--ink)", "font-size": 12 }, chart, up.selectedOptions[0].text);
+    const front = [];
+    for (const row of [...shown].sort((a, b) => value(a, across) - value(b, across)))
+      if (!front.length || value(row, up) < value(front.at(-1), up)) front.push(row);
+    const path = front.map((row, i) => `${i ? "L" : "M"}${x.at(value(row, across))} ${y.at(value(row, up))}`).join("");
+    make("path", { d: path, fill: "none", stroke: "var(--muted)", "stroke-width": 1 }, chart);
+    for (const row of shown) {
+      const place = `translate(${x.at(value(row, across))} ${y.at(value(row, up))})`;
+      const point = make("path", { d: shapes[row.degree], transform: place, fill: `var(--${data.colours[row.method]})`, tabindex: 0 }, chart);
+      point.classList.add("point");
+      make("title", {}, point, row.words);
+      for (const event of ["mouseenter", "focus", "click"]) point.addEventListener(event, () => { note.textContent = row.words; });
+    }
+  };
+  for (const box of document.querySelectorAll("#methods input"))
+    box.addEventListener("change", () => { hidden[box.checked ? "delete" : "add"](box.value); draw(); });
+  for (const axis of [across, up]) axis.addEventListener("change", draw);
+  document.getElementById("interactive").hidden = false;
+  draw();
+})();

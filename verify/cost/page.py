@@ -1,0 +1,121 @@
+"""The study as a page: one self-contained HTML file with a chart that answers questions."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+import verify.report
+from verify.cost.figures import METHODS, error_and_unknowns, named, phases, triple, work_precision
+from verify.cost.findings import LEVELS, Cheapest, cheapest, growth, of_equal_steps, orders
+from verify.cost.row import Row
+from verify.report.style import custom_properties
+from verify.report.text import number, percent, seconds, sentence
+from verify.run import machine, versions
+
+if TYPE_CHECKING:
+    from verify.cost.study import Study
+
+_CSS = Path(verify.report.__file__).with_name("page.css")
+_SCRIPT = Path(__file__).with_name("chart.js")
+
+#: What the chart can show on its axes: key of a row, name, factor.
+ACROSS = (
+    ("seconds", "seconds", 1),
+    ("dofs", "unknowns", 1),
+    ("nonzeros", "entries of the tangent", 1),
+    ("newton_iterations", "Newton iterations", 1),
+    ("peak_memory_mb", "peak memory (MB)", 1),
+)
+UP = (
+    ("curve_error", "curve error (%)", 100),
+    ("peak_error", "error of the peak load (%)", 100),
+    ("energy_error", "error of the dissipated energy (%)", 100),
+    ("oscillation", "oscillation (%)", 100),
+    ("traction_error", "error of the tractions (%)", 100),
+)
+
+
+@dataclass(frozen=True)
+class Level:
+    """What an accuracy costs, at each method's best number of steps and at the same one."""
+
+    name: str
+    best: Cheapest
+    equal: Cheapest
+
+    @property
+    def sentence(self) -> str:
+        row = self.best.best
+        if row is None:
+            return f"Curve error {self.name}: no run is that accurate."
+        beaten = ", ".join(f"{METHODS[m][0]} {ratio:.2g} ×" for m, ratio in self.best.ratio.items())
+        took = f"{named(row)}, {row.dofs} unknowns, {row.steps} steps, {seconds(row.seconds)}"
+        return f"Curve error {self.name}: {took}. " + (f"Times of the others: {beaten}." if beaten else "")
+
+
+def write(study: Study, path: Path) -> None:
+    """Write the page."""
+    rows, equal = study.rows, of_equal_steps(study.rows)
+    levels = [Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS]
+    found = orders(rows, 2.0 * study.against.uncertainty["curve"])
+    typical = list(levels[1].best.of_method.values())
+    jinja = Environment(
+        loader=PackageLoader("verify.cost", "."),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    jinja.filters |= {"svg": Markup, "number": number, "percent": percent, "seconds": seconds, "named": named}
+    about = machine()
+    page = jinja.get_template("page.html.j2").render(
+        name=study.scene.name,
+        sentence=sentence(study.scene),
+        against=study.against,
+        levels=levels,
+        left_out=study.left_out,
+        methods={method: METHODS[method] for method in METHODS if any(row.method == method for row in rows)},
+        across=ACROSS,
+        up=UP,
+        static=work_precision(rows, "work-precision"),
+        figures=[error_and_unknowns(rows, found, "orders")],
+        triple=triple(rows, "triple"),
+        bars=phases(typical, "phases") if typical else None,
+        growth=growth(rows),
+        rows=sorted(rows, key=lambda row: (row.method, row.degree, row.dofs, row.asked)),
+        environment={
+            **versions(),
+            "machine": f"{about['processor']}, {about['cores']} cores, {about['system']}",
+            "threads a run": "1",
+        },
+        data=_for_script(rows),
+        script=Markup(_SCRIPT.read_text(encoding="utf-8")),
+        light=Markup(custom_properties(dark=False)),
+        dark=Markup(custom_properties(dark=True)),
+        css=Markup(_CSS.read_text(encoding="utf-8")),
+    )
+    path.write_text(page, encoding="utf-8")
+
+
+def _for_script(rows: tuple[Row, ...]) -> Markup:
+    """The rows as JSON that cannot end the element that it stands in."""
+    data = {
+        "rows": [asdict(row) | {"words": _words(row)} for row in rows if row.measured],
+        "colours": {method: colour for method, (_, colour) in METHODS.items()},
+    }
+    text = json.dumps(data).replace("NaN", "null")
+    return Markup(text.replace("<", "\\u003c"))
+
+
+def _words(row: Row) -> str:
+    size = f"{row.dofs} unknowns, " if row.dofs else ""
+    return (
+        f"{named(row)}: {size}{row.steps} steps ({row.asked} asked), {row.newton_iterations} iterations, "
+        f"{row.seconds:.2f} s, curve error {row.curve_error:.3%}, peak {row.peak_error:.3%}"
+    )

@@ -1,0 +1,214 @@
+"""The sweep: references first, then ever finer meshes of every family, other steps for the best, and repeated times."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from verify.cost.findings import LEVELS, cheapest, growth, orders, pareto, table
+from verify.cost.ladder import STEPS, Family, Try, families, ladder
+from verify.cost.nonzeros import nonzeros
+from verify.cost.reference import Reference, reference, reference_jobs
+from verify.cost.row import Row, row, write_csv
+from verify.folder import write_json
+from verify.jobs import Job, Outcome, dry_run, left_out, run_all
+from verify.run import machine, versions
+from verify.schema import Scene
+
+#: A ladder ends below this part of the finest level, where a rung took so many times as long as the cheapest run that
+#: is accurate enough, or so many seconds.
+ENOUGH, PATIENCE, LONGEST = 0.7, 12.0, 120.0
+
+#: Runs that are within this factor of a method's cheapest one for a level are timed so many times.
+CLOSE, TIMES = 1.25, 3
+
+#: Variables that keep numerical libraries to one thread.
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@dataclass(frozen=True)
+class Study:
+    """What a sweep found. ``left_out``: a sentence for every method that cannot solve the scene here."""
+
+    source: str
+    scene: Scene
+    against: Reference
+    rows: tuple[Row, ...]
+    left_out: tuple[str, ...]
+
+    def summary(self) -> dict[str, object]:
+        """The content of ``cost.json``."""
+        equal = [one for one in self.rows if one.asked == str(STEPS)]
+        known = self.against
+        return {
+            "scene": self.scene.model_dump(),
+            "reference": {
+                "label": known.label,
+                "dofs": known.result.dofs,
+                "uncertainty": dict(known.uncertainty),
+                "order": known.order,
+                "other_code": known.other_label,
+                "other_code_apart": known.apart,
+                "other_code_uncertainty": known.other,
+                "agrees": known.agrees,
+            },
+            "cheapest": {level: cheapest(self.rows, level).summary() for level in LEVELS},
+            "cheapest_at_equal_steps": {level: cheapest(equal, level).summary() for level in LEVELS},
+            "pareto": [
+                {key: getattr(one, key) for key in ("method", "degree", "dofs", "curve_error", "seconds", "run")}
+                for one in pareto(self.rows)
+            ],
+            "orders": orders(self.rows, 2.0 * known.uncertainty["curve"]),
+            "growth": growth(self.rows),
+            "left_out": list(self.left_out),
+            "versions": versions(),
+            "machine": machine(),
+            "threads": 1,
+        }
+
+
+@dataclass(frozen=True)
+class Runner:
+    """Does the runs of a study, one at a time, and remembers what came of them."""
+
+    source: str
+    scene: Scene
+    given: tuple[str, ...]
+    out: Path
+    against: Reference
+    found: dict[Try, Outcome]
+
+    def __call__(self, tries: Iterable[Try]) -> None:
+        jobs = {one.job(self.source, self.scene, self.given): one for one in tries if one not in self.found}
+        for outcome in run_all(list(jobs), self.out, jobs=1):
+            self.found[jobs[outcome.job]] = outcome
+
+    @property
+    def rows(self) -> dict[Try, Row]:
+        """First runs, each with the times of its repetitions."""
+        firsts = [one for one in self.found if one.repeat == 0]
+        return {one: row(one, [self.found[same] for same in self.again(one)], self.against) for one in firsts}
+
+    def again(self, one: Try) -> list[Try]:
+        """A run and its repetitions so far."""
+        return [found for found in self.found if replace(found, repeat=0) == one]
+
+
+def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> Study | None:
+    """Run the study into ``out``: cost.csv, cost.json, report.html; None where there is no reference.
+
+    Parameters
+    ----------
+    given : overrides that ``scene`` has, and that every run repeats
+    jobs : runs of the reference at a time; what is timed runs alone
+    """
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    able, reasons = families(scene, source)
+    plans = reference_jobs(source, scene, given)
+    outcomes = {outcome.job: outcome for outcome in run_all([job for plan in plans for job in plan], out, jobs)}
+    against = reference(*([outcomes[job] for job in plan] for plan in plans))
+    if against is None:
+        _say(_no_reference([outcomes[job] for job in plans[0]]))
+        return None
+    _say(against.sentence)
+    runner = Runner(source, scene, tuple(given), out, against, {})
+    climb({family: _possible(runner, ladder(scene, family)) for family in able}, runner)
+    runner(_between(runner.rows))
+    runner([other for one in _best(runner.rows) for other in one.with_steps()])
+    for repeat in range(1, TIMES):
+        runner([replace(one, repeat=repeat) for one in _best(runner.rows, CLOSE)])
+    study = Study(source, scene, against, tuple(_counted(runner)), tuple(reasons))
+    write_csv(out / "cost.csv", study.rows)
+    write_json(out / "cost.json", study.summary())
+    _page(study, out)
+    print("\n".join([against.sentence, *study.left_out, *table(study.rows), f"written: {out / 'cost.csv'}"]))
+    return study
+
+
+def climb(ladders: Mapping[Family, Sequence[Try]], runner: Callable[[Iterable[Try]], None]) -> None:
+    """Rung after rung of all families, until each is accurate enough, too slow, or at its end."""
+    left = {family: list(rungs) for family, rungs in ladders.items() if rungs}
+    while left:
+        runner([rungs[0] for rungs in left.values()])
+        rows = runner.rows
+        for family, (done, *rest) in list(left.items()):
+            left[family] = rest
+            if not rest or _high_enough(rows[done], rows.values()):
+                del left[family]
+
+
+def _high_enough(last: Row, rows: Iterable[Row]) -> bool:
+    finest = min(LEVELS.values())
+    enough = [one.seconds for one in rows if one.measured and one.curve_error <= finest and one.dofs]
+    too_slow = last.measured and last.seconds > min(LONGEST, PATIENCE * min(enough, default=LONGEST))
+    return too_slow or last.curve_error <= ENOUGH * finest
+
+
+def _best(rows: Mapping[Try, Row], within: float = 1.0) -> list[Try]:
+    """The cheapest runs of every method for every level, and those within a factor of them."""
+    chosen: dict[Try, None] = {}
+    for level, error in LEVELS.items():
+        for method, best in cheapest(list(rows.values()), level).of_method.items():
+            close = (
+                one
+                for one, found in rows.items()
+                if found.method == method and found.curve_error <= error and found.seconds <= within * best.seconds
+            )
+            chosen |= dict.fromkeys(close)
+    return list(chosen)
+
+
+def _between(rows: Mapping[Try, Row]) -> list[Try]:
+    """Meshes between the last that misses a level and the first that meets it, of every method's best family."""
+    chosen: dict[Try, None] = {}
+    for error in LEVELS.values():
+        for one in _best(rows):
+            coarser = [other for other in rows if other.family == one.family and other.size < one.size]
+            below = max(coarser, key=lambda other: other.size, default=None)
+            if below is not None and rows[one].curve_error <= error < rows[below].curve_error:
+                chosen[replace(one, size=round((one.size * below.size) ** 0.5))] = None
+    return list(chosen)
+
+
+def _possible(runner: Runner, rungs: Sequence[Try]) -> list[Try]:
+    """Rungs of which there is a mesh."""
+    return [one for one in rungs if not left_out(one.job(runner.source, runner.scene, runner.given))]
+
+
+def _counted(runner: Runner) -> Iterable[Row]:
+    """Rows with the entries of their tangents, which the ``iga`` runs do not tell."""
+    for one, found in runner.rows.items():
+        job = runner.found[one].job
+        known = found.nonzeros or not found.measured
+        yield found if known else replace(found, nonzeros=nonzeros(job.solved, job.method))
+
+
+def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> list[str]:
+    """The runs at most, with their times, a line each; ladders end sooner, and the best runs are repeated."""
+    able, reasons = families(scene, source)
+    plan: list[Job] = [job for jobs_of in reference_jobs(source, scene, given) for job in jobs_of]
+    plan += [one.job(source, scene, given) for family in able for one in ladder(scene, family)]
+    note = "ladders end where they are accurate enough; the best runs are made again with other steps, and repeated"
+    return [*dry_run(plan, out, jobs), note, *reasons]
+
+
+def _no_reference(outcomes: Sequence[Outcome]) -> str:
+    why = [o.left_out or o.result.status for o in outcomes if o.result is None or not o.result.complete]
+    return f"debond: no converged reference, so that nothing can be measured: {why[0]}"
+
+
+def _page(study: Study, out: Path) -> None:
+    """The page; without the packages that it needs the numbers are still worth having."""
+    try:
+        from verify.cost.page import write
+    except ImportError as error:
+        _say(f"debond: no report: {error.name} is missing; pip install 'debond[report]'")
+        return
+    write(study, out / "report.html")
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
