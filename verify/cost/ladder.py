@@ -89,21 +89,22 @@ def ladder(scene: Scene, family: Family) -> list[Try]:
     return [Try(family, rung, int(size), STEPS) for rung, size in enumerate(sizes)]
 
 
-def families(scene: Scene, source: str) -> tuple[list[Family], list[str]]:
-    """Families that can solve the scene here, and a sentence for every method that cannot."""
-    able, reasons = [], {}
+def ladders(source: str, scene: Scene, given: Sequence[str]) -> tuple[dict[Family, list[Try]], list[str]]:
+    """Rungs of every family of which there is a mesh, and a sentence for every method that cannot solve the scene."""
+    found: dict[Family, list[Try]] = {}
+    reasons: dict[str, str] = {}
     for family in (*FAMILIES, BEAM):
         if family.method == "tspline-adaptive" and (scene.specimen.kind == "peel" or scene.specimen.mesh):
             reasons.setdefault(family.method, "left out: only the mesh of a dcb follows the process zone")
             continue
-        rungs = ladder(scene, family)
-        whys = [left_out(one.job(source, scene)) for one in rungs[-1:]]
-        if any(whys) or not rungs:
-            reasons.setdefault(family.method, (whys or ["not run: no mesh is possible"])[0])
+        rungs = {one: left_out(one.job(source, scene, given)) for one in ladder(scene, family)}
+        possible = [one for one, why in rungs.items() if not why]
+        if possible:
+            found[family] = possible
         else:
-            able.append(family)
-    known = {family.method for family in able}
-    return able, [f"{method}: {why}" for method, why in reasons.items() if method not in known]
+            reasons.setdefault(family.method, next(iter(rungs.values()), "not run: no mesh is possible"))
+    known = {family.method for family in found}
+    return found, [f"{method}: {why}" for method, why in reasons.items() if method not in known]
 
 
 def _overrides(family: Family, scene: Scene, size: int, steps: int | str) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from verify.convergence import SAFETY, assess
 from verify.cost.ladder import Family, Try, size_of_an_element
-from verify.curve import Curve, curve_error, dense, peak
+from verify.curve import Curve, curve_error, dense, envelope, peak
 from verify.jobs import Job, Outcome
 from verify.methods import dolfinx_installed
 from verify.result import Result
@@ -89,7 +89,7 @@ def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | N
     if any(result is None or not result.complete for result in results):
         return None
     finest, h = results[-1], [1.0 / result.elements for result in results]
-    apart = [curve_error(cubics(result), cubics(finest)) for result in results[:2]]
+    apart = [distance(cubics(result), finest) for result in results[:2]]
     order, index = _of_distances(h, apart)
     values = {"peak": [peak_load(r) for r in results], "energy": [dissipated(r) for r in results]}
     sure = {"curve": index} | {name: _index(h, found) for name, found in values.items()}
@@ -97,15 +97,14 @@ def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | N
     second = [outcome.result for outcome in other]
     if not second or any(result is None or not result.complete for result in second):
         return Reference(label, finest, sure, order)
-    coarse, fine = (cubics(result) for result in second)
     return Reference(
         label,
         finest,
         sure,
         order,
         f"DOLFINx of degree 3 with {second[-1].dofs} unknowns",
-        curve_error(fine, cubics(finest)),
-        curve_error(coarse, fine),
+        distance(cubics(second[-1]), finest),
+        distance(cubics(second[0]), second[-1]),
     )
 
 
@@ -115,6 +114,22 @@ def cubics(result: Result) -> Curve:
     if not {"load_slope", "heading"} <= set(steps):
         return result.opening, result.load
     return dense(result.opening, result.load, steps["load_slope"], steps["heading"], PER_STEP)
+
+
+def distance(curve: Curve, exact: Result) -> float:
+    """Relative L2 distance of the load of a complete run to that of another; no load is left where one has come apart.
+    """
+    known = cubics(exact)
+    end = max(float(envelope(*one)[0][-1]) for one in (curve, known))
+    return curve_error(_onward(curve, end), _onward(known, end))
+
+
+def _onward(curve: Curve, end: float) -> Curve:
+    """A curve that has ended before ``end`` goes on there without load."""
+    opening, load = curve
+    if float(np.max(opening)) >= end:
+        return curve
+    return np.append(opening, (opening[-1], end)), np.append(load, (0.0, 0.0))
 
 
 def peak_load(result: Result) -> float:

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from verify.cost.ladder import Try
-from verify.cost.reference import Reference, cubics, dissipated, peak_load
-from verify.curve import curve_error, oscillation
+from verify.cost.reference import Reference, cubics, dissipated, distance, peak_load
+from verify.curve import oscillation
 from verify.jobs import Outcome
 from verify.result import Result, Snapshot
 from verify.timing import PHASES
@@ -105,8 +105,7 @@ def errors(result: Result, against: Reference) -> dict[str, float]:
     """All distances of a complete run to the reference."""
     exact = against.result
     known = cubics(exact)
-    chords = curve_error((result.opening, result.load), known)
-    smooth = curve_error(cubics(result), known)
+    chords, smooth = (distance(curve, exact) for curve in ((result.opening, result.load), cubics(result)))
     return {
         "curve_error": min(chords, smooth),
         "chords": chords,

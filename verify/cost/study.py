@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verify.cost.findings import LEVELS, cheapest, growth, orders, pareto, table
-from verify.cost.ladder import STEPS, Family, Try, families, ladder
+from verify.cost.ladder import STEPS, Family, Try, ladders
 from verify.cost.nonzeros import nonzeros
 from verify.cost.reference import Reference, reference, reference_jobs
 from verify.cost.row import Row, row, write_csv
 from verify.folder import write_json
-from verify.jobs import Job, Outcome, dry_run, left_out, run_all
+from verify.jobs import Job, Outcome, dry_run, run_all
 from verify.run import machine, versions
 from verify.schema import Scene
 
@@ -106,7 +106,7 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     jobs : runs of the reference at a time; what is timed runs alone
     """
     os.environ.update(dict.fromkeys(THREADS, "1"))
-    able, reasons = families(scene, source)
+    rungs, reasons = ladders(source, scene, given)
     plans = reference_jobs(source, scene, given)
     outcomes = {outcome.job: outcome for outcome in run_all([job for plan in plans for job in plan], out, jobs)}
     against = reference(*([outcomes[job] for job in plan] for plan in plans))
@@ -115,7 +115,7 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
         return None
     _say(against.sentence)
     runner = Runner(source, scene, tuple(given), out, against, {})
-    climb({family: _possible(runner, ladder(scene, family)) for family in able}, runner)
+    climb(rungs, runner)
     runner(_between(runner.rows))
     runner([other for one in _best(runner.rows) for other in one.with_steps()])
     for repeat in range(1, TIMES):
@@ -142,8 +142,8 @@ def climb(ladders: Mapping[Family, Sequence[Try]], runner: Callable[[Iterable[Tr
 
 def _high_enough(last: Row, rows: Iterable[Row]) -> bool:
     finest = min(LEVELS.values())
-    enough = [one.seconds for one in rows if one.measured and one.curve_error <= finest and one.dofs]
-    too_slow = last.measured and last.seconds > min(LONGEST, PATIENCE * min(enough, default=LONGEST))
+    accurate = [one.seconds for one in rows if one.measured and one.curve_error <= finest and one.dofs]
+    too_slow = last.measured and last.seconds > min(LONGEST, PATIENCE * min(accurate, default=LONGEST))
     return too_slow or last.curve_error <= ENOUGH * finest
 
 
@@ -173,11 +173,6 @@ def _between(rows: Mapping[Try, Row]) -> list[Try]:
     return list(chosen)
 
 
-def _possible(runner: Runner, rungs: Sequence[Try]) -> list[Try]:
-    """Rungs of which there is a mesh."""
-    return [one for one in rungs if not left_out(one.job(runner.source, runner.scene, runner.given))]
-
-
 def _counted(runner: Runner) -> Iterable[Row]:
     """Rows with the entries of their tangents, which the ``iga`` runs do not tell."""
     for one, found in runner.rows.items():
@@ -188,9 +183,9 @@ def _counted(runner: Runner) -> Iterable[Row]:
 
 def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> list[str]:
     """The runs at most, with their times, a line each; ladders end sooner, and the best runs are repeated."""
-    able, reasons = families(scene, source)
+    rungs, reasons = ladders(source, scene, given)
     plan: list[Job] = [job for jobs_of in reference_jobs(source, scene, given) for job in jobs_of]
-    plan += [one.job(source, scene, given) for family in able for one in ladder(scene, family)]
+    plan += [one.job(source, scene, given) for ones in rungs.values() for one in ones]
     note = "ladders end where they are accurate enough; the best runs are made again with other steps, and repeated"
     return [*dry_run(plan, out, jobs), note, *reasons]
 
