@@ -33,6 +33,9 @@ NEAR = 0.02
 #: Elements on the crack path that are so few that each counts.
 FEW = 7
 
+#: Part of an element that rounding may add or take: numbers of elements do not turn on it.
+ROUNDING = 1e-9
+
 #: Elements (before, on, beyond) the crack path.
 Division = tuple[int, int, int]
 
@@ -95,6 +98,16 @@ def zone_length(problem: Problem) -> float:
     return (problem.E1 * problem.toughness / problem.strength**2) ** 0.25 * problem.arm_thickness**0.75
 
 
+def lead(problem: Problem) -> float:
+    """How far before the tip of the precrack elements are as short as on the path, where so short ones are on it.
+
+    The traction begins at the tip with a jump, beside which the surface has an infinite slope (as the log of the
+    distance, Flamant), as far as an arm is thick. Long elements there smooth it over: J comes out 3 to 10 % off until
+    the tip is open, with a strong bond of thick arms.
+    """
+    return min(problem.arm_thickness, MARGIN * zone_length(problem))
+
+
 def coarsening(problem: Problem) -> float:
     """How much longer elements off the crack path may be than those on it.
 
@@ -109,20 +122,24 @@ def coarsening(problem: Problem) -> float:
 def division(problem: Problem, path: int, spare: int = 0) -> tuple[Division, tuple[float, float, float, float]]:
     """Elements before, on and beyond the crack path with so many on it, and where these parts begin and end.
 
-    There are ``spare`` more elements before the path than their length asks for. Where there are few on the path there
-    are no more of them elsewhere. One cubic element stands before the path in place of two: the bending line of an
-    unloaded beam is a cubic. What is left beyond the path is part of it where that is shorter than half an element.
+    Those on the path begin before it by whole elements within `lead`. There are ``spare`` more elements before them
+    than their length asks for. Where there are few on the path there are no more of them elsewhere. One cubic element
+    stands before the path in place of two: the bending line of an unloaded beam is a cubic. What is left beyond the
+    path is part of it where that is shorter than half an element.
     """
     end = crack_path(problem)
     if problem.length - end < 0.5 * (end - problem.precrack) / path:
         end = problem.length
-    longest = coarsening(problem) * (end - problem.precrack) / path
-    before, beyond = (int(np.ceil(length / longest)) for length in (problem.precrack, problem.length - end))
+    short = (end - problem.precrack) / path
+    ahead = int(max(0.0, min(lead(problem), problem.precrack - short) / short + ROUNDING))
+    start = problem.precrack - ahead * short
+    longest = coarsening(problem) * short
+    before, beyond = (int(np.ceil(length / longest - ROUNDING)) for length in (start, problem.length - end))
     if path <= FEW:
         before, beyond = min(before, path), min(beyond, path)
     if before == 2 and problem.degree >= 3:
         before = 1
-    return (before + spare, path, beyond), (0.0, problem.precrack, end, problem.length)
+    return (before + spare, ahead + path, beyond), (0.0, start, end, problem.length)
 
 
 def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
@@ -178,12 +195,14 @@ def _strips(problem: Problem, layers: int) -> tuple[Strip, Strip]:
         parts, x = division(problem, path, spare)
         breaks_c = _breaks(parts, x)
         number = np.arange(len(breaks_c) - 1) - parts[0]
-        return Strip(breaks_c, (number >= 0) & (number < min(halved, path)), layers)
+        return Strip(breaks_c, (number >= 0) & (number < parts[1] - path + min(halved, path)), layers)
 
     def unknowns(path: int, halved: int, spare: int = 0) -> int:
         paths = unequal(path, problem.mismatch)
-        columns = sum(sum(division(problem, n, spare)[0]) + DEGREE for n in paths)
-        return 2 * (columns * column + sum(min(halved, n) for n in paths) * halves)
+        parts = [division(problem, n, spare)[0] for n in paths]
+        columns = sum(sum(part) + DEGREE for part in parts)
+        cut = sum(min(halved, n) + part[1] - n for n, part in zip(paths, parts, strict=True))
+        return 2 * (columns * column + cut * halves)
 
     path = largest(lambda n: unknowns(n, n), 1, problem.dofs)
     missing = (problem.dofs - unknowns(path, path)) // 4

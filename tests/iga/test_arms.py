@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from specimens import PAPER, E
 from test_peel import PEEL
 
-from iga.arms import COARSENING, FEW, LEAST_COARSENING, arm_meshes, coarsening, crack_path, tmeshes, zone_length
+from iga.arms import COARSENING, FEW, LEAST_COARSENING, arm_meshes, coarsening, crack_path, lead, tmeshes, zone_length
 from iga.dcb import build, solve
 from iga.peel_meshes import tmeshes as peel_tmeshes
 from iga.surface import surface
@@ -127,14 +127,17 @@ def test_t_splines_are_suitable_and_halve_their_elements_towards_the_interface(p
     for mesh, top in zip(tmeshes(problem), (False, True), strict=True):
         assert mesh.suitable
         interface, opposite = (lines_on(mesh, j) for j in ((-3, 2) if top else (2, -3)))
-        on_path = (opposite[:-1] >= problem.precrack) & (opposite[1:] <= crack_path(problem) * (1.0 + 1e-12))
+        fine = np.diff(interface) < 1.5 * np.diff(interface).min()
+        start = interface[:-1][fine].min()
+        assert opposite[0] < start <= problem.precrack * (1.0 + 1e-12) and problem.precrack - start <= lead(problem)
+        on_path = (opposite[:-1] >= start) & (opposite[1:] <= crack_path(problem) * (1.0 + 1e-12))
         cells = np.diff(opposite)
-        before = np.sum(opposite[1:] <= problem.precrack * (1.0 + 1e-12))
-        assert cells.max() <= coarsest(problem, before, np.sum(on_path)) * cells[on_path].max() * (1.0 + 1e-9)
+        before = np.sum(opposite[1:] <= start * (1.0 + 1e-12))
+        bonded = np.sum(on_path & (opposite[1:] > problem.precrack * (1.0 + 1e-9)))
+        assert cells.max() <= coarsest(problem, before, bonded) * cells[on_path].max() * (1.0 + 1e-9)
         layers = np.log2(cells[on_path].min() / np.diff(interface).min())
         assert layers > 0.5 and layers == pytest.approx(round(layers), abs=1e-9)
-        fine = np.diff(interface) < 1.5 * np.diff(interface).min()
-        assert opposite[0] < interface[:-1][fine].min() == pytest.approx(problem.precrack)
+        assert np.any(np.abs(opposite - problem.precrack) <= 1e-9 * problem.length)
         assert interface[1:][fine].max() <= crack_path(problem) * (1.0 + 1e-12)
 
 

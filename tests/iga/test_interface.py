@@ -124,9 +124,10 @@ def test_tangent_on_a_curved_sliding_interface(state, basis, slave, rng):
 
     p, dp, _ = traction(interface, touch, k, closed)
     K, d = stiffness(interface, touch, p, dp), dofs(touch.conn_qa)
+    whole = K[(touch.share_q == 0.0) | (touch.share_q == 1.0)]  # a point that fades has no potential
+    assert np.allclose(whole, whole.transpose(0, 2, 1), rtol=0, atol=1e-12 * max(np.abs(K).max(), 1e-300))
     matrix = np.zeros((system.n_dof, system.n_dof))
     np.add.at(matrix, (d[:, :, None], d[:, None, :]), K)
-    assert np.allclose(matrix, matrix.T, rtol=0, atol=1e-12 * max(np.abs(matrix).max(), 1e-300))
     for _ in range(3):
         v = rng.standard_normal(system.n_dof)
         difference = (residual(u + h * v) - residual(u - h * v)) / (2 * h)
