@@ -1,10 +1,13 @@
 """The process zone: how long it will be, and how many elements resolve it, before anything is solved.
 
 A mesh with fewer than three elements in the zone overestimates the strength, and its curve snaps back at every element
-(Turon, Davila, Camanho, Costa 2007; Harper and Hallett 2008). Two lengths bound the zone. In a *bulky* body it is a
-material length, ``l = M E' G_Ic / p_max^2`` with M = 1 (Hillerborg, Modeer, Petersson 1976; factors in use go from 0.2
+(Turon, Davila, Camanho, Costa 2007; Harper and Hallett 2008). The length has two limits. In a *bulky* body it is
+``l = M E' G_Ic / p_max^2`` of the material, with M = 1 (Hillerborg, Modeer, Petersson 1976; factors in use go from 0.2
 to 1, Turon et al. 2007, table 1). In a *slender* one the arms bend out of the way first, and
-``l = M (E' G_Ic / p_max^2)^(1/4) h^(3/4)`` (Williams and Hadavinia 2002; Yang and Cox 2005). The smaller one counts.
+``l = M (E' G_Ic / p_max^2)^(1/4) h^(3/4)`` (Williams and Hadavinia 2002; Yang and Cox 2005). An arm that is neither
+yields in both ways, and its zone is shorter than either: 0.52 mm where they are 1.43 and 1.08 in alfano-crisfield.
+``1 / l = 1 / l_slender + 1 / l_bulky`` is no more than a choice that comes to both limits; the zones that were measured
+are 0.84 to 1.16 of it, but 0.48 to 1.14 of the smaller limit.
 """
 
 from __future__ import annotations
@@ -41,7 +44,8 @@ class Zone:
 
     @property
     def length(self) -> float:
-        return min(self.slender, self.bulk)
+        """Shorter than either."""
+        return 1.0 / (1.0 / self.slender + 1.0 / self.bulk)
 
     @property
     def elements(self) -> float:

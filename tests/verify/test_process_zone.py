@@ -6,9 +6,10 @@ import re
 import numpy as np
 import pytest
 
-from verify.methods import WITH_DOFS, iga_problem
+from verify.methods import WITH_DOFS, iga_problem, solve
 from verify.process_zone import (
     CANTILEVER,
+    Zone,
     bulk_length,
     element_length,
     expected,
@@ -56,8 +57,15 @@ def test_a_long_beam_on_the_law_has_a_zone_of_the_length_that_the_formula_says()
 @pytest.mark.parametrize(("name", "length"), [("dcb-czm1", 0.9), ("dcb-czm2", 0.7)])
 def test_zones_of_the_paper(name, length):
     zone = expected(load_scene(name), "nurbs")
-    assert zone.length == zone.slender == pytest.approx(length, rel=0.05)
+    assert zone.length == pytest.approx(zone.slender, rel=3e-3) == pytest.approx(length, rel=0.05)
     assert zone.bulk > 100 * zone.slender and zone.resolved
+
+
+@pytest.mark.parametrize(("slender", "bulk"), [(1.427, 1.080), (1.0, 1e9), (1e9, 1.0)])
+def test_the_zone_is_shorter_than_either_limit_and_comes_to_both(slender, bulk):
+    length, least = Zone(slender, bulk, 0.1).length, min(slender, bulk)
+    assert 0.5 * least <= length < least and length == Zone(bulk, slender, 0.1).length
+    assert least > 1.05 or length == pytest.approx(1.0, rel=1e-8)
 
 
 def test_the_modulus_of_a_bulky_body():
@@ -148,3 +156,19 @@ def test_a_run_measures_what_was_estimated(tmp_path):
     found = json.loads((tmp_path / "result.json").read_text())["process_zone"]
     assert 1.0 < found["measured"] / found["estimate"] < 1.15
     assert found["measured_elements"] == pytest.approx(found["measured"] / element_length(scene, "nurbs"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "keys", "thick"),
+    [
+        ("alfano-crisfield", ["load.opening=2.3", "discretization.steps=60"], True),
+        ("peel-60", ["load.opening=4.5", "discretization.dofs=3000"], False),
+    ],
+)
+def test_zones_of_thick_and_of_slender_arms_are_as_estimated(name, keys, thick):
+    """A thick arm has a zone of half the smaller limit: that one alone would call a mesh fine that is not."""
+    scene = load_scene(name, keys)
+    zone, length = expected(scene, "nurbs"), measured(solve(scene, "nurbs"))
+    assert length == pytest.approx(zone.length, rel=0.2)
+    assert (length < 0.6 * min(zone.slender, zone.bulk)) == thick
