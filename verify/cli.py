@@ -122,6 +122,7 @@ def _compare_options(sub: argparse.ArgumentParser) -> None:
             what = f"multiplies the {key} {own}: units, and signs"
             sub.add_argument(f"--{key}-scale-{side}", type=_scale, default=1.0, metavar="X", help=what)
     sub.add_argument("--end", type=_number, metavar="D", help="compare up to this opening; default: the last of B")
+    sub.add_argument("--begin", type=_number, metavar="D", help="compare from this opening on; default: 0")
     sub.add_argument("--at", type=_numbers, default=[], metavar="D,D,...", help="print the loads at these openings")
     limit = "fail where the curve error is larger, e.g. 0.01"
     sub.add_argument("--curve-tol", "--tolerance", type=_fraction, metavar="T", help=limit)
@@ -269,7 +270,7 @@ def _compare(options: argparse.Namespace) -> int:
         work.Source(getattr(options, side), Reading(**{key: getattr(options, f"{key}_{side}") for key in keys}))
         for side in "ab"
     )
-    comparison, loads = work.held_against(a, b, options.end, options.at)
+    comparison, loads = work.held_against(a, b, options.end, options.at, options.begin)
     if options.out is not None:
         _folder(options.out)
     found = checks(comparison, options.curve_tol, options.peak_tol, options.energy_tol)

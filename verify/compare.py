@@ -24,7 +24,7 @@ Points = tuple[np.ndarray, np.ndarray]
 class Part:
     """One of the curves, as far as it is compared."""
 
-    opening: np.ndarray  # (n,) path up to the first arrival at the end
+    opening: np.ndarray  # (n,) path from the first arrival at the beginning to that at the end
     load: np.ndarray  # (n,)
     first: float  # opening at which the given curve begins and ends
     last: float
@@ -35,10 +35,10 @@ class Part:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A against B over the openings (0, end].
+    """A against B over the openings (begin, end].
 
-    ``curve_error``, ``peak_difference``, ``peak_shift`` and ``energy_difference`` are relative to B. Oscillation is NaN
-    where it cannot be told.
+    ``curve_error``, ``peak_difference``, ``peak_shift`` and ``energy_difference`` are relative to B. Oscillation is of
+    the whole branch behind the peak, NaN where it cannot be told.
     """
 
     a: Part
@@ -52,6 +52,7 @@ class Comparison:
     load_a_n: np.ndarray
     load_b_n: np.ndarray
     names: tuple[str, str] = ("A", "B")
+    begin: float = 0.0
 
     @property
     def reaches(self) -> bool:
@@ -87,45 +88,60 @@ class Comparison:
 
         Raises
         ------
-        CurveError : an opening outside (0, end].
+        CurveError : an opening outside (begin, end].
         """
-        outside = [at for at in openings if not 0.0 < at <= self.end]
+        outside = [at for at in openings if not self.begin < at <= self.end]
         if outside:
-            raise CurveError(f"at: must be > 0 and <= {self.end:.6g}, the end of the comparison, got {outside[0]:g}")
+            reach = f"> {self.begin:.6g} and <= {self.end:.6g}, the end of the comparison"
+            raise CurveError(f"at: must be {reach}, got {outside[0]:g}")
         with np.errstate(all="ignore"):
             loads = [load_at((part.opening, part.load), openings).tolist() for part in (self.a, self.b)]
         return list(zip(openings, *loads, strict=True))
 
 
-def compare(a: Points, b: Points, end: float | None = None, names: tuple[str, str] = ("A", "B")) -> Comparison:
-    """Hold A against B over the openings that both reach, up to ``end``; without it up to the last opening of B.
+def compare(
+    a: Points, b: Points, end: float | None = None, names: tuple[str, str] = ("A", "B"), begin: float | None = None
+) -> Comparison:
+    """Hold A against B over the openings that both reach, from ``begin`` on and up to ``end``.
+
+    Without them from 0, and to the last opening of B. What counts of a path begins where it first comes to ``begin``.
 
     A curve that begins at an opening above 0 is joined to the origin by a straight line: there the specimen bears
     nothing, and a beginning that is left out shows as an error.
 
     Raises
     ------
-    CurveError : ``end`` beyond B, nothing in common, or no load of B above 0.
+    CurveError : ``end`` beyond B, ``begin`` not before the end, nothing in common, or no load of B above 0.
     """
+    if begin is not None and not 0.0 <= begin < np.inf:
+        raise CurveError(f"begin: must be >= 0, got {begin:g}")
     (first_a, last_a), (first_b, last_b) = ((float(d[0]), float(np.max(d))) for d, _ in (a, b))
     asked = last_b if end is None else float(end)
     if not 0.0 < asked <= last_b * (1.0 + ROUNDING):
         raise CurveError(f"end: must be > 0 and <= {last_b:.6g}, the last opening of {names[1]}, got {asked:g}")
-    common = min(asked, last_a, last_b)
+    common, begin = min(asked, last_a, last_b), float(begin or 0.0)
+    if begin >= common:
+        raise CurveError(f"begin: must be < {common:.6g}, the end of the comparison, got {begin:g}")
     if max(first_a, first_b) >= common:
         ranges = f"{first_a:.6g} to {last_a:.6g} and {first_b:.6g} to {min(asked, last_b):.6g}"
         raise CurveError(f"{' and '.join(names)}: must have openings in common, got {ranges}")
     with np.errstate(all="ignore"):  # numbers near the ends of the range end as inf or NaN, and so fail
-        part_a, part_b = _part(a, common), _part(b, common)
+        part_a, part_b = _part(a, begin, common), _part(b, begin, common)
         top = part_b.peak_load
         if not top > 0.0:
-            raise CurveError(f"{names[1]}: the loads up to {common:.6g} must go above 0, got at most {top:g}")
-        scaled = [(part.opening / common, part.load / top) for part in (part_a, part_b)]
+            span = f"up to {common:.6g}" if begin == 0.0 else f"from {begin:.6g} to {common:.6g}"
+            raise CurveError(f"{names[1]}: the loads {span} must go above 0, got at most {top:g}")
+        length = common - begin
+        scaled = [((part.opening - begin) / length, part.load / top) for part in (part_a, part_b)]
         error = curve_error(*scaled, end=1.0, n=SAMPLES)
-        wave = _wave(scaled, part_b.peak_opening / common)
-        grid = common * (np.arange(1, SAMPLES + 1) / SAMPLES)
+        whole = part_a, part_b
+        if begin > 0.0:
+            whole = _part(a, 0.0, common), _part(b, 0.0, common)
+            scaled = [(part.opening / common, part.load / top) for part in whole]
+        wave = _wave(scaled, whole[1].peak_opening / common)
+        grid = begin + length * (np.arange(1, SAMPLES + 1) / SAMPLES)
         loads = [load_at((part.opening, part.load), grid) for part in (part_a, part_b)]
-    return Comparison(part_a, part_b, asked, common, error, *wave, grid, *loads, names)
+    return Comparison(part_a, part_b, asked, common, error, *wave, grid, *loads, names, begin)
 
 
 def checks(
@@ -142,9 +158,12 @@ def checks(
     return found + [Check("end", "A / B", comparison.missing, ROUNDING, "cross-code", far)] if found else []
 
 
-def _part(curve: Points, end: float) -> Part:
+def _part(curve: Points, begin: float, end: float) -> Part:
     first, last = float(curve[0][0]), float(np.max(curve[0]))
     d, P = _up_to(*_from_origin(*curve), end)
+    if begin > 0.0:
+        before, start = _up_to(d, P, begin)
+        d, P = np.append(begin, d[len(before) - 1 :]), np.append(start[-1], P[len(before) - 1 :])
     at, load = peak(envelope(d, P))
     work = float(np.sum((P[1:] / 2.0 + P[:-1] / 2.0) * np.diff(d)))
     return Part(d, P, first, last, at, load, work)

@@ -29,14 +29,16 @@ class Source:
         return "/".join(self.path.parts[-2:]) or str(self.path)
 
 
-def held_against(a: Source, b: Source, end: float | None, at: Sequence[float]) -> tuple[Comparison, list]:
+def held_against(
+    a: Source, b: Source, end: float | None, at: Sequence[float], begin: float | None = None
+) -> tuple[Comparison, list]:
     """The comparison and the loads at the openings ``at``.
 
     Raises
     ------
     CurveError : a file that holds no curve, nothing in common, an opening outside.
     """
-    comparison = compare(read_curve(a.path, a.reading), read_curve(b.path, b.reading), end)
+    comparison = compare(read_curve(a.path, a.reading), read_curve(b.path, b.reading), end, begin=begin)
     return comparison, comparison.loads_at(at)
 
 
@@ -77,6 +79,7 @@ def numbers(
     return {
         "a": _side(sources[0], comparison.a),
         "b": _side(sources[1], comparison.b),
+        "begin": comparison.begin,
         "end": comparison.end,
         "asked_end": comparison.asked_end,
         "curve_error": comparison.curve_error,

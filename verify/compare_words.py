@@ -49,7 +49,7 @@ def remarks(comparison: Comparison) -> list[str]:
     said = [
         f"{name} begins at the opening {part.first:.6g} and is joined to the origin by a straight line"
         for name, part in ((a, comparison.a), (b, comparison.b))
-        if part.first > comparison.end / 100
+        if part.first > max(comparison.begin, comparison.end / 100)
     ]
     if not comparison.a.peak_load > 0.0:
         said.append(f"no load of {a} is above 0: a load scale of -1 turns its sign")

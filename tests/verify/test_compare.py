@@ -108,6 +108,30 @@ def test_only_the_part_up_to_the_end_counts():
     assert early.b.peak_opening == 0.2 and early.b.work == pytest.approx(0.5 * np.log((0.1 + 0.2**2) / 0.1), rel=1e-3)
 
 
+def test_only_the_part_from_the_beginning_counts():
+    d, P = sampled(3000)
+    off = np.where(d < 0.5, 0.5 * P, P)
+    found = compare((d, off), (d, P), begin=0.51)
+    assert found.curve_error == found.peak_difference == found.energy_difference == 0.0
+    assert compare((d, off), (d, P)).curve_error > 0.1 and compare((d, off), (d, P), begin=0.4).curve_error > 0.01
+    assert found.b.peak_opening == 0.51 and found.b.peak_load == pytest.approx(bond(0.51), rel=1e-5)
+    assert found.b.work == pytest.approx(0.5 * np.log((0.1 + 9.0) / (0.1 + 0.51**2)), rel=1e-5)
+    assert found.opening_n[[0, -1]] == pytest.approx([0.51 + 2.49 / 400, 3.0])
+
+
+@given(paths(), paths(), st.floats(0.05, 2.5))
+def test_the_beginning_only_takes_part_of_the_whole(a, b, begin):
+    """The loads are those of the whole curves, whatever the paths did before, and so is the largest of them."""
+    found, whole = compare(a, b, begin=begin), compare(a, b, begin=0.0)
+    assert whole.curve_error == compare(a, b).curve_error and whole.begin == 0.0
+    for loads, part in ((found.load_a_n, a), (found.load_b_n, b)):
+        assert loads == pytest.approx(load_at(part, found.opening_n), rel=1e-9, abs=1e-9)
+    error = np.linalg.norm(found.load_a_n - found.load_b_n) / np.linalg.norm(found.load_b_n)
+    assert found.curve_error == pytest.approx(error, rel=1e-6)
+    np.testing.assert_equal(found.oscillation_rms, whole.oscillation_rms)
+    assert found.a.peak_load <= whole.a.peak_load + 1e-12
+
+
 def test_the_path_counts_until_it_first_comes_to_the_end():
     loop = np.array([0.0, 2.0, 0.5, 3.0]), np.array([0.0, 2.0, 0.0, 1.0])
     found = compare(loop, loop, 1.5).a
@@ -215,6 +239,17 @@ def test_other_columns_and_units_are_mapped(files: Path, capsys: pytest.CaptureF
     assert command(files, "expected.csv", "abaqus.csv", *by_number, *tolerances) == 0
 
 
+def test_the_beginning_of_the_command(files: Path, capsys: pytest.CaptureFixture) -> None:
+    """A load that is off up to 1.5 does not count from 1.6 on."""
+    rows = [line.split(",") for line in (files / "expected.csv").read_text().splitlines() if line[:1].isdigit()]
+    off = [f"{d},{float(P) * (2 if float(d) < 1.5 else 1)}" for d, P, *_ in rows]
+    (files / "off.csv").write_text("\n".join(["opening,load", *off]))
+    assert command(files, "off.csv", "expected.csv", "--curve-tol", "0.01") == 1
+    ours = ["off.csv", "expected.csv", "--begin", "1.6", "--curve-tol", "1e-9", "--out", "it"]
+    assert command(files, *ours, "--peak-tol", "1e-9", "--energy-tol", "1e-9") == 0
+    assert json.loads((files / "it" / "comparison.json").read_text())["begin"] == 1.6
+
+
 @pytest.mark.parametrize(
     ("tolerance", "words"),
     [
@@ -236,6 +271,11 @@ REFUSED = {
     "abaqus.csv expected.csv --opening-a U2 --load-a RF2": "the openings must go above 0, got at most 0; a scale of -1",
     "expected.csv abaqus.csv --opening-b 2 --load-b 4": "abaqus.csv:4: has 3 columns, got column number 4",
     "expected.csv expected.csv --end 3.5": "end: must be > 0 and <= 3, the last opening of B, got 3.5",
+    "expected.csv expected.csv --begin 3": "begin: must be < 3, the end of the comparison, got 3",
+    "expected.csv expected.csv --begin 1 --end 1": "begin: must be < 1, the end of the comparison, got 1",
+    "expected.csv expected.csv --begin -1": "begin: must be >= 0, got -1",
+    "expected.csv expected.csv --begin x": "argument --begin: must be a finite number, got 'x'",
+    "expected.csv expected.csv --begin 1 --at 0.5": "at: must be > 1 and <= 3, the end of the comparison, got 0.5",
     "expected.csv expected.csv --at 1,4": "at: must be > 0 and <= 3, the end of the comparison, got 4",
     "expected.csv expected.csv --at 1,x": "argument --at: must be a finite number, got 'x'",
     "expected.csv expected.csv --load-scale-a 0": "--load-scale-a: must be a finite number other than 0, got '0'",
