@@ -22,19 +22,31 @@ def end_rotation(scene: Scene) -> float:
     """Largest rotation of a loaded end face over the programme, in radians, by simple beam theory.
 
     An arm of bending stiffness E I, bent to the deflection d over a free length a, turns by theta = 3 d / (2 a). The
-    free length is that before any growth or, if larger, what holds d in equilibrium: d = a^2/3 sqrt(c w G / (E I)).
-    Of a dcb d is half the opening and c = 1, as two arms share G; a strip is peeled alone, and c = 2.
+    free length is that before any growth or, if larger, that at the end.
     """
-    specimen, opening = scene.specimen, max(map(abs, scene.load.opening))
-    if specimen.kind == "peel":
-        material, length, share, deflection = scene.strip, specimen.strip_length, 2.0, opening
-    else:
-        material, length, share, deflection = scene.material, specimen.length, 1.0, opening / 2
-    thickness = specimen.loaded_thickness
+    specimen = scene.specimen
+    length = specimen.strip_length if specimen.kind == "peel" else specimen.length
+    free = min(max(specimen.free_length, specimen.loaded_thickness, crack_at_the_end(scene)), length)
+    return 1.5 * _deflection(scene) / free
+
+
+def crack_at_the_end(scene: Scene) -> float:
+    """Free length that holds the largest opening in equilibrium, by simple beam theory, however long the specimen is.
+
+    d = a^2/3 sqrt(c w G / (E I)). Of a dcb d is half the opening and c = 1, as two arms share G; a strip is peeled
+    alone, and c = 2.
+    """
+    specimen = scene.specimen
+    material, share = (scene.strip, 2.0) if specimen.kind == "peel" else (scene.material, 1.0)
     young = getattr(material, "young", None) or material.E1
-    bending = young * specimen.width * thickness**3 / 12
-    grown = sqrt(3 * deflection * sqrt(bending / (share * specimen.width * scene.interface.toughness)))
-    return 1.5 * deflection / min(max(specimen.free_length, thickness, grown), length)
+    bending = young * specimen.width * specimen.loaded_thickness**3 / 12
+    return sqrt(3 * _deflection(scene) * sqrt(bending / (share * specimen.width * scene.interface.toughness)))
+
+
+def _deflection(scene: Scene) -> float:
+    """Largest deflection of an arm."""
+    opening = max(map(abs, scene.load.opening))
+    return opening if scene.specimen.kind == "peel" else opening / 2
 
 
 def simulated(scene: Scene, method: str) -> dict[str, Any]:

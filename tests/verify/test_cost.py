@@ -271,7 +271,7 @@ def test_the_page_says_it_and_carries_the_rows(tmp_path: Path) -> None:
     pytest.importorskip("jinja2")
     from verify.cost.page import write
 
-    study = Study("dcb-czm1", SCENE, against(), tuple(ROWS), ("lefm: a <limit>",))
+    study = Study(SCENE, against(), tuple(ROWS), ("lefm: a <limit>",))
     write(study, tmp_path / "report.html")
     page = (tmp_path / "report.html").read_text()
     assert "Curve error 0.3%: T-spline, degree 3, 400 unknowns" in page and "DOLFINx 3.8 ×" in page
@@ -283,7 +283,7 @@ def test_the_page_says_it_and_carries_the_rows(tmp_path: Path) -> None:
 
 
 def test_cost_json_names_the_cheapest_and_the_front(tmp_path: Path) -> None:
-    found = Study("dcb-czm1", SCENE, against(), tuple(ROWS), ()).summary()
+    found = Study(SCENE, against(), tuple(ROWS), ()).summary()
     assert list(found["cheapest"]) == ["1%", "0.3%", "0.1%"]
     assert found["cheapest"]["0.3%"]["method"] == "tspline" and found["cheapest"]["0.3%"]["dofs"] == 400
     assert found["cheapest_at_equal_steps"]["0.3%"]["ratio"]["dolfinx"] == pytest.approx(5.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from verify.cost.findings import LEVELS, cheapest, growth, orders, pareto, table
@@ -13,6 +13,7 @@ from verify.cost.ladder import STEPS, Family, Try, ladders
 from verify.cost.nonzeros import nonzeros
 from verify.cost.reference import Reference, reference, reference_jobs
 from verify.cost.row import Row, row, write_csv
+from verify.fingerprint import source as source_of
 from verify.folder import write_json
 from verify.jobs import Job, Outcome, dry_run, run_all
 from verify.run import machine, versions
@@ -25,19 +26,26 @@ ENOUGH, PATIENCE, LONGEST = 0.7, 12.0, 120.0
 #: Runs that are within this factor of a method's cheapest one for a level are timed so many times.
 CLOSE, TIMES = 1.25, 3
 
+#: What the times of a study rest on.
+ALL_PACKAGES = ("iga", "fem_reference")
+
 #: Variables that keep numerical libraries to one thread.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 @dataclass(frozen=True)
 class Study:
-    """What a sweep found. ``left_out``: a sentence for every method that cannot solve the scene here."""
+    """What a sweep found.
 
-    source: str
+    left_out : a sentence for every method that cannot solve the scene here
+    how : overrides of the scene with which a run was made, by its name
+    """
+
     scene: Scene
     against: Reference
     rows: tuple[Row, ...]
     left_out: tuple[str, ...]
+    how: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def summary(self) -> dict[str, object]:
         """The content of ``cost.json``."""
@@ -57,16 +65,24 @@ class Study:
             },
             "cheapest": {level: cheapest(self.rows, level).summary() for level in LEVELS},
             "cheapest_at_equal_steps": {level: cheapest(equal, level).summary() for level in LEVELS},
-            "pareto": [
-                {key: getattr(one, key) for key in ("method", "degree", "dofs", "curve_error", "seconds", "run")}
-                for one in pareto(self.rows)
-            ],
+            "pareto": [self._front(one) for one in pareto(self.rows)],
             "orders": orders(self.rows, 2.0 * known.uncertainty["curve"]),
             "growth": growth(self.rows),
             "left_out": list(self.left_out),
+            "source": source_of(ALL_PACKAGES),
             "versions": versions(),
             "machine": machine(),
             "threads": 1,
+        }
+
+
+    def _front(self, one: Row) -> dict[str, object]:
+        """A run of the front, with what repeats it."""
+        keys = ("method", "degree", "dofs", "steps", "curve_error", "seconds", "run")
+        solver = {"tspline-adaptive": "tspline"}.get(one.method, one.method)
+        return {key: getattr(one, key) for key in keys} | {
+            "solver": solver,
+            "overrides": list(self.how.get(one.run, ())),
         }
 
 
@@ -120,7 +136,8 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     runner([other for one in _best(runner.rows) for other in one.with_steps()])
     for repeat in range(1, TIMES):
         runner([replace(one, repeat=repeat) for one in _best(runner.rows, CLOSE)])
-    study = Study(source, scene, against, tuple(_counted(runner)), tuple(reasons))
+    how = {one.variant: one.job(source, scene).overrides for one in runner.found}
+    study = Study(scene, against, tuple(_counted(runner)), tuple(reasons), how)
     write_csv(out / "cost.csv", study.rows)
     write_json(out / "cost.json", study.summary())
     _page(study, out)
