@@ -23,10 +23,6 @@ J_TOLERANCE = 0.005
 #: deviation (1.0 to 1.9 % on the packaged scenes) measures the mesh and not the solver; its tolerance is the curve's.
 J_TOLERANCE_LAGRANGE = 0.02
 ENERGY_TOLERANCE = 0.005
-#: While the tip of a bond that ends on the substrate is not open yet: the traction ends there, and the surface beyond
-#: rises with an infinite slope (Flamant: log of the distance), which the elements beyond the bond smooth over. Measured
-#: with 3700 unknowns: 0.4 to 0.9 %; with those elements as short as on the bond 0.2 to 0.4 %.
-ONSET_TOLERANCE = 0.01
 #: Of load sin(theta) / (G_Ic w): besides the mesh, what the ends of strip and substrate hold of the energy.
 ANGLE_TOLERANCE = 0.01
 AT_THE_END = 1e-9  # part of the length within which the process zone has come to the far end
@@ -35,7 +31,7 @@ BALANCE_TOLERANCE = 1e-8
 DISSIPATION_TOLERANCE = 0.02
 
 #: Checks that hold as well as the mesh resolves the process zone.
-OF_THE_ZONE = ("j-integral", "j-onset", "growth-angle")
+OF_THE_ZONE = ("j-integral", "growth-angle")
 #: What stands behind a check that is no identity.
 KINDS = {"growth-angle": "analytical"}
 
@@ -51,7 +47,6 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
     values: list[tuple[str, Callable[[Scene, Steps], float | None], float, str]] = [
         ("completed", _missing_part, 1e-9, "The run reached the end of the load programme, or the specimen separated."),
         ("j-integral", j_deviation, j_tolerance, "The J-integral of the specimen is the area under the law."),
-        ("j-onset", j_onset, ONSET_TOLERANCE, "The same before the tip of the bond is fully open."),
         ("growth-load", growth_load, j_tolerance, "While the crack grows the load is at least G_Ic times the width."),
         ("growth-angle", growth_angle, ANGLE_TOLERANCE, "In the end load sin(theta) is G_Ic times the width."),
         ("energy-ledger", energy_gap, ENERGY_TOLERANCE, "External work is stored or dissipated, nothing is lost."),
@@ -82,7 +77,7 @@ def law_of(scene: Scene) -> Bilinear:
 
 
 def j_deviation(scene: Scene, steps: Steps) -> float | None:
-    """Worst |J - integral of p dg| / G_Ic over the steps on the way up; see `j_onset` for what is left to that.
+    """Worst |J - integral of p dg| / G_Ic over the steps on the way up.
 
     J w = load (|s_top| + |s_bottom|) - w sum over the faces of the integral of W dY, with s the mean slope du_y/dX of
     the loaded face; it equals the area under the law up to the opening at the tip of the precrack (Rice 1968, J. Appl.
@@ -93,13 +88,7 @@ def j_deviation(scene: Scene, steps: Steps) -> float | None:
     gives no term, being fixed.
     """
     gap = _j_gap(scene, steps)
-    return None if gap is None else _worst(gap[~_before_opening(scene, steps)])
-
-
-def j_onset(scene: Scene, steps: Steps) -> float | None:
-    """The same over the steps before the tip is fully open, of a bond that ends where the substrate goes on."""
-    gap, onset = _j_gap(scene, steps), _before_opening(scene, steps)
-    return None if gap is None or not onset.any() else _worst(gap[onset])
+    return None if gap is None else _worst(gap)
 
 
 def growth_load(scene: Scene, steps: Steps) -> float | None:
@@ -154,15 +143,6 @@ def growing(scene: Scene, steps: Steps) -> np.ndarray:
     open_ = steps["tip_opening"] > law_of(scene).g_open
     inside = steps["damage_front"] < (1.0 - AT_THE_END) * scene.specimen.extent
     return open_ & inside & loading(steps) & far_from_end(scene, steps)
-
-
-def _before_opening(scene: Scene, steps: Steps) -> np.ndarray:
-    """Steps (n_steps,) before the tip is fully open, none where both bodies end with the bond."""
-    body = scene.specimen
-    inside = body.kind == "peel" and body.bond_length < body.substrate_length
-    if not inside or "tip_opening" not in steps:
-        return np.zeros(steps["opening"].size, dtype=bool)
-    return steps["tip_opening"] <= law_of(scene).g_open
 
 
 def _j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:

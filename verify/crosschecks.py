@@ -10,6 +10,7 @@ from collections.abc import Mapping
 
 from verify.curve import curve_error, dense, load_at, peak
 from verify.effects import simulated
+from verify.methods import elastic_constants
 from verify.published import Published
 from verify.result import Result
 from verify.schema import Scene
@@ -21,6 +22,9 @@ CROSS_CODE = {"tspline": 0.005, "tspline-adaptive": 0.005, "nurbs": 0.005, "lagr
 CLOSE = ("tspline", "tspline-adaptive", "nurbs", "dolfinx", "dolfinx-p3")
 #: A linear beam leaves out what a slender arm hardly has; the finite one also the St. Venant-Kirchhoff bulk.
 ANALYTICAL = {"linear": 0.002, "finite": 0.005}
+#: A beam does not give across. Where the bond is so strong that it would squeeze an arm by this part of the opening
+#: that breaks it, the beam is no judge: measured 0.6 to 1.1 % of the curve at 0.65 to 2.9, no more than 0.1 % at 1e-3.
+SQUEEZED = 0.1
 #: Under a strip it leaves out how the corner of a substrate gives way: 0.41 % of the curve where the bond begins there.
 ON_SUBSTRATE = 0.015
 #: Runs that are held against published values: all but the coarse ones of a sequence of meshes, and LEFM.
@@ -41,7 +45,7 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
     analytical = {**CROSS_CODE, **dict.fromkeys(CLOSE, fine)}
     checks = []
     for method, tolerance in analytical.items():
-        if method in usable and "beam" in usable:
+        if method in usable and "beam" in usable and squeeze(scene) < SQUEEZED:
             error = distance(usable[method], usable["beam"], end)
             meaning = "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening)."
             checks.append(Check("beam-curve", f"{method} / beam", error, tolerance, "analytical", meaning))
@@ -55,6 +59,25 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
             meaning = "Two codes that share nothing find the same peak load (relative difference)."
             checks.append(Check("peak", pair, ratio, tolerance, "cross-code", meaning))
     return (*checks, *published_checks(scene, usable))
+
+
+def squeeze(scene: Scene) -> float:
+    """How far a traction as large as the strength squeezes an arm, in parts of the opening that breaks the bond.
+
+    ``h p_max / (E2 g_u)`` of a dcb; 0 of a peel, whose strip has the same layer under it in the beam.
+    """
+    if scene.specimen.kind == "peel":
+        return 0.0
+    law, E2 = scene.interface, elastic_constants(scene.material)["E2"]
+    return scene.specimen.arm_thickness * law.strength**2 / (2.0 * E2 * law.toughness)
+
+
+def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
+    """What is not judged, and why."""
+    if "beam" not in results or squeeze(scene) < SQUEEZED:
+        return ()
+    part = f"{squeeze(scene):.2g} of the opening that breaks it"
+    return (f"beam: held against no code: at its strength this bond squeezes an arm by {part}, which no beam has",)
 
 
 def published_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:

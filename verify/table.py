@@ -26,7 +26,8 @@ def overview(reports: Iterable[SceneReport]) -> list[str]:
         for name, kind in names:
             cells = {_run(check): _cell(check) for check in report.checks if check.name == name}
             lines.append(f"  {name:16} {kind:10}" + "".join(f"{cells.get(run, ''):>12}" for run in runs))
-        lines += [f"  {run.method}: {run.left_out}" for run in report.runs if run.result is None] + [""]
+        lines += [f"  {run.method}: {run.left_out}" for run in report.runs if run.result is None]
+        lines += [*(f"  {remark}" for remark in report.remarks), ""]
     return lines
 
 

@@ -47,11 +47,12 @@ class Run:
 
 @dataclass(frozen=True)
 class SceneReport:
-    """Everything known about one scene."""
+    """Everything known about one scene; ``remarks`` say what is not judged, and why."""
 
     scene: Scene
     runs: tuple[Run, ...]
     checks: tuple[Check, ...]
+    remarks: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from verify.checks import run_checks
 from verify.convergence import assess
-from verify.crosschecks import cross_checks, peak_load
+from verify.crosschecks import cross_checks, peak_load, remarks
 from verify.jobs import Job, Outcome, dry_run, run_all
 from verify.methods import METHODS, WITH_DOFS
 from verify.paper import peel, peel_statements, statements
@@ -125,7 +125,7 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
             meaning = "The run ended with a result."
             checks.append(Check("completed", outcome.job.variant, float("nan"), 1e-9, "exact", meaning))
     results = {o.job.variant: o.result for o in outcomes if o.result is not None}
-    return SceneReport(scene, runs, (*checks, *cross_checks(scene, results)))
+    return SceneReport(scene, runs, (*checks, *cross_checks(scene, results)), remarks(scene, results))
 
 
 def sequences(reports: Sequence[SceneReport]) -> list[str]:

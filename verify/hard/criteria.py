@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from verify.checks import J_TOLERANCE, j_deviation, j_onset
+from verify.checks import J_TOLERANCE, j_deviation
 from verify.curve import Curve, curve_error, dense
 from verify.hard.case import Finding, Number, Trial
 from verify.process_zone import ENOUGH, expected, measured
@@ -34,7 +34,6 @@ def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
     deviation = j_deviation(trial.scene, steps)
     if deviation is None:
         return
-    deviation = max(deviation, j_onset(trial.scene, steps) or 0.0)
     elements = zone_elements(trial)
     bends = trial.scene.discretization.degree > 1
     if elements >= ENOUGH and bends:

@@ -113,7 +113,7 @@ def section(report: SceneReport, anchor: str) -> Section:
         zones=zones.rows(report.scene, found),
         published=published.rows(report.scene, found),
         compared=published.compared(found),
-        notes=tuple(_notes(found)),
+        notes=(*_notes(found), *report.remarks),
     )
 
 
