@@ -64,8 +64,10 @@ def parser() -> argparse.ArgumentParser:
     example = "solve dcb-czm1 --method tspline --set discretization.adaptive=true"
     sub = command("solve", _solve, text, example)
     sub.add_argument("scene", metavar="SCENE", help="a packaged name or a file")
-    sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
+    sub.add_argument("--method", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
     sub.add_argument("--dofs", type=_positive, metavar="N", help="unknowns to aim at, for tspline, nurbs and lagrange")
+    what = "choose method and mesh for this error of the curve, like 0.3%%, and say how long it takes"
+    sub.add_argument("--accuracy", type=_accuracy, metavar="A", help=what)
     sub.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help="replace a key")
     sub.add_argument("--out", type=Path, metavar="DIR", help="default: debond-out/SCENE-METHOD")
     sub.add_argument("--fields", action="store_true", help="keep fields of a few steps in fields.npz")
@@ -137,6 +139,9 @@ def _solve(options: argparse.Namespace) -> int:
     from verify.run import mpi_rank, mpi_size, run
     from verify.scene import load_scene
 
+    if options.accuracy is not None:
+        _chosen(options)
+    options.method = options.method or "nurbs"
     _known_method(options.method, options.dofs)
     dofs = [f"discretization.dofs={options.dofs}"] if options.dofs else []
     scene = load_scene(options.scene, [*dofs, *options.overrides])
@@ -156,6 +161,23 @@ def _solve(options: argparse.Namespace) -> int:
     if not quiet:
         _print_result(result, checks, options.out)
     return 0 if result.complete else FAILED
+
+
+def _chosen(options: argparse.Namespace) -> None:
+    """Put the method and the mesh for an accuracy into the options, and say what and for how long."""
+    from verify.cost.accuracy import choose
+    from verify.run import mpi_size
+    from verify.scene import load_scene
+
+    given = {"--method": options.method, "--dofs": options.dofs}
+    for name, value in given.items():
+        if value is not None:
+            raise Refusal(f"{name}: must be left out with --accuracy, which chooses it, got {value!r}")
+    if mpi_size() > 1:
+        raise Refusal(f"--accuracy: must be asked for in 1 process, without mpirun, got {mpi_size()}")
+    choice = choose(load_scene(options.scene, options.overrides), options.accuracy, Path("debond-cost") / "cost.json")
+    _say(f"debond: {choice.why}")
+    options.method, options.overrides = choice.method, [*options.overrides, *choice.overrides]
 
 
 def _watched(run, scene, options: argparse.Namespace, quiet: bool):
@@ -353,6 +375,11 @@ def _positive(text: str) -> int:
     if value < 1:
         raise argparse.ArgumentTypeError(f"must be an integer >= 1, got {text!r}")
     return value
+
+
+def _accuracy(text: str) -> float:
+    share = text.removesuffix("%").strip()
+    return _fraction(share) / (100.0 if text.endswith("%") else 1.0)
 
 
 def _fraction(text: str) -> float:

@@ -1,28 +1,39 @@
-"""About how long a run takes, before it is made: for bars, for dry runs, and to choose a mesh."""
+"""About how long a run takes, before it is made: for bars and for dry runs."""
 
 from __future__ import annotations
 
+from verify.effects import crack_at_the_end
 from verify.methods import WITH_DOFS, counted_steps
+from verify.process_zone import bulk_length, slender_length
 from verify.schema import Scene
 
-#: Seconds a run takes to start, and seconds a step per thousand unknowns to the power ``GROWTH``; measured on one core
-#: of a Xeon of 2023 with `dcb-czm1`, finite kinematics. A rough guide: the next machine is as likely twice as fast.
-START = {"dolfinx": 3.0}
-PER_STEP = {"tspline": 0.05, "nurbs": 0.05, "lagrange": 0.05, "dolfinx": 0.1, "beam": 0.02, "lefm": 0.001}
-GROWTH = 1.1
+#: Seconds besides the steps, and seconds a step for a thousand unknowns, in proportion to them; with `dcb-czm1`, finite
+#: kinematics, on one core of 2023. A rough guide: another machine is as likely to be twice as fast.
+BESIDES = {"dolfinx": 4.0}
+PER_STEP = {"tspline": 0.03, "nurbs": 0.03, "lagrange": 0.03, "dolfinx": 0.02, "beam": 0.03, "lefm": 0.001}
 
-#: Steps that the path chooses itself, about.
-CHOSEN = 60
+#: While a crack grows the front of the zone goes ahead by an eighth of the full opening a step: so many steps for every
+#: length of the zone, and so many besides. Measured on ``dcb-czm1`` and ``peel-120``, by both codes.
+STEPS_PER_ZONE, STEPS_BESIDES = 8.2, 20
 
 
 def seconds(scene: Scene, method: str) -> float:
     """Estimated time of a run."""
-    steps = CHOSEN if scene.discretization.steps == "auto" and method in WITH_DOFS else counted_steps(scene)
-    return START.get(method, 1.0) + steps * PER_STEP[method] * (unknowns(scene, method) / 1000) ** GROWTH
+    return BESIDES.get(method, 2.0) + steps(scene) * PER_STEP[method] * unknowns(scene, method) / 1000
+
+
+def steps(scene: Scene) -> int:
+    """About how many steps a path takes, however many are asked for: the front of the zone asks for its own."""
+    specimen = scene.specimen
+    bond = (specimen.extent if specimen.kind == "peel" else specimen.length) - specimen.free_length
+    grown = min(max(crack_at_the_end(scene) - specimen.free_length, 0.0), bond)
+    zones = grown / min(slender_length(scene), bulk_length(scene))
+    asked = 0 if scene.discretization.steps == "auto" else counted_steps(scene)
+    return round(max(asked, STEPS_BESIDES + STEPS_PER_ZONE * zones))
 
 
 def unknowns(scene: Scene, method: str) -> int:
-    """Degrees of freedom that a method aims at; 1000 for one without a mesh of its own choosing."""
+    """Degrees of freedom that a method aims at; 1000 for one that chooses its own."""
     if method in WITH_DOFS:
         return scene.discretization.dofs // (2 if scene.effects.symmetry else 1)
     if method != "dolfinx":

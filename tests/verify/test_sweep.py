@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from verify.estimate import steps
 from verify.fingerprint import digest, fingerprint, source
 from verify.jobs import Job
 from verify.pools import pool
@@ -265,6 +266,26 @@ def test_a_dry_run_lists_what_is_missing(tmp_path: Path, marks: Path) -> None:
     assert "at hand" in lines[0] and "about 1 s" in lines[1]
     assert lines[-1] == "2 of 3 runs to do, 2 at a time: about 1 s"
     assert not started(marks, "b")
+
+
+def test_commands_list_their_runs_and_leave_nothing(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    from verify.cli import main
+
+    out = tmp_path / "out"
+    assert main(["verify", "dcb-czm1-linear", "--dry-run", "--out", str(out)]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert any(line.startswith("dcb-czm1-linear/nurbs ") and "about" in line for line in said)
+    assert "runs to do" in said[-1]
+    assert main(["hard", "coarse-czm2", "--dry-run", "--out", str(out)]) == 0
+    assert capsys.readouterr().out.splitlines()[0].startswith("coarse-czm2/tspline ") and not out.exists()
+
+
+def test_a_path_takes_more_steps_where_its_front_asks_for_them() -> None:
+    """Counted on the paths of both codes: 86 steps on dcb-czm1 where 40 are asked for, 200 on peel-120."""
+    asked = ["discretization.steps=40"]
+    assert steps(load_scene("dcb-czm1", asked)) == pytest.approx(86, rel=0.1)
+    assert steps(load_scene("peel-120", asked)) == pytest.approx(200, rel=0.2)
+    assert steps(load_scene("dcb-czm1")) == 150 and steps(load_scene("dcb-czm1", ["load.opening=0.1"])) == 150
 
 
 def test_the_hash_tells_what_a_result_rests_on(monkeypatch: pytest.MonkeyPatch) -> None:

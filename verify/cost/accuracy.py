@@ -1,0 +1,149 @@
+"""``debond solve --accuracy``: method and mesh from what is known of the cost, and how long the run will take.
+
+Where a study of the same scene is at hand its front decides. Otherwise the elements that must span the process zone
+are read off `known.csv`, which says where its numbers come from; a trial of a few steps on the chosen mesh tells the
+time of an iteration, on this machine and now, and the length of the crack to be grown how many there will be.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from verify.cost.ladder import FAMILIES, STEPS, Try, size_of_an_element
+from verify.estimate import steps
+from verify.fingerprint import source
+from verify.methods import NotRun, require, solve
+from verify.process_zone import expected
+from verify.progress import duration
+from verify.refusal import Refusal
+from verify.run import machine
+from verify.scene import parse_scene
+from verify.schema import Scene
+
+KNOWN = Path(__file__).with_name("known.csv")
+
+#: The family that is chosen where only the table is known.
+FAMILY = next(family for family in FAMILIES if family.name == "nurbs-p2")
+
+#: Accuracies that can be asked for; from the table more elements than it says are taken.
+FINEST, COARSEST, SAFETY = 0.0005, 0.05, 1.2
+
+#: Newton iterations a step, measured on ``dcb-czm1`` and ``peel-120``.
+ITERATIONS_PER_STEP = 4.4
+
+#: A trial goes this part of the way in about so many steps.
+TRIAL, TRIAL_STEPS = 0.02, 10
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What to run for an accuracy: overrides of the scene, and the sentence that says so beforehand."""
+
+    method: str
+    overrides: tuple[str, ...]
+    seconds: float
+    why: str
+
+
+def choose(scene: Scene, accuracy: float, study: Path) -> Choice:
+    """Method and mesh for a curve error of at most ``accuracy``.
+
+    Parameters
+    ----------
+    study : a ``cost.json``, which counts if it is of the same scene and machine and of this source
+
+    Raises
+    ------
+    Refusal : an accuracy beyond what is known, or a scene of which no mesh is fine enough.
+    """
+    if not FINEST <= accuracy <= COARSEST:
+        raise Refusal(f"--accuracy: must be >= {FINEST:.2%} and <= {COARSEST:.0%}, got {100 * accuracy:g}%")
+    return _from_study(scene, accuracy, study) or _from_table(scene, accuracy)
+
+
+def _from_study(scene: Scene, accuracy: float, path: Path) -> Choice | None:
+    known = _same_study(scene, path)
+    for run in known:
+        if run["curve_error"] > accuracy or run["solver"] == "beam":
+            continue
+        try:
+            require(parse_scene(scene.model_dump(), run["overrides"]), run["solver"])
+        except NotRun:
+            continue
+        what = f"{run['method']} of degree {run['degree']} with {run['dofs']} unknowns"
+        took = f"took {duration(run['seconds'])} in {path} and was within {run['curve_error']:.2g}"
+        return Choice(run["solver"], tuple(run["overrides"]), run["seconds"], f"{what}: {took}")
+    return None
+
+
+def _same_study(scene: Scene, path: Path) -> Sequence[Mapping[str, Any]]:
+    """Runs of a study of the same problem, machine and source, the quickest first."""
+    try:
+        found = json.loads(path.read_text())
+    except (OSError, ValueError):
+        return ()
+    meshes = {"discretization", "dolfinx", "published"}
+    ours = json.loads(scene.model_dump_json(exclude=meshes))
+    theirs = {key: value for key, value in found["scene"].items() if key not in meshes}
+    same = (theirs, found["machine"], found["source"]) == (ours, machine(), source(("iga", "fem_reference")))
+    return sorted(found["pareto"], key=lambda run: run["seconds"]) if same else ()
+
+
+def _from_table(scene: Scene, accuracy: float) -> Choice:
+    elements = SAFETY * elements_for(accuracy)
+    one = Try(FAMILY, 0, unknowns_for(scene, elements), STEPS)
+    overrides = one.job(scene.name, scene).overrides
+    chosen = parse_scene(scene.model_dump(), overrides)
+    require(chosen, FAMILY.solver)
+    iterations = ITERATIONS_PER_STEP * steps(chosen)
+    seconds = iterations * iteration_seconds(chosen, FAMILY.solver)
+    mesh = f"NURBS of degree {FAMILY.degree} with {one.size} unknowns, {elements:.1f} elements in the process zone"
+    return Choice(FAMILY.solver, overrides, seconds, f"{mesh}: about {duration(seconds)}, {steps(chosen)} steps")
+
+
+def elements_for(accuracy: float) -> float:
+    """Elements that span the process zone where the curve error of every scene in the table is at most this."""
+    with KNOWN.open(newline="") as stream:
+        rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
+    scenes = dict.fromkeys(row["scene"] for row in rows)
+    return max(_crossing([row for row in rows if row["scene"] == scene], accuracy) for scene in scenes)
+
+
+def _crossing(rows: Sequence[Mapping[str, str]], accuracy: float) -> float:
+    """Where the error, read as falling, comes below a value; beyond the table on with its slope."""
+    e, error = (np.log([float(row[key]) for row in rows]) for key in ("elements", "curve_error"))
+    falling = np.maximum.accumulate(error[::-1])[::-1]
+    slope = np.polyfit(e, error, 1)[0]
+    if np.log(accuracy) < falling[-1]:
+        return float(np.exp(e[-1] + (np.log(accuracy) - falling[-1]) / slope))
+    return float(np.exp(np.interp(-np.log(accuracy), -falling, e)))
+
+
+def unknowns_for(scene: Scene, elements: float) -> int:
+    """Unknowns with which at least so many elements span the process zone."""
+    size = round(size_of_an_element(scene, FAMILY) * elements)
+    for _ in range(40):
+        chosen = parse_scene(scene.model_dump(), Try(FAMILY, 0, size, STEPS).job(scene.name, scene).overrides)
+        there = expected(chosen, FAMILY.solver).elements
+        if there >= elements:
+            return size
+        size = round(size * (min(elements / there, 1.5) if there > 0.0 else 1.2)) + 8
+    raise Refusal(f"--accuracy: no mesh is known with {elements:.1f} elements in the process zone of {scene.name}")
+
+
+def iteration_seconds(scene: Scene, method: str) -> float:
+    """Time of a Newton iteration with what belongs to it, from a few steps on the same mesh."""
+    begun = max(map(abs, scene.load.opening)) * TRIAL
+    short = (f"load.opening={begun!r}", f"discretization.steps={TRIAL_STEPS}")
+    start = perf_counter()
+    result = solve(parse_scene(scene.model_dump(exclude={"published"}), short), method)
+    taken = perf_counter() - start - result.seconds["mesh"] - result.seconds["basis"]
+    return taken / max(float(np.sum(result.steps["newton_iterations"])), 1.0)
