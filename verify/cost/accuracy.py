@@ -118,13 +118,16 @@ def elements_for(accuracy: float) -> float:
 
 
 def _crossing(rows: Sequence[Mapping[str, str]], accuracy: float) -> float:
-    """Where the error, read as falling, comes below a value; beyond the table on with its slope."""
+    """Where the error comes below a value for good; beyond the table on with its slope.
+
+    A mesh that a finer one is worse than is good by chance, and does not count.
+    """
     e, error = (np.log([float(row[key]) for row in rows]) for key in ("elements", "curve_error"))
-    falling = np.maximum.accumulate(error[::-1])[::-1]
-    slope = np.polyfit(e, error, 1)[0]
-    if np.log(accuracy) < falling[-1]:
-        return float(np.exp(e[-1] + (np.log(accuracy) - falling[-1]) / slope))
-    return float(np.exp(np.interp(-np.log(accuracy), -falling, e)))
+    counts = error == np.maximum.accumulate(error[::-1])[::-1]
+    e, error = e[counts], error[counts]
+    if np.log(accuracy) < error[-1]:
+        return float(np.exp(e[-1] + (np.log(accuracy) - error[-1]) / np.polyfit(e, error, 1)[0]))
+    return float(np.exp(np.interp(-np.log(accuracy), -error, e)))
 
 
 def unknowns_for(scene: Scene, elements: float) -> int:

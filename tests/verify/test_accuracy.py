@@ -1,0 +1,108 @@
+"""``solve --accuracy``: how the table is read, when a study counts instead, and that scenes meet it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from verify.cli import main
+from verify.cost import accuracy
+from verify.cost.accuracy import FAMILY, choose, elements_for, unknowns_for
+from verify.cost.ladder import Try
+from verify.cost.reference import cubics, distance
+from verify.fingerprint import source
+from verify.methods import solve
+from verify.process_zone import expected
+from verify.refusal import Refusal
+from verify.run import machine
+from verify.scene import load_scene, parse_scene
+
+NOWHERE = Path("no-such-study.json")
+
+
+def test_the_table_is_read_on_the_safe_side(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Errors 0.1 e^-2 and, on another scene, 0.4 e^-2 but for one mesh that is good by chance."""
+    table = tmp_path / "known.csv"
+    lines = ["# made up", "scene,elements,curve_error"]
+    lines += [f"a,{e},{0.1 / e**2}" for e in (1, 2, 4, 8)]
+    lines += [f"b,{e},{0.4 / e**2 if e != 2 else 1e-5}" for e in (1, 2, 4, 8)]
+    table.write_text("\n".join(lines) + "\n")
+    monkeypatch.setattr(accuracy, "KNOWN", table)
+    assert elements_for(0.4 / 5.0**2) == pytest.approx(5.0, rel=1e-6)
+    assert elements_for(0.4 / 3.0**2) == pytest.approx(3.0, rel=1e-6), "the lucky mesh does not count"
+    monkeypatch.setattr(accuracy, "KNOWN", tmp_path / "a.csv")
+    (tmp_path / "a.csv").write_text("\n".join(lines[1:6]) + "\n")
+    assert elements_for(0.1 / 20.0**2) == pytest.approx(20.0, rel=1e-6), "beyond the table on with its slope"
+
+
+def test_more_accuracy_takes_more_elements() -> None:
+    assert np.all(np.diff([elements_for(a) for a in (0.05, 0.01, 0.003, 0.001, 0.0005)]) > 0.0)
+
+
+@pytest.mark.parametrize("name", ["dcb-czm2", "peel-80"])
+def test_the_mesh_has_the_elements_that_are_asked_for(name: str) -> None:
+    scene = load_scene(name)
+    chosen = Try(FAMILY, 0, unknowns_for(scene, 3.0), 40).job(name, scene).solved
+    assert 3.0 <= expected(chosen, FAMILY.solver).elements < 4.0
+
+
+def a_study(folder: Path, scene, **changes) -> Path:
+    front = [
+        {"method": "beam", "solver": "beam", "degree": 0, "dofs": 0, "curve_error": 1e-4,
+         "seconds": 0.5, "overrides": []},
+        {"method": "nurbs", "solver": "nurbs", "degree": 3, "dofs": 350, "curve_error": 0.008, "seconds": 1.0,
+         "overrides": ["discretization.dofs=350"]},
+        {"method": "tspline-adaptive", "solver": "tspline", "degree": 3, "dofs": 480, "curve_error": 0.002,
+         "seconds": 2.0, "overrides": ["discretization.dofs=500", "discretization.adaptive=true"]},
+    ]  # fmt: skip
+    known = {"scene": scene.model_dump(), "machine": machine(), "source": source(("iga", "fem_reference"))}
+    path = folder / "cost.json"
+    path.write_text(json.dumps({**known, "pareto": front, **changes}))
+    return path
+
+
+def test_a_study_of_the_same_problem_decides(tmp_path: Path) -> None:
+    scene = load_scene("dcb-czm1")
+    path = a_study(tmp_path, scene)
+    assert choose(scene, 0.01, path).overrides == ("discretization.dofs=350",)
+    found = choose(load_scene("dcb-czm1", ["discretization.dofs=3000"]), 0.003, path)
+    assert (found.method, found.seconds) == ("tspline", 2.0) and "tspline-adaptive of degree 3" in found.why
+
+
+@pytest.mark.parametrize("what", ["scene", "machine", "source", "file", "error"])
+def test_another_study_does_not(what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(accuracy, "iteration_seconds", lambda scene, method: 0.01)
+    scene = load_scene("dcb-czm1")
+    path = a_study(tmp_path, scene, **({what: {}} if what in ("machine", "source") else {}))
+    if what == "scene":
+        scene = load_scene("dcb-czm1", ["interface.strength=4.1"])
+    if what == "file":
+        path.write_text("half a fi")
+    found = choose(scene, 0.001 if what == "error" else 0.01, path)
+    assert "NURBS of degree 2" in found.why and found.method == "nurbs"
+
+
+def test_what_cannot_be_asked_for_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    for accuracy_asked in (1e-5, 0.2):
+        with pytest.raises(Refusal, match=r"--accuracy: must be >= 0.05% and <= 5%"):
+            choose(load_scene("dcb-czm1"), accuracy_asked, NOWHERE)
+    command = ["solve", "dcb-czm1", "--accuracy", "0.3%", "--out", str(tmp_path / "out")]
+    assert main([*command, "--dofs", "500"]) == main([*command, "--method", "nurbs"]) == 2
+    assert "--dofs: must be left out with --accuracy" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["dcb-czm2", "dcb-czm1-linear", "peel-80"])
+def test_scenes_that_are_not_in_the_table_meet_their_accuracy_in_about_the_time(name: str) -> None:
+    scene = load_scene(name)
+    found = choose(scene, 0.003, NOWHERE)
+    result = solve(parse_scene(scene.model_dump(), found.overrides), found.method)
+    symmetric = ["effects.symmetry=true"] if scene.specimen.kind == "dcb" else []
+    fine = [f"discretization.dofs={7000 if scene.specimen.kind == 'dcb' else 9000}", "discretization.steps=200"]
+    exact = solve(load_scene(name, [*fine, *symmetric, "discretization.interface_points=5"]), "nurbs")
+    assert min(distance(curve, exact) for curve in (cubics(result), (result.opening, result.load))) <= 0.003
+    assert 0.5 < result.seconds["total"] / found.seconds < 2.0
