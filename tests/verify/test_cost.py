@@ -259,8 +259,10 @@ def test_more_is_tried_where_it_may_pay() -> None:
     assert sizes == [420, 590, 830]
     assert [one.size for one in study_of._best(tries, 1.3)] == [420, 590, 830]
     assert [one.size for one in study_of._between(tries)] == [355, 498, 700]
-    assert [one.steps for one in next(iter(tries)).with_steps()] == ["auto", 80, 150]
-    assert list(Try(BEAM, 0, 0, 40).with_steps()) == []
+    first = next(iter(tries))
+    assert [one.steps for one in (*first.with_fewer_steps(), *first.with_more_steps())] == ["auto", 80, 150]
+    assert [study_of._worth(found) for found in tries.values()] == [False, True, True, True]
+    assert [*Try(BEAM, 0, 0, 40).with_fewer_steps(), *Try(BEAM, 0, 0, 40).with_more_steps()] == []
 
 
 # --- the whole

@@ -23,6 +23,9 @@ from verify.schema import Scene
 #: is accurate enough, or so many seconds.
 ENOUGH, PATIENCE, LONGEST = 0.7, 12.0, 120.0
 
+#: Fewer steps are tried on meshes whose error is this close to the coarsest level.
+NEAR = 1.2
+
 #: Runs that are within this factor of a method's cheapest one for a level are timed so many times.
 CLOSE, TIMES = 1.25, 3
 
@@ -133,7 +136,8 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     runner = Runner(source, scene, tuple(given), out, against, {})
     climb(rungs, runner)
     runner(_between(runner.rows))
-    runner([other for one in _best(runner.rows) for other in one.with_steps()])
+    runner([other for one, found in runner.rows.items() if _worth(found) for other in one.with_fewer_steps()])
+    runner([other for one in _best(runner.rows) for other in one.with_more_steps()])
     for repeat in range(1, TIMES):
         runner([replace(one, repeat=repeat) for one in _best(runner.rows, CLOSE)])
     how = {one.variant: one.job(source, scene).overrides for one in runner.found}
@@ -162,6 +166,11 @@ def _high_enough(last: Row, rows: Iterable[Row]) -> bool:
     accurate = [one.seconds for one in rows if one.measured and one.curve_error <= finest and one.dofs]
     too_slow = last.measured and last.seconds > min(LONGEST, PATIENCE * min(accurate, default=LONGEST))
     return too_slow or last.curve_error <= ENOUGH * finest
+
+
+def _worth(found: Row) -> bool:
+    """Whether a run comes near the coarsest level, so that fewer steps may make it cheaper."""
+    return found.curve_error <= NEAR * max(LEVELS.values())
 
 
 def _best(rows: Mapping[Try, Row], within: float = 1.0) -> list[Try]:
