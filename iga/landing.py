@@ -1,8 +1,11 @@
-"""Steps that end at a kink of the law, so that few of them draw a smooth curve.
+"""Steps that end at a kink of the law, and the slope they tell there, so that few of them draw a smooth curve.
 
 The load over the opening is a chain of short arcs, one for every quadrature point that breaks, and the slope jumps
 between them by as much as it is itself: the exact slope somewhere on an arc says little of the curve. A step that ends
-where a point breaks, and tells the mean of the exact slopes before and after, is always at the same place of the chain.
+where a point breaks is always at the same place of the chain, so that the loads of such steps lie on one curve, to a
+few parts in ten thousand. Steps that pass over several arcs tell the slope of the parabola through them; those that go
+along a single one tell the mean of the exact slopes before and after, which weighs the two arcs alike however long they
+are.
 """
 
 from __future__ import annotations
@@ -16,8 +19,11 @@ from iga.interface import holding
 from iga.newton import Equilibrium, Newton, equilibrium
 from iga.system import Phase, State, System
 
-#: How far beyond the kink a step ends, in parts of its gap.
-BEYOND = 1e-9
+#: How far beyond the kink a step ends, in parts of its gap, and how many points break on one that passes over arcs.
+BEYOND, SEVERAL = 1e-9, 2
+
+#: Opening and load.
+Place = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -49,3 +55,21 @@ def landed(
         return found, None
     there = Equilibrium(there.state, there.response, found.residuals + there.residuals)
     return there, Kink(q, -softening if broken else softening - law.stiffness)
+
+
+def broken_between(system: System, old: State, new: State) -> int:
+    """How many points have broken from one state to another."""
+    g_u = system.interface.law.g_u
+    return int(np.count_nonzero((new.k_q >= g_u) & (old.k_q < g_u)))
+
+
+def slope_over_arcs(first: Place, middle: Place, last: Place) -> float | None:
+    """Slope at the last of three places (opening, load) of the parabola through them; None unless the opening grows.
+
+    It leaves a smooth curve by ``h^2 / 3`` times the third derivative where they are ``h`` apart.
+    """
+    (a, at_a), (b, at_b), (c, at_c) = first, middle, last
+    if not a < b < c:
+        return None
+    early, late = (at_b - at_a) / (b - a), (at_c - at_b) / (c - b)
+    return late + (late - early) * (c - b) / (c - a)

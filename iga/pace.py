@@ -14,7 +14,7 @@ from iga.system import System
 
 #: Largest step of the front in parts of g_u, where steps are counted and where they are chosen by accuracy; smallest
 #: step in parts of the one asked for.
-FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.125, 0.5, 1.0 / 4096
+FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.125, 1.0, 1.0 / 4096
 #: Steps chosen by accuracy: the first and the largest one in parts of the programme, and by how much of the peak the
 #: load may leave the tangent of a step.
 FIRST, LARGEST, BEND = 1.0 / 30.0, 0.25, 0.01

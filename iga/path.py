@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from iga.control import opening_control
-from iga.landing import landed
+from iga.landing import SEVERAL, broken_between, landed, slope_over_arcs
 from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium
 from iga.pace import Pace, Step, next_step, paced
 from iga.point import End, Point
@@ -188,7 +188,12 @@ def _advance(
     if leaving is None:
         return None
     energy = sum(energies(system, state, response))
-    reached = Point(state, response, opening, leaving, 0.0, energy, found.residuals)
+    broken = broken_between(system, old, state) if by_kinks else 0
+    before = (point.opening, old.load) if broken else None
+    if broken >= SEVERAL and point.before is not None:
+        slope = slope_over_arcs(point.before, (point.opening, old.load), (opening, state.load))
+        leaving = leaving if slope is None else replace(leaving, slope=slope)
+    reached = Point(state, response, opening, leaving, 0.0, energy, found.residuals, before)
     if by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
         work = straight_work(point, reached)
     else:

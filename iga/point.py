@@ -16,6 +16,7 @@ class Point:
     ``external_work`` is the integral of the load over the opening along the path, ``energy`` what is stored and
     dissipated.
     ``residuals`` are the norms that Newton went through, relative to the scale of the forces.
+    ``before`` is where the step that ended here began, opening and load, if points broke on it.
     """
 
     state: State
@@ -25,6 +26,7 @@ class Point:
     external_work: float
     energy: float
     residuals: tuple[float, ...]
+    before: tuple[float, float] | None = None
 
     @property
     def slope(self) -> float:

@@ -8,6 +8,7 @@ from specimens import PAPER
 
 from iga.control import gap_control
 from iga.dcb import build
+from iga.landing import SEVERAL, broken_between, slope_over_arcs
 from iga.newton import DEFAULT, equilibrium
 from iga.path import End, follow
 from iga.system import untimed
@@ -55,11 +56,16 @@ def one_sided(system, start, end, q, kink):
 
 @pytest.fixture(scope="module")
 def kinks(path):
-    """Slope told, and the exact slopes and directions of the opening before and after, of every step with a kink."""
+    """Start and end of every step with a kink, and the exact slopes and directions of the opening before and after."""
     system, steps, _ = path
     law = system.interface.law
-    found = [(end, kink_of(law, start, end), start) for start, end in steps]
-    return [(end.slope, one_sided(system, start, end, *kink)) for end, kink, start in found if kink is not None]
+    found = [(start, end, kink_of(law, start, end)) for start, end in steps]
+    return [(start, end, one_sided(system, start, end, *kink)) for start, end, kink in found if kink is not None]
+
+
+def over_arcs(system, start, end):
+    """Whether several points break on a step that follows on one on which any did."""
+    return start.before is not None and broken_between(system, start.state, end.state) >= SEVERAL
 
 
 def test_a_step_in_which_a_point_breaks_ends_where_one_does(path):
@@ -85,13 +91,50 @@ def test_before_any_point_breaks_a_step_ends_where_one_passes_its_strength(path)
     assert len(first) > 2 and all(kink_of(law, a, b) is not None for a, b in first)
 
 
-def test_the_slope_at_a_kink_is_the_mean_of_those_before_and_after(kinks):
-    same = [(slope, *sides[:, 0]) for slope, sides in kinks if sides[0, 0] * sides[1, 0] > 0.0]
+def test_the_slope_at_a_kink_is_the_mean_of_those_before_and_after(path, kinks):
+    """Of a step that goes along one arc; those over several ones see `test_over_several_arcs_...`."""
+    alone = [(end.slope, sides[:, 0]) for start, end, sides in kinks if not over_arcs(path[0], start, end)]
+    same = [(slope, *sides) for slope, sides in alone if np.prod(sides) > 0.0]
     jumps = [abs(after - before) / max(abs(before), abs(after)) for _, before, after in same]
     errors = [abs(slope - 0.5 * (a + b)) / max(abs(a), abs(b)) for slope, a, b in same]
     print(f"{len(same)} kinks, slopes jump by up to {max(jumps):.2f}, mean met within {max(errors):.1e}")
     assert len(same) > 5 and max(jumps) > 0.3, "no kink worth the name"
     assert max(errors) < 1e-5
+
+
+def test_over_several_arcs_the_slope_is_that_of_the_curve_through_them(path, kinks):
+    """Against a parabola through many counted steps around, over about three elements each way.
+
+    The parabola of the first of these steps goes back to where the load has just turned, and is left out.
+    """
+    system, _, _ = path
+    *counted, _ = follow(system, (1.2,), 60)
+    opening, load = np.array([(p.opening, p.state.load) for p in counted]).T
+    told, mean = [], []
+    for start, end, sides in kinks:
+        if over_arcs(system, start, end):
+            near = np.abs(opening - end.opening) < 0.08
+            exact = np.polyfit(opening[near] - end.opening, load[near], 2)[1]
+            told.append(abs(end.slope / exact - 1.0))
+            mean.append(abs(np.mean(sides[:, 0]) / exact - 1.0))
+    told, mean = told[1:], mean[1:]
+    print(f"{len(told)} steps over arcs: slope within {max(told):.3f}, mean of both sides within {max(mean):.3f}")
+    assert len(told) >= 3 and max(told) < 0.05 < 0.2 < max(mean)
+
+
+def test_the_slope_over_arcs_is_exact_on_a_parabola(rng):
+    """Over unequal steps, and third order in the opening where the curve is none: the error falls by four, not two."""
+    for x in np.sort(rng.uniform(size=(5, 3)), axis=1):
+        places = [(float(v), float(2.0 - 3.0 * v + 0.7 * v * v)) for v in x]
+        assert slope_over_arcs(*places) == pytest.approx(-3.0 + 1.4 * x[2], rel=1e-9)
+    errors = [slope_over_arcs(*((v, v**-0.5) for v in (1.0 - 2.0 * h, 1.0 - h, 1.0))) + 0.5 for h in (0.1, 0.05, 0.025)]
+    assert errors[0] / errors[1] > 3.5 and errors[1] / errors[2] > 3.7
+    assert errors[2] == pytest.approx(0.025**2 / 3.0 * 15.0 / 8.0, rel=0.1)
+
+
+@pytest.mark.parametrize("openings", [(0.5, 0.5, 0.6), (0.5, 0.6, 0.55), (0.6, 0.5, 0.55)])
+def test_there_is_no_slope_over_arcs_where_the_opening_turns(openings):
+    assert slope_over_arcs(*((opening, 1.0) for opening in openings)) is None
 
 
 def test_where_the_load_turns_the_slope_is_the_one_behind_the_kink():
