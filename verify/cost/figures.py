@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from verify.cost.findings import LEVELS, by_family, pareto
@@ -51,21 +52,23 @@ def work_precision(rows: Sequence[Row], key: str) -> Panel:
 def error_and_unknowns(rows: Sequence[Row], orders: Mapping[str, float], key: str) -> Panel:
     """Error against unknowns for every family."""
     with drawing():
-        figure, axes = panel(HALF, 3.4)
-        for name, ladder in by_family(rows).items():
+        figure, axes = panel(HALF * 1.7, 3.4)
+        box = axes.get_position()
+        axes.set_position((box.x0, box.y0, 0.68 * box.width, box.height))
+        for name, ladder in sorted(by_family(rows).items()):
             if ladder[0].dofs:
                 order = orders.get(name, np.nan)
                 label = f"{named(ladder[0])}: {order:.1f}" if np.isfinite(order) else named(ladder[0])
                 _curve(axes, ladder, _unknowns, _percent, label)
         _levels(axes, 100.0)
         _logarithmic(axes, "unknowns", "curve error (%)")
-        axes.legend(loc="lower left", fontsize=6)
+        axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
         svg = to_svg(figure, key, "Curve error against unknowns")
     caption = (
         "Curve error against unknowns, at equal steps; the number is the observed order in one over the unknowns, of "
         "the four finest meshes whose error the reference can tell. The kink at the tip of the zone bounds the orders."
     )
-    return Panel(svg, caption)
+    return Panel(svg, caption, "wide")
 
 
 def triple(rows: Sequence[Row], key: str) -> tuple[Panel, ...]:
@@ -84,6 +87,9 @@ def triple(rows: Sequence[Row], key: str) -> tuple[Panel, ...]:
                 if ladder[0].dofs:
                     _curve(axes, ladder, x, y, named(ladder[0]))
             axes.set(xscale="log", yscale="log" if name == "rate" else "linear", xlabel=across, ylabel=up)
+            _plain(axes.xaxis)
+            if name == "rate":
+                _plain(axes.yaxis)
             svg = to_svg(figure, f"{key}-{name}", f"{up} against {across}")
         panels.append(Panel(svg, caption, "third"))
     return tuple(panels)
@@ -125,9 +131,14 @@ def _levels(axes: Axes, scale: float) -> None:
 def _logarithmic(axes: Axes, x: str, y: str) -> None:
     axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
     for part in (axes.xaxis, axes.yaxis):
-        part.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        part.set_major_formatter(lambda value, _: f"{value:g}")
-        part.set_minor_formatter(NullFormatter())
+        _plain(part)
+
+
+def _plain(part: Axis) -> None:
+    """Marks at 1, 2, 5, 10, ... as numbers."""
+    part.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    part.set_major_formatter(lambda value, _: f"{value:g}")
+    part.set_minor_formatter(NullFormatter())
 
 
 def _unknowns(row: Row) -> float:

@@ -84,7 +84,7 @@ def orders(rows: Sequence[Row], floor: float) -> dict[str, float]:
     reference's own would be measured, are left out.
     """
     found = {}
-    for name, ladder in by_family(rows).items():
+    for name, ladder in sorted(by_family(rows).items()):
         seen = [row for row in ladder if row.curve_error > floor][-RUNGS_OF_AN_ORDER:]
         found[name] = -slope(seen, lambda row: row.curve_error)
     return found
@@ -98,16 +98,21 @@ def growth(rows: Sequence[Row]) -> dict[str, dict[str, float]]:
         "factor": lambda row: row.factor / row.newton_iterations,
         "memory": lambda row: row.peak_memory_mb,
     }
-    families = by_family(rows).items()
-    return {name: {what: slope(ladder, value) for what, value in each.items()} for name, ladder in families}
+    families = {name: ladder for name, ladder in sorted(by_family(rows).items()) if _sizes(ladder) >= 3}
+    return {name: {what: slope(ladder, value) for what, value in each.items()} for name, ladder in families.items()}
 
 
 def slope(rows: Sequence[Row], value: Callable[[Row], float]) -> float:
     """Least-squares exponent of a value over the unknowns; NaN for fewer than three meshes."""
     points = [(row.dofs, value(row)) for row in rows if row.dofs and row.newton_iterations and value(row) > 0.0]
-    if len({dofs for dofs, _ in points}) < 3:
+    if _sizes(rows) < 3 or len(points) < 3:
         return nan
     return float(np.polyfit(*np.log(np.array(points)).T, 1)[0])
+
+
+def _sizes(rows: Sequence[Row]) -> int:
+    """How many meshes."""
+    return len({row.dofs for row in rows if row.dofs})
 
 
 def table(rows: Sequence[Row]) -> list[str]:

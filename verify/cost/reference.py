@@ -17,10 +17,10 @@ from verify.result import Result
 from verify.schema import Scene
 
 #: Elements that span the process zone on the three meshes of the reference, and the steps asked for.
-ZONE, STEPS = (5.0, 10.0, 20.0), 300
+ZONE, STEPS = (4.0, 8.0, 16.0), 200
 
 #: And those of the two meshes of the other code, with elements of degree 3.
-OTHER_ZONE = (3.0, 6.0)
+OTHER_ZONE = (2.5, 5.0)
 
 #: Where no order is observed, the distance of the two finest meshes is multiplied by this (Roache 1994).
 CAUTION = 3.0
