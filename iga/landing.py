@@ -2,10 +2,11 @@
 
 The load over the opening is a chain of short arcs, one for every quadrature point that breaks, and the slope jumps
 between them by as much as it is itself: the exact slope somewhere on an arc says little of the curve. A step that ends
-where a point breaks is always at the same place of the chain, so that the loads of such steps lie on one curve, to a
-few parts in ten thousand. Steps that pass over several arcs tell the slope of the parabola through them; those that go
-along a single one tell the mean of the exact slopes before and after, which weighs the two arcs alike however long they
-are.
+where a point breaks is always at the same place of the chain, and so is one that ends half way to where the next one
+does: there the load is neither at the top nor at the foot of an arc, and such steps lie on one curve.
+
+Steps that pass over several arcs end half way and tell the slope of the parabola through the last three of them; those
+that go along a single one end at the kink and tell the mean of the exact slopes before and after.
 """
 
 from __future__ import annotations
@@ -35,11 +36,12 @@ class Kink:
 
 
 def landed(
-    system: System, old: State, found: Equilibrium, newton: Newton, phase: Phase
+    system: System, old: State, found: Equilibrium, newton: Newton, phase: Phase, follows_on: bool = False
 ) -> tuple[Equilibrium, Kink | None]:
     """The equilibrium moved to the nearest kink: where a point breaks or, as long as none has, passes its strength.
 
     ``old`` is the state before the step. Where there is no such kink, or no equilibrium at it, the equilibrium stays.
+    A step over several arcs that ``follows_on`` one on which points broke, too, ends on no kink but half an arc on.
     """
     law, touch = system.interface.law, found.response.contact
     g_q = np.where(holding(system.interface, touch), touch.g_q, 0.0)
@@ -47,14 +49,17 @@ def landed(
     gap = law.g_u if broken else law.g_max
     softening = -law.strength / (law.g_u - law.g_max)
     q = int(np.argmin(np.where(g_q > old.k_q, np.abs(g_q - gap), np.inf)))
-    target = gap * (1.0 + BEYOND)
+    passed_q = (g_q >= g_q[q]) & (old.k_q < gap)
+    ahead_q = g_q[g_q > g_q[q]]
+    half = follows_on and broken and np.count_nonzero(passed_q) >= SEVERAL and ahead_q.size > 0
+    target = gap + 0.5 * (np.min(ahead_q) - g_q[q]) if half else gap * (1.0 + BEYOND)
     if not np.any(g_q >= gap) or old.k_q[q] >= gap or g_q[q] == target:
         return found, None
     there = equilibrium(system, found.state, gap_control(system, q), target, target - g_q[q], newton, phase)
     if there is None or there.response.contact.g_q[q] < gap:
         return found, None
     there = Equilibrium(there.state, there.response, found.residuals + there.residuals)
-    return there, Kink(q, -softening if broken else softening - law.stiffness)
+    return there, None if half else Kink(q, -softening if broken else softening - law.stiffness)
 
 
 def broken_between(system: System, old: State, new: State) -> int:

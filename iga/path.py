@@ -176,7 +176,7 @@ def _advance(
         return None
     by_kinks, kink = pace.by_accuracy and not pace.careful, None
     if by_kinks and not asked.exact:
-        found, kink = landed(system, old, found, newton, phase)
+        found, kink = landed(system, old, found, newton, phase, follows_on=point.before is not None)
     state, response = found.state, found.response
     opening = float(system.load_d @ state.u_d)
     if asked.exact and abs(opening) <= HOME * abs(point.opening):
