@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg.lapack import dgbtrf, dgbtrs
@@ -49,6 +49,40 @@ class Band:
         """Degrees of freedom from equations, zero where fixed."""
         return np.where((self.place_d >= 0).reshape(-1, *[1] * (v.ndim - 1)), v[self.place_d], 0.0)
 
+    def reaching(self, row: np.ndarray, column: np.ndarray) -> Band:
+        """Itself, or wider where entries need it."""
+        return replace(self, k=max(self.k, self.reach(row, column)))
+
+    def factor(self, values: np.ndarray) -> BandLU | None:
+        """LU of a band array (``size``,), which it overwrites; None where a pivot is exactly zero."""
+        ab = values[:-1].reshape(self.n, 3 * self.k + 1).T
+        lu, pivots, info = dgbtrf(ab, self.k, self.k, overwrite_ab=True)
+        return BandLU(self, lu, pivots) if info == 0 else None
+
+    def condition(self, values: np.ndarray) -> float:
+        """Condition number of a band array (``size``,) in the 1-norm, infinite where it is singular; overwrites it.
+
+        The norm of the inverse is estimated from a few solutions (Higham and Tisseur 2000), mostly within a factor of
+        two.
+        """
+        norm = float(np.abs(values[:-1]).reshape(self.n, 3 * self.k + 1).sum(1).max())
+        factors = self.factor(values)
+        if factors is None:
+            return float("inf")
+
+        def solve(b: np.ndarray, transposed: int) -> np.ndarray:
+            return dgbtrs(factors.lu, self.k, self.k, b, factors.pivots, trans=transposed)[0]
+
+        inverse = LinearOperator(
+            (self.n, self.n),
+            matvec=lambda b: solve(b, 0),
+            rmatvec=lambda b: solve(b, 1),
+            matmat=lambda b: solve(b, 0),
+            rmatmat=lambda b: solve(b, 1),
+            dtype=float,
+        )
+        return norm * float(onenormest(inverse))
+
 
 @dataclass(frozen=True)
 class BandLU:
@@ -91,34 +125,3 @@ def number(row: np.ndarray, column: np.ndarray, x_d: np.ndarray, free_d: np.ndar
         band = Band(place, n, 0)
         bands.append(Band(place, n, band.reach(row, column)))
     return min(bands, key=lambda band: band.k)
-
-
-def factor(band: Band, values: np.ndarray) -> BandLU | None:
-    """LU of a band array (``size``,); None where a pivot is exactly zero."""
-    ab = values[:-1].reshape(band.n, 3 * band.k + 1).T
-    lu, pivots, info = dgbtrf(ab, band.k, band.k, overwrite_ab=True)
-    return BandLU(band, lu, pivots) if info == 0 else None
-
-
-def condition(band: Band, values: np.ndarray) -> float:
-    """Condition number of a band array (``size``,) in the 1-norm, infinite where it is singular; overwrites it.
-
-    The norm of the inverse is estimated from a few solutions (Higham and Tisseur 2000), mostly within a factor of two.
-    """
-    norm = float(np.abs(values[:-1]).reshape(band.n, 3 * band.k + 1).sum(1).max())
-    lu = factor(band, values)
-    if lu is None:
-        return float("inf")
-
-    def solve(b: np.ndarray, transposed: int) -> np.ndarray:
-        return dgbtrs(lu.lu, band.k, band.k, b, lu.pivots, trans=transposed)[0]
-
-    inverse = LinearOperator(
-        (band.n, band.n),
-        matvec=lambda b: solve(b, 0),
-        rmatvec=lambda b: solve(b, 1),
-        matmat=lambda b: solve(b, 0),
-        rmatmat=lambda b: solve(b, 1),
-        dtype=float,
-    )
-    return norm * float(onenormest(inverse))

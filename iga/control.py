@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from iga.interface import dofs, holding
+from iga.interface import holding
 from iga.system import Response, State, System
 
 #: Value at a state with its response, gradient by the displacements (n_dof,), derivative by the load.
@@ -85,4 +85,4 @@ def _weighted_gaps(system: System, response: Response, weight_q: np.ndarray) -> 
     """Gradient (n_dof,) of the integral of the gap times a weight over the interface."""
     contact = response.contact
     rows_qd = contact.V_qrd[:, 0] * (weight_q * system.interface.dA_q)[:, None]
-    return np.bincount(dofs(contact.conn_qa).ravel(), weights=rows_qd.ravel(), minlength=system.n_dof)
+    return np.bincount(contact.dof_qd.ravel(), weights=rows_qd.ravel(), minlength=system.n_dof)

@@ -7,7 +7,7 @@ Zavarise 2011).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -49,6 +49,8 @@ class Interface:
     are known, the control points ``twin_qa`` that take the same functions and lie at the same places, or, without
     these, the mirror image of the slave in the straight line that it lies on: then the gap is twice the distance to it.
 
+    Where the contact ``at_rest``, before anything moves, is told, its rows hold for good: gaps change in proportion.
+
     ``bonded_q`` (n_q,) is False for points that only touch: nothing holds them, and they have no history. All are
     bonded where it is left out.
     """
@@ -64,6 +66,7 @@ class Interface:
     frozen: bool = False
     twin_qa: np.ndarray | None = None
     bonded_q: np.ndarray | None = None
+    at_rest: Contact | None = None
 
     @property
     def points(self) -> int:
@@ -117,16 +120,16 @@ class Contact:
     """Gaps and their variations in one configuration.
 
     ``g_q`` (n_q,), ``n_qi`` (n_q, 2) master normals, ``share_q`` (n_q,) part of each point's area that faces the
-    master. ``conn_qa`` (n_q, n_a) lists the control points of slave and master side that a point touches; ``V_qrd``
-    (n_q, r, 2 n_a) holds the row of the first variation, ``dg = V_0 du``, and, where the geometry is not frozen, the
-    rows T and Nb of the second (see `stiffness`) with ``m_q``, ``kappa_q`` and ``fading_q``.
+    master. ``dof_qd`` (n_q, n_d) lists the unknowns of slave and master side that a point touches; ``V_qrd``
+    (n_q, r, n_d) holds the row of the first variation, ``dg = V_0 du``, and, where the geometry is not frozen, the rows
+    T and Nb of the second (see `stiffness`) with ``m_q``, ``kappa_q`` and ``fading_q``.
     """
 
     pairing: Pairing | None
     g_q: np.ndarray
     n_qi: np.ndarray
     share_q: np.ndarray
-    conn_qa: np.ndarray
+    dof_qd: np.ndarray
     V_qrd: np.ndarray
     m_q: np.ndarray | None = None
     kappa_q: np.ndarray | None = None
@@ -139,11 +142,11 @@ class Contact:
 
     def rates(self, v_d: np.ndarray) -> np.ndarray:
         """Rates (n_q,) of the gaps when the displacements change by v_d."""
-        return np.sum(self.V_qrd[:, 0] * v_d[dofs(self.conn_qa)], axis=1)
+        return np.sum(self.V_qrd[:, 0] * v_d[self.dof_qd], axis=1)
 
     def row(self, q: int, n_dof: int) -> np.ndarray:
         """Gradient (n_dof,) of the gap at one point."""
-        return np.bincount(dofs(self.conn_qa[q]), weights=self.V_qrd[q, 0], minlength=n_dof)
+        return np.bincount(self.dof_qd[q], weights=self.V_qrd[q, 0], minlength=n_dof)
 
 
 def pair(interface: Interface) -> Pairing | None:
@@ -184,6 +187,8 @@ def partner(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarra
 
 def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Contact:
     """Gaps in the configuration u_d (2 n_A,), searching from the pairing ``guess``."""
+    if interface.at_rest is not None:
+        return replace(interface.at_rest, g_q=interface.at_rest.g_q + interface.at_rest.rates(u_d))
     if interface.master is None:
         return _known(interface, u_d)
     master, u_Ai = interface.master, u_d.reshape(-1, 2)
@@ -197,11 +202,11 @@ def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Con
     g_q = np.sum((_slid(interface, there.c_q, there.M_qb) + _jump(D_qa, u_Ai[conn_qa])) * n_qi, -1)
     G_qd = _along(D_qa, n_qi)
     if interface.frozen:
-        return Contact(pairing, g_q, n_qi, there.share_q, conn_qa, G_qd[:, None])
+        return Contact(pairing, g_q, n_qi, there.share_q, dofs(conn_qa), G_qd[:, None])
     moving_qa = np.concatenate([np.zeros_like(interface.N_qa), there.dM_qb], axis=1)
     V_qrd = np.stack([G_qd, _along(D_qa, there.t_qi), _along(moving_qa, n_qi)], axis=1)
     m_q, kappa_q = np.sum(there.t_qi**2, -1), np.sum(n_qi * there.t_xi_qi, -1)
-    return Contact(pairing, g_q, n_qi, there.share_q, conn_qa, V_qrd, m_q, kappa_q, there.fading_q)
+    return Contact(pairing, g_q, n_qi, there.share_q, dofs(conn_qa), V_qrd, m_q, kappa_q, there.fading_q)
 
 
 def traction(
@@ -224,7 +229,7 @@ def holding(interface: Interface, contact: Contact) -> np.ndarray:
 def forces(interface: Interface, contact: Contact, p_q: np.ndarray, n_dof: int) -> np.ndarray:
     """Residual ``R = int p dg/du dGamma`` (n_dof,)."""
     R_qd = contact.V_qrd[:, 0] * (p_q * interface.dA_q)[:, None]
-    return np.bincount(dofs(contact.conn_qa).ravel(), weights=R_qd.ravel(), minlength=n_dof)
+    return np.bincount(contact.dof_qd.ravel(), weights=R_qd.ravel(), minlength=n_dof)
 
 
 def stiffness(interface: Interface, contact: Contact, p_q: np.ndarray, dp_q: np.ndarray) -> np.ndarray:
@@ -259,7 +264,8 @@ def rounding(interface: Interface, u_d: np.ndarray, stiffness_q: np.ndarray | No
     """
     if stiffness_q is None:
         stiffness_q = np.full(interface.points, max(interface.law.penalty, interface.law.stiffness))
-    u_q = np.abs(u_d.reshape(-1, 2)[interface.conn_qa]).max((1, 2))
+    touched_qd = dofs(interface.conn_qa) if interface.at_rest is None else interface.at_rest.dof_qd
+    u_q = np.abs(u_d[touched_qd]).max(1)
     return float(np.finfo(float).eps * np.linalg.norm(stiffness_q * interface.dA_q * u_q))
 
 
@@ -273,7 +279,7 @@ def _known(interface: Interface, u_d: np.ndarray) -> Contact:
     D_qa = 2.0 * N_qa if interface.twin_qa is None else np.concatenate([N_qa, -N_qa], axis=1)
     n_qi = np.broadcast_to(interface.mirror_i, interface.X_qi.shape)
     g_q = np.sum((D_qa[:, None] @ u_d.reshape(-1, 2)[conn_qa])[:, 0] * n_qi, -1)
-    return Contact(None, g_q, n_qi, np.ones(interface.points), conn_qa, _along(D_qa, n_qi)[:, None])
+    return Contact(None, g_q, n_qi, np.ones(interface.points), dofs(conn_qa), _along(D_qa, n_qi)[:, None])
 
 
 def _share(over: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -71,7 +71,7 @@ def _in_order(conn_qa: np.ndarray) -> np.ndarray:
 def _twins(interface: Interface, start: Contact, A: np.ndarray) -> np.ndarray:
     """The control point of the master at the place of each of A, with the same function along the interface."""
     n_a = interface.N_qa.shape[1]
-    master_qb, D_qb = start.conn_qa[:, n_a:], _functions(interface, start)
+    master_qb, D_qb = start.dof_qd[:, 2 * n_a :: 2] // 2, _functions(interface, start)
     B = _in_order(master_qb)
     distance, nearest = cKDTree(interface.local_AI[B]).query(interface.local_AI[A])
     twin = B[nearest]

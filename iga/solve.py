@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from iga.banded import condition
+from iga.condense import condensed
 from iga.fields import snapshot
 from iga.observe import row
 from iga.path import End, Point, follow
@@ -58,13 +58,16 @@ def run(
         return specimen.system, state
 
     renew = renewed if adapt is not None else None
-    for item in follow(specimen.system, by_way_of(problem.opening, wanted), problem.steps, phase=phase, renew=renew):
+    with phase("basis"):
+        small = condensed(specimen.system) if adapt is None else None
+    system = specimen.system if small is None else small.system
+    for item in follow(system, by_way_of(problem.opening, wanted), problem.steps, phase=phase, renew=renew):
         if isinstance(item, End):
             end = item
             continue
         if point is None:
-            worst = _condition(specimen, item, phase)
-        point = item
+            worst = _condition(system, item, phase)
+        last, point = item, item if small is None else small.expanded(item)
         rows.append(row(specimen, point))
         if on_step is not None:
             on_step(rows[-1])
@@ -79,7 +82,7 @@ def run(
         status=end.status,
         snapshots=tuple(snapshots),
         ending=f"separated at opening {point.opening:.6g}" if end.separated else "",
-        condition=max(worst, _condition(specimen, point, phase)),
+        condition=max(worst, _condition(specimen.system if small is None else system, last, phase)),
     )
 
 
@@ -94,9 +97,9 @@ def by_way_of(programme: Sequence[float], stops: Sequence[float]) -> tuple[float
     return tuple(way)
 
 
-def _condition(specimen: Specimen, point: Point, phase: Phase) -> float:
+def _condition(system: System, point: Point, phase: Phase) -> float:
     """Condition number of the tangent at a converged point; its own matrix has been factorised away."""
     with phase("assembly"):
-        response = respond(specimen.system, point.state, decide=False)
+        response = respond(system, point.state, decide=False)
     with phase("factor"):
-        return condition(response.band, response.tangent)
+        return response.band.condition(response.tangent)

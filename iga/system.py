@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from iga.banded import Band, BandLU, factor, number
+from iga.banded import Band, BandLU, number
 from iga.bulk import (
     all_entries,
     element_forces,
@@ -20,6 +20,7 @@ from iga.bulk import (
     relative,
     stiffness_entries,
 )
+from iga.dense import Dense, DenseLU
 from iga.interface import Contact, Interface, contact, dofs, forces, holding, pair, stiffness, traction
 from iga.interface import rounding as interface_rounding
 from iga.kinematics import KINEMATICS
@@ -36,6 +37,10 @@ def untimed(_name: str) -> AbstractContextManager:
 
 #: Part of the largest forces met so far by which a residual is judged where the present ones are smaller yet.
 UNLOADED = 1e-3
+#: What rounding leaves of a sum of forces of a condensed bulk, and the part of these that it would hide at a relative
+#: residual of 5e-12.
+LOST = 10.0 * np.finfo(float).eps
+HIDDEN = LOST / 5e-12
 #: Part of the forces in play below which a point of the interface neither opens nor closes.
 NOTHING = 1e-13
 
@@ -63,7 +68,7 @@ class Response:
 
     ``internal_d`` (n_dof,) forces of bulk and interface; ``scale`` the norm of the forces that the elements hold
     against each other, by which a residual is judged; ``bulk_energy``; the interface with traction p_q, slope dp_q and
-    new history k_q; the ``tangent`` as a band array.
+    new history k_q; the ``tangent`` as an array of the entries that ``band`` numbers.
     """
 
     internal_d: np.ndarray
@@ -75,7 +80,7 @@ class Response:
     k_q: np.ndarray
     closed_q: np.ndarray
     tangent: np.ndarray
-    band: Band
+    band: Band | Dense
 
 
 @dataclass(frozen=True)
@@ -85,8 +90,8 @@ class Pattern:
     Linear kinematics leaves out the bulk, which is in place already.
     """
 
-    conn_qa: np.ndarray
-    band: Band
+    dof_qd: np.ndarray
+    band: Band | Dense
     positions: np.ndarray
 
 
@@ -100,6 +105,9 @@ class System:
     Rigid motions that nothing else resists are held by springs of stiffness ``spring_r`` (n_r,) on the displacements
     ``springs_rd @ u`` (n_r,), in any direction and of any group of points; where they are as many as the motions of the
     whole, balance itself says that they carry no force. ``free_d`` is False where a degree of freedom is fixed.
+
+    A linear bulk may be told by its stiffness ``bulk_dd`` (n_dof, n_dof) in place of solids: the unknowns are then what
+    it has been condensed to (see `iga.condense`).
     """
 
     solids: tuple[Solid, ...]
@@ -110,6 +118,7 @@ class System:
     x_d: np.ndarray
     springs_rd: np.ndarray
     spring_r: np.ndarray
+    bulk_dd: np.ndarray | None = None
 
     @property
     def n_dof(self) -> int:
@@ -121,17 +130,19 @@ class System:
         return State(np.zeros(self.n_dof), 0.0, np.zeros(n_q), np.zeros(n_q, dtype=bool), pair(self.interface))
 
     @cached_property
-    def band(self) -> Band:
+    def band(self) -> Band | Dense:
         """Numbering for bulk and interface, with room for every point to move one side on in either direction."""
+        if self.bulk_dd is not None:
+            return Dense(self.n_dof)
         entries = [*self.bulk_entries]
-        entries += [_square(conn_qa) for conn_qa in _reachable(self.interface)] + [self.spring_entries[:2]]
+        entries += [_square(dofs(conn_qa)) for conn_qa in _reachable(self.interface)] + [self.spring_entries[:2]]
         row, column = (np.concatenate([entry[i].ravel() for entry in entries]) for i in range(2))
         return number(row, column, self.x_d, self.free_d)
 
     @cached_property
-    def reference_conn_qa(self) -> np.ndarray:
-        """Control points that each interface point touches before anything moves."""
-        return contact(self.interface, np.zeros(self.n_dof), pair(self.interface)).conn_qa
+    def reference_dof_qd(self) -> np.ndarray:
+        """Unknowns that each interface point touches before anything moves."""
+        return contact(self.interface, np.zeros(self.n_dof), pair(self.interface)).dof_qd
 
     @cached_property
     def spring_entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -171,7 +182,9 @@ class System:
 
     @cached_property
     def linear_band(self) -> np.ndarray:
-        """The same as a band array."""
+        """The stiffness of a linear bulk as a band array."""
+        if self.bulk_dd is not None:
+            return self.bulk_dd.ravel()
         values = all_entries(self.unloaded_stiffness)
         return np.bincount(_positions(self.band, self.bulk_entries), values, self.band.size)
 
@@ -180,17 +193,17 @@ class System:
         """Largest entry (n_e,) of each element's stiffness."""
         return tuple(np.abs(K).max((1, 2, 3)) for K in self.unloaded_stiffness)
 
-    def pattern(self, conn_qa: np.ndarray) -> Pattern:
-        """Where all entries go when the points touch conn_qa; wider than `band` where one has slid too far for it.
+    def pattern(self, dof_qd: np.ndarray) -> Pattern:
+        """Where all entries go when the points touch dof_qd; wider than `band` where one has slid too far for it.
 
         The last answer is kept: the points change sides seldom.
         """
         kept = self.__dict__.get("_pattern")
-        if kept is None or not np.array_equal(kept.conn_qa, conn_qa):
-            touching = [_square(conn_qa), self.spring_entries[:2]]
-            band = replace(self.band, k=max(self.band.k, self.band.reach(*touching[0])))
+        if kept is None or not np.array_equal(kept.dof_qd, dof_qd):
+            touching = [_square(dof_qd), self.spring_entries[:2]]
+            band = self.band.reaching(*touching[0])
             bulk = [] if self.kinematics == "linear" else self.bulk_entries
-            kept = Pattern(conn_qa, band, _positions(band, [*bulk, *touching]))
+            kept = Pattern(dof_qd, band, _positions(band, [*bulk, *touching]))
             self.__dict__["_pattern"] = kept
         return kept
 
@@ -202,7 +215,8 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     ``trial``.
     """
     linear = system.kinematics == "linear"
-    internal_d, scale, bulk_energy, parts = (_linear_bulk if linear else _finite_bulk)(system, trial.u_d)
+    bulk = _finite_bulk if not linear else _linear_bulk if system.bulk_dd is None else _condensed_bulk
+    internal_d, scale, bulk_energy, parts = bulk(system, trial.u_d)
     touch = contact(system.interface, trial.u_d, trial.pairing)
     scale = max(scale, UNLOADED * trial.scale)
     closed_q = _closed(system, touch, trial, scale) if decide else trial.closed_q
@@ -212,7 +226,7 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     K_qdd = stiffness(system.interface, touch, p_q, dp_q)
     # an open crack asks for no entries in the matrix, however far it has moved
     carries_q = (p_q != 0.0) | (dp_q != 0.0)
-    pattern = system.pattern(np.where(carries_q[:, None], touch.conn_qa, system.reference_conn_qa))
+    pattern = system.pattern(np.where(carries_q[:, None], touch.dof_qd, system.reference_dof_qd))
     values = all_entries(parts, K_qdd, system.spring_entries[2])
     tangent = np.bincount(pattern.positions, values, pattern.band.size)
     if linear:
@@ -237,9 +251,9 @@ def energies(system: System, state: State, response: Response) -> tuple[float, f
     return response.bulk_energy, cohesive, contact_energy, float(interface.dA_q @ dissipated_q)
 
 
-def factorise(response: Response) -> BandLU | None:
+def factorise(response: Response) -> BandLU | DenseLU | None:
     """LU of the tangent, which it overwrites; None where the tangent is exactly singular."""
-    return factor(response.band, response.tangent)
+    return response.band.factor(response.tangent)
 
 
 def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
@@ -247,6 +261,8 @@ def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
 
     Long thin elements are stiff across, and so is contact.
     """
+    if system.bulk_dd is not None:
+        return LOST * _held(system, u_d)
     squares = (
         np.sum((size_e * np.abs(relative(solid.basis.conn_ea, u_d.reshape(-1, 2))).max((1, 2))) ** 2)
         for size_e, solid in zip(system.stiffest, system.solids, strict=True)
@@ -262,6 +278,18 @@ def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, fl
         internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
         square += float(np.sum(f * f))
     return internal_d, square**0.5, 0.5 * float(u_d @ internal_d), []
+
+
+def _condensed_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, list[np.ndarray]]:
+    """A force that rounding hides is none: the scale is at least that for which `Newton` would ask no more."""
+    internal_d = system.bulk_dd @ u_d
+    scale = max(float(np.linalg.norm(internal_d)), HIDDEN * _held(system, u_d))
+    return internal_d, scale, 0.5 * float(u_d @ internal_d), []
+
+
+def _held(system: System, u_d: np.ndarray) -> float:
+    """Norm of the forces that the unknowns hold against each other."""
+    return float(np.linalg.norm(system.bulk_dd * u_d))
 
 
 def _finite_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, list[np.ndarray]]:
@@ -290,10 +318,9 @@ def _reachable(interface: Interface) -> list[np.ndarray]:
     return [np.concatenate([interface.conn_qa, interface.master.conn_ca[c_q]], axis=1) for c_q in neighbours]
 
 
-def _square(conn_qa: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and columns (n_q, 2 n_a, 2 n_a) of the matrices of all points."""
-    d = dofs(conn_qa)
-    return np.broadcast_arrays(d[:, :, None], d[:, None, :])
+def _square(d_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns (n_q, n_d, n_d) of the matrices of all points."""
+    return np.broadcast_arrays(d_qd[:, :, None], d_qd[:, None, :])
 
 
 def _positions(band: Band, entries: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:

@@ -10,7 +10,7 @@ from scipy.sparse.linalg import splu
 from iga.bond import between, everywhere
 from iga.cohesive import BilinearLaw
 from iga.extraction import Mesh
-from iga.interface import Contact, Interface, contact, dofs, forces, pair, stiffness, traction
+from iga.interface import Contact, Interface, contact, forces, pair, stiffness, traction
 from iga.plane import Fixed
 from iga.plane import stiffness as bulk_stiffness
 from iga.quadrature import gauss
@@ -70,7 +70,7 @@ def press(
     for iteration in range(ITERATIONS):
         if iteration and np.linalg.norm(residual_d) < 1e-10 * np.linalg.norm(held_d):
             return Pressed(interface, u_d, touch, -p_q, iteration)
-        d_qd, K_qdd = dofs(touch.conn_qa), stiffness(interface, touch, p_q, dp_q)
+        d_qd, K_qdd = touch.dof_qd, stiffness(interface, touch, p_q, dp_q)
         row, column = np.broadcast_arrays(d_qd[:, :, None], d_qd[:, None, :])
         tangent = K + coo_array((K_qdd.ravel(), (row.ravel(), column.ravel())), shape=K.shape).tocsc()
         step_d = np.zeros(u_d.size)

@@ -14,7 +14,7 @@ from iga.bspline import open_knots
 from iga.cohesive import BilinearLaw
 from iga.extraction import Mesh
 from iga.iga_file import from_mesh, write_iga
-from iga.interface import Interface, contact, dofs, forces, pair, stiffness, traction
+from iga.interface import Interface, contact, forces, pair, stiffness, traction
 from iga.lagrange import lagrange_rectangle
 from iga.nurbs import nurbs_rectangle
 from iga.projection import FREE, HELD
@@ -118,7 +118,7 @@ def tangent_error(
         kinks = np.array([0.0, LAW.g_max, LAW.g_u]), k_q
         require(all(np.array_equal(near.g_q > kink, touch.g_q > kink) for kink in (*kinks[0], kinks[1])))
     p_q, dp_q, _ = traction(interface, touch, k_q, closed_q)
-    K_qdd, d_qd = stiffness(interface, touch, p_q, dp_q), dofs(touch.conn_qa)
+    K_qdd, d_qd = stiffness(interface, touch, p_q, dp_q), touch.dof_qd
     product = np.zeros(u_d.size)
     np.add.at(product, d_qd, (K_qdd @ v[d_qd][..., None])[..., 0])
     plus, minus = (residual_at(interface, u_d + sign * h * v, start, k_q, closed_q) for sign in (1.0, -1.0))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from iga.dcb import Problem, build
 from iga.extraction import Mesh
-from iga.interface import contact, dofs, forces, pair, rounding, stiffness, traction
+from iga.interface import contact, forces, pair, rounding, stiffness, traction
 from iga.lagrange import lagrange_rectangle
 from iga.projection import FREE, closest_points, nearest_samples
 from iga.surface import surface
@@ -123,7 +123,7 @@ def test_tangent_on_a_curved_sliding_interface(state, basis, slave, rng):
         return forces(interface, touch, traction(interface, touch, k, closed)[0], system.n_dof)
 
     p, dp, _ = traction(interface, touch, k, closed)
-    K, d = stiffness(interface, touch, p, dp), dofs(touch.conn_qa)
+    K, d = stiffness(interface, touch, p, dp), touch.dof_qd
     whole = K[(touch.share_q == 0.0) | (touch.share_q == 1.0)]  # a point that fades has no potential
     assert np.allclose(whole, whole.transpose(0, 2, 1), rtol=0, atol=1e-12 * max(np.abs(K).max(), 1e-300))
     matrix = np.zeros((system.n_dof, system.n_dof))

@@ -7,7 +7,7 @@ import pytest
 
 from iga.arms import arm_meshes
 from iga.dcb import Problem, build, solve
-from iga.interface import Interface, contact, dofs, forces, pair, stiffness, traction
+from iga.interface import Interface, contact, forces, pair, stiffness, traction
 from iga.lagrange import lagrange_rectangle
 from iga.lumped import lumped
 from iga.surface import surface
@@ -108,7 +108,7 @@ def test_tangent_against_a_central_difference(degree, basis, symmetry, rng):
 
     touch = contact(interface, u, None)
     p, dp, _ = traction(interface, touch, k, closed)
-    d, matrix = dofs(touch.conn_qa), np.zeros((system.n_dof, system.n_dof))
+    d, matrix = touch.dof_qd, np.zeros((system.n_dof, system.n_dof))
     np.add.at(matrix, (d[:, :, None], d[:, None, :]), stiffness(interface, touch, p, dp))
     v = rng.standard_normal(system.n_dof)
     difference = (residual(u + h * v) - residual(u - h * v)) / (2 * h)

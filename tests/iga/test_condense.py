@@ -1,0 +1,85 @@
+"""A linear bulk condensed onto the interface, against the same system in all its unknowns."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from specimens import PAPER
+from test_peel import PEEL
+
+import iga.condense
+from iga import dcb, peel
+from iga.condense import condensed
+from iga.path import follow
+from iga.point import End
+from iga.system import respond
+
+BEAM = replace(PAPER, kinematics="linear", steps=40, dofs=600, opening=(1.5,))
+STRIP = replace(PEEL, kinematics="linear", steps=40, dofs=900)
+
+CASES = {
+    "twins": BEAM,
+    "mirror": replace(BEAM, symmetry=True),
+    "Lagrange": replace(BEAM, basis="lagrange"),
+    "T-spline": replace(BEAM, basis="tspline"),
+    "lumped": replace(BEAM, interface_rule="lumped"),
+    "unlike": replace(BEAM, mismatch=1.37),
+    "lower slave": replace(BEAM, mismatch=1.37, slave="lower"),
+    "posed": replace(BEAM, angle=37.0, mirror=True, shift=(1e3, -2e3)),
+    "peel": STRIP,
+    "peel unlike": replace(STRIP, mismatch=1.37),
+}
+
+
+def solver(problem):
+    return peel if isinstance(problem, peel.Problem) else dcb
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_condensed_path_is_that_of_the_whole(name, monkeypatch):
+    """All that a run tells, at all its steps, to a part of 1e-7 of the largest value of its kind."""
+    problem = CASES[name]
+    small = solver(problem).solve(problem)
+    monkeypatch.setattr(iga.solve, "condensed", lambda system: None)
+    whole = solver(problem).solve(problem)
+    assert small.status == whole.status == "complete" and len(small.rows) == len(whole.rows)
+    for key in small.rows[0]:
+        if key == "newton_iterations":
+            continue
+        a, b = (np.array([row[key] for row in run.rows]) for run in (small, whole))
+        scale = np.abs(b).max() + np.abs([row["load"] for row in whole.rows]).max()
+        assert np.abs(a - b).max() < 1e-7 * scale, key
+
+
+def test_unloading_and_closing_come_to_the_same_ends(monkeypatch):
+    """Where the programme turns, rounding decides how long the first steps are, and nothing else."""
+    problem = replace(BEAM, opening=(1.0, -0.05, 1.5))
+    small = dcb.solve(problem)
+    monkeypatch.setattr(iga.solve, "condensed", lambda system: None)
+    whole = dcb.solve(problem)
+    assert small.status == whole.status == "complete"
+    for goal in (1.0, -0.05, 0.0, 1.5):
+        a, b = ([row for row in run.rows if abs(row["opening"] - goal) < 1e-12] for run in (small, whole))
+        assert len(a) == len(b) > 0
+        for key in ("load", "dissipated_energy", "contact_energy", "tip_opening"):
+            assert a[-1][key] == pytest.approx(b[-1][key], rel=1e-7, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_whole_is_in_equilibrium_where_the_condensed_system_is(name):
+    problem = CASES[name]
+    whole = solver(problem).build(problem).system
+    small = condensed(whole)
+    points = [item for item in follow(small.system, problem.opening, 40) if not isinstance(item, End)]
+    for point in points[1::8]:
+        found = small.expanded(point)
+        answer = respond(whole, found.state, decide=False)
+        residual_d = np.where(whole.free_d, answer.internal_d - found.state.load * whole.load_d, 0.0)
+        assert np.linalg.norm(residual_d) < 1e-8 * answer.scale
+        assert np.abs(answer.p_q - found.response.p_q).max() < 1e-6 * problem.strength
+        assert whole.load_d @ found.state.u_d == pytest.approx(point.opening, rel=1e-9)
+
+
+def test_a_bulk_that_moves_far_or_has_too_many_partners_is_not_condensed():
+    assert condensed(dcb.build(replace(BEAM, kinematics="finite")).system) is None
+    assert condensed(dcb.build(replace(BEAM, dofs=40_000)).system) is None
