@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from verify.methods import WITH_DOFS, iga_problem
@@ -14,8 +16,17 @@ def nonzeros(scene: Scene, method: str) -> int:
         return 0
     solver, problem = iga_problem(scene, method)
     system = solver.build(problem).system
-    points = [conn_ea for solid in system.solids for conn_ea in [np.asarray(solid.basis.conn_ea)]]
-    points.append(np.asarray(system.reference_conn_qa))
+    together = [np.asarray(solid.basis.conn_ea) for solid in system.solids] + [_touching(system.interface)]
     n = system.n_dof // 2
-    pairs = [np.unique((conn[:, :, None] * n + conn[:, None, :]).ravel()) for conn in points]
+    pairs = [np.unique(conn[:, :, None] * n + conn[:, None, :]) for conn in together]
     return 4 * int(np.unique(np.concatenate(pairs)).size)
+
+
+def _touching(interface: Any) -> np.ndarray:
+    """Control points (n_q, n_a) of both surfaces that each interface point touches."""
+    from iga.interface import pair
+
+    pairing = pair(interface)
+    if pairing is None:
+        return interface.known_conn_qa
+    return np.concatenate([interface.conn_qa, interface.master.conn_ca[pairing.c_q]], axis=1)

@@ -6,7 +6,10 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
+from math import inf
 from pathlib import Path
+from time import monotonic
 
 from verify.cost.findings import LEVELS, cheapest, growth, orders, pareto, table
 from verify.cost.ladder import STEPS, Family, Try, ladders
@@ -20,8 +23,12 @@ from verify.run import machine, versions
 from verify.schema import Scene
 
 #: A ladder ends below this part of the finest level, where a rung took so many times as long as the cheapest run that
-#: is accurate enough, or so many seconds.
-ENOUGH, PATIENCE, LONGEST = 0.7, 12.0, 120.0
+#: is accurate enough, where another degree of the method is as accurate in so much less time, or after so many seconds.
+ENOUGH, PATIENCE, BEATEN, LONGEST = 0.7, 12.0, 2.5, 120.0
+
+#: Seconds after which no more of it is begun: the ladders, other numbers of steps, repetitions. What was begun is
+#: remembered, so that a second call goes further.
+CLIMB, VARY, REPEAT = 1200.0, 1700.0, 2000.0
 
 #: Fewer steps are tried on meshes whose error is this close to the coarsest level.
 NEAR = 1.2
@@ -98,12 +105,17 @@ class Runner:
     given: tuple[str, ...]
     out: Path
     against: Reference
-    found: dict[Try, Outcome]
+    found: dict[Try, Outcome] = field(default_factory=dict)
+    start: float = field(default_factory=monotonic)
 
-    def __call__(self, tries: Iterable[Try]) -> None:
+    def __call__(self, tries: Iterable[Try], seconds: float = inf) -> bool:
+        """Do what has not been done; whether all of it was begun within so many seconds after the start."""
         jobs = {one.job(self.source, self.scene, self.given): one for one in tries if one not in self.found}
         for outcome in run_all(list(jobs), self.out, jobs=1):
             self.found[jobs[outcome.job]] = outcome
+            if monotonic() - self.start > seconds:
+                break
+        return all(one in self.found for one in jobs.values())
 
     @property
     def rows(self) -> dict[Try, Row]:
@@ -133,13 +145,17 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
         _say(_no_reference([outcomes[job] for job in plans[0]]))
         return None
     _say(against.sentence)
-    runner = Runner(source, scene, tuple(given), out, against, {})
-    climb(rungs, runner)
-    runner(_between(runner.rows))
-    runner([other for one, found in runner.rows.items() if _worth(found) for other in one.with_fewer_steps()])
-    runner([other for one in _best(runner.rows) for other in one.with_more_steps()])
+    runner = Runner(source, scene, tuple(given), out, against)
+    whole = [
+        climb(rungs, partial(runner, seconds=CLIMB), lambda: runner.rows),
+        runner(_between(runner.rows), VARY),
+        runner([other for one, row in runner.rows.items() if _worth(row) for other in one.with_fewer_steps()], VARY),
+        runner([other for one in _best(runner.rows) for other in one.with_more_steps()], VARY),
+    ]
     for repeat in range(1, TIMES):
-        runner([replace(one, repeat=repeat) for one in _best(runner.rows, CLOSE)])
+        whole.append(runner([replace(one, repeat=repeat) for one in _best(runner.rows, CLOSE)], REPEAT))
+    if not all(whole):
+        reasons.append("The time allowed for a study is over; the same command goes on from here.")
     how = {one.variant: one.job(source, scene).overrides for one in runner.found}
     study = Study(scene, against, tuple(_counted(runner)), tuple(reasons), how)
     write_csv(out / "cost.csv", study.rows)
@@ -149,23 +165,38 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     return study
 
 
-def climb(ladders: Mapping[Family, Sequence[Try]], runner: Callable[[Iterable[Try]], None]) -> None:
-    """Rung after rung of all families, until each is accurate enough, too slow, or at its end."""
+def climb(
+    ladders: Mapping[Family, Sequence[Try]], run: Callable[[list[Try]], bool], rows: Callable[[], Mapping[Try, Row]]
+) -> bool:
+    """Rung after rung of all families, until each is accurate enough, too slow, or at its end.
+
+    Parameters
+    ----------
+    run : does some runs; whether there was time for all
+    rows : all that has been found so far
+    """
     left = {family: list(rungs) for family, rungs in ladders.items() if rungs}
     while left:
-        runner([rungs[0] for rungs in left.values()])
-        rows = runner.rows
+        if not run([rungs[0] for rungs in left.values()]):
+            return False
+        found = rows()
         for family, (done, *rest) in list(left.items()):
             left[family] = rest
-            if not rest or _high_enough(rows[done], rows.values()):
+            if not rest or _high_enough(found[done], list(found.values())):
                 del left[family]
+    return True
 
 
-def _high_enough(last: Row, rows: Iterable[Row]) -> bool:
+def _high_enough(last: Row, rows: Sequence[Row]) -> bool:
     finest = min(LEVELS.values())
-    accurate = [one.seconds for one in rows if one.measured and one.curve_error <= finest and one.dofs]
+    others = [one for one in rows if one.measured and one.dofs]
+    accurate = [one.seconds for one in others if one.curve_error <= finest]
     too_slow = last.measured and last.seconds > min(LONGEST, PATIENCE * min(accurate, default=LONGEST))
-    return too_slow or last.curve_error <= ENOUGH * finest
+    beaten = any(
+        one.method == last.method and one.curve_error <= last.curve_error and BEATEN * one.seconds <= last.seconds
+        for one in others
+    )
+    return too_slow or beaten or last.curve_error <= ENOUGH * finest
 
 
 def _worth(found: Row) -> bool:
