@@ -52,7 +52,7 @@ def against(result: Result | None = None) -> Reference:
     return Reference("cubic NURBS", result or made_up(n=400), sure, 2.0)
 
 
-def a_row(method: str, error: float, seconds: float, dofs: int = 500, degree: int = 3, asked: str = "40") -> Row:
+def a_row(method: str, error: float, seconds: float, dofs: int = 500, degree: int = 3, asked: str = "80") -> Row:
     one = row(Try(Family(method, method, degree, 1.0), 0, dofs, asked), [outcome(made_up())], against())
     parts = {"assembly": 0.5 * seconds, "factor": 0.2 * seconds}
     return replace(one, curve_error=error, seconds=seconds, dofs=dofs, peak_memory_mb=100.0, **parts)
@@ -197,7 +197,7 @@ def test_rungs_divide_the_process_zone_as_they_say() -> None:
         assert all(b.size / a.size == pytest.approx(RATIO, rel=0.01) for a, b in zip(rungs, rungs[1:], strict=False))
         last = rungs[-1].job("dcb-czm1", SCENE).solved
         assert expected(last, family.solver).elements == pytest.approx(family.first * RATIO**7, rel=0.15)
-    assert [one.steps for one in ladder(SCENE, BEAM)] == [40, 150]
+    assert [one.steps for one in ladder(SCENE, BEAM)] == [80, 40, 150]
 
 
 def test_every_run_repeats_what_the_study_was_given() -> None:
@@ -262,16 +262,16 @@ def test_a_degree_that_another_beats_by_far_goes_no_further() -> None:
 
 
 def test_more_is_tried_where_it_may_pay() -> None:
-    tries = {Try(NURBS, i, size, 40): a_row("nurbs", e, t, size) for i, (size, e, t) in enumerate(
+    tries = {Try(NURBS, i, size, 80): a_row("nurbs", e, t, size) for i, (size, e, t) in enumerate(
         [(300, 0.02, 1.0), (420, 0.008, 1.2), (590, 0.002, 1.5), (830, 0.0008, 1.7)])}  # fmt: skip
     sizes = [one.size for one in study_of._best(tries)]
     assert sizes == [420, 590, 830]
     assert [one.size for one in study_of._best(tries, 1.3)] == [420, 590, 830]
     assert [one.size for one in study_of._between(tries)] == [355, 498, 700]
     first = next(iter(tries))
-    assert [one.steps for one in (*first.with_fewer_steps(), *first.with_more_steps())] == ["auto", 80, 150]
+    assert [one.steps for one in (*first.with_few_steps(), *first.with_other_steps())] == ["auto", 40, 150]
     assert [study_of._worth(found) for found in tries.values()] == [False, True, True, True]
-    assert [*Try(BEAM, 0, 0, 40).with_fewer_steps(), *Try(BEAM, 0, 0, 40).with_more_steps()] == []
+    assert [*Try(BEAM, 0, 0, 80).with_few_steps(), *Try(BEAM, 0, 0, 80).with_other_steps()] == []
 
 
 # --- the whole

@@ -15,11 +15,11 @@ from verify.schema import Scene
 #: The finer of two rungs has so many times the elements of the other, and a ladder so many rungs.
 RATIO, RUNGS = 1.4, 8
 
-#: Steps asked for in the first place, fewer ones for every mesh that is accurate, and more for the best of them. The
-#: ``iga`` path chooses its own, few steps where it is asked to; those of the DOLFINx path are counted, and the front
-#: adds to them.
-STEPS, FEWER_STEPS, MORE_STEPS = 40, {"dolfinx": 20}, (80, 150)
-FEWER_STEPS_OF_IGA = "auto"
+#: Steps asked for in the first place, enough for the sharp peak of ``peel-120``; few ones for every mesh that is
+#: accurate, and others for the best of them. The ``iga`` path chooses its own, few steps where it is asked to; those of
+#: the DOLFINx path are counted, and the front adds to them.
+STEPS, FEW_STEPS, OTHER_STEPS = 80, {"dolfinx": 20}, (40, 150)
+FEW_STEPS_OF_IGA = "auto"
 
 
 @dataclass(frozen=True)
@@ -74,21 +74,21 @@ class Try:
         own = _overrides(self.family, scene, self.size, self.steps)
         return Job(source, scene, self.family.solver, self.variant, (*given, *own), repeat=self.repeat)
 
-    def with_fewer_steps(self) -> Iterator[Try]:
+    def with_few_steps(self) -> Iterator[Try]:
         """The same mesh with as few steps as the path takes."""
         if self.family is not BEAM:
-            yield replace(self, steps=FEWER_STEPS.get(self.family.solver, FEWER_STEPS_OF_IGA))
+            yield replace(self, steps=FEW_STEPS.get(self.family.solver, FEW_STEPS_OF_IGA))
 
-    def with_more_steps(self) -> Iterator[Try]:
-        """The same mesh with more steps."""
+    def with_other_steps(self) -> Iterator[Try]:
+        """The same mesh with other numbers of steps."""
         if self.family is not BEAM:
-            yield from (replace(self, steps=steps) for steps in MORE_STEPS)
+            yield from (replace(self, steps=steps) for steps in OTHER_STEPS)
 
 
 def ladder(scene: Scene, family: Family) -> list[Try]:
     """The rungs of a family on a scene, coarse to fine; none where no mesh is possible."""
     if family.solver == "beam":
-        return [Try(family, 0, 0, steps) for steps in (40, 150)]
+        return [Try(family, rung, 0, steps) for rung, steps in enumerate((STEPS, *OTHER_STEPS))]
     each = size_of_an_element(scene, family)
     sizes = np.unique(np.rint(each * family.first * RATIO ** np.arange(RUNGS))) if np.isfinite(each) else ()
     return [Try(family, rung, int(size), STEPS) for rung, size in enumerate(sizes)]

@@ -11,8 +11,8 @@ from math import inf
 from pathlib import Path
 from time import monotonic
 
-from verify.cost.findings import LEVELS, cheapest, growth, orders, pareto, table
-from verify.cost.ladder import STEPS, Family, Try, ladders
+from verify.cost.findings import LEVELS, cheapest, growth, of_equal_steps, orders, pareto, table
+from verify.cost.ladder import Family, Try, ladders
 from verify.cost.nonzeros import nonzeros
 from verify.cost.reference import Reference, reference, reference_jobs
 from verify.cost.row import Row, row, write_csv
@@ -59,7 +59,7 @@ class Study:
 
     def summary(self) -> dict[str, object]:
         """The content of ``cost.json``."""
-        equal = [one for one in self.rows if one.asked == str(STEPS)]
+        equal = of_equal_steps(self.rows)
         known = self.against
         return {
             "scene": self.scene.model_dump(),
@@ -149,8 +149,8 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     whole = [
         climb(rungs, partial(runner, seconds=CLIMB), lambda: runner.rows),
         runner(_between(runner.rows), VARY),
-        runner([other for one, row in runner.rows.items() if _worth(row) for other in one.with_fewer_steps()], VARY),
-        runner([other for one in _best(runner.rows) for other in one.with_more_steps()], VARY),
+        runner([other for one, row in runner.rows.items() if _worth(row) for other in one.with_few_steps()], VARY),
+        runner([other for one in _best(runner.rows) for other in one.with_other_steps()], VARY),
     ]
     for repeat in range(1, TIMES):
         whole.append(runner([replace(one, repeat=repeat) for one in _best(runner.rows, CLOSE)], REPEAT))
