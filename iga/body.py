@@ -83,6 +83,15 @@ def mean_row(face: tuple[BlockBasis, ...], direction_i: np.ndarray, n_dof: int) 
     return row_Ai.ravel() / face_length(face)
 
 
+def slope_row(face: tuple[BlockBasis, ...], along_I: np.ndarray, across_i: np.ndarray, n_dof: int) -> np.ndarray:
+    """Row (n_dof,) that gives the mean slope of a face: displacement across by coordinate along."""
+    row_Ai = np.zeros((n_dof // 2, 2))
+    for basis in face:
+        weights_ea = np.einsum("eqaI,eq,I->ea", basis.dN_eqaI, basis.dV_eq, along_I)
+        np.add.at(row_Ai, basis.conn_ea, weights_ea[..., None] * across_i)
+    return row_Ai.ravel() / face_length(face)
+
+
 def point_row(A: int, direction_i: np.ndarray, n_dof: int) -> np.ndarray:
     """Row (n_dof,) that gives the displacement of one control point in one direction."""
     row_Ai = np.zeros((n_dof // 2, 2))

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from iga.basis import BlockBasis
-from iga.body import Body, face_length
+from iga.body import Body
 from iga.bulk import gradient
 from iga.interface import contact
 from iga.kinematics import KINEMATICS
@@ -27,7 +27,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
     held_Ai = (system.spring_forces(state.u_d) @ system.springs_rd).reshape(-1, 2)
     reaction_x, reaction_y = specimen.pose.components(held_Ai.sum(0))
     tip, end = openings(specimen, point)
-    slopes = [face_slope(specimen, number, state.u_d) for number in range(len(specimen.bodies))]
+    slopes = [float(row_d @ state.u_d) for row_d in specimen.slope_rows]
     return {
         "opening": point.opening,
         "load": state.load,
@@ -70,18 +70,11 @@ def reach(specimen: Specimen, k_q: np.ndarray, limit: float) -> float:
 
 def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
     """Gaps at the tip of the bond and at its far end."""
-    g_q = contact(specimen.probe, point.state.u_d, specimen.probe_at_rest).g_q
+    start, met = specimen.probe_at_rest, point.response.contact.pairing
+    if start is not None and met is not None and not specimen.probe.frozen:
+        start = met[specimen.beside_probe]
+    g_q = contact(specimen.probe, point.state.u_d, start).g_q
     return float(g_q[0]), float(g_q[-1])
-
-
-def face_slope(specimen: Specimen, number: int, u_d: np.ndarray) -> float:
-    """Mean slope of a body's loaded face, zero without one: displacement across by coordinate along the specimen."""
-    if not specimen.loaded[number]:
-        return 0.0
-    face = specimen.bodies[number].faces[specimen.loaded[number]]
-    along_I, across_i = specimen.pose.axes_kI
-    slope = [np.einsum("i,iIeq,I->eq", across_i, gradient(basis, u_d.reshape(-1, 2)), along_I) for basis in face]
-    return sum(float(np.sum(s * basis.dV_eq)) for s, basis in zip(slope, face, strict=True)) / face_length(face)
 
 
 def face_energy(specimen: Specimen, u_d: np.ndarray) -> float:
@@ -103,14 +96,14 @@ def _balance(specimen: Specimen, point: Point, support_Ai: np.ndarray) -> dict[s
     """Force and moment of the interface on the upper body, and the moment of load and supports there."""
     system, state, touch, pose = specimen.system, point.state, point.response.contact, specimen.pose
     interface, upper = system.interface, specimen.bodies[0]
-    u_Ai = pose.components(state.u_d.reshape(-1, 2)) * (0.0 if system.kinematics == "linear" else 1.0)
+    moved = 0.0 if system.kinematics == "linear" else 1.0
+    u_Ai = moved * pose.components(state.u_d.reshape(-1, 2))
     n_qi = pose.components(touch.n_qi)
     x_qi = pose.own(interface.X_qi) + interface.at_slave(u_Ai)
     pull_qi = (point.response.p_q * interface.dA_q)[:, None] * n_qi  # on the master
     if not specimen.upper_is_slave:
-        moved = 0.0 if system.kinematics == "linear" else 1.0
         x_qi, pull_qi = x_qi - moved * touch.g_q[:, None] * n_qi, -pull_qi
-    x_face = specimen.loaded_at + _mean(upper.faces[specimen.loaded[0]], u_Ai[:, 0])
+    x_face = specimen.loaded_at + moved * float(specimen.face_row @ state.u_d)
     held_Ai, R_Ai = (pose.own(interface.P_AI) + u_Ai)[upper.points], pose.components(support_Ai)[upper.points]
     return {
         "interface_force": float(pull_qi[:, 1].sum()),
@@ -134,8 +127,3 @@ def _clamp(specimen: Specimen, point: Point, held_Ai: np.ndarray) -> dict[str, f
         "interface_pull": -pull if specimen.upper_is_slave else pull,
         "anchor_pull": float(held_Ai[specimen.bodies[0].points, 0].sum()),
     }
-
-
-def _mean(face: tuple[BlockBasis, ...], v_A: np.ndarray) -> float:
-    total = sum(float(np.einsum("eqa,ea,eq->", basis.N_eqa, v_A[basis.conn_ea], basis.dV_eq)) for basis in face)
-    return total / face_length(face)

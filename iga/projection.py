@@ -11,6 +11,8 @@ from iga.surface import Surface
 
 #: Sample points of the broad phase: so many on a side, and no more than this on the whole surface.
 SAMPLES, MOST = 8, 1024
+#: Newton steps within which a point that stays on its side arrives.
+STROLL = 5
 #: A point that crosses more sides than this from its last pairing has lost it.
 CROSSINGS = 8
 #: Parts of the side at an end by which a point may be beyond it: up to the first it is held as if the surface went on
@@ -25,6 +27,13 @@ class Pairing:
     c_q: np.ndarray
     xi_q: np.ndarray
     on_q: np.ndarray
+
+    def __getitem__(self, q: np.ndarray) -> Pairing:
+        return Pairing(self.c_q[q], self.xi_q[q], self.on_q[q])
+
+    def set(self, q: np.ndarray, other: Pairing) -> None:
+        """Take over the points q from another pairing of as many."""
+        self.c_q[q], self.xi_q[q], self.on_q[q] = other.c_q, other.xi_q, other.on_q
 
 
 def nearest_samples(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray) -> Pairing:
@@ -65,16 +74,40 @@ def closest_points(
     -------
     Pairing of all points.
     """
-    found, apart_q, lost_q = _walk(surface, x_qi, y_AI, guess, CROSSINGS, tolerance, iterations)
-    q = np.flatnonzero(lost_q)
+    found = _stroll(surface, x_qi, y_AI, guess, tolerance)
+    q = np.flatnonzero(~found.on_q)
     if q.size == 0:
         return found
+    rest, apart_q, lost_q = _walk(surface, x_qi[q], y_AI, guess[q], CROSSINGS, tolerance, iterations)
+    found.set(q, rest)
+    if not np.any(lost_q):
+        return found
+    q, apart_q = q[lost_q], apart_q[lost_q]
     start, crossings = nearest_samples(surface, x_qi[q], y_AI), CROSSINGS + 2 * surface.sides // MOST
     again, apart, _ = _walk(surface, x_qi[q], y_AI, start, crossings, tolerance, iterations + crossings)
-    nearer = apart < apart_q[q]
-    for old_q, new_q in ((found.c_q, again.c_q), (found.xi_q, again.xi_q), (found.on_q, again.on_q)):
-        old_q[q[nearer]] = new_q[nearer]
+    nearer = apart < apart_q
+    found.set(q[nearer], again[nearer])
     return found
+
+
+def _stroll(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing, tolerance: float) -> Pairing:
+    """Plain Newton for the points that stay on their side, by far the most: ``on_q`` tells which have arrived."""
+    c_q, xi_q = guess.c_q.copy(), guess.xi_q.copy()
+    Q_qbi, on_q = surface.bezier_points(y_AI, c_q), (xi_q > 0.0) & (xi_q < 1.0)
+    for _ in range(STROLL):
+        jet_qki = np.stack(surface.coefficients(c_q, xi_q, 2), 1) @ Q_qbi
+        d_qi, t_qi = x_qi - jet_qki[:, 0], jet_qki[:, 1]
+        m_q, pull_q = (t_qi * t_qi).sum(-1), (d_qi * t_qi).sum(-1)
+        a_q = m_q - (d_qi * jet_qki[:, 2]).sum(-1)
+        step_q = pull_q / np.where(a_q > 0.1 * m_q, a_q, m_q)
+        goal_q = xi_q + step_q
+        on_q &= (a_q > 0.1 * m_q) & (goal_q > 0.0) & (goal_q < 1.0)
+        xi_q = np.where(on_q, goal_q, xi_q)
+        arrived_q = np.abs(step_q) <= tolerance
+        if np.all(arrived_q | ~on_q):
+            break
+    depth_q = surface.outward * (t_qi[:, 1] * d_qi[:, 0] - t_qi[:, 0] * d_qi[:, 1])
+    return Pairing(c_q, np.where(on_q, xi_q, guess.xi_q), on_q & arrived_q & (depth_q >= -m_q))
 
 
 def _walk(

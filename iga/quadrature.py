@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 
+@cache
 def gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre points and weights (n,), exact for degree 2n - 1."""
     x, w = np.polynomial.legendre.leggauss(n)
-    return 0.5 * (x + 1.0), 0.5 * w
+    x, w = 0.5 * (x + 1.0), 0.5 * w
+    x.flags.writeable = w.flags.writeable = False  # all who ask share them
+    return x, w
 
 
 def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:

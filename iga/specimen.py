@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from iga.body import Body
+from iga.body import Body, mean_row, slope_row
 from iga.extraction import Mesh
 from iga.interface import Interface, pair
 from iga.pose import Pose
@@ -46,9 +46,29 @@ class Specimen:
         return tuple(body.mesh for body in self.bodies)
 
     @cached_property
+    def slope_rows(self) -> tuple[np.ndarray, ...]:
+        """Rows (n_dof,) of the mean slopes of the bodies' loaded faces, zero without one."""
+        n, axes_kI = self.system.n_dof, self.pose.axes_kI
+        return tuple(
+            slope_row(body.faces[end], axes_kI[0], axes_kI[1], n) if end else np.zeros(n)
+            for body, end in zip(self.bodies, self.loaded, strict=True)
+        )
+
+    @cached_property
+    def face_row(self) -> np.ndarray:
+        """Row (n_dof,) of the mean displacement of the upper body's loaded face along the specimen."""
+        return mean_row(self.bodies[0].faces[self.loaded[0]], self.pose.axes_kI[0], self.system.n_dof)
+
+    @cached_property
     def probe_at_rest(self) -> Pairing | None:
-        """Where the points of the probe meet the master before anything moves: the start of every search."""
+        """Where the points of the probe meet the master before anything moves."""
         return pair(self.probe)
+
+    @cached_property
+    def beside_probe(self) -> np.ndarray:
+        """Points of the interface next to those of the probe, which meet the master close by."""
+        X_qi = self.system.interface.X_qi
+        return np.array([np.argmin(np.linalg.norm(X_qi - X_i, axis=1)) for X_i in self.probe.X_qi])
 
     def distance(self, X: np.ndarray) -> np.ndarray:
         """Distance (...,) of places (..., 2) from the loaded end, along the specimen."""
