@@ -331,6 +331,35 @@ def test_entries_of_the_tangent_are_those_that_forces_depend_on(name: str, dofs:
     assert nonzeros(scene, "beam") == 0
 
 
+@pytest.mark.parametrize("seconds", [inf, 0.0])
+def test_a_study_from_ladder_to_files(seconds: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    """Runs that need no solver, whose error falls as the third power of the unknowns."""
+    monkeypatch.setattr(ladder_of, "FAMILIES", (NURBS,))
+    monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
+    for name in ("CLIMB", "VARY", "REPEAT"):
+        monkeypatch.setattr(study_of, name, seconds)
+    asked: list[Job] = []
+
+    def run_all(plan, out, jobs):
+        for job in plan:
+            asked.append(job)
+            size = job.solved.discretization.dofs
+            yield Outcome(job, made_up(1.0 + (60.0 / size) ** 3, dofs=size, elements=size, n=120))
+
+    monkeypatch.setattr(study_of, "run_all", run_all)
+    monkeypatch.setattr(study_of, "_page", lambda study, out: None)
+    found = study_of.cost("dcb-czm1", SCENE, (), tmp_path, 2)
+    rows = read_csv(tmp_path / "cost.csv")
+    assert (tmp_path / "cost.json").exists() and "written: " in capsys.readouterr().out
+    if seconds == 0.0:
+        assert any("The time allowed" in text for text in found.left_out) and len(asked) < 12
+        return
+    assert found.left_out == () and len({job.place for job in asked}) == len(asked)
+    best = cheapest(rows, "0.1%").of_method["nurbs"]
+    assert best.times == 3 and best.dofs >= 580
+    assert {one.asked for one in rows if one.method == "nurbs"} == {"80", "auto", "40", "150"}
+
+
 @pytest.mark.slow
 def test_a_small_study_for_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     """Two ladders to an opening of 1, and again: the second call runs nothing."""
