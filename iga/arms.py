@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from iga.extraction import Mesh
-from iga.grading import columns, largest, pieces, rectangle, unequal
+from iga.grading import ROUNDING, columns, elements_within, largest, pieces, rectangle, unequal
 from iga.material import orthotropic
 from iga.strip import Strip, functions_of_halves, strip_tmesh
 from iga.tmesh import DEGREE, TMesh
@@ -32,9 +32,6 @@ NEAR = 0.02
 
 #: Elements on the crack path that are so few that each counts.
 FEW = 7
-
-#: Part of an element that rounding may add or take: numbers of elements do not turn on it.
-ROUNDING = 1e-9
 
 #: Elements (before, on, beyond) the crack path.
 Division = tuple[int, int, int]
@@ -119,10 +116,13 @@ def coarsening(problem: Problem) -> float:
     return max(LEAST_COARSENING, COARSENING * (1.0 - D[0, 1] ** 2 / (D[0, 0] * D[1, 1])) ** (1.0 / 3.0))
 
 
-def division(problem: Problem, path: int, spare: int = 0) -> tuple[Division, tuple[float, float, float, float]]:
+def division(
+    problem: Problem, path: int, spare: int = 0, layers: int = 0
+) -> tuple[Division, tuple[float, float, float, float]]:
     """Elements before, on and beyond the crack path with so many on it, and where these parts begin and end.
 
-    Those on the path begin before it by whole elements within `lead`. There are ``spare`` more elements before them
+    Those on the path, which ``layers`` halve at the interface, begin before it by as many whole elements as fill the
+    `lead`, if they are no longer there than that. There are ``spare`` more elements before them
     than their length asks for. Where there are few on the path there are no more of them elsewhere. One cubic element
     stands before the path in place of two: the bending line of an unloaded beam is a cubic. What is left beyond the
     path is part of it where that is shorter than half an element.
@@ -131,7 +131,7 @@ def division(problem: Problem, path: int, spare: int = 0) -> tuple[Division, tup
     if problem.length - end < 0.5 * (end - problem.precrack) / path:
         end = problem.length
     short = (end - problem.precrack) / path
-    ahead = int(max(0.0, min(lead(problem), problem.precrack - short) / short + ROUNDING))
+    ahead = elements_within(lead(problem), problem.precrack, short, layers)
     start = problem.precrack - ahead * short
     longest = coarsening(problem) * short
     before, beyond = (int(np.ceil(length / longest - ROUNDING)) for length in (start, problem.length - end))
@@ -192,14 +192,14 @@ def _strips(problem: Problem, layers: int) -> tuple[Strip, Strip]:
     column, halves = layers + DEGREE, functions_of_halves(layers)
 
     def strip(path: int, halved: int, spare: int) -> Strip:
-        parts, x = division(problem, path, spare)
+        parts, x = division(problem, path, spare, layers)
         breaks_c = _breaks(parts, x)
         number = np.arange(len(breaks_c) - 1) - parts[0]
         return Strip(breaks_c, (number >= 0) & (number < parts[1] - path + min(halved, path)), layers)
 
     def unknowns(path: int, halved: int, spare: int = 0) -> int:
         paths = unequal(path, problem.mismatch)
-        parts = [division(problem, n, spare)[0] for n in paths]
+        parts = [division(problem, n, spare, layers)[0] for n in paths]
         columns = sum(sum(part) + DEGREE for part in parts)
         cut = sum(min(halved, n) + part[1] - n for n, part in zip(paths, parts, strict=True))
         return 2 * (columns * column + cut * halves)

@@ -12,6 +12,10 @@ from iga.lagrange import lagrange_rectangle
 from iga.nurbs import nurbs_rectangle
 
 
+#: Part of an element that rounding may add or take: numbers of elements do not turn on it.
+ROUNDING = 1e-9
+
+
 def columns(basis: str, degree: int, elements: int) -> int:
     """Functions of one direction.
 
@@ -47,6 +51,16 @@ def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:
         middle = (low + high) // 2
         low, high = (middle, high) if unknowns(middle) <= aim else (low, middle)
     return low
+
+
+def elements_within(length: float, most: float, short: float, layers: int) -> int:
+    """Elements ``short`` that fill a length, within ``most`` of which one is left; none if longer than it.
+
+    That is said of what ``layers`` leave of them, each of which halves them.
+    """
+    if short / 2**layers > length * (1.0 + ROUNDING):
+        return 0
+    return max(0, min(int(np.ceil(length / short - ROUNDING)), int(most / short - 1.0 + ROUNDING)))
 
 
 def part(elements: float) -> int:

@@ -17,7 +17,7 @@ from iga.landing import SEVERAL, broken_between, landed, slope_over_arcs
 from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium
 from iga.pace import Pace, Step, next_step, paced
 from iga.point import End, Point
-from iga.system import Phase, State, System, energies, respond, untimed
+from iga.system import Phase, State, System, energies, respond, slid_off, untimed
 from iga.tangent import tangent
 from iga.work import leaks, step_work, straight_work
 
@@ -184,6 +184,7 @@ def _advance(
         state = replace(state, closed_q=old.closed_q)
         response = respond(system, replace(state, k_q=old.k_q), decide=False)
     state = replace(state, k_q=response.k_q, scale=max(old.scale, response.scale))
+    state = replace(state, slid=old.slid + slid_off(system, (old, point.response), (state, response)))
     leaving = tangent(system, state, response, direction, phase, kink=kink)
     if leaving is None:
         return None

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from iga.extraction import Mesh
-from iga.grading import columns, largest, part, pieces, rectangle, unequal
+from iga.grading import columns, elements_within, largest, part, pieces, rectangle, unequal
 from iga.strip import Strip, strip_tmesh
 from iga.tmesh import DEGREE, TMesh
 
@@ -16,9 +16,6 @@ if TYPE_CHECKING:
 
 #: Elements away from the bond only bend; they may be this much longer than those on it.
 COARSENING = 4.0
-
-#: Part of an element that rounding may add or take: numbers of elements do not turn on it.
-ROUNDING = 1e-9
 
 #: Layers of the substrate: at most so many, each this much thicker than the one above, and the top one no thinner than
 #: such a part of the length of its elements.
@@ -109,8 +106,8 @@ def _strips(problem: Problem, layers: tuple[int, int]) -> tuple[Strip, Strip]:
         made = []
         for number, k, length in zip(unequal(along, problem.mismatch), layers, lengths, strict=True):
             path = number * 2 ** (max(layers) - k)
-            breaks_c = _breaks(problem, length, path, _beyond(problem, length, path) + spare)
-            made.append(Strip(breaks_c, np.arange(len(breaks_c) - 1) < path + _ahead(problem, length, path), k))
+            breaks_c = _breaks(problem, length, path, _beyond(problem, length, path, k) + spare, k)
+            made.append(Strip(breaks_c, np.arange(len(breaks_c) - 1) < path + _ahead(problem, length, path, k), k))
             spare = 0
         return tuple(made)
 
@@ -121,26 +118,28 @@ def _strips(problem: Problem, layers: tuple[int, int]) -> tuple[Strip, Strip]:
     return strips(along, (problem.dofs - unknowns(strips(along))) // (2 * (layers[0] + DEGREE)))
 
 
-def _ahead(problem: Problem, length: float, path: int) -> int:
+def _ahead(problem: Problem, length: float, path: int, layers: int = 0) -> int:
     """Elements beyond the bond of a body that are as short as the ``path`` on it: as far as the strip is thick.
+
+    ``layers`` halve them at the interface.
 
     The traction ends there with a jump, beside which the surface has an infinite slope (as the log of the distance,
     Flamant). Long elements smooth it over: J comes out 0.4 to 0.9 % off until the tip is open, not 0.03 to 0.15 %.
     """
-    short = problem.bond_length / path
-    return int(max(0.0, min(problem.strip_thickness, length - problem.bond_length - short) / short + ROUNDING))
+    rest = length - problem.bond_length
+    return elements_within(problem.strip_thickness, rest, problem.bond_length / path, layers)
 
 
-def _beyond(problem: Problem, length: float, path: int) -> int:
+def _beyond(problem: Problem, length: float, path: int, layers: int = 0) -> int:
     """Longer elements beyond the short ones; none of a body that ends with the bond."""
     rest = length - problem.bond_length
     short = problem.bond_length / path
-    return part((rest - _ahead(problem, length, path) * short) / (COARSENING * short)) if rest > 0.0 else 0
+    return part((rest - _ahead(problem, length, path, layers) * short) / (COARSENING * short)) if rest > 0.0 else 0
 
 
-def _breaks(problem: Problem, length: float, path: int, beyond: int) -> np.ndarray:
+def _breaks(problem: Problem, length: float, path: int, beyond: int, layers: int = 0) -> np.ndarray:
     """Element boundaries along a body with so many elements on and beyond the bond."""
-    bond, ahead = problem.bond_length, _ahead(problem, length, path)
+    bond, ahead = problem.bond_length, _ahead(problem, length, path, layers)
     start = bond * (path + ahead) / path
     return pieces((0.0, bond, path), (bond, start, ahead), (start, length, beyond))
 

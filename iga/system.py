@@ -41,6 +41,8 @@ UNLOADED = 1e-3
 #: residual of 5e-12.
 LOST = 10.0 * np.finfo(float).eps
 HIDDEN = LOST / 5e-12
+#: Parts of a step over which it is told what slides off the master.
+SLIDING = 16
 #: Part of the forces in play below which a point of the interface neither opens nor closes.
 NOTHING = 1e-13
 
@@ -51,7 +53,8 @@ class State:
 
     ``scale`` is the largest force scale (see `Response`) of all converged states so far. ``closed_q`` (n_q,) and
     ``pairing``, which points were in contact and where the interface met, are where the next
-    search starts, not history.
+    search starts, not history. ``slid`` is history again: what has gone with points that slid off the master, beyond
+    what `energies` would count of them as dissipated.
     """
 
     u_d: np.ndarray
@@ -60,6 +63,7 @@ class State:
     closed_q: np.ndarray
     pairing: Pairing | None
     scale: float = 0.0
+    slid: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -243,12 +247,37 @@ def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.nd
 
 
 def energies(system: System, state: State, response: Response) -> tuple[float, float, float, float]:
-    """Energy stored in the bulk, in cohesion and in contact, and dissipated, at a state with its history committed."""
+    """Energy stored in bulk and springs, in cohesion and in contact, and dissipated, at a state with its history.
+
+    A spring that carries what tilted tractions pull lengthwise stores some, too.
+    """
     interface, touch = system.interface, response.contact
     cohesive_q, contact_q, dissipated_q = interface.law.energies(touch.g_q, state.k_q)
     cohesive = float(interface.dA_q @ (np.where(holding(interface, touch), touch.share_q, 0.0) * cohesive_q))
     contact_energy = float(interface.dA_q @ (touch.share_q * contact_q))
-    return response.bulk_energy, cohesive, contact_energy, float(interface.dA_q @ dissipated_q)
+    elastic = response.bulk_energy + 0.5 * float(system.spring_r @ (system.springs_rd @ state.u_d) ** 2)
+    return elastic, cohesive, contact_energy, float(interface.dA_q @ dissipated_q) + state.slid
+
+
+def slid_off(system: System, before: tuple[State, Response], after: tuple[State, Response]) -> float:
+    """Energy that goes with points sliding off the master between two converged states.
+
+    Of ``share psi`` at a point it is ``-psi d(share)``: no force draws what slides off back. Damage beside the share is
+    of a bond that is gone already, and takes nothing. Both integrals have gap and share change evenly on the way.
+    """
+    interface = system.interface
+    shares = [response.contact.share_q for _, response in (before, after)]
+    q = np.flatnonzero((shares[0] < 1.0) | (shares[1] < 1.0))
+    if q.size == 0:
+        return 0.0
+    s = np.linspace(0.0, 1.0, SLIDING + 1)[:, None]
+    share, g = (v0[q] + s * (v1[q] - v0[q]) for v0, v1 in (shares, [at[1].contact.g_q for at in (before, after)]))
+    cohesive, touching, dissipated = interface.law.energies(g, np.maximum(g, before[0].k_q[q]))
+    held_q = 1.0 if interface.bonded_q is None else interface.bonded_q[q]
+    stored, lost = held_q * cohesive + touching, held_q * dissipated
+    gone = -0.5 * (stored[1:] + stored[:-1]) * np.diff(share, axis=0)
+    gone -= (1.0 - 0.5 * (share[1:] + share[:-1])) * np.diff(lost, axis=0)
+    return float(np.sum(gone @ interface.dA_q[q]))
 
 
 def factorise(response: Response) -> BandLU | DenseLU | None:

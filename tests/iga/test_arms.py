@@ -128,8 +128,10 @@ def test_t_splines_are_suitable_and_halve_their_elements_towards_the_interface(p
         assert mesh.suitable
         interface, opposite = (lines_on(mesh, j) for j in ((-3, 2) if top else (2, -3)))
         fine = np.diff(interface) < 1.5 * np.diff(interface).min()
-        start = interface[:-1][fine].min()
-        assert opposite[0] < start <= problem.precrack * (1.0 + 1e-12) and problem.precrack - start <= lead(problem)
+        start, cell = interface[:-1][fine].min(), np.diff(opposite).min()
+        assert (
+            opposite[0] < start <= problem.precrack * (1.0 + 1e-12) and problem.precrack - start <= lead(problem) + cell
+        )
         on_path = (opposite[:-1] >= start) & (opposite[1:] <= crack_path(problem) * (1.0 + 1e-12))
         cells = np.diff(opposite)
         before = np.sum(opposite[1:] <= start * (1.0 + 1e-12))
