@@ -9,7 +9,7 @@ import numpy as np
 
 from iga.body import Body
 from iga.cohesive import BilinearLaw
-from iga.interface import Interface
+from iga.interface import Interface, contact, pair
 from iga.lumped import lumped
 from iga.problem import Debonding
 from iga.quadrature import gauss, lobatto
@@ -60,7 +60,8 @@ def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, flo
     c_q, xi_q, w_q = _everywhere(problem, bodies, extent, lobatto(2))
     X_q = problem.pose.own(_interface(problem, bodies, c_q, xi_q, w_q).X_qi)[:, 0]
     ends = [int(np.argmin(np.abs(X_q - X))) for X in extent]
-    return _interface(problem, bodies, c_q[ends], xi_q[ends], w_q[ends])
+    found = _interface(problem, bodies, c_q[ends], xi_q[ends], w_q[ends])
+    return replace(found, at_rest=contact(found, np.zeros(found.P_AI.size), pair(found))) if found.frozen else found
 
 
 def _everywhere(

@@ -30,7 +30,7 @@ STRAIGHT = 1e-12
 #: Part of a rigid motion below which a spring does not feel it.
 RESISTED = 1e-9
 #: Solutions of the saddle point problem, each for what the last one has left.
-REFINEMENTS = 3
+REFINEMENTS = 2
 #: Work of a dense LU over that of a banded one, for matrices of equal size: n^3 2/3 against 4 n k^2.
 DENSE, BANDED = 2.0 / 3.0, 4.0
 
@@ -39,22 +39,25 @@ DENSE, BANDED = 2.0 / 3.0, 4.0
 class Condensed:
     """The condensed system and the way back to the whole one.
 
-    ``U_dr`` (n_dof, n_r) are the displacements of the whole for each condensed one, ``held_dr`` (n_dof, n_r) what fixed
-    degrees of freedom then hold; ``rest`` is the interface of the whole before anything moves.
+    ``U_dr`` (n_dof, n_r) are the displacements of the whole for each condensed one, ``held_fr`` what the fixed degrees
+    of freedom ``fixed_f`` then hold; ``rest`` is the interface of the whole before anything moves.
     """
 
     system: System
     whole: System
     U_dr: np.ndarray
-    held_dr: np.ndarray
+    held_fr: np.ndarray
+    fixed_f: np.ndarray
     rest: Contact
 
     def expanded(self, point: Point) -> Point:
         """The same point of the path, told in all displacements."""
         whole, state, found = self.whole, point.state, point.response
         u_d, touch = self.U_dr @ state.u_d, replace(self.rest, g_q=found.contact.g_q)
-        on_fixed_d = self.held_dr @ state.u_d + forces(whole.interface, touch, found.p_q, whole.n_dof)
-        internal_d = np.where(whole.free_d, state.load * whole.load_d, on_fixed_d)
+        internal_d = state.load * whole.load_d
+        if self.fixed_f.size:
+            on_fixed_d = forces(whole.interface, touch, found.p_q, whole.n_dof)
+            internal_d[self.fixed_f] = self.held_fr @ state.u_d + on_fixed_d[self.fixed_f]
         springs = 0.5 * float(whole.spring_r @ (whole.springs_rd @ u_d) ** 2)
         response = replace(found, internal_d=internal_d, bulk_energy=found.bulk_energy - springs, contact=touch)
         return replace(point, state=replace(state, u_d=u_d, pairing=self.rest.pairing), response=response)
@@ -107,8 +110,9 @@ def condensed(system: System) -> Condensed | None:
         spring_r=np.zeros(0),
         bulk_dd=0.5 * (S_rr + S_rr.T),
     )
-    held_dr = np.where(system.free_d[:, None], 0.0, _bulk_forces(system, U_dr))
-    return Condensed(small, system, U_dr, held_dr, rest)
+    fixed = np.flatnonzero(~system.free_d)
+    held_fr = _bulk_forces(system, U_dr)[fixed] if fixed.size else np.zeros((0, n_r))
+    return Condensed(small, system, U_dr, held_fr, fixed, rest)
 
 
 def _rows(system: System) -> tuple[csr_array, np.ndarray, np.ndarray]:

@@ -11,7 +11,6 @@ from iga.extraction import Mesh
 from iga.lagrange import lagrange_rectangle
 from iga.nurbs import nurbs_rectangle
 
-
 #: Part of an element that rounding may add or take: numbers of elements do not turn on it.
 ROUNDING = 1e-9
 
