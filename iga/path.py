@@ -17,9 +17,9 @@ from iga.landing import SEVERAL, broken_between, landed, slope_over_arcs
 from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium
 from iga.pace import Pace, Step, next_step, paced
 from iga.point import End, Point
-from iga.system import Phase, State, System, energies, respond, slid_off, untimed
+from iga.system import Phase, State, System, energies, respond, untimed
 from iga.tangent import tangent
-from iga.work import leaks, step_work, straight_work
+from iga.work import leaks, slid_off, step_work, straight_work
 
 #: A specimen has separated when its load, and all that the path could bring back, is below this part of the peak.
 SEPARATED = 1e-3
@@ -169,6 +169,8 @@ def _advance(
     old, path, control = point.state, point.tangent, asked.control
     value, a_d, a_load = control(old, point.response)
     rate = float(a_d @ path.du_d) + a_load * path.d_load
+    if rate == 0.0:  # what stands still leads nowhere
+        return None
     change = rate * asked.away
     trial = replace(old, u_d=old.u_d + asked.away * path.du_d, load=old.load + asked.away * path.d_load)
     found = equilibrium(system, trial, control, value + change, change, newton, phase)
@@ -184,7 +186,6 @@ def _advance(
         state = replace(state, closed_q=old.closed_q)
         response = respond(system, replace(state, k_q=old.k_q), decide=False)
     state = replace(state, k_q=response.k_q, scale=max(old.scale, response.scale))
-    state = replace(state, slid=old.slid + slid_off(system, (old, point.response), (state, response)))
     leaving = tangent(system, state, response, direction, phase, kink=kink)
     if leaving is None:
         return None
@@ -195,12 +196,17 @@ def _advance(
         slope = slope_over_arcs(point.before, (point.opening, old.load), (opening, state.load))
         leaving = leaving if slope is None else replace(leaving, slope=slope)
     reached = Point(state, response, opening, leaving, 0.0, energy, found.residuals, before)
+    there, b_d, b_load = control(state, response)
+    end_rate = float(b_d @ leaving.du_d) + b_load * leaving.d_load
+    if end_rate == 0.0:
+        return None
+    away, back = (there - value) / rate, (there - value) / end_rate
     if by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
         work = straight_work(point, reached)
     else:
-        there, b_d, b_load = control(state, response)
-        end_rate = float(b_d @ leaving.du_d) + b_load * leaving.d_load
-        work = step_work(system, point, reached, (there - value) / rate, (there - value) / end_rate)
+        work = step_work(system, point, reached, away, back)
+    slid = slid_off(system, point, reached, away, back)
+    reached = replace(reached, state=replace(state, slid=old.slid + slid), energy=energy + slid)
     return replace(reached, external_work=point.external_work + work)
 
 

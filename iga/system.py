@@ -41,8 +41,6 @@ UNLOADED = 1e-3
 #: residual of 5e-12.
 LOST = 10.0 * np.finfo(float).eps
 HIDDEN = LOST / 5e-12
-#: Parts of a step over which it is told what slides off the master.
-SLIDING = 16
 #: Part of the forces in play below which a point of the interface neither opens nor closes.
 NOTHING = 1e-13
 
@@ -257,27 +255,6 @@ def energies(system: System, state: State, response: Response) -> tuple[float, f
     contact_energy = float(interface.dA_q @ (touch.share_q * contact_q))
     elastic = response.bulk_energy + 0.5 * float(system.spring_r @ (system.springs_rd @ state.u_d) ** 2)
     return elastic, cohesive, contact_energy, float(interface.dA_q @ dissipated_q) + state.slid
-
-
-def slid_off(system: System, before: tuple[State, Response], after: tuple[State, Response]) -> float:
-    """Energy that goes with points sliding off the master between two converged states.
-
-    Of ``share psi`` at a point it is ``-psi d(share)``: no force draws what slides off back. Damage beside the share is
-    of a bond that is gone already, and takes nothing. Both integrals have gap and share change evenly on the way.
-    """
-    interface = system.interface
-    shares = [response.contact.share_q for _, response in (before, after)]
-    q = np.flatnonzero((shares[0] < 1.0) | (shares[1] < 1.0))
-    if q.size == 0:
-        return 0.0
-    s = np.linspace(0.0, 1.0, SLIDING + 1)[:, None]
-    share, g = (v0[q] + s * (v1[q] - v0[q]) for v0, v1 in (shares, [at[1].contact.g_q for at in (before, after)]))
-    cohesive, touching, dissipated = interface.law.energies(g, np.maximum(g, before[0].k_q[q]))
-    held_q = 1.0 if interface.bonded_q is None else interface.bonded_q[q]
-    stored, lost = held_q * cohesive + touching, held_q * dissipated
-    gone = -0.5 * (stored[1:] + stored[:-1]) * np.diff(share, axis=0)
-    gone -= (1.0 - 0.5 * (share[1:] + share[:-1])) * np.diff(lost, axis=0)
-    return float(np.sum(gone @ interface.dA_q[q]))
 
 
 def factorise(response: Response) -> BandLU | DenseLU | None:

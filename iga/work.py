@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from iga.point import Point
 from iga.quadrature import gauss
 from iga.system import System
 
+#: Parts of a step over which it is told what slides off the master.
+SLIDING = 16
 #: How far a step may leave the balance of energy open, in parts of the largest work so far: one that leaps over a part
 #: of the path does by more.
 LEAK = 1e-3
@@ -36,6 +40,51 @@ def straight_work(start: Point, end: Point) -> float:
     """The same over the opening itself, with the slopes that are told, for a step that does not turn round."""
     move = end.opening - start.opening
     return 0.5 * move * (start.state.load + end.state.load) + move**2 / 12.0 * (start.slope - end.slope)
+
+
+def slid_off(system: System, start: Point, end: Point, away: float, back: float) -> float:
+    """Energy that goes with points sliding off the master along one step; ``away`` and ``back`` as for `step_work`.
+
+    Of ``share psi`` at a point it is ``-psi d(share)``: no force draws what slides off back. Damage beside the share is
+    of a bond that is gone already, and takes nothing. The gap and the place beyond the end of the master are cubic
+    Hermite curves, within their ends.
+    """
+    interface = system.interface
+    touches = start.response.contact, end.response.contact
+    q = np.flatnonzero((touches[0].share_q < 1.0) | (touches[1].share_q < 1.0))
+    if q.size == 0:
+        return 0.0
+    ends, lengths = (start, end), (away, back)
+    g = _hermite([touch.g_q[q] for touch in touches], [point.tangent.rate_q[q] for point in ends], lengths)
+    left = [0.5 - np.sin(np.arcsin(1.0 - 2.0 * touch.share_q[q]) / 3.0) for touch in touches]
+    left = _hermite(left, [_left_rate(point, q, v) for point, v in zip(ends, left, strict=True)], lengths)
+    share = left**2 * (3.0 - 2.0 * left)  # as `iga.interface` has it
+    cohesive, touching, dissipated = interface.law.energies(g, np.maximum(g, start.state.k_q[q]))
+    held_q = 1.0 if interface.bonded_q is None else interface.bonded_q[q]
+    stored, lost = held_q * cohesive + touching, held_q * dissipated
+    gone = -0.5 * (stored[1:] + stored[:-1]) * np.diff(share, axis=0)
+    gone -= (1.0 - 0.5 * (share[1:] + share[:-1])) * np.diff(lost, axis=0)
+    return float(np.sum(gone @ interface.dA_q[q]))
+
+
+def _left_rate(point: Point, q: np.ndarray, left_q: np.ndarray) -> np.ndarray:
+    """Rate along the tangent of what is ``left`` of a point's way off the master, from that of its share."""
+    touch, du_d = point.response.contact, point.tangent.du_d
+    if touch.m_q is None:
+        return np.zeros(q.size)
+    T, Nb = np.sum(touch.V_qrd[q, 1:] * du_d[touch.dof_qd[q]][:, None], axis=2).T
+    d_share = touch.share_q[q] * touch.fading_q[q] * (T + touch.g_q[q] * Nb) / touch.m_q[q]
+    slope = 6.0 * left_q * (1.0 - left_q)
+    return np.where(slope > 0.0, d_share / np.where(slope > 0.0, slope, 1.0), 0.0)
+
+
+def _hermite(ends: Sequence[np.ndarray], rates: Sequence[np.ndarray], lengths: Sequence[float]) -> np.ndarray:
+    """Cubics (n_s, n_q) between both ends, within them."""
+    s = np.linspace(0.0, 1.0, SLIDING + 1)[:, None]
+    v0, v1 = ends
+    r0, r1 = (length * rate for rate, length in zip(rates, lengths, strict=True))
+    v = (1 + 2 * s) * (1 - s) ** 2 * v0 + s * s * (3 - 2 * s) * v1 + s * (1 - s) ** 2 * r0 + s * s * (s - 1) * r1
+    return np.clip(v, np.minimum(v0, v1), np.maximum(v0, v1))
 
 
 def leaks(start: Point, end: Point, most: float) -> bool:
