@@ -45,9 +45,9 @@ def straight_work(start: Point, end: Point) -> float:
 def slid_off(system: System, start: Point, end: Point, away: float, back: float) -> float:
     """Energy that goes with points sliding off the master along one step; ``away`` and ``back`` as for `step_work`.
 
-    Of ``share psi`` at a point it is ``-psi d(share)``: no force draws what slides off back. Damage beside the share is
-    of a bond that is gone already, and takes nothing. The gap and the place beyond the end of the master are cubic
-    Hermite curves, within their ends.
+    Of ``share psi`` at a point it is ``-psi d(share)``: no force draws what slides off back. Of the damage, which is
+    booked for the whole point, only the share takes anything. The gap and the place beyond the end of the master are
+    cubic Hermite curves, within their ends.
     """
     interface = system.interface
     touches = start.response.contact, end.response.contact
@@ -59,11 +59,13 @@ def slid_off(system: System, start: Point, end: Point, away: float, back: float)
     left = [0.5 - np.sin(np.arcsin(1.0 - 2.0 * touch.share_q[q]) / 3.0) for touch in touches]
     left = _hermite(left, [_left_rate(point, q, v) for point, v in zip(ends, left, strict=True)], lengths)
     share = left**2 * (3.0 - 2.0 * left)  # as `iga.interface` has it
-    cohesive, touching, dissipated = interface.law.energies(g, np.maximum(g, start.state.k_q[q]))
+    k = np.maximum(g, start.state.k_q[q])
+    cohesive, touching, dissipated = interface.law.energies(g, k)
+    booked = interface.law.energies(g, np.minimum(k, end.state.k_q[q]))[2]  # a point that has gone keeps its history
     held_q = 1.0 if interface.bonded_q is None else interface.bonded_q[q]
-    stored, lost = held_q * cohesive + touching, held_q * dissipated
-    gone = -0.5 * (stored[1:] + stored[:-1]) * np.diff(share, axis=0)
-    gone -= (1.0 - 0.5 * (share[1:] + share[:-1])) * np.diff(lost, axis=0)
+    stored = held_q * cohesive + touching
+    gone = held_q * (0.5 * (share[1:] + share[:-1]) * np.diff(dissipated, axis=0) - np.diff(booked, axis=0))
+    gone -= 0.5 * (stored[1:] + stored[:-1]) * np.diff(share, axis=0)
     return float(np.sum(gone @ interface.dA_q[q]))
 
 
