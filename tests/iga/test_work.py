@@ -1,4 +1,4 @@
-"""Energy that the ledger of a path must know of: in the springs of supports, and in points that slide off the master."""
+"""Energy that the ledger of a path must know of: in springs of supports, and in points that slide off the master."""
 
 from dataclasses import replace
 
