@@ -71,7 +71,8 @@ def condensed(system: System) -> Condensed | None:
     interface = system.interface
     if system.kinematics != "linear":
         return None
-    B_rd, kept_qd, weight_qd = _rows(system)
+    rest = contact(interface, np.zeros(system.n_dof), pair(interface))
+    B_rd, kept_qd, weight_qd = _rows(system, rest)
     n_r = B_rd.shape[0]
     if DENSE * n_r**3 > BANDED * system.band.n * system.band.k**2:
         return None
@@ -97,7 +98,6 @@ def condensed(system: System) -> Condensed | None:
     U_dr += (np.linalg.solve(triangle.T, rigid_dm.T).T - U_dr @ y_rm) @ y_rm.T
     S_rr -= y_rm @ (y_rm.T @ S_rr)
     S_rr -= (S_rr @ y_rm) @ y_rm.T
-    rest = contact(interface, np.zeros(system.n_dof), pair(interface))
     at_rest = replace(rest, pairing=None, dof_qd=kept_qd, V_qrd=weight_qd[:, None])
     small = System(
         solids=(),
@@ -115,13 +115,13 @@ def condensed(system: System) -> Condensed | None:
     return Condensed(small, system, U_dr, held_fr, fixed, rest)
 
 
-def _rows(system: System) -> tuple[csr_array, np.ndarray, np.ndarray]:
+def _rows(system: System, rest: Contact) -> tuple[csr_array, np.ndarray, np.ndarray]:
     """Displacements that are kept, as rows B (n_r, n_dof), the opening last, and the gaps in them.
 
     The gap of point q is the sum of ``weight_qd`` times the kept displacements ``kept_qd`` (n_q, n_d): on a straight
     interface those along its normal, of pairs of control points that face each other only how far they are apart.
     """
-    interface, rest = system.interface, contact(system.interface, np.zeros(system.n_dof), pair(system.interface))
+    interface = system.interface
     n_i, V_qd = rest.n_qi[0], rest.V_qrd[:, 0]
     if np.abs(rest.n_qi - n_i).max() > STRAIGHT:
         kept, kept_qd = _numbered(rest.dof_qd)
