@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 import verify.report
@@ -17,6 +16,7 @@ from verify.cost.row import Row
 from verify.report.style import custom_properties
 from verify.report.text import number, percent, seconds, sentence
 from verify.run import machine, versions
+from verify.templates import templates
 
 if TYPE_CHECKING:
     from verify.cost.study import Study
@@ -65,13 +65,7 @@ def write(study: Study, path: Path) -> None:
     levels = [Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS]
     found = orders(rows, 2.0 * study.against.uncertainty["curve"])
     typical = list(levels[1].best.of_method.values())
-    jinja = Environment(
-        loader=PackageLoader("verify.cost", "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    jinja = templates("verify.cost")
     jinja.filters |= {"svg": Markup, "number": number, "percent": percent, "seconds": seconds, "named": named}
     about = machine()
     page = jinja.get_template("page.html.j2").render(

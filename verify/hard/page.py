@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 import verify.report
@@ -18,6 +17,7 @@ from verify.hard.suite import Cell, totals
 from verify.report.style import METHOD_NAMES, Line, Panel, custom_properties, drawing, line, panel, to_svg
 from verify.report.text import number, seconds
 from verify.result import Result
+from verify.templates import templates
 from verify.verdict import Check
 
 _CSS = Path(verify.report.__file__).with_name("page.css")
@@ -42,13 +42,7 @@ def write(cells: Sequence[Cell], out: Path) -> None:
     """Write ``out``/report.html."""
     cases = list(dict.fromkeys(cell.case.name for cell in cells))
     rows = [_row([cell for cell in cells if cell.case.name == name], out) for name in cases]
-    jinja = Environment(
-        loader=PackageLoader("verify.hard", "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    jinja = templates("verify.hard")
     jinja.filters |= {"svg": Markup, "number": number, "seconds": seconds, "worst": worst_first}
     page = jinja.get_template("page.html.j2").render(
         rows=rows,

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from verify.paper.peel import PeelStudy
@@ -18,6 +17,7 @@ from verify.report.section import section
 from verify.report.style import custom_properties
 from verify.report.summary import summarise
 from verify.report.text import number, symbols
+from verify.templates import templates
 from verify.verdict import SceneReport
 
 __all__ = ["write"]
@@ -51,13 +51,7 @@ def write(
     sections = tuple(section(report, f"scene-{i + 1}") for i, report in enumerate(reports))
     plane_sections = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(planes))
     rates_section = plane_rates.section(rates, "rates") if rates else None
-    jinja = Environment(
-        loader=PackageLoader("verify.report", "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    jinja = templates("verify.report")
     jinja.filters["svg"] = Markup  # drawn by this package, which has escaped its texts
     jinja.filters |= {"number": number, "symbols": symbols}
     page = jinja.get_template("page.html.j2").render(

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from matplotlib.axes import Axes
 
 from verify.compare import Comparison
 from verify.curve import envelope
 from verify.report.style import HALF, Line, Panel, colour, custom_properties, drawing, panel, to_svg
+from verify.templates import templates
 from verify.verdict import Check
 
 _CSS = Path(__file__).with_name("page.css")
@@ -36,13 +36,7 @@ def page(
     found : the checks that were asked for
     remarks : what is printed above the numbers
     """
-    jinja = Environment(
-        loader=PackageLoader("verify.report", "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    jinja = templates("verify.report")
     return jinja.get_template("comparison.html.j2").render(
         labels=labels,
         rows=rows,
