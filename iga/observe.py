@@ -14,7 +14,6 @@ from iga.interface import contact
 from iga.kinematics import KINEMATICS
 from iga.path import Point
 from iga.specimen import Specimen
-from iga.system import energies
 
 
 def row(specimen: Specimen, point: Point) -> dict[str, float]:
@@ -22,8 +21,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
 
     ``reaction_x`` and ``reaction_y`` are what springs and clamps carry besides the resultant of the loads.
     """
-    system, state, response = specimen.system, point.state, point.response
-    bulk_energy, cohesive, contact_energy, dissipated = energies(system, state, response)
+    system, state, energies = specimen.system, point.state, point.energies
     held_Ai = (system.spring_forces(state.u_d) @ system.springs_rd).reshape(-1, 2)
     reaction_x, reaction_y = specimen.pose.components(held_Ai.sum(0))
     tip, end = openings(specimen, point)
@@ -32,8 +30,8 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         "opening": point.opening,
         "load": state.load,
         "crack_length": reach(specimen, state.k_q, system.interface.law.g_u),
-        "stored_energy": bulk_energy + cohesive + contact_energy,
-        "dissipated_energy": dissipated,
+        "stored_energy": energies.stored,
+        "dissipated_energy": energies.dissipated,
         "external_work": point.external_work,
         "newton_iterations": point.iterations,
         "load_slope": point.slope,
@@ -48,9 +46,9 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         "reaction_x": float(reaction_x),
         "reaction_y": float(reaction_y),
         **({} if system.free_d.all() else _clamp(specimen, point, held_Ai)),
-        "bulk_energy": bulk_energy,
-        "cohesive_energy": cohesive,
-        "contact_energy": contact_energy,
+        "bulk_energy": energies.bulk,
+        "cohesive_energy": energies.cohesive,
+        "contact_energy": energies.contact,
     }
 
 

@@ -69,7 +69,7 @@ def follow(
             if reached is None or leaks(point, reached, most):
                 rejected, pace = rejected + 1, pace.slower()
                 if pace.exhausted:
-                    yield End(_advice(point.opening), rejected)
+                    yield End(_advice(point.opening, leapt=reached is not None), rejected)
                     return
                 continue
             peak, most = max(peak, abs(reached.state.load)), max(most, abs(reached.external_work))
@@ -121,8 +121,15 @@ def _departing(system: System, state: State, direction: float, work: float, phas
         found = tangent(system, state, response, direction, phase, turning=not ahead)
         if found is None:
             return None
-        energy = sum(energies(system, state, response))
-        start = Point(replace(state, closed_q=found.closed_q), response, opening, found, work, energy, ())
+        start = Point(
+            replace(state, closed_q=found.closed_q),
+            response,
+            opening,
+            found,
+            work,
+            energies(system, state, response),
+            (),
+        )
         if found.agreed or ahead:
             break
         trifle = direction * TRIFLE * max(abs(opening), system.interface.law.g_max)
@@ -189,13 +196,12 @@ def _advance(
     leaving = tangent(system, state, response, direction, phase, kink=kink)
     if leaving is None:
         return None
-    energy = sum(energies(system, state, response))
     broken = broken_between(system, old, state) if by_kinks else 0
     before = (point.opening, old.load) if broken else None
     if broken >= SEVERAL and point.before is not None:
         slope = slope_over_arcs(point.before, (point.opening, old.load), (opening, state.load))
         leaving = leaving if slope is None else replace(leaving, slope=slope)
-    reached = Point(state, response, opening, leaving, 0.0, energy, found.residuals, before)
+    reached = Point(state, response, opening, leaving, 0.0, energies(system, state, response), found.residuals, before)
     there, b_d, b_load = control(state, response)
     end_rate = float(b_d @ leaving.du_d) + b_load * leaving.d_load
     if end_rate == 0.0:
@@ -206,11 +212,18 @@ def _advance(
     else:
         work = step_work(system, point, reached, away, back)
     slid = slid_off(system, point, reached, away, back)
-    reached = replace(reached, state=replace(state, slid=old.slid + slid), energy=energy + slid)
+    spent = replace(reached.energies, dissipated=reached.energies.dissipated + slid)
+    reached = replace(reached, state=replace(state, slid=old.slid + slid), energies=spent)
     return replace(reached, external_work=point.external_work + work)
 
 
-def _advice(opening: float) -> str:
+def _advice(opening: float, leapt: bool) -> str:
+    if leapt:
+        return (
+            f"stopped: the energy jumps at opening {opening:.6g}, however short the step, as where a point of the "
+            "interface crosses a corner of the other surface; refine the mesh along the crack (discretization.dofs) or "
+            "take a basis with smooth surfaces (tspline, nurbs)"
+        )
     return (
         f"stopped: Newton did not converge beyond opening {opening:.6g} even with a step 4096 times smaller; "
         "refine the mesh along the crack (discretization.dofs), take more interface points "

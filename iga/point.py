@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from iga.system import Response, State
+from iga.system import Energies, Response, State
 from iga.tangent import Tangent
 
 
@@ -13,8 +13,7 @@ class Point:
     """A converged point of the path, its history committed, and the tangent on which the path leaves it.
 
     ``slope`` is d load / d opening there and ``heading`` the sign of the change of the opening along the path;
-    ``external_work`` is the integral of the load over the opening along the path, ``energy`` what is stored and
-    dissipated.
+    ``external_work`` is the integral of the load over the opening along the path.
     ``residuals`` are the norms that Newton went through, relative to the scale of the forces.
     ``before`` is where the step that ended here began, opening and load, if points broke on it.
     """
@@ -24,7 +23,7 @@ class Point:
     opening: float
     tangent: Tangent
     external_work: float
-    energy: float
+    energies: Energies
     residuals: tuple[float, ...]
     before: tuple[float, float] | None = None
 

@@ -65,6 +65,27 @@ class State:
 
 
 @dataclass(frozen=True)
+class Energies:
+    """What the work has become: stored in bulk and springs, in cohesion and in contact, and dissipated.
+
+    A spring that carries what tilted tractions pull lengthwise stores some, too.
+    """
+
+    bulk: float
+    cohesive: float
+    contact: float
+    dissipated: float
+
+    @property
+    def stored(self) -> float:
+        return self.bulk + self.cohesive + self.contact
+
+    @property
+    def total(self) -> float:
+        return self.stored + self.dissipated
+
+
+@dataclass(frozen=True)
 class Response:
     """What a configuration answers.
 
@@ -244,17 +265,14 @@ def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.nd
     return np.where(nothing_q, trial.closed_q, touch.g_q < 0.0)
 
 
-def energies(system: System, state: State, response: Response) -> tuple[float, float, float, float]:
-    """Energy stored in bulk and springs, in cohesion and in contact, and dissipated, at a state with its history.
-
-    A spring that carries what tilted tractions pull lengthwise stores some, too.
-    """
+def energies(system: System, state: State, response: Response) -> Energies:
+    """What is stored and dissipated at a state with its history."""
     interface, touch = system.interface, response.contact
     cohesive_q, contact_q, dissipated_q = interface.law.energies(touch.g_q, state.k_q)
     cohesive = float(interface.dA_q @ (np.where(holding(interface, touch), touch.share_q, 0.0) * cohesive_q))
     contact_energy = float(interface.dA_q @ (touch.share_q * contact_q))
     elastic = response.bulk_energy + 0.5 * float(system.spring_r @ (system.springs_rd @ state.u_d) ** 2)
-    return elastic, cohesive, contact_energy, float(interface.dA_q @ dissipated_q) + state.slid
+    return Energies(elastic, cohesive, contact_energy, float(interface.dA_q @ dissipated_q) + state.slid)
 
 
 def factorise(response: Response) -> BandLU | DenseLU | None:

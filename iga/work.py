@@ -13,8 +13,8 @@ from iga.system import System
 #: Parts of a step over which it is told what slides off the master.
 SLIDING = 16
 #: How far a step may leave the balance of energy open, in parts of the largest work so far: one that leaps over a part
-#: of the path does by more.
-LEAK = 1e-3
+#: of the path does by more. Where less than this is dissipated, a part of that is as much; what no step is refused for.
+LEAK, LEAK_OF_DISSIPATED, TRIFLE = 1e-3, 3e-3, 1e-7
 
 
 def step_work(system: System, start: Point, end: Point, away: float, back: float) -> float:
@@ -94,5 +94,6 @@ def leaks(start: Point, end: Point, most: float) -> bool:
 
     ``most`` is the largest work so far.
     """
-    work = end.external_work - start.external_work
-    return abs(work - (end.energy - start.energy)) > LEAK * max(most, abs(end.external_work))
+    most = max(most, abs(end.external_work))
+    leak = abs(end.external_work - start.external_work - (end.energies.total - start.energies.total))
+    return leak > min(LEAK * most, max(LEAK_OF_DISSIPATED * end.energies.dissipated, TRIFLE * most))

@@ -105,7 +105,7 @@ def test_penalties_from_soft_to_hard(slave):
         assert np.allclose(end.response.p_q[closed], penalty * touch.g_q[closed] * touch.share_q[closed], rtol=1e-12)
         assert -touch.g_q.min() < 30.0 / penalty
         work = max(point.external_work for point in points)
-        assert abs(end.external_work - end.energy) < 2e-3 * work
+        assert abs(end.external_work - end.energies.total) < 2e-3 * work
         pressed[penalty] = end.state.load
     loads = np.array(list(pressed.values()))
     print(f"{slave}: pressed {loads}")

@@ -11,7 +11,7 @@ from iga.dcb import build
 from iga.grading import rectangle
 from iga.newton import DEFAULT, equilibrium
 from iga.path import Point, follow
-from iga.system import energies, respond, untimed
+from iga.system import respond, untimed
 from iga.tangent import on_envelope, tangent
 
 #: The path is followed to a third of the opening that the mesh is made for: elements are so long that it snaps back.
@@ -92,7 +92,7 @@ def test_on_a_snap_back_damage_grows_while_the_opening_falls(snapping):
         assert float(system.load_d @ path.du_d) < 0.0 and path.slope > 0.0 and path.d_load < 0.0
         assert np.any(path.growing_q) and np.all(path.rate_q[path.growing_q] > 0.0)
         assert end.opening < start.opening
-        spent = [energies(system, p.state, p.response)[3] for p in (start, end)]
+        spent = [p.energies.dissipated for p in (start, end)]
         assert spent[1] > spent[0]
 
 
