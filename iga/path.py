@@ -66,7 +66,7 @@ def follow(
             if reached is not None and direction * (reached.opening - goal) > 0.0 and not asked.exact:
                 asked = _onto(system, point, goal)
                 reached = _advance(system, point, asked, direction, pace, newton, phase)
-            if reached is None or leaks(point, reached, most):
+            if reached is None or leaks(system, point, reached, most):
                 rejected, pace = rejected + 1, pace.slower()
                 if pace.exhausted:
                     yield End(_advice(point.opening, leapt=reached is not None), rejected)
