@@ -81,6 +81,14 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--jobs", type=_positive, default=os.cpu_count() or 1, metavar="N", help=alone)
     sub.add_argument("--dry-run", action="store_true", help="print the runs and the time that they would take")
 
+    text = "What each effect changes and costs: on and off, everything else as the scene says."
+    sub = command("effects", _effects, text, "effects dcb-czm1 --out effects")
+    sub.add_argument("scene", metavar="SCENE", help="a packaged name or a file")
+    sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
+    sub.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help="replace a key")
+    sub.add_argument("--out", type=Path, default=Path("debond-effects"), metavar="DIR", help="default: debond-effects")
+    _sweep_options(sub)
+
     sub = command("hard", _hard, "The cases on which cohesive codes stop or go wrong.", "hard coarse-czm2 --jobs 2")
     sub.add_argument("names", nargs="*", metavar="NAME", help="hard cases; default: all")
     sub.add_argument("--out", type=Path, default=Path("debond-hard"), metavar="DIR", help="default: debond-hard")
@@ -263,6 +271,27 @@ def _cost(options: argparse.Namespace) -> int:
         return _listed(would_run(*what))
     _folder(options.out)
     return 0 if cost(*what) is not None else FAILED
+
+
+def _effects(options: argparse.Namespace) -> int:
+    from verify.methods import NotRun, require
+    from verify.run import mpi_size
+    from verify.scene import load_scene
+    from verify.switches.study import effects, would_run
+
+    _known_method(options.method, None)
+    if mpi_size() > 1:
+        raise Refusal(f"effects: must be started in 1 process, without mpirun, got {mpi_size()}")
+    scene = load_scene(options.scene, options.overrides)
+    what = (options.scene, scene, options.method, options.overrides, options.out)
+    try:
+        if options.dry_run:
+            return _listed(would_run(*what))
+        require(scene, options.method)
+        _folder(options.out)
+        return 0 if effects(*what, options.jobs, options.scheduler).complete else FAILED
+    except NotRun as error:
+        return _not_run(error)
 
 
 def _hard(options: argparse.Namespace) -> int:

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-import verify.report
 from verify.cost.figures import METHODS, error_and_unknowns, named, phases, triple, work_precision
 from verify.cost.findings import LEVELS, Cheapest, cheapest, growth, of_equal_steps, orders
 from verify.cost.row import Row
-from verify.report.style import custom_properties
+from verify.report.look import look
 from verify.report.text import number, percent, seconds, sentence
 from verify.run import machine, versions
 from verify.templates import templates
@@ -21,7 +20,6 @@ from verify.templates import templates
 if TYPE_CHECKING:
     from verify.cost.study import Study
 
-_CSS = Path(verify.report.__file__).with_name("page.css")
 _SCRIPT = Path(__file__).with_name("chart.js")
 
 #: What the chart can show on its axes: key of a row, name, factor.
@@ -90,9 +88,7 @@ def write(study: Study, path: Path) -> None:
         },
         data=_for_script(rows),
         script=Markup(_SCRIPT.read_text(encoding="utf-8")),
-        light=Markup(custom_properties(dark=False)),
-        dark=Markup(custom_properties(dark=True)),
-        css=Markup(_CSS.read_text(encoding="utf-8")),
+        **look(),
     )
     path.write_text(page, encoding="utf-8")
 

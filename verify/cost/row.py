@@ -79,7 +79,7 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int
         unknown = {field.name: nan if field.type == "float" else 0 for field in fields(Row)}
         return Row(**unknown | head | {"status": status})
     result = results[0]
-    quickest = min(results, key=_seconds)
+    quickest = min(results, key=run_seconds)
     phases = {name: quickest.seconds[name] for name in (*PHASES, "other")}
     phases["basis"] -= quickest.jit_seconds
     steps = result.steps
@@ -88,7 +88,7 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int
         **errors(result, against),
         **phases,
         dofs=result.dofs,
-        seconds=_seconds(quickest),
+        seconds=run_seconds(quickest),
         jit_seconds=quickest.jit_seconds,
         peak_memory_mb=max(one.peak_memory_mb for one in results),
         elements=result.elements,
@@ -150,7 +150,8 @@ def read_csv(path: Path) -> list[Row]:
         return [Row(**{name: types[name](text) for name, text in line.items()}) for line in csv.DictReader(stream)]
 
 
-def _seconds(result: Result) -> float:
+def run_seconds(result: Result) -> float:
+    """Wall time of a run without what it compiled."""
     return (result.seconds or {}).get("total", nan) - result.jit_seconds
 
 

@@ -9,18 +9,17 @@ from pathlib import Path
 import numpy as np
 from markupsafe import Markup
 
-import verify.report
 from verify.curve import dense, envelope
 from verify.folder import read_result
 from verify.hard.case import BASES, Case
 from verify.hard.suite import Cell, totals
-from verify.report.style import METHOD_NAMES, Line, Panel, custom_properties, drawing, line, panel, to_svg
+from verify.report.look import look
+from verify.report.style import METHOD_NAMES, Line, Panel, drawing, line, panel, to_svg
 from verify.report.text import number, seconds
 from verify.result import Result
 from verify.templates import templates
 from verify.verdict import Check
 
-_CSS = Path(verify.report.__file__).with_name("page.css")
 #: Points of a drawn curve, about; runs that are named in a legend, at most.
 _POINTS, _NAMED = 600, 8
 _COLOURS = ("nurbs", "lagrange", "dolfinx", "beam", "zone", "tspline", "accent", "bad")
@@ -49,9 +48,7 @@ def write(cells: Sequence[Cell], out: Path) -> None:
         bases={basis: METHOD_NAMES[basis] for basis in BASES},
         held=sum(row.passed for row in rows),
         totals=totals,
-        light=Markup(custom_properties(dark=False)),
-        dark=Markup(custom_properties(dark=True)),
-        css=Markup(_CSS.read_text(encoding="utf-8")),
+        **look(),
     )
     (out / "report.html").write_text(page, encoding="utf-8")
 

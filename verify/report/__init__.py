@@ -13,8 +13,8 @@ from verify.plane_rates import Convergence
 from verify.plane_study import PlaneStudy
 from verify.quadrature_study import Study
 from verify.report import paper_section, peel_section, plane, plane_rates, study
+from verify.report.look import look
 from verify.report.section import section
-from verify.report.style import custom_properties
 from verify.report.summary import summarise
 from verify.report.text import number, symbols
 from verify.templates import templates
@@ -63,9 +63,7 @@ def write(
         paper=None if paper is None else paper_section.section(paper, "figures"),
         peels=None if peels is None else peel_section.section(peels, "figure-9"),
         environment=dict(environment),
-        light=Markup(custom_properties(dark=False)),
-        dark=Markup(custom_properties(dark=True)),
-        css=Markup((_HERE / "page.css").read_text(encoding="utf-8")),
+        **look(),
     )
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 from markupsafe import Markup
@@ -11,11 +10,11 @@ from matplotlib.axes import Axes
 
 from verify.compare import Comparison
 from verify.curve import envelope
-from verify.report.style import HALF, Line, Panel, colour, custom_properties, drawing, panel, to_svg
+from verify.report.look import look
+from verify.report.style import HALF, Line, Panel, colour, drawing, panel, to_svg
 from verify.templates import templates
 from verify.verdict import Check
 
-_CSS = Path(__file__).with_name("page.css")
 _A, _B = Line("lagrange", 1.2, (), 1.0, 4.0), Line("dolfinx", 3.4, (), 0.5, 2.0)
 _PATH = {"alpha": 0.35, "linewidth": 0.7, "linestyle": "solid"}
 
@@ -44,9 +43,7 @@ def page(
         passed=all(check.passed for check in found),
         remarks=remarks,
         panels=[Panel(Markup(p.svg), p.caption) for p in (_curves(comparison, labels), _difference(comparison))],
-        light=Markup(custom_properties(dark=False)),
-        dark=Markup(custom_properties(dark=True)),
-        css=Markup(_CSS.read_text(encoding="utf-8")),
+        **look(),
     )
 
 
