@@ -13,8 +13,9 @@ from iga.system import System
 #: Parts of a step over which it is told what slides off the master.
 SLIDING = 16
 #: How far a step may leave the balance of energy open, in parts of the largest work so far: one that leaps over a part
-#: of the path does by more. Where less than this is dissipated, a part of that is as much; what no step is refused for.
-LEAK, LEAK_OF_DISSIPATED, TRIFLE = 1e-3, 5e-3, 1e-7
+#: of the path does by more. As long as less than that is dissipated it is no measure; then a part of what is, or, where
+#: that is next to nothing, of the work.
+LEAK, LEAK_OF_DISSIPATED, LEAK_OF_ELASTIC = 1e-3, 1e-3, 1e-7
 
 
 def step_work(system: System, start: Point, end: Point, away: float, back: float) -> float:
@@ -92,11 +93,12 @@ def _hermite(ends: Sequence[np.ndarray], rates: Sequence[np.ndarray], lengths: S
 def leaks(system: System, start: Point, end: Point, most: float) -> bool:
     """Whether the work of a step is not what its energies say: it did not go along the path.
 
-    ``most`` is the largest work so far. Where damage begins nothing tells yet how much is going to be dissipated, and a
-    reversible law dissipates nothing.
+    ``most`` is the largest work so far. On the step on which damage begins nothing tells yet how much is going to be
+    dissipated, and a reversible law dissipates nothing.
     """
     most = max(most, abs(end.external_work))
     leak = abs(end.external_work - start.external_work - (end.energies.total - start.energies.total))
     before, after = start.energies.dissipated, end.energies.dissipated
-    tells = system.interface.law.irreversible and not before == 0.0 < after
-    return leak > min(LEAK * most, max(LEAK_OF_DISSIPATED * after, TRIFLE * most) if tells else np.inf)
+    if after >= LEAK * most or before == 0.0 < after or not system.interface.law.irreversible:
+        return leak > LEAK * most
+    return leak > max(LEAK_OF_DISSIPATED * after, LEAK_OF_ELASTIC * most)

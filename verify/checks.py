@@ -73,7 +73,7 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
 def law_of(scene: Scene) -> Bilinear:
     """The scene's traction law, in the copy that only checks and beam use."""
     i = scene.interface
-    return Bilinear(i.strength, i.toughness, i.ductility, i.penalty, scene.effects.contact)
+    return Bilinear(i.strength, i.toughness, i.ductility, i.penalty, simulated(scene, "")["contact"])
 
 
 def j_deviation(scene: Scene, steps: Steps) -> float | None:
@@ -153,7 +153,7 @@ def _j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     J = steps["load"] * slopes / scene.specimen.width - steps["face_energy"]
     law = law_of(scene)
     area = law.area(steps["tip_opening"]) - law.area(steps.get("end_opening", np.zeros(J.size)))
-    valid = loading(steps) if scene.effects.irreversible else np.ones(J.size, dtype=bool)
+    valid = loading(steps) if simulated(scene, "")["irreversible"] else np.ones(J.size, dtype=bool)
     return np.where(valid & far_from_end(scene, steps), J - area, 0.0) / scene.interface.toughness
 
 
@@ -230,7 +230,7 @@ def dissipation_gap(scene: Scene, steps: Steps) -> float | None:
     steps = {name: column[before] for name, column in steps.items()}
     crack = np.maximum.accumulate(steps["crack_length"])
     grown = np.flatnonzero(crack > scene.specimen.free_length)
-    if not scene.effects.irreversible or not grown.size:
+    if not simulated(scene, "")["irreversible"] or not grown.size:
         return None
     first = grown[0]
     new_crack = crack[-1] - crack[first]

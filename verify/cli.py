@@ -142,6 +142,8 @@ def _compare_options(sub: argparse.ArgumentParser) -> None:
 
 
 def _solve(options: argparse.Namespace) -> int:
+    from verify import neglected
+    from verify.effects import decided
     from verify.methods import NotRun, require
     from verify.process_zone import warnings
     from verify.run import mpi_rank, mpi_size, run
@@ -163,11 +165,13 @@ def _solve(options: argparse.Namespace) -> int:
         return _not_run(error)
     _folder(options.out)
     if not quiet:
-        for warning in warnings(scene, options.method):
-            _say(f"debond: {warning}")
+        for remark in (*decided(scene, options.method), *warnings(scene, options.method)):
+            _say(f"debond: {remark}")
     result, checks = _watched(run, scene, options, quiet)
     if not quiet:
         _print_result(result, checks, options.out)
+        for remark in neglected.warnings(scene, result):
+            _say(f"debond: {remark}")
     return 0 if result.complete else FAILED
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from verify.effects import crack_at_the_end
+from verify.effects import crack_at_the_end, simulated
 from verify.methods import WITH_DOFS, counted_steps
 from verify.process_zone import bulk_length, slender_length
 from verify.schema import Scene
@@ -35,7 +35,7 @@ def steps(scene: Scene) -> int:
 def unknowns(scene: Scene, method: str) -> int:
     """Degrees of freedom that a method aims at; 1000 for one that chooses its own."""
     if method in WITH_DOFS:
-        return scene.discretization.dofs // (2 if scene.effects.symmetry else 1)
+        return scene.discretization.dofs // (2 if simulated(scene, method)["symmetry"] else 1)
     if method != "dolfinx":
         return 1000
     p, n = scene.dolfinx.degree, scene.dolfinx.elements

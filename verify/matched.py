@@ -14,14 +14,13 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from verify.checks import law_of
+from verify.effects import NEGLIGIBLE
 from verify.law import Bilinear
 from verify.result import Result, Snapshot
 from verify.schema import Scene
 
 #: A point pulls where its traction is more than this part of the strength.
 PULLS = 0.01
-#: What is left out counts for nothing up to here: within this two codes that share nothing must draw the same curve.
-NEGLIGIBLE = 0.005
 
 
 @dataclass(frozen=True)

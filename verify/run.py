@@ -14,9 +14,9 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from verify import __version__, matched, process_zone
+from verify import __version__, matched, neglected, process_zone
 from verify.checks import run_checks
-from verify.effects import simulated
+from verify.effects import decided, simulated
 from verify.folder import CurveWriter, write_fields, write_json
 from verify.memory import keep_freed_memory
 from verify.methods import solve
@@ -160,6 +160,8 @@ def summary(scene: Scene, result: Result, checks: tuple[Check, ...]) -> dict[str
         "peak_memory_mb": result.peak_memory_mb,
         "nonzeros": result.nonzeros,
         "effects": simulated(scene, result.method),
+        "decided": {one.key: one.why for one in decided(scene, result.method)},
+        "neglected": neglected.summary(scene, result),
         "process_zone": process_zone.summary(scene, result),
         "matched_interface": matched.summary(scene, result),
         "checks": {c.name: _verdict(c) for c in checks},

@@ -51,9 +51,16 @@ class Effects(Section):
     """Only what is asked for is simulated."""
 
     kinematics: Literal["linear", "finite", "auto"] = "finite"
-    contact: bool = True
-    irreversible: bool = True
-    symmetry: bool = False
+    contact: bool | Literal["auto"] = True
+    irreversible: bool | Literal["auto"] = True
+    symmetry: bool | Literal["auto"] = False
+
+    @field_validator("contact", "irreversible", "symmetry", mode="before")
+    @classmethod
+    def _switched_or_chosen(cls, effect: object) -> object:
+        if not isinstance(effect, bool) and effect != "auto":
+            raise refuse('true, false or "auto"', ((), effect))
+        return effect
 
 
 def _as_pair(value: object) -> object:
@@ -168,7 +175,7 @@ class Scene(Section):
     @classmethod
     def _symmetric_specimen(cls, effects: Effects, info: ValidationInfo) -> Effects:
         specimen = info.data.get("specimen")
-        if effects.symmetry and specimen is not None and specimen.kind == "peel":
+        if effects.symmetry is True and specimen is not None and specimen.kind == "peel":
             raise refuse("false for a peel: strip and substrate differ", (("symmetry",), True))
         return effects
 
@@ -181,7 +188,7 @@ class Scene(Section):
             raise refuse(f"false {why}", (("adaptive",), True))
         if mesh.adaptive and mesh.mismatch != 1.0:
             raise refuse("1 with discretization.adaptive, whose arms are alike", (("mismatch",), mesh.mismatch))
-        if effects is not None and effects.symmetry:
+        if effects is not None and effects.symmetry is True:
             given = {"mismatch": mesh.mismatch, "slave": mesh.slave}
             for key, plain in (("mismatch", 1.0), ("slave", "upper")):
                 if given[key] != plain:

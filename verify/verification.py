@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from verify import neglected
 from verify.checks import run_checks
 from verify.convergence import assess
 from verify.crosschecks import cross_checks, peak_load, remarks
@@ -125,7 +126,8 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
             meaning = "The run ended with a result."
             checks.append(Check("completed", outcome.job.variant, float("nan"), 1e-9, "exact", meaning))
     results = {o.job.variant: o.result for o in outcomes if o.result is not None}
-    return SceneReport(scene, runs, (*checks, *cross_checks(scene, results)), remarks(scene, results))
+    said = (*remarks(scene, results), *neglected.remarks(scene, results))
+    return SceneReport(scene, runs, (*checks, *cross_checks(scene, results)), said)
 
 
 def sequences(reports: Sequence[SceneReport]) -> list[str]:

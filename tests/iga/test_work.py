@@ -1,12 +1,15 @@
 """Energy that the ledger of a path must know of: in springs of supports, and in points that slide off the master."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from test_peel import PEEL, column, isotropic
 
 from iga.peel import solve
+from iga.system import Energies
+from iga.work import leaks
 
 #: So soft that the bond hardly gives: strip and substrate stretch, slide on each other and tilt.
 SOFT = replace(PEEL, strip=isotropic(250.0, 0.2), substrate=isotropic(5.0, 0.2), dofs=900)
@@ -34,3 +37,28 @@ def test_what_slides_off_the_end_of_the_master_is_told():
     gone = column(found, "dissipated_energy")[-1]
     assert gone > 0.0 and column(found, "damage_front").max() == column(found, "damage_front")[0]
     assert ledger(found) * column(found, "external_work").max() < 0.01 * gone
+
+
+#: Dissipated before and after a step that does a work of 1, what it leaks, and whether that is too much.
+LEAKS = [
+    pytest.param(0.5, 0.6, 0.9e-3, False, id="far less than is dissipated"),
+    pytest.param(0.5, 0.6, 1.1e-3, True, id="a part of the path left out"),
+    pytest.param(0.0, 0.0, 1e-6, True, id="nothing dissipated and energy gone"),
+    pytest.param(0.0, 1e-5, 1e-6, False, id="damage has just begun"),
+    pytest.param(1e-5, 2e-5, 1e-6, True, id="a twentieth of all that is dissipated"),
+]
+
+
+@pytest.mark.parametrize(("before", "after", "leak", "refused"), LEAKS)
+def test_what_a_step_may_leak(before, after, leak, refused):
+    """A part of the work, but of what is dissipated as long as that is little; of the work with a reversible law."""
+    start, end = (
+        SimpleNamespace(external_work=work, energies=Energies(work - spent, 0.0, 0.0, spent))
+        for work, spent in ((0.0, before), (1.0, after))
+    )
+    for reversible in (False, True):
+        law = SimpleNamespace(irreversible=not reversible)
+        system = SimpleNamespace(interface=SimpleNamespace(law=law))
+        off = replace(end.energies, bulk=end.energies.bulk - leak)
+        after_it = SimpleNamespace(external_work=1.0, energies=off)
+        assert leaks(system, start, after_it, 0.0) == (refused if not reversible else leak > 1e-3)

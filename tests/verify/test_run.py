@@ -25,7 +25,7 @@ HEADER = "opening,load,crack_length,stored_energy,dissipated_energy,external_wor
 RESULT_KEYS = {
     "scene", "method", "dofs", "elements", "steps", "newton_iterations", "rejected_steps", "peak_load", "peak_opening",
     "seconds", "peak_memory_mb", "effects", "checks", "versions", "machine", "threads", "status", "ending", "condition",
-    "process_zone", "matched_interface", "nonzeros", "jit_seconds",
+    "process_zone", "matched_interface", "decided", "neglected", "nonzeros", "jit_seconds",
 }  # fmt: skip
 SECONDS_KEYS = ["mesh", "basis", "assembly", "factor", "solve", "other", "total"]
 PROJECT = Path(__file__).resolve().parents[2]

@@ -77,7 +77,7 @@ BROKEN = {
     "load.opening=[1.0, -0.5]": "load.opening[1]: must be >= -0.4 (-2 arm_thickness) and <= 28 (2 length), got -0.5",
     'load.opening=[1.0, "x"]': "load.opening[1]: must be a number, got 'x'",
     "effects.kinematics=large": 'effects.kinematics: must be "linear", "finite" or "auto", got \'large\'',
-    "effects.symmetry=1": "effects.symmetry: must be true or false, got 1",
+    "effects.symmetry=1": 'effects.symmetry: must be true, false or "auto", got 1',
     "discretization.degree=6": "discretization.degree: must be >= 1 and <= 5, got 6",
     "discretization.degree=3.0": "discretization.degree: must be an integer >= 1 and <= 5, got 3.0",
     "discretization.interface_points=13": "discretization.interface_points: must be >= 1 and <= 12, got 13",

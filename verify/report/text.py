@@ -143,16 +143,17 @@ def _body(specimen: Dcb | Peel, unit: str) -> str:
 
 
 def _effects(scene: Scene) -> str:
-    asked, kinematics = scene.effects, simulated(scene, "nurbs")["kinematics"]
-    words = {"finite": "finite kinematics (large rotations)", "linear": "linear kinematics (small displacements)"}
-    return ", ".join(
-        (
-            words[kinematics] + (", chosen automatically" if asked.kinematics == "auto" else ""),
-            "irreversible damage" if asked.irreversible else "reversible damage (nothing is dissipated)",
-            "contact on closing" if asked.contact else "no contact",
-            "one arm against the symmetry plane" if asked.symmetry else f"both {_bodies(scene)} modelled",
-        )
-    )
+    found, chosen = simulated(scene, "nurbs"), [key for key, value in scene.effects if value == "auto"]
+    words = {
+        "kinematics": {
+            "finite": "finite kinematics (large rotations)",
+            "linear": "linear kinematics (small displacements)",
+        },
+        "irreversible": {True: "irreversible damage", False: "reversible damage (nothing is dissipated)"},
+        "contact": {True: "contact on closing", False: "no contact"},
+        "symmetry": {True: "one arm against the symmetry plane", False: f"both {_bodies(scene)} modelled"},
+    }
+    return ", ".join(words[key][found[key]] + (", chosen automatically" if key in chosen else "") for key in words)
 
 
 def _bodies(scene: Scene) -> str:

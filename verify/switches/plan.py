@@ -1,5 +1,4 @@
-"""Which runs tell what the effects of a scene do: the scene as it is, and once for every effect with that one switched.
-"""
+"""Which runs tell what effects do: the scene as it is, and once for every effect with that one switched."""
 
 from __future__ import annotations
 
