@@ -17,6 +17,9 @@ from verify.switches.plan import Pair
 #: Part of the work, or of the largest load, that counts as none.
 NOTHING = 1e-9
 
+#: Equal runs whose times differ by more than this tell little of small differences.
+BUSY = 1.2
+
 #: Changes by the name of their column, in the words of the table.
 CHANGES: Mapping[str, str] = {
     "peak_change": "peak load",
@@ -36,6 +39,7 @@ class Row:
         load, of the energy dissipated and of the external work at the end; NaN where there is nothing without it
     seconds_with, seconds_without : wall time without imports and without what is compiled, the least of ``times`` runs
     time_ratio : with over without
+    time_spread : largest over least time of equal runs; far from 1 the machine was busy, and the ratio says little
     """
 
     effect: str
@@ -51,6 +55,7 @@ class Row:
     seconds_with: float
     seconds_without: float
     time_ratio: float
+    time_spread: float
     times: int
     status: str
 
@@ -71,7 +76,10 @@ class Row:
 
     @property
     def time(self) -> str:
-        return f"{self.time_ratio:.2g} x time" if isfinite(self.time_ratio) else "no time"
+        if not isfinite(self.time_ratio):
+            return "no time"
+        busy = f" (equal runs differ by up to {self.time_spread:.2g} x)" if self.time_spread > BUSY else ""
+        return f"{self.time_ratio:.2g} x time{busy}"
 
 
 def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[Outcome]]) -> Row:
@@ -85,6 +93,7 @@ def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[O
     }
     times = {f"seconds_{side}": _least(again[job]) for side, job in _sides(pair).items()}
     times["time_ratio"] = times["seconds_with"] / times["seconds_without"]
+    times["time_spread"] = max(_spread(again[job]) for job in _sides(pair).values())
     times["times"] = min(len(again[job]) for job in _sides(pair).values())
     stopped = [f"{side} it: {why}" for side, job in _sides(pair).items() if (why := _failed(first[job]))]
     if stopped:
@@ -137,7 +146,16 @@ def _sides(pair: Pair) -> dict[str, Job]:
 
 
 def _least(outcomes: Sequence[Outcome]) -> float:
-    return min((run_seconds(one.result) for one in outcomes if one.result is not None), default=nan)
+    return min(_seconds(outcomes), default=nan)
+
+
+def _spread(outcomes: Sequence[Outcome]) -> float:
+    seconds = _seconds(outcomes)
+    return max(seconds, default=nan) / min(seconds, default=nan)
+
+
+def _seconds(outcomes: Sequence[Outcome]) -> list[float]:
+    return [run_seconds(one.result) for one in outcomes if one.result is not None and one.result.seconds]
 
 
 def _failed(outcome: Outcome) -> str:
