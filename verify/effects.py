@@ -26,8 +26,8 @@ STANDING, GROWING = 16.0 / 35.0, 6.0 / 35.0
 #: that it would have held (1.54 to 1.60 for crack lengths of 1 to 40 / lambda, see `load_of_squeezing`).
 RIGID = 1.6
 
-#: What a method cannot choose: the DOLFINx model has both arms, the beam one; LEFM has no interface, and its crack never
-#: heals. Beneath the strip of a peel test the beam has its substrate, too.
+#: What a method cannot choose: the DOLFINx model has both arms, the beam one; LEFM has no interface, and its crack
+#: never heals. Beneath the strip of a peel test the beam has its substrate, too.
 _FIXED: dict[str, dict[str, Any]] = {
     "dolfinx": {"symmetry": False},
     "beam": {"symmetry": True},
