@@ -169,7 +169,7 @@ def test_the_end_and_not_the_way_there_counts_for_the_turn() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("opening", [0.5, 3.0])
 def test_what_is_said_of_the_turn_is_what_finite_kinematics_changes(opening: float) -> None:
-    ours = ("discretization.dofs=700", "effects.symmetry=true", f"load.opening={opening}")
+    ours = ("effects.symmetry=true", f"load.opening={opening}")
     scene, linear = run_of("dcb-czm1", (*ours, "effects.kinematics=linear"))
     _, finite = run_of("dcb-czm1", (*ours, "effects.kinematics=finite"))
     (said,) = [one for one in neglected.of_run(scene, linear) if one.key == "kinematics"]
