@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 
 from verify.cli import main
+from verify.cost.reference import cubics, distance
 from verify.jobs import Job, Outcome
 from verify.result import Result
 from verify.scene import load_scene
 from verify.switches import study as study_of
 from verify.switches.plan import TIMES, Plan, planned
-from verify.switches.row import Row, change, changes, row, signed
+from verify.switches.row import Row, apart, change, changes, legs, row, signed
 from verify.switches.study import effects
 
 SCENE = load_scene("dcb-czm1")
@@ -90,14 +91,32 @@ def test_what_a_scene_does_not_admit_is_left_out_in_words(name: str, method: str
 
 
 def test_changes_are_with_over_without() -> None:
-    found = changes(made_up(1.02, 1.0), made_up(1.0, 0.5))
+    found = changes(made_up(1.02, 1.0), made_up(1.0, 0.5), (3.0,))
     assert found["curve_change"] == pytest.approx(0.02, rel=1e-6)
     for key in ("peak_change", "end_change", "work_change"):
         assert found[key] == pytest.approx(0.02, rel=1e-6)
     assert found["dissipated_change"] == pytest.approx(1.04, rel=1e-6)
-    assert isnan(changes(made_up(), made_up(dissipated=0.0))["dissipated_change"])
-    assert changes(made_up(dissipated=1e-12), made_up(dissipated=0.0))["dissipated_change"] == 0.0
+    assert isnan(changes(made_up(), made_up(dissipated=0.0), (3.0,))["dissipated_change"])
+    assert changes(made_up(dissipated=1e-12), made_up(dissipated=0.0), (3.0,))["dissipated_change"] == 0.0
     assert change(3.0, -2.0, 1.0) == -2.5
+
+
+def there_and_back(back: float) -> Result:
+    """P = d up to 1, and (1 + back) d on the way down to 0.5 and up again to 2."""
+    d = np.concatenate([np.linspace(0.0, 1.0, 401), np.linspace(1.0, 0.5, 201)[1:], np.linspace(0.5, 2.0, 601)[1:]])
+    load = np.where((np.arange(d.size) > 400) & (d < 1.0), 1.0 + back, 1.0) * d
+    return Result("nurbs", {"opening": d, "load": load})
+
+
+def test_what_changes_on_unloading_alone_is_a_change_of_the_curve() -> None:
+    """An envelope has no unloading: it would be told from the loads beyond the first leg alone."""
+    ours, plain, way = there_and_back(0.1), there_and_back(0.0), (1.0, 0.5, 2.0)
+    assert distance(cubics(ours), plain) < 1e-12 < apart(ours, plain, way)
+    back = onward = (1.0 - 0.5**3) / 3.0  # the integral of d^2 over both ways between 0.5 and 1
+    wanted = 0.1 * ((back + onward) / (1.0 / 3.0 + back + (2.0**3 - 0.5**3) / 3.0)) ** 0.5
+    assert apart(ours, plain, way) == pytest.approx(wanted, rel=0.01)
+    assert len(legs(ours, way)) == 3 and len(legs(made_up(), way)) == 1, "a run that did not come back"
+    assert apart(made_up(1.1), made_up(), (3.0,)) == pytest.approx(0.1)
 
 
 def of_pair(key: str, with_it: list[Result | None], without: list[Result | None], stopped: str = "") -> Row:

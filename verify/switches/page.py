@@ -37,7 +37,7 @@ def write(study: Study, path: Path) -> None:
     """Write the page."""
     drawn = [one for one in study.rows if one.complete]
     jinja = templates("verify.switches")
-    jinja.filters |= {"svg": Markup, "number": number, "signed": signed_or_none}
+    jinja.filters |= {"svg": Markup, "number": number, "in_cell": in_cell}
     about = machine()
     page = jinja.get_template("page.html.j2").render(
         name=study.scene.name,
@@ -57,9 +57,10 @@ def write(study: Study, path: Path) -> None:
     path.write_text(page, encoding="utf-8")
 
 
-def signed_or_none(fraction: float) -> str:
-    """A change in a cell of the table."""
-    return signed(fraction).replace("-", "−") if np.isfinite(fraction) else "–"
+def in_cell(fraction: float, column: str) -> str:
+    """A change in a cell of the table; a distance of curves has no sign."""
+    text = signed(fraction).replace("-", "−") if np.isfinite(fraction) else "–"
+    return text.lstrip("+") if column == "curve_change" else text
 
 
 def changed(rows: Sequence[Row], key: str) -> Panel:
@@ -73,7 +74,7 @@ def changed(rows: Sequence[Row], key: str) -> Panel:
             at = np.arange(len(rows))[::-1] + 0.4 - (i + 0.5) * step
             axes.barh(at, 100 * size, 0.9 * step, color=colour(ink), linewidth=0, label=name)
             for y, x, change in zip(at, size, value, strict=True):
-                text = "" if not np.isfinite(change) else signed_or_none(change)
+                text = in_cell(change, column) if np.isfinite(change) else ""
                 axes.annotate(text, (100 * x, y), (3, 0), textcoords="offset points", va="center", size=6.5)
         axes.set(xscale="log", xlabel="change with the effect (%)", xlim=(100 * LEAST, None))
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")

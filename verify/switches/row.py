@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from math import isfinite, nan
 from pathlib import Path
 
+import numpy as np
+
 from verify.cost.reference import cubics, dissipated, distance, peak_load
 from verify.cost.row import run_seconds
+from verify.curve import Curve, load_at
 from verify.jobs import Job, Outcome
 from verify.result import Result
 from verify.switches.plan import Pair
@@ -34,7 +37,7 @@ class Row:
     """A line of ``effects.csv``. What cannot be told is NaN.
 
     scene_has : whether the scene as it is has the effect
-    curve_change : relative L2 distance of the load with the effect to that without it
+    curve_change : relative L2 distance of the load with the effect to that without it, along the programme
     peak_change, end_change, dissipated_change, work_change : with over without, less 1: of the largest load, of the
         load, of the energy dissipated and of the external work at the end; NaN where there is nothing without it
     seconds_with, seconds_without : wall time without imports and without what is compiled, the least of ``times`` runs
@@ -99,20 +102,54 @@ def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[O
     if stopped:
         unknown = {field.name: nan for field in fields(Row) if field.name.endswith("_change")}
         return Row(**head, **unknown, **times, status="; ".join(stopped))
-    return Row(**head, **changes(*(first[job].result for job in _sides(pair).values())), **times, status="complete")
+    results = (first[job].result for job in _sides(pair).values())
+    found = changes(*results, pair.with_it.scene.load.opening)
+    return Row(**head, **found, **times, status="complete")
 
 
-def changes(with_it: Result, without: Result) -> dict[str, float]:
+def changes(with_it: Result, without: Result, programme: Sequence[float]) -> dict[str, float]:
     """What one effect makes of curve, peak, end and energies: with over without, less 1."""
     top = max(abs(peak_load(with_it)), abs(peak_load(without)))
     most = max(abs(_work(with_it)), abs(_work(without)))
     return {
-        "curve_change": distance(cubics(with_it), without),
+        "curve_change": apart(with_it, without, programme),
         "peak_change": change(peak_load(with_it), peak_load(without), top),
         "end_change": change(float(with_it.load[-1]), float(without.load[-1]), top),
         "dissipated_change": change(dissipated(with_it), dissipated(without), most),
         "work_change": change(_work(with_it), _work(without), most),
     }
+
+
+def apart(with_it: Result, without: Result, programme: Sequence[float], n: int = 400) -> float:
+    """Relative L2 distance of the load over the opening: of the envelopes, or leg by leg of a programme that has more.
+
+    What unloads is no part of an envelope, and the whole point of some effects.
+    """
+    ours, theirs = (legs(result, programme) for result in (with_it, without))
+    if len(programme) == 1 or min(len(ours), len(theirs)) < len(programme):
+        return distance(cubics(with_it), without)
+    off = size = 0.0
+    for mine, known, end, start in zip(ours, theirs, programme, (0.0, *programme), strict=False):
+        at = abs(end - start) * (np.arange(1, n + 1) / n)
+        wanted = load_at(known, at)
+        off += abs(end - start) * float(np.sum((load_at(mine, at) - wanted) ** 2))
+        size += abs(end - start) * float(np.sum(wanted**2))
+    return (off / size) ** 0.5
+
+
+def legs(result: Result, programme: Sequence[float]) -> list[Curve]:
+    """The curve of every leg that was walked to its end, over the way from its start."""
+    found, at = [], 0
+    for goal, start in zip(programme, (0.0, *programme), strict=False):
+        there = np.flatnonzero(np.isclose(result.opening[at + 1 :], goal, rtol=0.0, atol=1e-9 * abs(goal - start)))
+        if not there.size:
+            break
+        end = at + 1 + int(there[0])
+        part = replace(result, steps={name: column[at : end + 1] for name, column in result.steps.items()})
+        opening, load = cubics(part)
+        found.append((np.sign(goal - start) * (np.asarray(opening) - start), load))
+        at = end
+    return found
 
 
 def change(value: float, before: float, scale: float) -> float:
