@@ -91,15 +91,14 @@ def load_of_squeezing(scene: Scene) -> float:
     A long beam on an elastic foundation k, pulled at a distance a: with ``lambda = (k / 4 E I)^(1/4)``,
     ``alpha = lambda a`` and X in parts of 1 / lambda the gap is ``exp(-X) ((1 + alpha) cos X - alpha sin X)`` times a
     constant. Where it is negative the foundation holds the part `squeezed` of the work, and there contact alters k to
-    r k; see `stiffer`. What lies under a strip is in series with the bond.
+    r k; see `stiffer`. In series with the bond, of a dcb up to its plane of symmetry, are the arm or strip itself,
+    which gives way across by h / (2 E2) (Kanninen 1973, Int. J. Fract. 9), and the substrate under a strip.
     """
-    specimen, law = scene.specimen, scene.interface
-    initial, penalty = law.strength**2 * law.ductility / (2.0 * law.toughness), law.penalty
-    if specimen.kind == "peel":
-        layer = _modulus(scene.substrate, 2) / specimen.substrate_thickness
-        k, closed = (1.0 / (1.0 / bond + 1.0 / layer) for bond in (initial, penalty))
-    else:
-        k, closed = 2.0 * initial, 2.0 * penalty  # of an arm, up to the plane of symmetry
+    specimen, law, peel = scene.specimen, scene.interface, scene.specimen.kind == "peel"
+    initial = law.strength**2 * law.ductility / (2.0 * law.toughness)
+    across = specimen.loaded_thickness / (2.0 * _modulus(scene.strip if peel else scene.material, 2))
+    across += specimen.substrate_thickness / _modulus(scene.substrate, 2) if peel else 0.0
+    k, closed = (1.0 / (1.0 / (bond if peel else 2.0 * bond) + across) for bond in (initial, law.penalty))
     alpha = specimen.free_length * (k * specimen.width / (4.0 * _bending(scene))) ** 0.25
     return squeezed(alpha) * stiffer(closed / k)
 

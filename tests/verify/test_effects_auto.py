@@ -90,6 +90,7 @@ def test_what_a_squeezed_bond_is_worth_is_that_of_a_beam_on_it(alpha: float) -> 
         ("dcb-czm1", (), "contact", True, "squeezed ahead of the crack, which is worth 0.024 of the load"),
         ("dcb-czm1", ("load.opening=[0.5, -0.1]",), "contact", True, "closes the faces, to -0.1"),
         ("peel-60", (), "contact", False, "worth 0.0015 of the load, and nothing else closes"),
+        ("alfano-crisfield", (), "contact", False, "worth 0.00064 of the load"),  # a bond stiffer than the arms
         ("peel-60", ("load.opening=[1.0, -0.1]",), "contact", True, "closes the faces, to -0.1"),
         ("peel-60", ("load.opening=200.0",), "contact", True, "comes to the far end"),
         ("dcb-czm1", (), "irreversible", False, "only opens"),
