@@ -89,6 +89,13 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--out", type=Path, default=Path("debond-effects"), metavar="DIR", help="default: debond-effects")
     _sweep_options(sub)
 
+    text = "How time and memory grow up to 100,000 unknowns, what more ranks gain, what to expect of many."
+    sub = command("scaling", _scaling, text, "scaling dcb-czm1 --out scaling")
+    sub.add_argument("scene", metavar="SCENE", help="a packaged name or a file")
+    sub.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help="replace a key")
+    sub.add_argument("--out", type=Path, default=Path("debond-scaling"), metavar="DIR", help="default: debond-scaling")
+    sub.add_argument("--dry-run", action="store_true", help="print the runs and the time that they would take")
+
     sub = command("hard", _hard, "The cases on which cohesive codes stop or go wrong.", "hard coarse-czm2 --jobs 2")
     sub.add_argument("names", nargs="*", metavar="NAME", help="hard cases; default: all")
     sub.add_argument("--out", type=Path, default=Path("debond-hard"), metavar="DIR", help="default: debond-hard")
@@ -296,6 +303,20 @@ def _effects(options: argparse.Namespace) -> int:
         return 0 if effects(*what, options.jobs, options.scheduler).complete else FAILED
     except NotRun as error:
         return _not_run(error)
+
+
+def _scaling(options: argparse.Namespace) -> int:
+    from verify.run import mpi_size
+    from verify.scaling.study import scaling, would_run
+    from verify.scene import load_scene
+
+    if mpi_size() > 1:
+        raise Refusal(f"scaling: must be started in 1 process, without mpirun, got {mpi_size()}")
+    what = (options.scene, load_scene(options.scene, options.overrides), options.overrides, options.out)
+    if options.dry_run:
+        return _listed(would_run(*what))
+    _folder(options.out)
+    return 0 if scaling(*what).complete else FAILED
 
 
 def _hard(options: argparse.Namespace) -> int:
