@@ -82,7 +82,8 @@ def condensed(system: System) -> Condensed | None:
     tied_dd = K_dd + springs.T @ (springs * system.spring_r[:, None])
     saddle = block_array([[tied_dd[free][:, free], B_rd[:, free].T], [B_rd[:, free], None]], format="csc")
     try:
-        lu = splu(saddle)
+        # of SuperLU's orderings the one that fills in least here, and hundreds of solutions follow
+        lu = splu(saddle, permc_spec="MMD_ATA")
     except RuntimeError:  # rows that say the same twice
         return None
     U_dr, S_rr, unit_rr = np.zeros((system.n_dof, n_r)), np.zeros((n_r, n_r)), np.eye(n_r)

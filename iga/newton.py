@@ -17,6 +17,8 @@ from iga.system import Phase, Response, State, System, factorise, respond, round
 
 #: Part of the work along a step that may be left, and the attempts to find its length.
 SLACK, SEARCHES = 0.05, 12
+#: Relative residual of a state that only shows where to go on from.
+ROUGH = 1e-3
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,13 @@ class Newton:
 
 
 DEFAULT = Newton()
+
+
+def roughly(newton: Newton) -> Newton:
+    """Tolerance for a state that only shows where to go on from."""
+    return replace(newton, tolerance=ROUGH)
+
+
 #: For a state at which hundreds of points decide at once.
 PATIENT = Newton(iterations=100, patience=20)
 

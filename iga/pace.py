@@ -17,7 +17,7 @@ from iga.system import System
 FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.125, 1.0, 1.0 / 4096
 #: Steps chosen by accuracy: the first and the largest one in parts of the programme, and by how much of the peak the
 #: load may leave the tangent of a step.
-FIRST, LARGEST, BEND = 1.0 / 30.0, 0.25, 0.01
+FIRST, LARGEST, BEND = 1.0 / 30.0, 0.25, 0.005
 #: Fewer steps than these would not draw the curve: what is asked for is then a least number of steps.
 FEWEST = 40
 #: What a step that has failed is tried with, in this order, before it is halved.

@@ -14,7 +14,7 @@ import numpy as np
 
 from iga.control import opening_control
 from iga.landing import SEVERAL, broken_between, landed, slope_over_arcs
-from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium
+from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium, roughly
 from iga.pace import Pace, Step, next_step, paced
 from iga.point import End, Point
 from iga.system import Phase, State, System, energies, respond, untimed
@@ -180,12 +180,16 @@ def _advance(
         return None
     change = rate * asked.away
     trial = replace(old, u_d=old.u_d + asked.away * path.du_d, load=old.load + asked.away * path.d_load)
-    found = equilibrium(system, trial, control, value + change, change, newton, phase)
+    by_kinks = pace.by_accuracy and not pace.careful
+    lands, kink = by_kinks and not asked.exact, None
+    found = equilibrium(system, trial, control, value + change, change, roughly(newton) if lands else newton, phase)
+    if found is not None and lands:
+        nearly = found
+        found, kink = landed(system, old, nearly, newton, phase, follows_on=point.before is not None)
+        if found is nearly:
+            found = equilibrium(system, nearly.state, control, value + change, change, newton, phase)
     if found is None:
         return None
-    by_kinks, kink = pace.by_accuracy and not pace.careful, None
-    if by_kinks and not asked.exact:
-        found, kink = landed(system, old, found, newton, phase, follows_on=point.before is not None)
     state, response = found.state, found.response
     opening = float(system.load_d @ state.u_d)
     if asked.exact and abs(opening) <= HOME * abs(point.opening):

@@ -69,7 +69,7 @@ def tangent(
     law, g_q = system.interface.law, response.contact.g_q
     soft_q = on_envelope(system, state, g_q) & holding(system.interface, response.contact)
     growing_q = soft_q if direction > 0.0 or not law.irreversible else np.zeros_like(soft_q)
-    flat_q = np.abs(g_q) <= NO_GAP * law.g_max
+    flat_q = law.contact & (np.abs(g_q) <= NO_GAP * law.g_max)
     closed_q = state.closed_q
     found = None
     for attempt in range(ATTEMPTS):

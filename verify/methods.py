@@ -36,6 +36,10 @@ DOLFINX_WAYS = (
     "Debian 13 or Ubuntu: apt install python3-dolfinx-real; as any user, ./debond builds itself a private Debian",
 )
 
+#: Steps where the path does not choose them, and the interface points in the process zone from which on it does: with
+#: fewer the load goes up and down with each of them, and every wave would need steps of its own.
+STEPS, SMOOTH = 150, 8
+
 #: Fractions of the largest opening at which the fields are kept: before and near the peak, under way, at the end.
 SNAPSHOT_FRACTIONS = (0.1, 0.2, 0.5, 1.0)
 
@@ -147,7 +151,7 @@ def problem_keys(scene: Scene, method: str) -> dict[str, Any]:
 def counted_steps(scene: Scene) -> int:
     """Steps for the methods that do not choose their own."""
     steps = scene.discretization.steps
-    return Discretization.model_fields["steps"].default if steps == "auto" else steps
+    return STEPS if steps == "auto" else steps
 
 
 def _common_keys(scene: Scene, method: str) -> dict[str, Any]:
@@ -225,8 +229,18 @@ def iga_problem(scene: Scene, method: str) -> tuple[ModuleType, Any]:
 
 def _iga(scene: Scene, method: str, on_step: OnStep) -> Result:
     solver, problem = iga_problem(scene, method)
+    if problem.steps is None and not _smooth(scene, method):
+        problem = replace(problem, steps=STEPS)
     watch = Stopwatch()
     return _result(method, solver.solve(problem, on_step=on_step, phase=watch.phase), watch)
+
+
+def _smooth(scene: Scene, method: str) -> bool:
+    """Whether few steps draw the curve: the mesh stays as it is, and many points share the process zone."""
+    from verify.process_zone import expected
+
+    mesh = scene.discretization
+    return not mesh.adaptive and mesh.interface_points * expected(scene, method).elements >= SMOOTH
 
 
 def _taken(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:

@@ -91,7 +91,8 @@ class Discretization(Section):
     mismatch: float = Field(default=1.0, ge=0.05, le=20)  # element length of the lower body over that of the upper one
     adaptive: bool = False  # tspline: elements follow the process zone, and dofs is the most at any time
     slave: Literal["upper", "lower"] = "upper"  # the body whose points carry the interface
-    steps: int | Literal["auto"] = 150  # equal opening increments, or "auto": the path chooses by accuracy
+    # equal opening increments, or "auto": the path chooses by accuracy where the mesh resolves the process zone
+    steps: int | Literal["auto"] = "auto"
 
     @field_validator("interface_points")
     @classmethod
