@@ -103,10 +103,10 @@ def _from_table(scene: Scene, accuracy: float) -> Choice:
     overrides = one.job(scene.name, scene).overrides
     chosen = parse_scene(scene.model_dump(), overrides)
     require(chosen, FAMILY.solver)
-    iterations = ITERATIONS_PER_STEP * steps(chosen, FAMILY.solver)
-    seconds = iterations * iteration_seconds(chosen, FAMILY.solver)
+    number = steps(chosen, FAMILY.solver)
+    seconds = ITERATIONS_PER_STEP * number * iteration_seconds(chosen, FAMILY.solver)
     mesh = f"NURBS of degree {FAMILY.degree} with {one.size} unknowns, {elements:.1f} elements in the process zone"
-    return Choice(FAMILY.solver, overrides, seconds, f"{mesh}: about {duration(seconds)}, {steps(chosen, FAMILY.solver)} steps")
+    return Choice(FAMILY.solver, overrides, seconds, f"{mesh}: about {duration(seconds)}, {number} steps")
 
 
 def elements_for(accuracy: float) -> float:
