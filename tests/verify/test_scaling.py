@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import shutil
 import sys
 from dataclasses import fields, replace
 from math import inf, isnan
@@ -13,7 +14,7 @@ import numpy as np
 import pytest
 
 from verify.cli import main
-from verify.jobs import Outcome
+from verify.jobs import Outcome, run_all
 from verify.result import Result
 from verify.scaling import plan as plan_of
 from verify.scaling import ranks as ranks_of
@@ -216,12 +217,12 @@ def test_what_is_expected_lies_between_its_assumptions(two_cores: None) -> None:
 def test_a_study_from_runs_to_files(two_cores: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     asked: list[int] = []
 
-    def run_all(plan, out, jobs):
+    def pretended(plan, out, jobs):
         asked.append(jobs)
         for run in plan:
             yield Outcome(run, made_up(run))
 
-    monkeypatch.setattr(study_of, "run_all", run_all)
+    monkeypatch.setattr(study_of, "run_all", pretended)
     found = scaling("dcb-czm1", SCENE, (), tmp_path)
     assert found.complete and asked == [1], "one run at a time"
     said = capsys.readouterr().out
@@ -244,12 +245,12 @@ def test_a_study_from_runs_to_files(two_cores: None, tmp_path: Path, monkeypatch
 def test_one_rank_says_nothing_of_many(two_cores: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plan_of, "cores", lambda: 1)
 
-    def run_all(plan, out, jobs):
+    def pretended(plan, out, jobs):
         for run in plan:
             stopped = replace(made_up(run), status="stopped: here")
             yield Outcome(run, stopped if run.variant.startswith("scaling/nurbs-2000") else made_up(run))
 
-    monkeypatch.setattr(study_of, "run_all", run_all)
+    monkeypatch.setattr(study_of, "run_all", pretended)
     found = scaling("dcb-czm1", SCENE, (), tmp_path)
     assert not found.complete and found.expected() == []
     pytest.importorskip("matplotlib")
@@ -273,6 +274,19 @@ def test_bad_input_is_refused_and_a_dry_run_leaves_nothing(
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
     assert main(["scaling", "dcb-czm1", "--out", str(out)]) == 2
     assert "scaling: must be started in 1 process" in capsys.readouterr().err and not out.exists()
+
+
+@pytest.mark.slow
+def test_two_ranks_through_the_sweep_find_the_load_of_one(tmp_path: Path) -> None:
+    pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
+    if shutil.which("mpirun") is None:
+        pytest.skip("mpirun is not installed")
+    one = next(run for run in planned("dcb-czm1", SCENE).runs if run.variant == "scaling/dolfinx-2000")
+    both = {outcome.job: outcome for outcome in run_all([one, replace(one, ranks=2, variant="two")], tmp_path, 1)}
+    alone, together = (both[job].result for job in sorted(both, key=lambda job: job.ranks))
+    assert alone is not None and together is not None and alone.complete and together.complete
+    assert together.load == pytest.approx(alone.load, rel=1e-8, abs=1e-8 * alone.load.max())
+    assert together.dofs == alone.dofs
 
 
 @pytest.fixture(scope="module")
