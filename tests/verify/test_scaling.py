@@ -209,6 +209,11 @@ def test_what_is_expected_lies_between_its_assumptions(two_cores: None) -> None:
     assert slow.seconds[1] - study.expected()[0].seconds[1] == pytest.approx(6 * 0.99), "six stages of messages"
     for one in study.larger():
         assert one.seconds == pytest.approx((EACH * one.dofs,) * 2, rel=1e-6) and one.dofs == 20_000 * one.ranks
+    slowly = Study(SCENE, made_up_rows(0.9), (), 4166)
+    low, high = slowly.larger()[0].seconds
+    last = slowly.ladder("dolfinx")[-1]
+    assert low == pytest.approx(EACH * 1.28e6**0.9, rel=1e-6), "as the fit goes on"
+    assert high == pytest.approx(last.iteration * 1.28e6 / last.dofs), "nothing grows more slowly than N for ever"
 
 
 # --- the whole

@@ -68,7 +68,9 @@ class Expectation:
 class Larger:
     """A size that gives each of many ranks enough to do; nothing of it was run.
 
-    seconds, memory_mb : of an iteration on one rank, as the fits go on; ``shared`` as many times less
+    seconds, memory_mb : of an iteration on one rank, from as the fits go on to no better than in proportion to the
+        largest size, for what grows more slowly than the unknowns is not done with its beginnings; ``shared`` as many
+        times less as there are ranks
     elements : along the specimen
     """
 
@@ -149,18 +151,19 @@ def stages(ranks: int) -> float:
     return log2(ranks)
 
 
-def larger(ranks: int, base: Row, columns: int, iteration: Fit, memory: Fit) -> Larger:
-    """A size with `WORTH` unknowns a rank."""
+def larger(ranks: int, base: Row, columns: int, iteration: Fit, memory: Fit, model_mb: float) -> Larger:
+    """A size with `WORTH` unknowns a rank; ``model_mb`` is what ``base`` adds to the memory of the program."""
     dofs = WORTH * ranks
-    seconds = iteration.at(dofs)
+    times = dofs / base.dofs
+    seconds = _onwards(iteration.at(dofs), times * base.iteration)
+    shared = seconds[0] / ranks, seconds[1] / ranks
     return Larger(
-        ranks,
-        dofs,
-        round(columns * dofs / base.dofs),
-        seconds,
-        (seconds[0] / ranks, seconds[1] / ranks),
-        memory.at(dofs),
+        ranks, dofs, round(columns * times), seconds, shared, _onwards(memory.at(dofs), times * model_mb)
     )
+
+
+def _onwards(fitted: Range, in_proportion: float) -> Range:
+    return min(fitted[0], in_proportion), max(fitted[1], in_proportion)
 
 
 def _ratio(before: float, after: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
@@ -79,7 +80,7 @@ def power(one: Fit) -> str:
 
 def readable(text: str) -> str:
     """A sentence of the command line with the signs of print."""
-    return text.replace("+-", "±").replace(" x ", " × ")
+    return re.sub(r"(?<=\d) x\b", " ×", text.replace("+-", "±"))
 
 
 def time_of_an_iteration(study: Study, key: str) -> Panel:

@@ -100,7 +100,8 @@ class Study:
         if "dolfinx" not in self.growth:
             return []
         fits, base = self.growth["dolfinx"], self.ladder("dolfinx")[-1]
-        return [larger(n, base, self.columns, fits["iteration"], fits["model_memory_mb"]) for n in MANY]
+        known = fits["iteration"], fits["model_memory_mb"], self.value(base, "model_memory_mb")
+        return [larger(n, base, self.columns, *known) for n in MANY]
 
     @property
     def sentences(self) -> list[str]:
