@@ -74,7 +74,7 @@ def test_a_study_of_the_same_problem_decides(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("what", ["scene", "machine", "source", "file", "error"])
 def test_another_study_does_not(what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(accuracy, "iteration_seconds", lambda scene, method: 0.01)
+    monkeypatch.setattr(accuracy, "run_seconds", lambda scene, method, iterations: 0.01 * iterations)
     scene = load_scene("dcb-czm1")
     path = a_study(tmp_path, scene, **({what: {}} if what in ("machine", "source") else {}))
     if what == "scene":

@@ -196,6 +196,14 @@ def test_two_ranks_that_share_the_assembly_alone(two_cores: None) -> None:
     assert known[2] - known[1] == pytest.approx(0.01) == Study(SCENE, rows, (), 4166).waiting
 
 
+def test_doubtful_times_are_told(two_cores: None) -> None:
+    rows = made_up_rows()
+    assert Study(SCENE, rows, (), 4166).busy == []
+    slow = [replace(one, iteration=3 * one.iteration, spread=1.5) if one.ranks > 1 else one for one in rows]
+    differ, slower = Study(SCENE, tuple(slow), (), 4166).busy
+    assert differ.startswith("Equal runs differ by up to 1.5 x") and slower.startswith("More ranks were slower than one")
+
+
 def test_what_is_expected_lies_between_its_assumptions(two_cores: None) -> None:
     study = Study(SCENE, made_up_rows(), (), 4166)
     for one in study.expected():

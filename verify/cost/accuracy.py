@@ -104,7 +104,7 @@ def _from_table(scene: Scene, accuracy: float) -> Choice:
     chosen = parse_scene(scene.model_dump(), overrides)
     require(chosen, FAMILY.solver)
     number = steps(chosen, FAMILY.solver)
-    seconds = ITERATIONS_PER_STEP * number * iteration_seconds(chosen, FAMILY.solver)
+    seconds = run_seconds(chosen, FAMILY.solver, ITERATIONS_PER_STEP * number)
     mesh = f"NURBS of degree {FAMILY.degree} with {one.size} unknowns, {elements:.1f} elements in the process zone"
     return Choice(FAMILY.solver, overrides, seconds, f"{mesh}: about {duration(seconds)}, {number} steps")
 
@@ -142,11 +142,19 @@ def unknowns_for(scene: Scene, elements: float) -> int:
     raise Refusal(f"--accuracy: no mesh is known with {elements:.1f} elements in the process zone of {scene.name}")
 
 
-def iteration_seconds(scene: Scene, method: str) -> float:
-    """Time of a Newton iteration with what belongs to it, from a few steps on the same mesh."""
+def run_seconds(scene: Scene, method: str, iterations: float) -> float:
+    """Time of a run of so many Newton iterations, from a few steps on the same mesh.
+
+    An iteration, with what belongs to it, takes the median over these steps; the rest is for what is done once.
+    """
     begun = max(map(abs, scene.load.opening)) * TRIAL
     short = (f"load.opening={begun!r}", f"discretization.steps={TRIAL_STEPS}")
-    start = perf_counter()
-    result = solve(parse_scene(scene.model_dump(exclude={"published"}), short), method)
-    taken = perf_counter() - start - result.seconds["mesh"] - result.seconds["basis"]
-    return taken / max(float(np.sum(result.steps["newton_iterations"])), 1.0)
+    times, numbers = [perf_counter()], []
+
+    def note(row: Mapping[str, float]) -> None:
+        times.append(perf_counter())
+        numbers.append(max(row["newton_iterations"], 1.0))
+
+    solve(parse_scene(scene.model_dump(exclude={"published"}), short), method, note)
+    each = float(np.median(np.diff(times)[1:] / numbers[1:]))
+    return perf_counter() - times[0] + each * (iterations - sum(numbers))

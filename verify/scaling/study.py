@@ -124,11 +124,17 @@ class Study:
 
     @property
     def busy(self) -> list[str]:
-        """Whether equal runs took equal times."""
+        """What makes the times doubtful: equal runs that differ, and ranks that were in each other's way."""
         most = max((one.spread for one in self.rows if one.measured), default=1.0)
-        if most <= BUSY:
-            return []
-        return [f"Equal runs differ by up to {most:.2g} x: the machine was busy, and the times say the less"]
+        found = []
+        if most > BUSY:
+            found.append(f"Equal runs differ by up to {most:.2g} x: the machine was busy, and the times say the less")
+        if any(one.speed_up["iteration"] < 1.0 for one in self.shared):
+            found.append(
+                "More ranks were slower than one: on cores that other work takes they wait for each other; what is "
+                "extrapolated from that has no lower end to speak of"
+            )
+        return found
 
     def summary(self) -> dict[str, object]:
         """The content of ``scaling.json``."""
