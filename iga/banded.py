@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg.lapack import dgbtrf, dgbtrs
-from scipy.sparse import coo_array
+from scipy.sparse import coo_array, csr_array, vstack
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 from scipy.sparse.linalg import LinearOperator, onenormest
 
@@ -101,12 +102,12 @@ class BandLU:
         return self.band.spread(x)
 
 
-def number(row: np.ndarray, column: np.ndarray, x_d: np.ndarray, free_d: np.ndarray) -> Band:
+def number(groups: Sequence[np.ndarray], x_d: np.ndarray, free_d: np.ndarray) -> Band:
     """Numbering with the narrower band of two: along the coordinate ``x_d``, or reverse Cuthill-McKee.
 
     Parameters
     ----------
-    row, column : entries of the matrix pattern, as degrees of freedom.
+    groups : arrays (n, m) whose rows are degrees of freedom that are all coupled with each other.
     x_d : (n_dof,) coordinate along the specimen.
     free_d : (n_dof,) True where the degree of freedom is an unknown.
     """
@@ -114,14 +115,32 @@ def number(row: np.ndarray, column: np.ndarray, x_d: np.ndarray, free_d: np.ndar
     n = free.size
     compact = np.full(free_d.size, -1)
     compact[free] = np.arange(n)
-    i, j = compact[row], compact[column]
-    inside = (i >= 0) & (j >= 0)
-    graph = coo_array((np.ones(inside.sum(), dtype=np.int8), (i[inside], j[inside])), shape=(n, n)).tocsr()
-    orders = (np.argsort(x_d[free], kind="stable"), reverse_cuthill_mckee(graph, symmetric_mode=True))
+    orders = (np.argsort(x_d[free], kind="stable"), reverse_cuthill_mckee(_graph(groups, compact, n), True))
     bands = []
     for order in orders:
         place = np.full(free_d.size, -1)
         place[free[order]] = np.arange(n)
-        band = Band(place, n, 0)
-        bands.append(Band(place, n, band.reach(row, column)))
+        bands.append(Band(place, n, max(_span(place[d_nm]) for d_nm in groups)))
     return min(bands, key=lambda band: band.k)
+
+
+def _span(place_nm: np.ndarray) -> int:
+    """Largest distance of two equations of a group; all entries of its matrix lie within it."""
+    last = place_nm.max(1, initial=-1)
+    first = np.where(place_nm < 0, np.iinfo(place_nm.dtype).max, place_nm).min(1, initial=np.iinfo(place_nm.dtype).max)
+    return int(np.max((last - first)[last >= 0], initial=0))
+
+
+def _graph(groups: Sequence[np.ndarray], compact: np.ndarray, n: int) -> csr_array:
+    """Pattern of the matrix: the groups that each unknown is in, by the unknowns of each group."""
+    parts = []
+    for d_nm in groups:
+        column = compact[d_nm]
+        row = np.broadcast_to(np.arange(len(d_nm))[:, None], d_nm.shape)
+        there = column >= 0
+        member = coo_array((np.ones(there.sum(), np.int32), (row[there], column[there])), shape=(len(d_nm), n))
+        parts.append(member.tocsr())
+    member = vstack(parts, format="csr")
+    graph = csr_array(member.T @ member)
+    graph.sort_indices()
+    return graph

@@ -13,7 +13,7 @@ import numpy as np
 
 from iga.banded import BandLU
 from iga.control import Control
-from iga.system import Phase, Response, State, System, factorise, respond, rounding
+from iga.system import Phase, Response, State, System, factorise, respond, rounding, without_tangent
 
 #: Part of the work along a step that may be left, and the attempts to find its length.
 SLACK, SEARCHES = 0.05, 12
@@ -116,6 +116,8 @@ def _iterate(
             move = _correction(system, trial, response, lu, control, target)
         if move is None:
             return None, tuple(residuals)
+        del lu
+        response = without_tangent(response)
         decide = not met or norm > max(newton.settle, 10.0 * floor)
 
         def at(s: float, trial=trial, move=move, decide=decide) -> tuple[State, Response, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -157,10 +157,9 @@ class System:
         """Numbering for bulk and interface, with room for every point to move one side on in either direction."""
         if self.bulk_dd is not None:
             return Dense(self.n_dof)
-        entries = [*self.bulk_entries]
-        entries += [_square(dofs(conn_qa)) for conn_qa in _reachable(self.interface)] + [self.spring_entries[:2]]
-        row, column = (np.concatenate([entry[i].ravel() for entry in entries]) for i in range(2))
-        return number(row, column, self.x_d, self.free_d)
+        springs = [np.flatnonzero(a_d)[None] for a_d in self.springs_rd]
+        touching = [dofs(conn_qa) for conn_qa in _reachable(self.interface)]
+        return number([*self.element_dofs, *touching, *springs], self.x_d, self.free_d)
 
     @cached_property
     def reference_dof_qd(self) -> np.ndarray:
@@ -182,7 +181,7 @@ class System:
         """Forces (n_r,) that the springs exert on the bodies, along their own displacements."""
         return -self.spring_r * (self.springs_rd @ u_d)
 
-    @cached_property
+    @property
     def bulk_entries(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Rows and columns of the element matrices."""
         return [stiffness_entries(solid.basis.conn_ea) for solid in self.solids]
@@ -273,6 +272,11 @@ def energies(system: System, state: State, response: Response) -> Energies:
     contact_energy = float(interface.dA_q @ (touch.share_q * contact_q))
     elastic = response.bulk_energy + 0.5 * float(system.spring_r @ (system.springs_rd @ state.u_d) ** 2)
     return Energies(elastic, cohesive, contact_energy, float(interface.dA_q @ dissipated_q) + state.slid)
+
+
+def without_tangent(response: Response) -> Response:
+    """The same without its tangent, which has been factorised away and is by far the largest part."""
+    return replace(response, tangent=np.zeros(0))
 
 
 def factorise(response: Response) -> BandLU | DenseLU | None:

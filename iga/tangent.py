@@ -14,7 +14,7 @@ import numpy as np
 from iga.banded import BandLU
 from iga.interface import holding
 from iga.landing import Kink
-from iga.system import Phase, Response, State, System, factorise, respond
+from iga.system import Phase, Response, State, System, factorise, respond, without_tangent
 
 #: Attempts at the set of points, the gap, in units of g_max, that counts as none, and the part of the largest rate
 #: that counts as rounding.
@@ -79,6 +79,7 @@ def tangent(
             with phase("assembly"):
                 response = respond(system, replace(state, k_q=k_q, closed_q=closed_q), decide=False)
         found = _along(system, response, direction, growing_q, kink, phase)
+        response = without_tangent(response)
         if found is None:
             return None
         least = NO_RATE * float(np.max(np.abs(found.rate_q), initial=0.0))

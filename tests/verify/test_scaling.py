@@ -322,7 +322,6 @@ def test_growth_of_the_solver_itself(measured: dict) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(reason="2.0 GB: numbering the unknowns spreads all entries of all element matrices", strict=True)
 def test_memory_of_a_hundred_thousand_unknowns(measured: dict) -> None:
     largest = max(measured["measured"], key=lambda one: one["dofs"])
     assert largest["dofs"] == pytest.approx(100_000, rel=0.02)
