@@ -18,8 +18,9 @@ FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.125, 1.0, 1.0 / 4096
 #: Steps chosen by accuracy: the first and the largest one in parts of the programme, and by how much of the peak the
 #: load may leave the tangent of a step.
 FIRST, LARGEST, BEND = 1.0 / 30.0, 0.25, 0.005
-#: Fewer steps than these would not draw the curve: what is asked for is then a least number of steps.
-FEWEST = 40
+#: Fewer steps than these would not draw the curve: what is asked for is then a least number of steps. How long they are
+#: once one that was chosen by accuracy has failed, in such parts of the programme.
+FEWEST, SAFE = 40, 150
 #: What a step that has failed is tried with, in this order, before it is halved.
 CAREFUL = ("front", "dissipation", "arc length")
 
@@ -37,7 +38,8 @@ class Step:
 class Pace:
     """Step length: ``step`` of the opening, at most ``largest``, and a part of g_u at the cohesive front.
 
-    ``by_accuracy``: the steps are not counted but as long as the curve allows, and end where a point breaks.
+    ``by_accuracy``: the steps are not counted but as long as the curve allows, and end where a point breaks; once one
+    has failed they are ``counted``, each of this length.
     ``attempt`` counts how often the next one has failed: careful steps end at the kinks of the law; they change the
     control, and then their length.
     """
@@ -46,6 +48,7 @@ class Pace:
     step: float
     by_accuracy: bool = False
     attempt: int = 0
+    counted: float = 0.0
 
     @property
     def careful(self) -> bool:
@@ -73,7 +76,7 @@ class Pace:
         return 0.5**self.level * (FRONT_BY_ACCURACY if self.by_accuracy else FRONT)
 
     def slower(self) -> Pace:
-        return replace(self, attempt=self.attempt + 1)
+        return Pace(self.counted, self.counted) if self.by_accuracy else replace(self, attempt=self.attempt + 1)
 
     def after(self, start: Point, end: Point, peak: float) -> Pace:
         """The next step where one from ``start`` to ``end`` has converged."""
@@ -93,7 +96,7 @@ def paced(programme: np.ndarray, steps: int | None) -> Pace:
     asked = whole / steps if steps else np.inf
     if steps and steps >= FEWEST:
         return Pace(asked, asked)
-    return Pace(min(LARGEST * whole, asked), min(FIRST * whole, asked), by_accuracy=True)
+    return Pace(min(LARGEST * whole, asked), min(FIRST * whole, asked), by_accuracy=True, counted=whole / SAFE)
 
 
 def next_step(system: System, point: Point, goal: float, pace: Pace, direction: float) -> Step:
