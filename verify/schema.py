@@ -92,7 +92,7 @@ class Discretization(Section):
     adaptive: bool = False  # tspline: elements follow the process zone, and dofs is the most at any time
     slave: Literal["upper", "lower"] = "upper"  # the body whose points carry the interface
     # equal opening increments, or "auto": the path chooses by accuracy where the mesh resolves the process zone
-    steps: int | Literal["auto"] = "auto"
+    steps: int | Literal["auto"] = 150
 
     @field_validator("interface_points")
     @classmethod
