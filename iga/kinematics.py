@@ -6,6 +6,8 @@ dP_iI/dH_jJ``. Components come first in all arrays: each of the few operations t
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -20,26 +22,32 @@ def elasticity_tensor(D: np.ndarray) -> np.ndarray:
     return D[v[:, :, None, None], v[None, None]]
 
 
-def finite_strain(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+@dataclass(frozen=True)
+class Kinematics:
+    """Of a displacement gradient H_iI (2, 2, ...) and an elasticity matrix D (3, 3) [stress]:
+
+    ``stress`` answers P (2, 2, ...) and the stored energy per reference volume W (...,), ``moduli`` A (2, 2, 2, 2, ...)
+    """
+
+    stress: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+    moduli: Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+def finite_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """St. Venant-Kirchhoff solid, total Lagrangian (Bonet and Wood 2008, sec. 6.4).
 
     ``E = (F'F - 1)/2``, ``S = D:E``, ``P = F S``.
-
-    Parameters
-    ----------
-    D : (3, 3) elasticity matrix [stress].
-    H : (2, 2, ...) displacement gradient H_iI.
-
-    Returns
-    -------
-    P : (2, 2, ...) first Piola-Kirchhoff stress P_iI.
-    A : (2, 2, 2, 2, ...) its derivative, ``A_iIjJ = delta_ij S_IJ + L_v,iI D_vw L_w,jJ`` with ``L_v,iI = dE_v/dH_iI``.
-    W : (...,) stored energy per reference volume.
     """
     F = _deformation(H)
     S_v, W = _svk(D, H)
     S = S_v[np.array(VOIGT)]
-    P = np.stack([[F[i, 0] * S[0, I] + F[i, 1] * S[1, I] for I in range(2)] for i in range(2)])
+    return np.stack([[F[i, 0] * S[0, I] + F[i, 1] * S[1, I] for I in range(2)] for i in range(2)]), W
+
+
+def finite_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
+    """``A_iIjJ = delta_ij S_IJ + L_v,iI D_vw L_w,jJ`` with ``L_v,iI = dE_v/dH_iI``."""
+    F = _deformation(H)
+    S = _svk(D, H)[0][np.array(VOIGT)]
     DL = _stress_rates(D, F)
     A = np.empty((2, 2, 2, 2, *H.shape[2:]))
     for i, I, j, J in product(range(2), repeat=4):
@@ -48,21 +56,25 @@ def finite_strain(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray,
             if i == j:
                 A[i, I, j, J] += S[I, J]
             A[j, J, i, I] = A[i, I, j, J]
-    return P, A, W
+    return A
 
 
-def small_strain(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def small_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Linear kinematics: the same with E replaced by the symmetric gradient and no geometric stiffness."""
+    P = np.tensordot(elasticity_tensor(D), H, axes=2)
+    return P, 0.5 * np.sum(P * H, axis=(0, 1))
+
+
+def small_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
+    """The elasticity tensor everywhere."""
     C = elasticity_tensor(D)
-    P = np.tensordot(C, H, axes=2)
-    A = np.broadcast_to(C.reshape(*C.shape, *[1] * (H.ndim - 2)), C.shape + H.shape[2:])
-    return P, A, 0.5 * np.sum(P * H, axis=(0, 1))
+    return np.broadcast_to(C.reshape(*C.shape, *[1] * (H.ndim - 2)), C.shape + H.shape[2:])
 
 
 def cauchy_stress(D: np.ndarray, H: np.ndarray, kinematics: str) -> np.ndarray:
     """Cauchy stress (2, 2, ...): ``F S F' / det F``, or the linear stress."""
     if kinematics == "linear":
-        return small_strain(D, H)[0]
+        return small_stress(D, H)[0]
     F, (S_v, _) = _deformation(H), _svk(D, H)
     det = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
     return np.einsum("iI...,IJ...,jJ...->ij...", F, S_v[np.array(VOIGT)], F) / det
@@ -93,4 +105,7 @@ def _stress_rates(D: np.ndarray, F: np.ndarray) -> list[list[list[np.ndarray]]]:
     return [[[D[v, J] * F[j, J] + D[v, 2] * F[j, 1 - J] for v in range(3)] for J in range(2)] for j in range(2)]
 
 
-KINEMATICS = {"finite": finite_strain, "linear": small_strain}
+KINEMATICS = {
+    "finite": Kinematics(finite_stress, finite_moduli),
+    "linear": Kinematics(small_stress, small_moduli),
+}

@@ -13,7 +13,7 @@ import numpy as np
 
 from iga.banded import BandLU
 from iga.control import Control
-from iga.system import Phase, Response, State, System, factorise, respond, rounding, without_tangent
+from iga.system import Phase, Response, State, System, factorise, respond, rounding
 
 #: Part of the work along a step that may be left, and the attempts to find its length.
 SLACK, SEARCHES = 0.05, 12
@@ -99,7 +99,7 @@ def _iterate(
 ) -> tuple[tuple[State, Response] | None, tuple[float, ...]]:
     """The converged state with its response, or None, and the residual norms on the way."""
     trial, response, norm = _evaluate(system, trial, True, phase)
-    residuals = [norm]
+    residuals, lu = [norm], None
     while True:
         floor = _floor(system, trial, response, newton) if norm < newton.rough else newton.tolerance
         stays = len(residuals) > 1 and norm > 0.25 * residuals[-2]
@@ -108,16 +108,15 @@ def _iterate(
             return (trial, response), tuple(residuals)
         if _hopeless(residuals, newton):
             return None, tuple(residuals)
-        with phase("factor"):
-            lu = factorise(response)
+        if lu is None or not _holds(residuals, newton.tolerance):
+            lu = None  # before the next one is made: of all that a run holds it is the largest
+            lu = factorise(system, response, phase)
         if lu is None:
             return None, tuple(residuals)
         with phase("solve"):
             move = _correction(system, trial, response, lu, control, target)
         if move is None:
             return None, tuple(residuals)
-        del lu
-        response = without_tangent(response)
         decide = not met or norm > max(newton.settle, 10.0 * floor)
 
         def at(s: float, trial=trial, move=move, decide=decide) -> tuple[State, Response, float]:
@@ -144,6 +143,15 @@ def _floor(system: System, trial: State, response: Response, newton: Newton) -> 
 def _met(value: float, target: float, change: float) -> bool:
     """The control within a millionth of its change, or within rounding of its value."""
     return abs(value - target) <= max(1e-6 * abs(change), 1e-12 * abs(target))
+
+
+def _holds(residuals: list[float], tolerance: float) -> bool:
+    """Whether the last factors are good enough to bring the residual below the tolerance at once.
+
+    Newton's residual falls by the error of the configuration before, and with the factors of that one the next one
+    falls by twice as much as the last one did.
+    """
+    return 2.0 * residuals[-1] ** 2 <= tolerance * residuals[-2]
 
 
 def _hopeless(residuals: list[float], newton: Newton) -> bool:

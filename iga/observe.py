@@ -85,7 +85,7 @@ def face_energy(specimen: Specimen, u_d: np.ndarray) -> float:
 
 def _energy_on(body: Body, end: str, u_Ai: np.ndarray, kinematics: str) -> float:
     def density(basis: BlockBasis) -> np.ndarray:
-        return KINEMATICS[kinematics](body.D, gradient(basis, u_Ai))[2]
+        return KINEMATICS[kinematics].stress(body.D, gradient(basis, u_Ai))[1]
 
     return sum(float(np.sum(density(basis) * basis.dV_eq)) for basis in body.faces[end])
 

@@ -17,7 +17,7 @@ from iga.landing import SEVERAL, broken_between, landed, slope_over_arcs
 from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium, roughly
 from iga.pace import Pace, Step, next_step, paced
 from iga.point import End, Point
-from iga.system import Phase, State, System, energies, respond, untimed, without_tangent
+from iga.system import Phase, State, System, energies, respond, untimed
 from iga.tangent import tangent
 from iga.work import leaks, slid_off, step_work, straight_work
 
@@ -118,14 +118,12 @@ def _departing(system: System, state: State, direction: float, work: float, phas
     for ahead in (False, True):
         with phase("assembly"):
             response = respond(system, state, decide=False)
-        if not ahead:
-            response = without_tangent(response)
         found = tangent(system, state, response, direction, phase, turning=not ahead)
         if found is None:
             return None
         start = Point(
             replace(state, closed_q=found.closed_q),
-            without_tangent(response),
+            response,
             opening,
             found,
             work,
@@ -186,7 +184,7 @@ def _advance(
     lands, kink = by_kinks and not asked.exact, None
     found = equilibrium(system, trial, control, value + change, change, roughly(newton) if lands else newton, phase)
     if found is not None and lands:
-        nearly = replace(found, response=without_tangent(found.response))
+        nearly = found
         found, kink = landed(system, old, nearly, newton, phase, follows_on=point.before is not None)
         if found is nearly:
             found = equilibrium(system, nearly.state, control, value + change, change, newton, phase)
@@ -207,7 +205,6 @@ def _advance(
     if broken >= SEVERAL and point.before is not None:
         slope = slope_over_arcs(point.before, (point.opening, old.load), (opening, state.load))
         leaving = leaving if slope is None else replace(leaving, slope=slope)
-    response = without_tangent(response)
     reached = Point(state, response, opening, leaving, 0.0, energies(system, state, response), found.residuals, before)
     there, b_d, b_load = control(state, response)
     end_rate = float(b_d @ leaving.du_d) + b_load * leaving.d_load

@@ -11,7 +11,7 @@ from iga.observe import row
 from iga.path import End, Point, follow
 from iga.problem import Debonding
 from iga.specimen import Specimen
-from iga.system import Phase, State, System, respond
+from iga.system import Phase, State, System, respond, tangent_matrix
 
 
 @dataclass(frozen=True)
@@ -98,8 +98,8 @@ def by_way_of(programme: Sequence[float], stops: Sequence[float]) -> tuple[float
 
 
 def _condition(system: System, point: Point, phase: Phase) -> float:
-    """Condition number of the tangent at a converged point; its own matrix has been factorised away."""
+    """Condition number of the tangent at a converged point."""
     with phase("assembly"):
-        response = respond(system, point.state, decide=False)
+        band, values = tangent_matrix(system, respond(system, point.state, decide=False))
     with phase("factor"):
-        return response.band.condition(response.tangent)
+        return band.condition(values)

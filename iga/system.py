@@ -1,10 +1,10 @@
-"""The discrete problem: bodies, interface, load and supports; its residual and tangent in one configuration."""
+"""The discrete problem: bodies, interface, load and supports; its forces and their tangent in one configuration."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -91,7 +91,7 @@ class Response:
 
     ``internal_d`` (n_dof,) forces of bulk and interface; ``scale`` the norm of the forces that the elements hold
     against each other, by which a residual is judged; ``bulk_energy``; the interface with traction p_q, slope dp_q and
-    new history k_q; the ``tangent`` as an array of the entries that ``band`` numbers.
+    new history k_q; the displacement gradients of the solids, of which a tangent is made once one is asked for.
     """
 
     internal_d: np.ndarray
@@ -102,8 +102,7 @@ class Response:
     dp_q: np.ndarray
     k_q: np.ndarray
     closed_q: np.ndarray
-    tangent: np.ndarray
-    band: Band | Dense
+    gradients: tuple[np.ndarray, ...]
 
 
 @dataclass(frozen=True)
@@ -192,10 +191,10 @@ class System:
         return tuple(dofs(solid.basis.conn_ea) for solid in self.solids)
 
     @cached_property
-    def unloaded_stiffness(self) -> tuple[np.ndarray, ...]:
+    def unloaded_stiffness(self) -> list[np.ndarray]:
         """Element stiffness (n_e, n_a, 3, n_a) of each block before anything moves; linear: for good."""
         zero_Ai = np.zeros((self.n_dof // 2, 2))
-        return tuple(element_stiffness(solid.basis, _bulk(self, solid, zero_Ai)[1]) for solid in self.solids)
+        return _bulk_stiffness(self, [gradient(solid.basis, zero_Ai) for solid in self.solids])
 
     @cached_property
     def linear_matrices(self) -> tuple[np.ndarray, ...]:
@@ -231,29 +230,41 @@ class System:
 
 
 def respond(system: System, trial: State, decide: bool = True) -> Response:
-    """Residual and tangent of a trial state, whose history is that of the last converged one.
+    """Forces of a trial state, whose history is that of the last converged one.
 
     Unless asked to ``decide`` anew by the sign of the gap, every point stays in contact or out of it as it is in
     ``trial``.
     """
     linear = system.kinematics == "linear"
     bulk = _finite_bulk if not linear else _linear_bulk if system.bulk_dd is None else _condensed_bulk
-    internal_d, scale, bulk_energy, parts = bulk(system, trial.u_d)
+    internal_d, scale, bulk_energy, gradients = bulk(system, trial.u_d)
     touch = contact(system.interface, trial.u_d, trial.pairing)
     scale = max(scale, UNLOADED * trial.scale)
     closed_q = _closed(system, touch, trial, scale) if decide else trial.closed_q
     p_q, dp_q, k_q = traction(system.interface, touch, trial.k_q, closed_q)
     internal_d += forces(system.interface, touch, p_q, system.n_dof)
     internal_d -= system.spring_forces(trial.u_d) @ system.springs_rd
-    K_qdd = stiffness(system.interface, touch, p_q, dp_q)
+    return Response(internal_d, scale, bulk_energy, touch, p_q, dp_q, k_q, closed_q, gradients)
+
+
+def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np.ndarray]:
+    """Derivative of the forces by the displacements: the entries (band.size,) and the band that numbers them."""
+    touch, p_q, dp_q = response.contact, response.p_q, response.dp_q
     # an open crack asks for no entries in the matrix, however far it has moved
     carries_q = (p_q != 0.0) | (dp_q != 0.0)
     pattern = system.pattern(np.where(carries_q[:, None], touch.dof_qd, system.reference_dof_qd))
-    values = all_entries(parts, K_qdd, system.spring_entries[2])
-    tangent = np.bincount(pattern.positions, values, pattern.band.size)
-    if linear:
-        tangent += system.linear_band
-    return Response(internal_d, scale, bulk_energy, touch, p_q, dp_q, k_q, closed_q, tangent, pattern.band)
+    K_qdd = stiffness(system.interface, touch, p_q, dp_q)
+    bulk = _bulk_stiffness(system, response.gradients)
+    values = np.bincount(pattern.positions, all_entries(bulk, K_qdd, system.spring_entries[2]), pattern.band.size)
+    return pattern.band, values if system.kinematics == "finite" else values + system.linear_band
+
+
+def factorise(system: System, response: Response, phase: Phase) -> BandLU | DenseLU | None:
+    """LU of the tangent; None where it is exactly singular."""
+    with phase("assembly"):
+        band, values = tangent_matrix(system, response)
+    with phase("factor"):
+        return band.factor(values)
 
 
 def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.ndarray:
@@ -274,16 +285,6 @@ def energies(system: System, state: State, response: Response) -> Energies:
     return Energies(elastic, cohesive, contact_energy, float(interface.dA_q @ dissipated_q) + state.slid)
 
 
-def without_tangent(response: Response) -> Response:
-    """The same without its tangent, which has been factorised away and is by far the largest part."""
-    return replace(response, tangent=np.zeros(0))
-
-
-def factorise(response: Response) -> BandLU | DenseLU | None:
-    """LU of the tangent, which it overwrites; None where the tangent is exactly singular."""
-    return response.band.factor(response.tangent)
-
-
 def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
     """Norm of what rounding of the displacements does to the forces.
 
@@ -299,20 +300,20 @@ def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
     return float(np.hypot(40.0 * np.finfo(float).eps * np.sqrt(sum(squares)), touching))
 
 
-def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, list[np.ndarray]]:
+def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
     internal_d, square = np.zeros(system.n_dof), 0.0
     for K, solid, d in zip(system.linear_matrices, system.solids, system.element_dofs, strict=True):
         f = K @ relative(solid.basis.conn_ea, u_d.reshape(-1, 2)).reshape(len(d), -1, 1)
         internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
         square += float(np.sum(f * f))
-    return internal_d, square**0.5, 0.5 * float(u_d @ internal_d), []
+    return internal_d, square**0.5, 0.5 * float(u_d @ internal_d), ()
 
 
-def _condensed_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, list[np.ndarray]]:
+def _condensed_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
     """A force that rounding hides is none: the scale is at least that for which `Newton` would ask no more."""
     internal_d = system.bulk_dd @ u_d
     scale = max(float(np.linalg.norm(internal_d)), HIDDEN * _held(system, u_d))
-    return internal_d, scale, 0.5 * float(u_d @ internal_d), []
+    return internal_d, scale, 0.5 * float(u_d @ internal_d), ()
 
 
 def _held(system: System, u_d: np.ndarray) -> float:
@@ -320,21 +321,25 @@ def _held(system: System, u_d: np.ndarray) -> float:
     return float(np.linalg.norm(system.bulk_dd * u_d))
 
 
-def _finite_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, list[np.ndarray]]:
-    internal_d, square, stored, parts = np.zeros(system.n_dof), 0.0, 0.0, []
+def _finite_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
+    internal_d, square, stored, gradients = np.zeros(system.n_dof), 0.0, 0.0, []
     for solid, d in zip(system.solids, system.element_dofs, strict=True):
-        P, A, W = _bulk(system, solid, u_d.reshape(-1, 2))
+        H = gradient(solid.basis, u_d.reshape(-1, 2))
+        P, W = KINEMATICS[system.kinematics].stress(solid.D, H)
         f = element_forces(solid.basis, P)
         internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
         square += float(np.sum(f * f))
         stored += energy(solid.basis, W)
-        parts.append(element_stiffness(solid.basis, A))
-    return internal_d, square**0.5, stored, parts
+        gradients.append(H)
+    return internal_d, square**0.5, stored, tuple(gradients)
 
 
-def _bulk(system: System, solid: Solid, u_Ai: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Stress, tangent and energy density at all points."""
-    return KINEMATICS[system.kinematics](solid.D, gradient(solid.basis, u_Ai))
+def _bulk_stiffness(system: System, gradients: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Element stiffness of the blocks whose gradients are told; none of a bulk that is linear and in place already."""
+    moduli = KINEMATICS[system.kinematics].moduli
+    return [
+        element_stiffness(solid.basis, moduli(solid.D, H)) for solid, H in zip(system.solids, gradients, strict=False)
+    ]
 
 
 def _reachable(interface: Interface) -> list[np.ndarray]:

@@ -14,7 +14,7 @@ import numpy as np
 from iga.banded import BandLU
 from iga.interface import holding
 from iga.landing import Kink
-from iga.system import Phase, Response, State, System, factorise, respond, without_tangent
+from iga.system import Phase, Response, State, System, factorise, respond
 
 #: Attempts at the set of points, the gap, in units of g_max, that counts as none, and the part of the largest rate
 #: that counts as rounding.
@@ -59,8 +59,7 @@ def tangent(
 
     Parameters
     ----------
-    response : to this very state; its tangent matrix is used as it is where all its points agree with it, and is
-        overwritten.
+    response : to this very state, used as it is where all its points agree with it.
     direction : +1 where the programme opens the specimen, -1 where it closes it. Damage cannot heal: while it grows
         the path goes forward where energy is dissipated, whatever the opening does there.
     turning : the programme has turned round at this state, or begins: nothing is known of the points.
@@ -79,7 +78,6 @@ def tangent(
             with phase("assembly"):
                 response = respond(system, replace(state, k_q=k_q, closed_q=closed_q), decide=False)
         found = _along(system, response, direction, growing_q, kink, phase)
-        response = without_tangent(response)
         if found is None:
             return None
         least = NO_RATE * float(np.max(np.abs(found.rate_q), initial=0.0))
@@ -95,8 +93,7 @@ def _along(
     system: System, response: Response, direction: float, growing_q: np.ndarray, kink: Kink | None, phase: Phase
 ) -> Tangent | None:
     """Solution of ``K du = f d_load`` for one set of points, turned forward."""
-    with phase("factor"):
-        lu = factorise(response)
+    lu = factorise(system, response, phase)
     if lu is None:
         return None
     with phase("solve"):

@@ -8,7 +8,7 @@ import numpy as np
 
 from iga.bulk import gradient
 from iga.extraction import Mesh
-from iga.kinematics import small_strain
+from iga.kinematics import small_stress
 from iga.plane import bulk_bases
 from verify.plane_exact import PlaneField
 
@@ -33,7 +33,7 @@ def errors(mesh: Mesh, D: np.ndarray, u_Ai: np.ndarray, exact: PlaneField, up_to
     """
     u, miss, X, dV, stress, gap = [], [], [], [], [], []
     for basis in bulk_bases(mesh, 2):
-        sigma_ijeq = small_strain(D, gradient(basis, u_Ai))[0]
+        sigma_ijeq = small_stress(D, gradient(basis, u_Ai))[0]
         exact_ijeq = np.moveaxis(exact.stress(basis.X_eqI), (2, 3), (0, 1))
         u_eqi = exact.displacement(basis.X_eqI)
         u.append(u_eqi.reshape(-1, 2))

@@ -19,7 +19,7 @@ from iga.bulk import gradient
 from iga.extraction import Mesh
 from iga.iga_file import mesh as mesh_of
 from iga.iga_read import read_iga
-from iga.kinematics import small_strain
+from iga.kinematics import small_stress
 from iga.material import isotropic
 from iga.plane import no_rigid_motion, solve, stiffness, traction_forces
 from iga.quadrature import square
@@ -209,6 +209,6 @@ def _sampled(mesh: Mesh, u_Ai: np.ndarray, field: PlaneField) -> tuple[np.ndarra
     for block in mesh.blocks:
         basis = block_basis(mesh, block, *square((at, ones), (at, ones)))
         X.append(basis.X_eqI)
-        found.append(small_strain(isotropic(**SOLID), gradient(basis, u_Ai))[0][0, 0])
+        found.append(small_stress(isotropic(**SOLID), gradient(basis, u_Ai))[0][0, 0])
     X_euvi = np.concatenate(X).reshape(-1, _GRID, _GRID, 2)
     return X_euvi, np.concatenate(found).reshape(X_euvi.shape[:3]), field.stress(X_euvi)[..., 0, 0]
