@@ -126,6 +126,16 @@ def machine() -> dict[str, Any]:
     return {"system": platform.platform(), "processor": _processor(), "cores": os.cpu_count()}
 
 
+def environment() -> dict[str, str]:
+    """Versions, machine and threads in words, for the foot of a page."""
+    about = machine()
+    return {
+        **versions(),
+        "machine": f"{about['processor']}, {about['cores']} cores, {about['system']}",
+        "threads a run": os.environ.get("OMP_NUM_THREADS", "as many as cores"),
+    }
+
+
 def _processor() -> str:
     cpuinfo = Path("/proc/cpuinfo")
     lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import shlex
-import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -17,15 +15,14 @@ from verify.methods import METHODS, WITH_DOFS
 from verify.paper import peel, peel_statements, statements
 from verify.paper import plan as figures
 from verify.paper.comparison import lines
-from verify.paper.peel import PeelStudy
-from verify.paper.study import Study as Figures
 from verify.paper.study import measured
-from verify.plane_rates import Convergence, rate_checks, rates
-from verify.plane_study import PlaneStudy, Plate
+from verify.plane_rates import rate_checks, rates
+from verify.plane_study import Plate
 from verify.plane_study import lines as plane_lines
 from verify.plane_study import study as plane_study
-from verify.quadrature_study import Study, finding, study
-from verify.run import machine, versions
+from verify.quadrature_study import finding, study
+from verify.run import environment
+from verify.say import write_page
 from verify.scene import Scene
 from verify.table import check_table, failures, overview
 from verify.verdict import Check, Run, SceneReport
@@ -71,7 +68,7 @@ def verify(
     peels = peel.measured(strips, outcomes) if full else None
     planes = tuple(plane_study(plate) for plate in plates)
     bases = rates() if full else ()
-    _write_report(reports, page, quadrature, paper, planes, bases, peels)
+    write_page("verify.report", reports, page, environment(), quadrature, paper, planes, bases, peels)
     checks = [(report.scene.name, check) for report in reports for check in report.checks]
     checks += [(found.name, check) for found in planes for check in found.checks]
     checks += [("plane elasticity", check) for check in rate_checks(bases)]
@@ -145,16 +142,6 @@ def sequences(reports: Sequence[SceneReport]) -> list[str]:
     return lines
 
 
-def environment() -> dict[str, str]:
-    """Versions and machine, for the report."""
-    about = machine()
-    return {
-        **versions(),
-        "machine": f"{about['processor']}, {about['cores']} cores, {about['system']}",
-        "threads a run": os.environ.get("OMP_NUM_THREADS", "as many as cores"),
-    }
-
-
 def _as_run(outcome: Outcome, out: Path) -> Run:
     job, result = outcome.job, outcome.result
     scene = job.solved
@@ -166,21 +153,3 @@ def _as_run(outcome: Outcome, out: Path) -> Run:
     folder = str(job.folder(out).relative_to(out))
     command = shlex.join(["debond", *job.command(out)])
     return Run(label, job.method, result, outcome.left_out, folder, command, scene)
-
-
-def _write_report(
-    reports: tuple[SceneReport, ...],
-    page: Path,
-    quadrature: Study | None,
-    paper: Figures | None,
-    planes: tuple[PlaneStudy, ...],
-    bases: tuple[Convergence, ...],
-    peels: PeelStudy | None,
-) -> None:
-    """The page; without the packages that it needs the checks are still worth printing."""
-    try:
-        from verify.report import write
-    except ImportError as error:
-        print(f"debond: no report: {error.name} is missing; pip install 'debond[report]'", file=sys.stderr)
-        return
-    write(reports, page, environment(), quadrature, paper, planes, bases, peels)

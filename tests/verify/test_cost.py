@@ -347,7 +347,7 @@ def test_a_study_from_ladder_to_files(seconds: float, tmp_path: Path, monkeypatc
             yield Outcome(job, made_up(1.0 + (60.0 / size) ** 3, dofs=size, elements=size, n=120))
 
     monkeypatch.setattr(study_of, "run_all", run_all)
-    monkeypatch.setattr(study_of, "_page", lambda study, out: None)
+    monkeypatch.setattr(study_of, "write_page", lambda module, study, path: None)
     found = study_of.cost("dcb-czm1", SCENE, (), tmp_path, 2)
     rows = read_csv(tmp_path / "cost.csv")
     assert (tmp_path / "cost.json").exists() and "written: " in capsys.readouterr().out

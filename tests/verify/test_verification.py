@@ -29,7 +29,7 @@ LINEAR = "dcb-czm1-linear"
 def reports(monkeypatch: pytest.MonkeyPatch) -> list[SceneReport]:
     """What the report would have been written from."""
     seen: list[SceneReport] = []
-    monkeypatch.setattr(verification, "_write_report", lambda reports, *studies: seen.extend(reports))
+    monkeypatch.setattr(verification, "write_page", lambda module, reports, *others: seen.extend(reports))
     return seen
 
 

@@ -20,6 +20,7 @@ from verify.fingerprint import source as source_of
 from verify.folder import write_json
 from verify.jobs import Job, Outcome, dry_run, run_all
 from verify.run import machine, versions
+from verify.say import say, write_page
 from verify.schema import Scene
 
 #: A ladder ends below this part of the finest level, where a rung took so many times as long as the cheapest run that
@@ -85,7 +86,6 @@ class Study:
             "threads": 1,
         }
 
-
     def _front(self, one: Row) -> dict[str, object]:
         """A run of the front, with what repeats it."""
         keys = ("method", "degree", "dofs", "steps", "curve_error", "seconds", "run")
@@ -142,9 +142,9 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     outcomes = {outcome.job: outcome for outcome in run_all([job for plan in plans for job in plan], out, jobs)}
     against = reference(*([outcomes[job] for job in plan] for plan in plans))
     if against is None:
-        _say(_no_reference([outcomes[job] for job in plans[0]]))
+        say(_no_reference([outcomes[job] for job in plans[0]]))
         return None
-    _say(against.sentence)
+    print(against.sentence, file=sys.stderr, flush=True)
     runner = Runner(source, scene, tuple(given), out, against)
     whole = [
         climb(rungs, partial(runner, seconds=CLIMB), lambda: runner.rows),
@@ -160,7 +160,7 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     study = Study(scene, against, tuple(_counted(runner)), tuple(reasons), how)
     write_csv(out / "cost.csv", study.rows)
     write_json(out / "cost.json", study.summary())
-    _page(study, out)
+    write_page("verify.cost.page", study, out / "report.html")
     print("\n".join([against.sentence, *study.left_out, *table(study.rows), f"written: {out / 'cost.csv'}"]))
     return study
 
@@ -249,18 +249,4 @@ def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: 
 
 def _no_reference(outcomes: Sequence[Outcome]) -> str:
     why = [o.left_out or o.result.status for o in outcomes if o.result is None or not o.result.complete]
-    return f"debond: no converged reference, so that nothing can be measured: {why[0]}"
-
-
-def _page(study: Study, out: Path) -> None:
-    """The page; without the packages that it needs the numbers are still worth having."""
-    try:
-        from verify.cost.page import write
-    except ImportError as error:
-        _say(f"debond: no report: {error.name} is missing; pip install 'debond[report]'")
-        return
-    write(study, out / "report.html")
-
-
-def _say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
+    return f"no converged reference, so that nothing can be measured: {why[0]}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from verify.fingerprint import digest, fingerprint, source
 from verify.hard.case import Case
 from verify.hard.one import Verdict, read_verdict
 from verify.pools import pool
+from verify.say import write_page
 from verify.sweep import FOLDER, Done, Task, listed, sweep
 from verify.table import check_table
 
@@ -41,7 +41,7 @@ def hard(cases: Sequence[Case], out: Path, jobs: int, scheduler: str | None = No
     """Run the cases, write ``out``/report.html, print the matrix; whether every row holds."""
     found = {(cell.case.name, cell.basis): cell for cell in run_all(cases, out, jobs, scheduler)}
     cells = [found[case.name, basis] for case in cases for basis in case.bases]
-    _write_page(cells, out)
+    write_page("verify.hard.page", cells, out)
     print("\n".join([*matrix(cells), "", *failures(cells)]))
     rows = [case for case in cases if all(cell.passed for cell in cells if cell.case is case)]
     print(f"{len(rows)} of {len(cases)} hard cases hold: {out / 'report.html'}")
@@ -143,13 +143,3 @@ def _in_short(cell: Cell) -> str:
     broken = sum(not check.passed for check in cell.verdict.checks)
     holds = "holds" if cell.passed else f"{broken} of {len(cell.verdict.checks)} criteria fail"
     return f"{holds}, {len(cell.verdict.runs)} runs, {totals(cell.verdict).seconds:.1f} s"
-
-
-def _write_page(cells: Sequence[Cell], out: Path) -> None:
-    """The page; without the packages that it needs the matrix is still worth printing."""
-    try:
-        from verify.hard.page import write
-    except ImportError as error:
-        print(f"debond: no report: {error.name} is missing; pip install 'debond[report]'", file=sys.stderr)
-        return
-    write(cells, out)

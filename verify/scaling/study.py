@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
@@ -15,6 +14,7 @@ from verify.fingerprint import source as source_of
 from verify.folder import write_json
 from verify.jobs import dry_run, run_all
 from verify.run import machine, versions
+from verify.say import write_page
 from verify.scaling.expect import MANY, Expectation, Larger, Shared, expectation, larger, shared, whatever_the_size
 from verify.scaling.growth import Fit, fit
 from verify.scaling.plan import Plan, planned
@@ -187,7 +187,7 @@ def scaling(source: str, scene: Scene, given: Sequence[str], out: Path) -> Study
     study = Study(scene, rows, plan.reasons, _columns(plan), (before, _load()))
     write_csv(out / "scaling.csv", study.rows)
     write_json(out / "scaling.json", study.summary())
-    _page(study, out)
+    write_page("verify.scaling.page", study, out / "report.html")
     stopped = [f"{one.run}: {one.status}" for one in rows if not one.measured]
     print("\n".join([*study.sentences, *study.reasons, *stopped, f"written: {out / 'scaling.csv'}"]))
     return study
@@ -205,13 +205,3 @@ def _columns(plan: Plan) -> int:
 
 def _load() -> float:
     return os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
-
-
-def _page(study: Study, out: Path) -> None:
-    """The page; without the packages that it needs the numbers are still worth having."""
-    try:
-        from verify.scaling.page import write
-    except ImportError as error:
-        print(f"debond: no report: {error.name} is missing; pip install 'debond[report]'", file=sys.stderr)
-        return
-    write(study, out / "report.html")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ from verify.folder import write_json
 from verify.jobs import dry_run, run_all
 from verify.methods import require
 from verify.run import machine, versions
+from verify.say import write_page
 from verify.schema import Scene
 from verify.switches.plan import planned
 from verify.switches.row import Row, row, table, write_csv
@@ -66,7 +66,7 @@ def effects(
     study = Study(scene, method, tuple(row(pair, first, again) for pair in plan.pairs), plan.reasons)
     write_csv(out / "effects.csv", study.rows)
     write_json(out / "effects.json", study.summary())
-    _page(study, out)
+    write_page("verify.switches.page", study, out / "report.html")
     print("\n".join([*table(study.rows, study.reasons), f"written: {out / 'effects.csv'}"]))
     return study
 
@@ -76,13 +76,3 @@ def would_run(source: str, scene: Scene, method: str, given: Sequence[str], out:
     require(scene, method)
     plan = planned(source, scene, method, given)
     return [*dry_run([*plan.jobs, *plan.repeats()], out, 1), *plan.reasons]
-
-
-def _page(study: Study, out: Path) -> None:
-    """The page; without the packages that it needs the numbers are still worth having."""
-    try:
-        from verify.switches.page import write
-    except ImportError as error:
-        print(f"debond: no report: {error.name} is missing; pip install 'debond[report]'", file=sys.stderr)
-        return
-    write(study, out / "report.html")

@@ -1,0 +1,20 @@
+"""What is said beside the output: on stderr, at once."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+
+
+def say(text: str) -> None:
+    print(f"debond: {text}", file=sys.stderr, flush=True)
+
+
+def write_page(module: str, *what: object) -> None:
+    """Call ``write`` of a module; without the packages that a page needs the numbers are still worth having."""
+    try:
+        write = import_module(module).write
+    except ImportError as error:
+        say(f"no report: {error.name} is missing; pip install 'debond[report]'")
+        return
+    write(*what)
