@@ -12,10 +12,9 @@ from markupsafe import Markup
 from verify.cost.figures import METHODS, error_and_unknowns, named, phases, triple, work_precision
 from verify.cost.findings import LEVELS, Cheapest, cheapest, growth, of_equal_steps, orders
 from verify.cost.row import Row
-from verify.report.look import look
-from verify.report.text import number, percent, seconds, sentence
-from verify.run import machine, versions
-from verify.templates import templates
+from verify.report.template import rendered
+from verify.report.text import percent, seconds, sentence
+from verify.run import environment
 
 if TYPE_CHECKING:
     from verify.cost.study import Study
@@ -63,10 +62,10 @@ def write(study: Study, path: Path) -> None:
     levels = [Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS]
     found = orders(rows, 2.0 * study.against.uncertainty["curve"])
     typical = list(levels[1].best.of_method.values())
-    jinja = templates("verify.cost")
-    jinja.filters |= {"svg": Markup, "number": number, "percent": percent, "seconds": seconds, "named": named}
-    about = machine()
-    page = jinja.get_template("page.html.j2").render(
+    page = rendered(
+        "verify.cost",
+        "page.html.j2",
+        {"percent": percent, "seconds": seconds, "named": named},
         name=study.scene.name,
         sentence=sentence(study.scene),
         against=study.against,
@@ -81,14 +80,9 @@ def write(study: Study, path: Path) -> None:
         bars=phases(typical, "phases") if typical else None,
         growth=growth(rows),
         rows=sorted(rows, key=lambda row: (row.method, row.degree, row.dofs, row.asked)),
-        environment={
-            **versions(),
-            "machine": f"{about['processor']}, {about['cores']} cores, {about['system']}",
-            "threads a run": "1",
-        },
+        environment=environment(),
         data=_for_script(rows),
         script=Markup(_SCRIPT.read_text(encoding="utf-8")),
-        **look(),
     )
     path.write_text(page, encoding="utf-8")
 

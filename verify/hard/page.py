@@ -7,17 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from markupsafe import Markup
 
 from verify.curve import dense, envelope
 from verify.folder import read_result
 from verify.hard.case import BASES, Case
 from verify.hard.suite import Cell, totals
-from verify.report.look import look
 from verify.report.style import METHOD_NAMES, Line, Panel, drawing, line, panel, to_svg
-from verify.report.text import number, seconds
+from verify.report.template import rendered
+from verify.report.text import seconds
 from verify.result import Result
-from verify.templates import templates
 from verify.verdict import Check
 
 #: Points of a drawn curve, about; runs that are named in a legend, at most.
@@ -41,14 +39,14 @@ def write(cells: Sequence[Cell], out: Path) -> None:
     """Write ``out``/report.html."""
     cases = list(dict.fromkeys(cell.case.name for cell in cells))
     rows = [_row([cell for cell in cells if cell.case.name == name], out) for name in cases]
-    jinja = templates("verify.hard")
-    jinja.filters |= {"svg": Markup, "number": number, "seconds": seconds, "worst": worst_first}
-    page = jinja.get_template("page.html.j2").render(
+    page = rendered(
+        "verify.hard",
+        "page.html.j2",
+        {"seconds": seconds, "worst": worst_first},
         rows=rows,
         bases={basis: METHOD_NAMES[basis] for basis in BASES},
         held=sum(row.passed for row in rows),
         totals=totals,
-        **look(),
     )
     (out / "report.html").write_text(page, encoding="utf-8")
 

@@ -5,19 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from markupsafe import Markup
-
 from verify.paper.peel import PeelStudy
 from verify.paper.study import Study as Figures
 from verify.plane_rates import Convergence
 from verify.plane_study import PlaneStudy
 from verify.quadrature_study import Study
 from verify.report import paper_section, peel_section, plane, plane_rates, study
-from verify.report.look import look
 from verify.report.section import section
 from verify.report.summary import summarise
-from verify.report.text import number, symbols
-from verify.templates import templates
+from verify.report.template import rendered
+from verify.report.text import symbols
 from verify.verdict import SceneReport
 
 __all__ = ["write"]
@@ -51,10 +48,10 @@ def write(
     sections = tuple(section(report, f"scene-{i + 1}") for i, report in enumerate(reports))
     plane_sections = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(planes))
     rates_section = plane_rates.section(rates, "rates") if rates else None
-    jinja = templates("verify.report")
-    jinja.filters["svg"] = Markup  # drawn by this package, which has escaped its texts
-    jinja.filters |= {"number": number, "symbols": symbols}
-    page = jinja.get_template("page.html.j2").render(
+    page = rendered(
+        "verify.report",
+        "page.html.j2",
+        {"symbols": symbols},
         sections=sections,
         summary=summarise(sections, (*plane_sections, *filter(None, [rates_section]))),
         planes=plane_sections,
@@ -63,7 +60,6 @@ def write(
         paper=None if paper is None else paper_section.section(paper, "figures"),
         peels=None if peels is None else peel_section.section(peels, "figure-9"),
         environment=dict(environment),
-        **look(),
     )
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -10,9 +10,8 @@ from matplotlib.axes import Axes
 
 from verify.compare import Comparison
 from verify.curve import envelope
-from verify.report.look import look
 from verify.report.style import HALF, Line, Panel, colour, drawing, panel, to_svg
-from verify.templates import templates
+from verify.report.template import rendered
 from verify.verdict import Check
 
 _A, _B = Line("lagrange", 1.2, (), 1.0, 4.0), Line("dolfinx", 3.4, (), 0.5, 2.0)
@@ -35,15 +34,16 @@ def page(
     found : the checks that were asked for
     remarks : what is printed above the numbers
     """
-    jinja = templates("verify.report")
-    return jinja.get_template("comparison.html.j2").render(
+    return rendered(
+        "verify.report",
+        "comparison.html.j2",
+        {},
         labels=labels,
         rows=rows,
         checks={check.name: check for check in found},
         passed=all(check.passed for check in found),
         remarks=remarks,
         panels=[Panel(Markup(p.svg), p.caption) for p in (_curves(comparison, labels), _difference(comparison))],
-        **look(),
     )
 
 

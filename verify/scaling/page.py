@@ -9,19 +9,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from markupsafe import Markup
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from verify.report.look import look
 from verify.report.style import HALF, METHOD_NAMES, WIDE, Panel, colour, drawing, panel, to_svg
+from verify.report.template import rendered
 from verify.report.text import number, sentence
-from verify.run import machine, versions
+from verify.run import environment
 from verify.scaling.expect import DISSECTED, GHOSTS, WORTH, Range
 from verify.scaling.growth import Fit
 from verify.scaling.plan import DEGREES, SHORT, STEPS, most_elements
 from verify.scaling.row import PARTS, Row
-from verify.templates import templates
 
 if TYPE_CHECKING:
     from verify.scaling.study import Study
@@ -39,10 +37,10 @@ _MARKERS = {"nurbs": "o", "dolfinx": "s"}
 
 def write(study: Study, path: Path) -> None:
     """Write the page."""
-    jinja = templates("verify.scaling")
-    jinja.filters |= {"svg": Markup, "number": number, "between": between, "power": power, "readable": readable}
-    about = machine()
-    page = jinja.get_template("page.html.j2").render(
+    page = rendered(
+        "verify.scaling",
+        "page.html.j2",
+        {"between": between, "power": power, "readable": readable},
         name=study.scene.name,
         sentence=sentence(study.scene),
         study=study,
@@ -57,12 +55,9 @@ def write(study: Study, path: Path) -> None:
         programme=(SHORT, STEPS),
         assumed={"ghosts": GHOSTS, "dissected": DISSECTED, "worth": WORTH, "most_elements": most_elements()},
         environment={
-            **versions(),
-            "machine": f"{about['processor']}, {about['cores']} cores, {about['system']}",
+            **environment(),
             "load average at the beginning and at the end": " and ".join(f"{load:.1f}" for load in study.load),
-            "threads a run": "1",
         },
-        **look(),
     )
     path.write_text(page, encoding="utf-8")
 

@@ -7,15 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from markupsafe import Markup
 from matplotlib.axes import Axes
 
-from verify.report.look import look
 from verify.report.style import WIDE, Panel, colour, drawing, panel, to_svg
-from verify.report.text import number, sentence
-from verify.run import machine, versions
+from verify.report.template import rendered
+from verify.report.text import sentence
+from verify.run import environment
 from verify.switches.row import CHANGES, Row, signed
-from verify.templates import templates
 
 if TYPE_CHECKING:
     from verify.switches.study import Study
@@ -36,10 +34,10 @@ LEAST = 1e-5
 def write(study: Study, path: Path) -> None:
     """Write the page."""
     drawn = [one for one in study.rows if one.complete]
-    jinja = templates("verify.switches")
-    jinja.filters |= {"svg": Markup, "number": number, "in_cell": in_cell}
-    about = machine()
-    page = jinja.get_template("page.html.j2").render(
+    page = rendered(
+        "verify.switches",
+        "page.html.j2",
+        {"in_cell": in_cell},
         name=study.scene.name,
         method=study.method,
         sentence=sentence(study.scene),
@@ -47,12 +45,7 @@ def write(study: Study, path: Path) -> None:
         reasons=study.reasons,
         columns=BARS,
         bars=[changed(drawn, "changes"), times(drawn, "times")] if drawn else [],
-        environment={
-            **versions(),
-            "machine": f"{about['processor']}, {about['cores']} cores, {about['system']}",
-            "threads a run": "1",
-        },
-        **look(),
+        environment=environment(),
     )
     path.write_text(page, encoding="utf-8")
 
