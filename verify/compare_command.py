@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from verify.compare import Comparison, Part, compare
 from verify.compare_words import remarks, rows
 from verify.curve_file import Reading, read_curve
 from verify.folder import write_json
+from verify.say import say
 from verify.verdict import Check
 
 PAGE, NUMBERS = "comparison.html", "comparison.json"
@@ -48,7 +49,6 @@ def write(
     comparison: Comparison,
     loads: Sequence[tuple[float, float, float]],
     found: Sequence[Check],
-    say: Callable[[str], None],
 ) -> None:
     """Write comparison.json, and comparison.html where there is what to draw it with."""
     write_json(folder / NUMBERS, numbers(sources, comparison, loads, found))
@@ -57,7 +57,7 @@ def write(
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("matplotlib", "jinja2", "markupsafe"):
             raise
-        say("debond: no page without matplotlib and jinja2: pip install 'debond[report]'")
+        say("no page without matplotlib and jinja2: pip install 'debond[report]'")
         return
     labels = tuple(source.label for source in sources)
     cells = rows(comparison, loads)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 from iga.extraction import Mesh
@@ -11,12 +10,13 @@ from iga.iga_file import IgaFile, mesh, write_iga
 from iga.iga_read import read_iga
 from verify.mesh_facts import MeshFacts
 from verify.refusal import Refusal
+from verify.say import say
 
 #: Formats of pictures.
 PICTURES = (".svg", ".png", ".pdf")
 
 
-def examine(path: Path, out: Path | None, as_json: bool, control: bool, say: Callable[[str], None]) -> bool:
+def examine(path: Path, out: Path | None, as_json: bool, control: bool) -> bool:
     """Report on a mesh file, and write what ``out`` asks for: a picture, a `.vtu` or an `.iga` file.
 
     Without ``out`` the picture goes to `debond-mesh/STEM.svg` in the working directory.
@@ -34,7 +34,7 @@ def examine(path: Path, out: Path | None, as_json: bool, control: bool, say: Cal
     file, body = _read(path)
     facts = MeshFacts(body)
     report = _report(path, file, facts)
-    written = _write(out, path, file, facts, control, say)
+    written = _write(out, path, file, facts, control)
     if as_json:
         print(json.dumps({**report, "written": written and str(written)}, indent=2))
     else:
@@ -42,7 +42,7 @@ def examine(path: Path, out: Path | None, as_json: bool, control: bool, say: Cal
         if written:
             print(f"written: {written}")
     for sentence in facts.unsound:
-        say(f"debond: {path}: {sentence}")
+        say(f"{path}: {sentence}")
     return not facts.unsound
 
 
@@ -59,9 +59,7 @@ def _read(path: Path) -> tuple[IgaFile, Mesh]:
         raise Refusal(f"{path}: {error}") from None
 
 
-def _write(
-    out: Path | None, path: Path, file: IgaFile, facts: MeshFacts, control: bool, say: Callable[[str], None]
-) -> Path | None:
+def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts, control: bool) -> Path | None:
     """Where the picture or the other format has gone; None where there is nothing to draw with."""
     target = out or Path("debond-mesh") / f"{path.stem}.svg"
     try:
@@ -84,7 +82,7 @@ def _write(
             raise
         if out is not None:
             raise Refusal("--out: a picture needs matplotlib: pip install 'debond[report]'") from None
-        say("debond: no picture without matplotlib: pip install 'debond[report]'")
+        say("no picture without matplotlib: pip install 'debond[report]'")
         return None
     return target
 

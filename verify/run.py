@@ -21,6 +21,7 @@ from verify.folder import CurveWriter, write_fields, write_json
 from verify.memory import keep_freed_memory
 from verify.methods import solve
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
+from verify.say import say
 from verify.scene import Scene
 from verify.timing import PHASES, peak_memory_mb
 from verify.verdict import Check
@@ -95,7 +96,7 @@ def _silent(scene: Scene, method: str, solver: Solver) -> Result:
 
 def _take_down_all_ranks(why: str) -> NoReturn:
     """End without MPI_Finalize, which would wait for ranks that wait for this one; mpirun then ends those."""
-    print(f"debond: rank {mpi_rank()}: {why}", file=sys.stderr, flush=True)
+    say(f"rank {mpi_rank()}: {why}")
     sys.stdout.flush()
     os._exit(1)
 

@@ -233,7 +233,7 @@ def test_any_file_is_refused_or_examined(data, tmp_path_factory):
     path = tmp_path_factory.getbasetemp() / "mutated.iga"
     path.write_bytes(data)
     try:
-        sound = examine(path, path.with_suffix(".vtu"), False, False, lambda text: None)
+        sound = examine(path, path.with_suffix(".vtu"), False, False)
     except Refusal as refusal:
         assert str(path) in str(refusal) and "\n" not in str(refusal)
         return

@@ -1,0 +1,289 @@
+"""The commands: each takes its options to the work, refuses what cannot be done, and returns an exit code."""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from verify.refusal import Refusal
+from verify.say import say
+
+FAILED = 1
+
+
+def solve(options: argparse.Namespace) -> int:
+    from verify import neglected
+    from verify.effects import decided
+    from verify.methods import NotRun, require
+    from verify.process_zone import warnings
+    from verify.run import mpi_rank, mpi_size, run
+    from verify.scene import load_scene
+
+    if options.accuracy is not None:
+        _chosen(options)
+    options.method = options.method or "nurbs"
+    _known_method(options.method, options.dofs)
+    dofs = [f"discretization.dofs={options.dofs}"] if options.dofs else []
+    scene = load_scene(options.scene, [*dofs, *options.overrides])
+    if mpi_size() > 1 and options.method != "dolfinx":
+        raise Refusal(f"--method: must be dolfinx under mpirun, the others run in one process, got {options.method!r}")
+    options.out = options.out or Path("debond-out") / f"{scene.name}-{options.method}"
+    quiet = mpi_rank() > 0
+    try:
+        require(scene, options.method)
+    except NotRun as error:
+        return _not_run(error)
+    _folder(options.out)
+    if not quiet:
+        for remark in (*decided(scene, options.method), *warnings(scene, options.method)):
+            say(remark)
+    result, checks = _watched(run, scene, options, quiet)
+    if not quiet:
+        _print_result(result, checks, options.out)
+        for remark in neglected.warnings(scene, result):
+            say(remark)
+    return 0 if result.complete else FAILED
+
+
+def _chosen(options: argparse.Namespace) -> None:
+    """Put the method and the mesh for an accuracy into the options, and say what and for how long."""
+    from verify.cost.accuracy import choose
+    from verify.run import mpi_size
+    from verify.scene import load_scene
+
+    given = {"--method": options.method, "--dofs": options.dofs}
+    for name, value in given.items():
+        if value is not None:
+            raise Refusal(f"{name}: must be left out with --accuracy, which chooses it, got {value!r}")
+    if mpi_size() > 1:
+        raise Refusal(f"--accuracy: must be asked for in 1 process, without mpirun, got {mpi_size()}")
+    choice = choose(load_scene(options.scene, options.overrides), options.accuracy, Path("debond-cost") / "cost.json")
+    say(choice.why)
+    options.method, options.overrides = choice.method, [*options.overrides, *choice.overrides]
+
+
+def _watched(run, scene, options: argparse.Namespace, quiet: bool):
+    """The run with its progress along the programme."""
+    from verify.progress import Progress
+
+    legs = [abs(b - a) for a, b in zip((0.0, *scene.load.opening), scene.load.opening, strict=False)]
+    with Progress(f"{scene.name} {options.method}", sum(legs), quiet) as progress:
+        travelled = _Travelled()
+        return run(
+            scene,
+            options.method,
+            options.out,
+            options.fields,
+            lambda row: progress.advance(travelled(row), f"opening {row['opening']:.4g} load {row['load']:.4g}"),
+        )
+
+
+class _Travelled:
+    """How far the opening has gone, back and forth added up."""
+
+    def __init__(self) -> None:
+        self._opening, self._way = 0.0, 0.0
+
+    def __call__(self, row) -> float:
+        self._way += abs(row["opening"] - self._opening)
+        self._opening = row["opening"]
+        return self._way
+
+
+def _print_result(result, checks, folder: Path) -> None:
+    from verify.table import check_table
+
+    peak = result.load.argmax() if result.load.size else None
+    if peak is not None:
+        print(f"peak load {result.load[peak]:.6g} at opening {result.opening[peak]:.6g}, {result.load.size - 1} steps")
+    if result.seconds:
+        print("seconds: " + ", ".join(f"{name} {value:.2f}" for name, value in result.seconds.items()))
+    print("\n".join(check_table(checks)))
+    if not result.complete:
+        say(f"{result.method} {result.status}")
+    print(f"{', '.join(filter(None, (result.status, result.ending)))}: {folder}")
+
+
+def verify(options: argparse.Namespace) -> int:
+    from verify.plane_study import load_plate
+    from verify.scene import load_scene, verified_scenes
+    from verify.verification import verify, would_run
+
+    _alone("verify")
+    scenes, plates, wrong = [], [], []
+    for source in options.scenes or verified_scenes(options.full):
+        try:
+            if source.lower().endswith(".iga"):
+                plates.append(load_plate(source))
+            else:
+                scenes.append((source, load_scene(source)))
+        except Refusal as error:
+            wrong.append(str(error))
+    names = [*(scene.name for _, scene in scenes), *(plate.name for plate in plates)]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]
+    if wrong:
+        raise Refusal("\n".join(wrong))
+    if options.dry_run:
+        return _listed(would_run(scenes, options.out, options.jobs, options.full))
+    _folder(options.out)
+    return 0 if verify(scenes, options.out, options.jobs, options.full, plates, options.scheduler) else FAILED
+
+
+def cost(options: argparse.Namespace) -> int:
+    from verify.cost.study import cost, would_run
+    from verify.scene import load_scene
+
+    _alone("cost")
+    scene = load_scene(options.scene, options.overrides)
+    what = (options.scene, scene, options.overrides, options.out, options.jobs)
+    if options.dry_run:
+        return _listed(would_run(*what))
+    _folder(options.out)
+    return 0 if cost(*what) is not None else FAILED
+
+
+def effects(options: argparse.Namespace) -> int:
+    from verify.methods import NotRun, require
+    from verify.scene import load_scene
+    from verify.switches.study import effects, would_run
+
+    _known_method(options.method, None)
+    _alone("effects")
+    scene = load_scene(options.scene, options.overrides)
+    what = (options.scene, scene, options.method, options.overrides, options.out)
+    try:
+        if options.dry_run:
+            return _listed(would_run(*what))
+        require(scene, options.method)
+        _folder(options.out)
+        return 0 if effects(*what, options.jobs, options.scheduler).complete else FAILED
+    except NotRun as error:
+        return _not_run(error)
+
+
+def scaling(options: argparse.Namespace) -> int:
+    from verify.scaling.study import scaling, would_run
+    from verify.scene import load_scene
+
+    _alone("scaling")
+    what = (options.scene, load_scene(options.scene, options.overrides), options.overrides, options.out)
+    if options.dry_run:
+        return _listed(would_run(*what))
+    _folder(options.out)
+    return 0 if scaling(*what).complete else FAILED
+
+
+def hard(options: argparse.Namespace) -> int:
+    from verify.hard.cases import chosen
+    from verify.hard.suite import dry_run, hard
+
+    cases = chosen(options.names)
+    if options.dry_run:
+        return _listed(dry_run(cases, options.out, options.jobs))
+    _folder(options.out)
+    return 0 if hard(cases, options.out, options.jobs, options.scheduler) else FAILED
+
+
+def compare(options: argparse.Namespace) -> int:
+    from verify import compare_command as work
+    from verify.compare import checks
+    from verify.compare_words import complaints, remarks, table
+    from verify.curve_file import Reading
+
+    keys = ("opening", "load", "opening_scale", "load_scale")
+    a, b = (
+        work.Source(getattr(options, side), Reading(**{key: getattr(options, f"{key}_{side}") for key in keys}))
+        for side in "ab"
+    )
+    comparison, loads = work.held_against(a, b, options.end, options.at, options.begin)
+    if options.out is not None:
+        _folder(options.out)
+    found = checks(comparison, options.curve_tol, options.peak_tol, options.energy_tol)
+    print("\n".join(table(comparison, loads, found)), flush=True)
+    for remark in remarks(comparison):
+        say(remark)
+    if options.out is not None:
+        work.write(options.out, (a, b), comparison, loads, found)
+        print(f"written: {options.out}")
+    for complaint in complaints(comparison, found):
+        say(complaint)
+    return 0 if all(check.passed for check in found) else FAILED
+
+
+def mesh(options: argparse.Namespace) -> int:
+    from verify.mesh_command import examine
+
+    return 0 if examine(options.file, options.out, options.json, options.control) else FAILED
+
+
+def scenes(options: argparse.Namespace) -> int:
+    from verify.scene import load_scene, packaged_scenes
+
+    for name in packaged_scenes():
+        scene = load_scene(name)
+        law, specimen, opening = scene.interface, scene.specimen, max(scene.load.opening)
+        print(
+            f"{name:24} {specimen.kind}, {scene.effects.kinematics} kinematics, strength {law.strength:g}, "
+            f"toughness {law.toughness:g}, opened to {opening:g} ({scene.units})"
+        )
+    return 0
+
+
+def doctor(options: argparse.Namespace) -> int:
+    from verify.doctor import examine
+
+    lines, works = examine()
+    print("\n".join(lines))
+    return 0 if works else FAILED
+
+
+def test(options: argparse.Namespace) -> int:
+    tests = Path(__file__).resolve().parent.parent / "tests"
+    if not tests.is_dir():
+        raise Refusal("test: the tests are not installed; run it in a copy of the repository")
+    return subprocess.call([sys.executable, "-m", "pytest", *options.rest], cwd=tests.parent)
+
+
+def _listed(lines: Sequence[str]) -> int:
+    print("\n".join(lines))
+    return 0
+
+
+def _alone(command: str) -> None:
+    from verify.run import mpi_size
+
+    if mpi_size() > 1:
+        raise Refusal(f"{command}: must be started in 1 process, without mpirun, got {mpi_size()}")
+
+
+def _known_method(method: str, dofs: int | None) -> None:
+    from verify.complaints import one_of, suggestion
+    from verify.methods import METHODS, WITH_DOFS
+
+    if method not in METHODS:
+        later = f"; {suggestion(method, METHODS)}".rstrip("; ")
+        raise Refusal(f"--method: must be {one_of(METHODS)}, got {method!r}{later}")
+    if dofs and method not in WITH_DOFS:
+        other = "; --set dolfinx.elements=N sets its mesh" if method == "dolfinx" else ""
+        raise Refusal(f"--dofs: is only for --method {one_of(WITH_DOFS)}, got {dofs} for {method}{other}")
+
+
+def _folder(path: Path) -> None:
+    """Make the output folder now, so that hours of work do not end at a closed door."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        (path / ".writable").touch()
+        (path / ".writable").unlink(missing_ok=True)
+    except OSError as error:
+        raise Refusal(f"--out: must be a folder that can be written to, got {str(path)!r}: {error.strerror}") from None
+
+
+def _not_run(error: Exception) -> int:
+    from verify.methods import DOLFINX_WAYS
+
+    say("\n".join([f"{error}. Ways to get it:", *(f"  {way}" for way in DOLFINX_WAYS)]))
+    return FAILED
