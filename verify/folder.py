@@ -6,7 +6,7 @@ import csv
 import json
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any, TextIO
@@ -50,6 +50,14 @@ def write_json(path: Path, content: Mapping[str, Any]) -> None:
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     beside.write_text(json.dumps(_finite(content), indent=2) + "\n")
     beside.replace(path)
+
+
+def write_csv(path: Path, kind: type, rows: Iterable[Any]) -> None:
+    """One line a row; the columns are the fields of ``kind``, the dataclass of the rows."""
+    with path.open("w", newline="") as stream:
+        writer = csv.DictWriter(stream, [field.name for field in fields(kind)])
+        writer.writeheader()
+        writer.writerows(asdict(row) for row in rows)
 
 
 def write_fields(path: Path, snapshots: tuple[Snapshot, ...]) -> None:

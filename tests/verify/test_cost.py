@@ -19,8 +19,9 @@ from verify.cost.findings import cheapest, growth, of_equal_steps, orders, paret
 from verify.cost.ladder import BEAM, FAMILIES, RATIO, Family, Try, ladder, ladders
 from verify.cost.nonzeros import nonzeros
 from verify.cost.reference import Reference, distance, reference
-from verify.cost.row import Row, errors, read_csv, row, traction_error, write_csv
+from verify.cost.row import Row, errors, read_csv, row, traction_error
 from verify.cost.study import Study, climb
+from verify.folder import write_csv
 from verify.jobs import Job, Outcome
 from verify.process_zone import expected
 from verify.result import Result, Snapshot
@@ -143,7 +144,7 @@ def test_tractions_are_compared_wherever_the_zone_has_come_to() -> None:
 
 def test_cost_csv_keeps_its_contract(tmp_path: Path) -> None:
     rows = [a_row("nurbs", 0.002, 3.0), row(Try(NURBS, 0, 9, "auto"), [outcome(None, "no, not run")], against())]
-    write_csv(tmp_path / "cost.csv", rows)
+    write_csv(tmp_path / "cost.csv", Row, rows)
     head = (tmp_path / "cost.csv").read_text().splitlines()[0]
     assert head.startswith("method,degree,dofs,curve_error,peak_error,oscillation,seconds,")
     read = read_csv(tmp_path / "cost.csv")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from math import isfinite, nan
 from pathlib import Path
 
@@ -132,14 +132,6 @@ def traction_error(snapshots: Sequence[Snapshot], exact: Sequence[Snapshot]) -> 
         return nan
     found = np.interp(known.s_q[zone] - b, mine.s_q - a, mine.traction_q)
     return float(np.sqrt(np.mean((found - known.traction_q[zone]) ** 2)) / np.max(known.traction_q))
-
-
-def write_csv(path: Path, rows: Sequence[Row]) -> None:
-    """One line a run."""
-    with path.open("w", newline="") as stream:
-        writer = csv.DictWriter(stream, [field.name for field in fields(Row)])
-        writer.writeheader()
-        writer.writerows(asdict(one) for one in rows)
 
 
 def read_csv(path: Path) -> list[Row]:

@@ -15,9 +15,9 @@ from verify.cost.findings import LEVELS, cheapest, growth, of_equal_steps, order
 from verify.cost.ladder import Family, Try, ladders
 from verify.cost.nonzeros import nonzeros
 from verify.cost.reference import Reference, reference, reference_jobs
-from verify.cost.row import Row, row, write_csv
+from verify.cost.row import Row, row
 from verify.fingerprint import source as source_of
-from verify.folder import write_json
+from verify.folder import write_csv, write_json
 from verify.jobs import Job, Outcome, dry_run, run_all
 from verify.run import machine, versions
 from verify.say import say, write_page
@@ -158,7 +158,7 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
         reasons.append("The time allowed for a study is over; the same command goes on from here.")
     how = {one.variant: one.job(source, scene).overrides for one in runner.found}
     study = Study(scene, against, tuple(_counted(runner)), tuple(reasons), how)
-    write_csv(out / "cost.csv", study.rows)
+    write_csv(out / "cost.csv", Row, study.rows)
     write_json(out / "cost.json", study.summary())
     write_page("verify.cost.page", study, out / "report.html")
     print("\n".join([against.sentence, *study.left_out, *table(study.rows), f"written: {out / 'cost.csv'}"]))

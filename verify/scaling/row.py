@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from math import isfinite, nan
-from pathlib import Path
 
 import numpy as np
 
@@ -92,11 +90,3 @@ def iterations(result: Result) -> int:
 def seconds(result: Result) -> Mapping[str, float]:
     """Seconds of a Newton iteration by its parts."""
     return {name: result.seconds[name] / max(iterations(result), 1) for name in PARTS}
-
-
-def write_csv(path: Path, rows: Sequence[Row]) -> None:
-    """One line a run."""
-    with path.open("w", newline="") as stream:
-        writer = csv.DictWriter(stream, [field.name for field in fields(Row)])
-        writer.writeheader()
-        writer.writerows(asdict(one) for one in rows)

@@ -11,14 +11,14 @@ from pathlib import Path
 
 from verify.cost.study import ALL_PACKAGES, THREADS
 from verify.fingerprint import source as source_of
-from verify.folder import write_json
+from verify.folder import write_csv, write_json
 from verify.jobs import dry_run, run_all
 from verify.run import machine, versions
 from verify.say import write_page
 from verify.scaling.expect import MANY, Expectation, Larger, Shared, expectation, larger, shared, whatever_the_size
 from verify.scaling.growth import Fit, fit
 from verify.scaling.plan import Plan, planned
-from verify.scaling.row import PARTS, Row, row, write_csv
+from verify.scaling.row import PARTS, Row, row
 from verify.schema import Scene
 
 #: What grows, by the name of the column.
@@ -185,7 +185,7 @@ def scaling(source: str, scene: Scene, given: Sequence[str], out: Path) -> Study
         for run in plan.runs
     )
     study = Study(scene, rows, plan.reasons, _columns(plan), (before, _load()))
-    write_csv(out / "scaling.csv", study.rows)
+    write_csv(out / "scaling.csv", Row, study.rows)
     write_json(out / "scaling.json", study.summary())
     write_page("verify.scaling.page", study, out / "report.html")
     stopped = [f"{one.run}: {one.status}" for one in rows if not one.measured]

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, fields, replace
 from math import isfinite, nan
-from pathlib import Path
 
 import numpy as np
 
@@ -168,14 +166,6 @@ def signed(fraction: float) -> str:
 def table(rows: Sequence[Row], reasons: Sequence[str]) -> list[str]:
     """A sentence an effect."""
     return [*(one.sentence for one in rows), *reasons]
-
-
-def write_csv(path: Path, rows: Sequence[Row]) -> None:
-    """One line an effect."""
-    with path.open("w", newline="") as stream:
-        writer = csv.DictWriter(stream, [field.name for field in fields(Row)])
-        writer.writeheader()
-        writer.writerows(asdict(one) for one in rows)
 
 
 def _sides(pair: Pair) -> dict[str, Job]:

@@ -10,14 +10,14 @@ from pathlib import Path
 from verify.cost.study import THREADS
 from verify.effects import simulated
 from verify.fingerprint import source as source_of
-from verify.folder import write_json
+from verify.folder import write_csv, write_json
 from verify.jobs import dry_run, run_all
 from verify.methods import require
 from verify.run import machine, versions
 from verify.say import write_page
 from verify.schema import Scene
 from verify.switches.plan import planned
-from verify.switches.row import Row, row, table, write_csv
+from verify.switches.row import Row, row, table
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def effects(
     timed = {outcome.job: outcome for outcome in run_all(list(plan.repeats()), out, jobs=1)}
     again = {job: [o for o in timed.values() if o.job.overrides == job.overrides] for job in plan.jobs}
     study = Study(scene, method, tuple(row(pair, first, again) for pair in plan.pairs), plan.reasons)
-    write_csv(out / "effects.csv", study.rows)
+    write_csv(out / "effects.csv", Row, study.rows)
     write_json(out / "effects.json", study.summary())
     write_page("verify.switches.page", study, out / "report.html")
     print("\n".join([*table(study.rows, study.reasons), f"written: {out / 'effects.csv'}"]))
