@@ -6,12 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from verify.cost.findings import LEVELS, by_family, pareto
 from verify.cost.row import Row
-from verify.report.style import HALF, THIRD, Panel, colour, drawing, panel, to_svg
+from verify.report.parts import phase_bars, plain
+from verify.report.style import HALF, PHASES, THIRD, Panel, colour, drawing, panel, to_svg
 
 #: method: (name, colour of the palette).
 METHODS: Mapping[str, tuple[str, str]] = {
@@ -87,9 +86,9 @@ def triple(rows: Sequence[Row], key: str) -> tuple[Panel, ...]:
                 if ladder[0].dofs:
                     _curve(axes, ladder, x, y, named(ladder[0]))
             axes.set(xscale="log", yscale="log" if name == "rate" else "linear", xlabel=across, ylabel=up)
-            _plain(axes.xaxis)
+            plain(axes.xaxis)
             if name == "rate":
-                _plain(axes.yaxis)
+                plain(axes.yaxis)
             svg = to_svg(figure, f"{key}-{name}", f"{up} against {across}")
         panels.append(Panel(svg, caption, "third"))
     return tuple(panels)
@@ -97,18 +96,12 @@ def triple(rows: Sequence[Row], key: str) -> tuple[Panel, ...]:
 
 def phases(rows: Sequence[Row], key: str) -> Panel:
     """Where the time of the cheapest runs goes."""
-    names = ("mesh", "basis", "assembly", "factor", "solve", "other")
     with drawing():
         left_margin = 0.3 + 0.062 * max(len(named(row)) + 7 for row in rows)
         figure, axes = panel(HALF * 1.5, 0.3 * len(rows) + 0.85, left=left_margin, top=0.4)
-        at, left = np.arange(len(rows))[::-1], np.zeros(len(rows))
-        for name in names:
-            width = np.array([getattr(row, name) for row in rows])
-            axes.barh(at, width, 0.62, left, color=colour(f"phase-{name}"), linewidth=0, label=name)
-            left += width
-        axes.set_yticks(at, [f"{named(row)}, {row.dofs}" if row.dofs else named(row) for row in rows])
+        labels = [f"{named(row)}, {row.dofs}" if row.dofs else named(row) for row in rows]
+        phase_bars(axes, labels, {name: [getattr(row, name) for row in rows] for name in PHASES})
         axes.set(xlabel="seconds")
-        axes.grid(False, axis="y")
         figure.legend(loc="upper center", ncols=6, handlelength=0.9, columnspacing=0.9, handletextpad=0.4)
         svg = to_svg(figure, key, "Where the time of the cheapest runs goes")
     return Panel(svg, "Where the time goes: the cheapest run of every method for an error of 0.3 %.", "wide")
@@ -131,14 +124,7 @@ def _levels(axes: Axes, scale: float) -> None:
 def _logarithmic(axes: Axes, x: str, y: str) -> None:
     axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
     for part in (axes.xaxis, axes.yaxis):
-        _plain(part)
-
-
-def _plain(part: Axis) -> None:
-    """Marks at 1, 2, 5, 10, ... as numbers."""
-    part.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    part.set_major_formatter(lambda value, _: f"{value:g}")
-    part.set_minor_formatter(NullFormatter())
+        plain(part)
 
 
 def _unknowns(row: Row) -> float:

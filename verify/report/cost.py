@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-from matplotlib.ticker import LogLocator, NullLocator
-
 from verify.report.entry import Entry, short_names
+from verify.report.parts import phase_bars, plain
 from verify.report.style import HALF, PHASES, Panel, colour, drawing, panel, to_svg
 from verify.report.text import seconds
 from verify.result import Result
@@ -42,19 +40,12 @@ def timing(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
         left_margin = 0.15 + 0.068 * max(len(name) for name in names)
         figure, axes = panel(HALF, 0.42 * len(timed) + 0.85, left=left_margin, top=0.4)
         longest = max(total_seconds(entry.result) for entry in timed)
-        rows = np.arange(len(timed))[::-1]
-        left = np.zeros(len(timed))
-        for phase in PHASES:
-            width = np.array([phase_seconds(entry.result)[phase] for entry in timed])
-            if width.sum() > 0:
-                axes.barh(rows, width, 0.62, left, color=colour(f"phase-{phase}"), linewidth=0, label=phase)
-            left += width
-        for row, entry, end in zip(rows, timed, left, strict=True):
+        taken = {phase: [phase_seconds(entry.result)[phase] for entry in timed] for phase in PHASES}
+        ends = phase_bars(axes, names, {phase: width for phase, width in taken.items() if sum(width) > 0})
+        for row, end, entry in zip(*ends, timed, strict=True):
             axes.text(end + 0.015 * longest, row, seconds(total_seconds(entry.result)), va="center", fontsize=7.5)
-        axes.set_yticks(rows, names)
         axes.tick_params(axis="y", length=0, labelcolor=colour("ink"))
         axes.set(xlabel="wall time (s)", xlim=(0, 1.2 * longest or 1.0))
-        axes.grid(False, axis="y")
         axes.spines["left"].set_visible(False)
         figure.legend(loc="upper center", ncols=6, handlelength=0.9, columnspacing=0.9, handletextpad=0.4)
         svg = to_svg(figure, key, f"Wall time by phase and method, {scene.name}")
@@ -81,9 +72,8 @@ def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -
         axes.set(xscale="log", yscale="log", xlabel="wall time (s)", ylabel=f"distance to {base.name} (%)")
         axes.margins(0.3, 0.3)
         for part in (axes.xaxis, axes.yaxis):
-            part.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-            part.set_major_formatter(lambda value, _: f"{value:g}")
-            part.set_minor_locator(NullLocator())
+            plain(part)
+        axes.minorticks_off()
         svg = to_svg(figure, key, f"Curve error against time, {scene.name}")
     return Panel(
         svg,

@@ -9,9 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 
-from verify.curve import PROPAGATION, envelope, load_at, peak
+from verify.curve import envelope
 from verify.paper.plan import LAWS, PAPER_PENALTY, Case
 from verify.paper.study import Study, Trial, curve
+from verify.report.parts import deviation
 from verify.report.style import HALF, METHOD_NAMES, THIRD, Line, Panel, colour, drawing, line, panel, to_svg
 from verify.report.text import Units, axis, percent
 
@@ -115,22 +116,11 @@ def _sweep(study: Study, case: Case, key: str) -> Panel:
 
 def _deviation(study: Study, law: str, dofs: int, key: str) -> Panel:
     """load / reference - 1 of all bases."""
-    units, known = Units.of(study.scenes[law].units), study.references[law, PAPER_PENALTY]
-    reference = curve(known.result)
-    openings = np.linspace(PROPAGATION * peak(reference)[0], float(np.max(reference[0])), 400)
     with drawing():
         figure, axes = panel(HALF, 2.8)
-        band = 100 * max(known.error, known.oscillation)
-        axes.axhspan(-band, band, color=colour("muted"), alpha=0.3, linewidth=0)
-        for basis in study.values("basis"):
-            trial = study.trial(Case(basis, law, dofs))
-            if trial is not None and trial.drawable:
-                ratio = load_at(curve(trial.result), openings) / load_at(reference, openings) - 1.0
-                axes.plot(openings, 100 * ratio, **line(basis).options(), label=METHOD_NAMES[basis])
-        axes.set(xlabel=axis("opening", units.length), ylabel="load / converged load − 1 (%)")
-        low, high = axes.get_ylim()
-        axes.set_ylim(low, high + 0.15 * (high - low))
-        axes.legend(loc="upper right", ncols=3)
+        trials = {basis: study.trial(Case(basis, law, dofs)) for basis in study.values("basis")}
+        deviation(axes, study.references[law, PAPER_PENALTY], trials)
+        axes.set(xlabel=axis("opening", Units.of(study.scenes[law].units).length))
         svg = to_svg(figure, key, f"Deviation of the load from the converged curve, {LAWS[law]}, {dofs} unknowns")
     return Panel(svg, f"{LAWS[law]}.")
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
-from verify.curve import PROPAGATION, load_at, peak
+from verify.curve import peak
 from verify.paper.peel import PeelCase, PeelStudy
 from verify.paper.study import curve
 from verify.report.paper_figures import REFERENCE, FigureGroup, draw_path
-from verify.report.style import HALF, METHOD_NAMES, THIRD, Panel, colour, drawing, line, panel, to_svg
+from verify.report.parts import deviation
+from verify.report.style import HALF, METHOD_NAMES, THIRD, Panel, drawing, line, panel, to_svg
 from verify.report.text import Units, axis, percent, quantity, span
 
 _LOAD_NOTE = (
@@ -75,24 +74,11 @@ def _told(trials: list) -> str:
 
 def _deviation(study: PeelStudy, bond: str, key: str) -> Panel:
     """load / reference - 1 of all bases."""
-    units, known = Units.of(study.scenes[bond].units), study.references[bond]
-    converged = curve(known.result)
-    openings = np.linspace(PROPAGATION * peak(converged)[0], float(np.max(converged[0])), 400)
+    units = Units.of(study.scenes[bond].units)
     with drawing():
         figure, axes = panel(HALF, 2.4)
-        band = 100 * max(known.error, known.oscillation)
-        axes.axhspan(-band, band, color=colour("muted"), alpha=0.3, linewidth=0)
-        for basis in _bases(study, bond):
-            trial = study.trial(PeelCase(basis, bond))
-            ratio = load_at(curve(trial.result), openings) / load_at(converged, openings) - 1.0
-            axes.plot(openings, 100 * ratio, **line(basis).options(), label=METHOD_NAMES[basis])
-        axes.set(xlabel=axis("displacement", units.length), ylabel="load / converged load − 1 (%)")
-        low, high = axes.get_ylim()
-        axes.set_ylim(low, high + 0.15 * (high - low))
-        axes.legend(loc="upper right", ncols=3)
+        trials = {basis: study.trial(PeelCase(basis, bond)) for basis in study.values("basis")}
+        deviation(axes, study.references[bond], trials)
+        axes.set(xlabel=axis("displacement", units.length))
         svg = to_svg(figure, key, f"Deviation of the load from the converged curve, {bond}")
     return Panel(svg, f"Bond {quantity(study.length(bond), units.length)}.")
-
-
-def _bases(study: PeelStudy, bond: str) -> list[str]:
-    return [basis for basis in study.values("basis") if bond in _drawable(study, basis)]

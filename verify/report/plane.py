@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullLocator
 
 from verify.plane_study import PlaneStudy, settled
 from verify.report.paint import Limits, paint
+from verify.report.parts import plain
 from verify.report.style import STRESS_MAP, THIRD, Panel, colour, drawing, panel, to_svg
 from verify.report.text import number, power_of_ten
 from verify.verdict import Check
@@ -158,11 +158,9 @@ def _convergence(study: PlaneStudy, key: str) -> Panel:
             axes.loglog(1 / h[1:], slope, color=colour("muted"), linewidth=0.8, linestyle=(0, (4, 3)))
             axes.annotate(f"{order}", (1 / h[1], slope[0]), xytext=(-2, 4), textcoords="offset points", ha="right")
         axes.set(xlabel="square root of the unknowns", ylabel="relative error")
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axes.xaxis.set_major_formatter(lambda value, place: f"{value:g}")
+        plain(axes.xaxis)
         axes.yaxis.set_major_formatter(lambda value, place: power_of_ten(value))
-        for part in (axes.xaxis, axes.yaxis):
-            part.set_minor_locator(NullLocator())
+        axes.minorticks_off()
         axes.legend(loc="lower left")
         svg = to_svg(figure, key, f"Convergence on {study.name}")
     return Panel(svg, "Errors of the meshes, the file first; dashed: the expected rates of halved elements.", "third")

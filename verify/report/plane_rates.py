@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.ticker import LogLocator, NullLocator
 
 from verify.plane_rates import Convergence, rate_checks
+from verify.report.parts import plain
 from verify.report.style import HALF, Line, Panel, drawing, panel, to_svg
 from verify.report.text import number, power_of_ten
 from verify.verdict import Check
@@ -60,10 +60,8 @@ def _figure(found: tuple[Convergence, ...], key: str) -> Panel:
             error = [e.displacement for e in c.errors]
             axes.loglog(np.sqrt(c.unknowns), error, **_line(c).options(), marker="o", markersize=3)
         axes.set(xlabel="square root of the unknowns", ylabel="relative error of the displacement, L2")
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        plain(axes.xaxis)
         axes.yaxis.set_major_formatter(lambda value, _: power_of_ten(value))
-        for part in (axes.xaxis, axes.yaxis):
-            part.set_minor_locator(NullLocator())
+        axes.minorticks_off()
         svg = to_svg(figure, key, "Errors of the families over their unknowns")
     return Panel(svg, "Displacement in L2, less its rigid motion, of three meshes of each family.")

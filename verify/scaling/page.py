@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, NullFormatter
 
+from verify.report.parts import phase_bars, plain
 from verify.report.style import HALF, METHOD_NAMES, WIDE, Panel, colour, drawing, panel, to_svg
 from verify.report.template import rendered
 from verify.report.text import number, sentence
@@ -115,14 +115,9 @@ def strong(rows: Sequence[Row], key: str) -> Panel:
     """Where the time of an iteration goes on one rank and on more."""
     with drawing():
         figure, axes = panel(WIDE, 0.32 * len(rows) + 0.95, left=2.1, top=0.4)
-        at, left = np.arange(len(rows))[::-1], np.zeros(len(rows))
-        for name in PARTS:
-            width = np.array([getattr(row, name) for row in rows])
-            axes.barh(at, width, 0.62, left, color=colour(f"phase-{name}"), linewidth=0, label=name)
-            left += width
-        axes.set_yticks(at, [f"{row.dofs} unknowns, {ranks(row.ranks)}" for row in rows])
+        labels = [f"{row.dofs} unknowns, {ranks(row.ranks)}" for row in rows]
+        phase_bars(axes, labels, {name: [getattr(row, name) for row in rows] for name in PARTS})
         axes.set(xlabel="seconds")
-        axes.grid(False, axis="y")
         figure.legend(loc="upper center", ncols=len(PARTS), handlelength=0.9, columnspacing=1.2, handletextpad=0.4)
         svg = to_svg(figure, key, "Time of a Newton iteration on one rank and on more")
     return Panel(svg, "DOLFINx: time of a Newton iteration, measured on the first rank.", "wide")
@@ -149,6 +144,4 @@ def _points(axes: Axes, n: np.ndarray, value: np.ndarray, law: Fit, method: str)
 def _logarithmic(axes: Axes, x: str, y: str) -> None:
     axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
     for part in (axes.xaxis, axes.yaxis):
-        part.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        part.set_major_formatter(lambda value, _: f"{value:g}")
-        part.set_minor_formatter(NullFormatter())
+        plain(part)
