@@ -277,16 +277,7 @@ def _beam(scene: Scene, method: str, on_step: OnStep) -> Result:
     problem = BeamProblem(**_known(BeamProblem, _analytical_keys(scene, method)))
     with watch.phase("solve"):
         solution = solve_beam(problem, on_step)
-    return Result(
-        method=method,
-        steps=steps_from_rows(solution.rows),
-        status=solution.status,
-        ending=solution.ending,
-        rejected_steps=solution.rejected_steps,
-        snapshots=tuple(Snapshot(**snapshot) for snapshot in solution.snapshots),
-        seconds=watch.seconds(),
-        peak_memory_mb=peak_memory_mb(),
-    )
+    return _result(method, solution, watch)
 
 
 def lefm_problem(scene: Scene) -> LefmProblem:
@@ -351,9 +342,9 @@ def axial_modulus(material: Material, plane: str) -> float:
 
 
 def _result(method: str, solution: Any, watch: Stopwatch) -> Result:
-    """``solution``: rows, dofs, elements, rejected_steps, status, snapshots, as both field solvers return them.
+    """``solution``: rows, rejected_steps, status, snapshots, as the solvers return them.
 
-    And ending, condition and nonzeros, from a solver that knows them.
+    And dofs, elements, ending, condition and nonzeros, from a solver that knows them.
     """
     return Result(
         method=method,
@@ -361,8 +352,8 @@ def _result(method: str, solution: Any, watch: Stopwatch) -> Result:
         status=solution.status,
         ending=getattr(solution, "ending", ""),
         condition=getattr(solution, "condition", 0.0),
-        dofs=solution.dofs,
-        elements=solution.elements,
+        dofs=getattr(solution, "dofs", 0),
+        elements=getattr(solution, "elements", 0),
         rejected_steps=solution.rejected_steps,
         snapshots=tuple(Snapshot(**snapshot) for snapshot in solution.snapshots),
         seconds=watch.seconds(),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -80,12 +81,12 @@ def _poses() -> Sequence[Variant]:
     ]
 
 
-def _judge_poses(trials: Trials) -> Iterator[Finding]:
+def _same_curve(trials: Trials, meaning: str) -> Iterator[Finding]:
     plain = trials["plain"].result
     for name, trial in trials.items():
         if name != "plain":
             away = difference(trial.result, plain)
-            yield Check("same-curve", name, away, 1e-8, "exact", "The curve does not know where the specimen is.")
+            yield Check("same-curve", name, away, 1e-8, "exact", meaning)
 
 
 NOISES, NOISE = 20, 1e-14
@@ -101,13 +102,8 @@ def _noises() -> Sequence[Variant]:
     return [Variant("plain", scene), *(Variant(f"noise-{seed}", noisy(seed)) for seed in range(1, NOISES + 1))]
 
 
-def _judge_noises(trials: Trials) -> Iterator[Finding]:
-    plain = trials["plain"].result
-    for name, trial in trials.items():
-        if name != "plain":
-            away = difference(trial.result, plain)
-            yield Check("same-curve", name, away, 1e-8, "exact", "The algorithm does not amplify rounding.")
-
+_judge_poses = partial(_same_curve, meaning="The curve does not know where the specimen is.")
+_judge_noises = partial(_same_curve, meaning="The algorithm does not amplify rounding.")
 
 CASES = (
     Case("units", "The same scene in N and mm, N and m, kN and inches.", _units, _judge_units),
