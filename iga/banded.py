@@ -1,4 +1,7 @@
-"""Banded direct solver: slender specimens, numbered along their length, have narrow bands."""
+"""Banded direct solvers: slender specimens, numbered along their length, have narrow bands.
+
+A symmetric matrix is told by its lower half: entries in LAPACK's lower band storage, Fortran order.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +9,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg.lapack import dgbtrf, dgbtrs
+from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf, dpbtrs
 from scipy.sparse import coo_array, csr_array, vstack
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 from scipy.sparse.linalg import LinearOperator, onenormest
+
+
+@dataclass(frozen=True)
+class Skew:
+    """Entries (row, column, value) to be added to a symmetric matrix, as degrees of freedom."""
+
+    row: np.ndarray
+    column: np.ndarray
+    value: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -26,13 +38,13 @@ class Band:
 
     @property
     def size(self) -> int:
-        """Entries of a band array, one more for all that falls on fixed unknowns."""
-        return (3 * self.k + 1) * self.n + 1
+        """Entries of the lower half, one more for all that falls on fixed unknowns."""
+        return (self.k + 1) * self.n + 1
 
     def positions(self, row: np.ndarray, column: np.ndarray) -> np.ndarray:
-        """Index of each entry (row, column), as degrees of freedom, in a band array (LAPACK layout, Fortran order)."""
+        """Index of each entry (row, column), as degrees of freedom, or of its mirror image, in the lower half."""
         i, j = self.place_d[row], self.place_d[column]
-        return np.where((i < 0) | (j < 0), self.size - 1, 2 * self.k + i + 3 * self.k * j)
+        return np.where((i < 0) | (j < 0), self.size - 1, np.abs(i - j) + (self.k + 1) * np.minimum(i, j))
 
     def reach(self, row: np.ndarray, column: np.ndarray) -> int:
         """Half bandwidth that entries need."""
@@ -54,20 +66,37 @@ class Band:
         """Itself, or wider where entries need it."""
         return replace(self, k=max(self.k, self.reach(row, column)))
 
-    def factor(self, values: np.ndarray) -> BandLU | None:
-        """LU of a band array (``size``,), which it overwrites; None where a pivot is exactly zero."""
-        ab = values[:-1].reshape(self.n, 3 * self.k + 1).T
-        lu, pivots, info = dgbtrf(ab, self.k, self.k, overwrite_ab=True)
+    def cholesky(self, half: np.ndarray) -> BandCholesky | None:
+        """Factor of the matrix with this lower half (``size``,); None where it is not positive definite."""
+        factor, info = dpbtrf(half[:-1].reshape(self.n, self.k + 1).T, lower=True)
+        return BandCholesky(self, factor) if info == 0 else None
+
+    def lu(self, half: np.ndarray, skew: Skew | None = None) -> BandLU | None:
+        """LU of the matrix with this lower half, and what is skew about it; None where a pivot is exactly zero."""
+        lu, pivots, info = dgbtrf(self._whole(half, skew), self.k, self.k, overwrite_ab=True)
         return BandLU(self, lu, pivots) if info == 0 else None
 
-    def condition(self, values: np.ndarray) -> float:
-        """Condition number of a band array (``size``,) in the 1-norm, infinite where it is singular; overwrites it.
+    def _whole(self, half: np.ndarray, skew: Skew | None) -> np.ndarray:
+        """Both halves in the layout (3 k + 1, n) of the LU factors."""
+        n, k = self.n, self.k
+        lower, whole = half[:-1].reshape(n, k + 1).T, np.zeros((3 * k + 1, n), order="F")
+        whole[2 * k :] = lower
+        for d in range(1, min(k + 1, n)):
+            whole[2 * k - d, d:] = lower[d, : n - d]
+        if skew is not None:
+            i, j = self.place_d[skew.row], self.place_d[skew.column]
+            there = (i >= 0) & (j >= 0)
+            np.add.at(whole, ((2 * k + i - j)[there], j[there]), skew.value[there])
+        return whole
+
+    def condition(self, half: np.ndarray, skew: Skew | None = None) -> float:
+        """Condition number in the 1-norm of the matrix that `lu` takes, infinite where it is singular.
 
         The norm of the inverse is estimated from a few solutions (Higham and Tisseur 2000), mostly within a factor of
         two.
         """
-        norm = float(np.abs(values[:-1]).reshape(self.n, 3 * self.k + 1).sum(1).max())
-        factors = self.factor(values)
+        norm = float(np.abs(self._whole(half, skew)).sum(0).max())
+        factors = self.lu(half, skew)
         if factors is None:
             return float("inf")
 
@@ -83,6 +112,21 @@ class Band:
             dtype=float,
         )
         return norm * float(onenormest(inverse))
+
+
+@dataclass(frozen=True)
+class BandCholesky:
+    """Cholesky factor of a positive definite matrix."""
+
+    band: Band
+    factor: np.ndarray
+
+    def solve(self, b_d: np.ndarray) -> np.ndarray:
+        """Solution (n_dof, n_rhs) for right-hand sides (n_dof, n_rhs), zero where fixed."""
+        x, info = dpbtrs(self.factor, np.asfortranarray(self.band.gather(b_d)), lower=True, overwrite_b=True)
+        if info != 0:
+            raise ValueError(f"dpbtrs refused its argument {-info}")
+        return self.band.spread(x)
 
 
 @dataclass(frozen=True)

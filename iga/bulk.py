@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 
@@ -59,17 +60,28 @@ def stiffness_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.where(transposed, column, row), np.where(transposed, row, column)
 
 
-def all_entries(parts: Sequence[np.ndarray], *others: np.ndarray) -> np.ndarray:
-    """Values (n_values,) for `stiffness_entries` of each block (n_e, n_a, 3, n_a), with any others behind them."""
-    ends = np.cumsum([0] + [K.size // 3 * 4 for K in parts] + [v.size for v in others])
-    values = np.empty(ends[-1])
-    for K, first, end in zip(parts, ends[:-1], ends[1:], strict=False):
-        n_e, n_a, _, _ = K.shape
-        entries = values[first:end].reshape(n_e, n_a, 4, n_a)
-        entries[:, :, :3], entries[:, :, 3] = K, K[:, :, 1]
-    for v, first, end in zip(others, ends[len(parts) : -1], ends[len(parts) + 1 :], strict=True):
-        values[first:end] = v.ravel()
-    return values
+def all_values(parts: Sequence[np.ndarray]) -> np.ndarray:
+    """Values (n_values,) for `stiffness_entries` of each block (n_e, n_a, 3, n_a)."""
+    return np.concatenate([np.concatenate([K, K[:, :, 1:2]], axis=2).ravel() for K in parts])
+
+
+@cache
+def half(n_a: int) -> np.ndarray:
+    """Places in an element's (n_a, 3, n_a) entries of those that tell all of a symmetric matrix, each once."""
+    a, p, b = np.indices((n_a, len(PAIRS), n_a))
+    return np.flatnonzero((p == 1) | (a >= b))
+
+
+def half_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns (n_e, n_h) of the entries of `half`, on either side of the diagonal."""
+    n_e, n_a = conn_ea.shape
+    return tuple(np.reshape(v[:, :, :3], (n_e, -1))[:, half(n_a)] for v in stiffness_entries(conn_ea))
+
+
+def half_values(K_eapb: np.ndarray) -> np.ndarray:
+    """Their values (n_e, n_h)."""
+    n_e, n_a, _, _ = K_eapb.shape
+    return np.take(K_eapb.reshape(n_e, -1), half(n_a), axis=1)
 
 
 def full_matrices(K_eapb: np.ndarray) -> np.ndarray:

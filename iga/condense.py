@@ -20,7 +20,7 @@ from scipy.sparse import block_array, coo_array, csc_array, csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 
-from iga.bulk import all_entries
+from iga.bulk import all_values, stiffness_entries
 from iga.interface import Contact, contact, forces, pair
 from iga.point import Point
 from iga.system import System
@@ -179,7 +179,8 @@ def _bulk_forces(system: System, U_dr: np.ndarray) -> np.ndarray:
 
 def _bulk(system: System) -> csc_array:
     """Stiffness of the bulk (n_dof, n_dof)."""
-    entries = [(row.ravel(), column.ravel()) for row, column in system.bulk_entries]
+    entries = [stiffness_entries(solid.basis.conn_ea) for solid in system.solids]
+    entries = [(row.ravel(), column.ravel()) for row, column in entries]
     row, column = (np.concatenate([entry[i] for entry in entries]) for i in range(2))
-    values = all_entries(system.unloaded_stiffness)
+    values = all_values(system.unloaded_stiffness)
     return coo_array((values, (row, column)), shape=(system.n_dof, system.n_dof)).tocsc()

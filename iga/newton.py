@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from iga.banded import BandLU
 from iga.control import Control
+from iga.inverse import Inverse
 from iga.system import Phase, Response, State, System, factorise, respond, rounding
 
 #: Part of the work along a step that may be left, and the attempts to find its length.
@@ -99,7 +99,7 @@ def _iterate(
 ) -> tuple[tuple[State, Response] | None, tuple[float, ...]]:
     """The converged state with its response, or None, and the residual norms on the way."""
     trial, response, norm = _evaluate(system, trial, True, phase)
-    residuals, lu = [norm], None
+    residuals, tangent = [norm], None
     while True:
         floor = _floor(system, trial, response, newton) if norm < newton.rough else newton.tolerance
         stays = len(residuals) > 1 and norm > 0.25 * residuals[-2]
@@ -108,13 +108,13 @@ def _iterate(
             return (trial, response), tuple(residuals)
         if _hopeless(residuals, newton):
             return None, tuple(residuals)
-        if lu is None or not _holds(residuals, newton.tolerance):
-            lu = None  # before the next one is made: of all that a run holds it is the largest
-            lu = factorise(system, response, phase)
-        if lu is None:
+        if tangent is None or not _holds(residuals, newton.tolerance):
+            tangent = None  # before the next one is made: of all that a run holds it is the largest
+            tangent = factorise(system, response, phase)
+        if tangent is None:
             return None, tuple(residuals)
         with phase("solve"):
-            move = _correction(system, trial, response, lu, control, target)
+            move = _correction(system, trial, response, tangent, control, target)
         if move is None:
             return None, tuple(residuals)
         decide = not met or norm > max(newton.settle, 10.0 * floor)
@@ -170,14 +170,14 @@ def _evaluate(system: System, trial: State, decide: bool, phase: Phase) -> tuple
 
 
 def _correction(
-    system: System, trial: State, response: Response, lu: BandLU, control: Control, target: float
+    system: System, trial: State, response: Response, tangent: Inverse, control: Control, target: float
 ) -> tuple[np.ndarray, float] | None:
     """Bordered step: ``du = v + z d_load`` with K v = -r, K z = f, and d_load from the linearised control.
 
     None where the control does not feel the load.
     """
     residual_d = response.internal_d - trial.load * system.load_d
-    v, z = lu.solve(np.stack([-residual_d, system.load_d], -1)).T
+    v, z = tangent.solve(-residual_d), tangent.under_load_d
     value, a_d, a_load = control(trial, response)
     grip = float(a_d @ z) + a_load
     if grip == 0.0:

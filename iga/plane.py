@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 
 from iga.basis import BlockBasis, block_basis
 from iga.bezier import homogeneous
-from iga.bulk import all_entries, element_stiffness, stiffness_entries
+from iga.bulk import all_values, element_stiffness, stiffness_entries
 from iga.extraction import Chain, Mesh
 from iga.kinematics import elasticity_tensor
 from iga.quadrature import gauss, square
@@ -60,7 +60,7 @@ def stiffness(mesh: Mesh, D: np.ndarray) -> csc_array:
     entries = [stiffness_entries(b.conn_ea) for b in bases]
     row, column = (np.concatenate([e[k].ravel() for e in entries]) for k in (0, 1))
     n = 2 * len(mesh.P_AI)
-    return coo_array((all_entries(parts), (row, column)), shape=(n, n)).tocsc()
+    return coo_array((all_values(parts), (row, column)), shape=(n, n)).tocsc()
 
 
 def body_forces(mesh: Mesh, force: Field) -> np.ndarray:

@@ -100,6 +100,6 @@ def by_way_of(programme: Sequence[float], stops: Sequence[float]) -> tuple[float
 def _condition(system: System, point: Point, phase: Phase) -> float:
     """Condition number of the tangent at a converged point."""
     with phase("assembly"):
-        band, values = tangent_matrix(system, respond(system, point.state, decide=False))
+        band, half, skew = tangent_matrix(system, respond(system, point.state, decide=False))
     with phase("factor"):
-        return band.condition(values)
+        return band.condition(half, skew)

@@ -5,24 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 
-from iga.banded import Band, BandLU, number
+from iga.banded import Band, Skew, number
 from iga.bulk import (
-    all_entries,
     element_forces,
     element_stiffness,
     energy,
     full_matrices,
     gradient,
+    half_entries,
+    half_values,
     relative,
-    stiffness_entries,
 )
-from iga.dense import Dense, DenseLU
+from iga.dense import Dense
 from iga.interface import Contact, Interface, contact, dofs, forces, holding, pair, stiffness, traction
 from iga.interface import rounding as interface_rounding
+from iga.inverse import Inverse, held_inverse, inverse
 from iga.kinematics import KINEMATICS
 from iga.projection import Pairing
 from iga.solid import Solid
@@ -41,6 +42,9 @@ UNLOADED = 1e-3
 #: residual of 5e-12.
 LOST = 10.0 * np.finfo(float).eps
 HIDDEN = LOST / 5e-12
+#: Stiffness of the spring that holds the opening while a tangent is factorised, in parts of that of the unloaded
+#: specimen: more than any load falls by, and little that rounding could take from what it is taken away from again.
+HOLD = 100.0
 #: Part of the forces in play below which a point of the interface neither opens nor closes.
 NOTHING = 1e-13
 
@@ -107,14 +111,16 @@ class Response:
 
 @dataclass(frozen=True)
 class Pattern:
-    """Band array and the place in it (n_values,) of every entry of bulk, interface and springs, in this order.
+    """The lower half of the tangent, and the place in it (n_values,) of every entry of bulk, interface and springs.
 
-    Linear kinematics leaves out the bulk, which is in place already.
+    Linear kinematics leaves out the bulk, which is in place already. ``held`` are the places of the spring across the
+    opening.
     """
 
     dof_qd: np.ndarray
     band: Band | Dense
     positions: np.ndarray
+    held: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -158,7 +164,12 @@ class System:
             return Dense(self.n_dof)
         springs = [np.flatnonzero(a_d)[None] for a_d in self.springs_rd]
         touching = [dofs(conn_qa) for conn_qa in _reachable(self.interface)]
-        return number([*self.element_dofs, *touching, *springs], self.x_d, self.free_d)
+        return number([*self.element_dofs, *touching, *springs, self.loaded[None]], self.x_d, self.free_d)
+
+    @cached_property
+    def loaded(self) -> np.ndarray:
+        """Degrees of freedom that feel the load."""
+        return np.flatnonzero(self.load_d)
 
     @cached_property
     def reference_dof_qd(self) -> np.ndarray:
@@ -167,11 +178,11 @@ class System:
 
     @cached_property
     def spring_entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Rows, columns and values that the springs add to the tangent."""
+        """Rows, columns and values that the springs add to the lower half of the tangent."""
         parts = [np.zeros((3, 0))]
         for a_d, k in zip(self.springs_rd, self.spring_r, strict=True):
             held = np.flatnonzero(a_d)
-            row, column = np.repeat(held, held.size), np.tile(held, held.size)
+            row, column = _pairs(held)
             parts.append(np.stack([row, column, k * a_d[row] * a_d[column]]))
         row, column, value = np.concatenate(parts, axis=1)
         return row.astype(int), column.astype(int), value
@@ -180,10 +191,23 @@ class System:
         """Forces (n_r,) that the springs exert on the bodies, along their own displacements."""
         return -self.spring_r * (self.springs_rd @ u_d)
 
+    @cached_property
+    def loads_squared(self) -> np.ndarray:
+        """Lower half of ``f f'`` over the degrees of freedom that feel the load."""
+        row, column = _pairs(self.loaded)
+        return self.load_d[row] * self.load_d[column]
+
+    @cached_property
+    def hold(self) -> float:
+        """Stiffness of the spring that holds the opening while a tangent is factorised; 0 where none is known."""
+        found = inverse(*tangent_matrix(self, respond(self, self.start(), decide=False)), self.load_d)
+        compliance = 0.0 if found is None else abs(float(self.load_d @ found.under_load_d))
+        return HOLD / compliance if compliance > 0.0 else 0.0
+
     @property
     def bulk_entries(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Rows and columns of the element matrices."""
-        return [stiffness_entries(solid.basis.conn_ea) for solid in self.solids]
+        """Rows and columns of the element matrices, of each symmetric pair one."""
+        return [half_entries(solid.basis.conn_ea) for solid in self.solids]
 
     @cached_property
     def element_dofs(self) -> tuple[np.ndarray, ...]:
@@ -203,10 +227,10 @@ class System:
 
     @cached_property
     def linear_band(self) -> np.ndarray:
-        """The stiffness of a linear bulk as a band array."""
+        """The stiffness of a linear bulk, lower half."""
         if self.bulk_dd is not None:
             return self.bulk_dd.ravel()
-        values = all_entries(self.unloaded_stiffness)
+        values = np.concatenate([half_values(K).ravel() for K in self.unloaded_stiffness])
         return np.bincount(_positions(self.band, self.bulk_entries), values, self.band.size)
 
     @cached_property
@@ -221,10 +245,10 @@ class System:
         """
         kept = self.__dict__.get("_pattern")
         if kept is None or not np.array_equal(kept.dof_qd, dof_qd):
-            touching = [_square(dof_qd), self.spring_entries[:2]]
+            touching = [_lower(dof_qd), self.spring_entries[:2]]
             band = self.band.reaching(*touching[0])
             bulk = [] if self.kinematics == "linear" else self.bulk_entries
-            kept = Pattern(dof_qd, band, _positions(band, [*bulk, *touching]))
+            kept = Pattern(dof_qd, band, _positions(band, [*bulk, *touching]), _positions(band, [_pairs(self.loaded)]))
             self.__dict__["_pattern"] = kept
         return kept
 
@@ -247,24 +271,49 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     return Response(internal_d, scale, bulk_energy, touch, p_q, dp_q, k_q, closed_q, gradients)
 
 
-def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np.ndarray]:
-    """Derivative of the forces by the displacements: the entries (band.size,) and the band that numbers them."""
-    touch, p_q, dp_q = response.contact, response.p_q, response.dp_q
-    # an open crack asks for no entries in the matrix, however far it has moved
-    carries_q = (p_q != 0.0) | (dp_q != 0.0)
-    pattern = system.pattern(np.where(carries_q[:, None], touch.dof_qd, system.reference_dof_qd))
-    K_qdd = stiffness(system.interface, touch, p_q, dp_q)
-    bulk = _bulk_stiffness(system, response.gradients)
-    values = np.bincount(pattern.positions, all_entries(bulk, K_qdd, system.spring_entries[2]), pattern.band.size)
-    return pattern.band, values if system.kinematics == "finite" else values + system.linear_band
+def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np.ndarray, Skew | None]:
+    """Derivative of the forces by the displacements: the band, the lower half (band.size,), and what is skew."""
+    pattern, touch = _pattern(system, response), response.contact
+    K_qdd = stiffness(system.interface, touch, response.p_q, response.dp_q)
+    i, j = _tril(K_qdd.shape[1])
+    bulk = [half_values(K) for K in _bulk_stiffness(system, response.gradients)]
+    values = np.concatenate([v.ravel() for v in (*bulk, K_qdd[:, i, j], system.spring_entries[2])])
+    half = np.bincount(pattern.positions, values, pattern.band.size)
+    if system.kinematics == "linear":
+        half += system.linear_band
+    return pattern.band, half, _skew(touch, response.p_q, K_qdd)
 
 
-def factorise(system: System, response: Response, phase: Phase) -> BandLU | DenseLU | None:
-    """LU of the tangent; None where it is exactly singular."""
+def factorise(system: System, response: Response, phase: Phase) -> Inverse | None:
+    """Inverse of the tangent; None where it is exactly singular."""
     with phase("assembly"):
-        band, values = tangent_matrix(system, response)
+        band, half, skew = tangent_matrix(system, response)
     with phase("factor"):
-        return band.factor(values)
+        found = None
+        if skew is None and system.hold > 0.0:
+            held = half.copy()
+            held[_pattern(system, response).held] += system.hold * system.loads_squared
+            found = held_inverse(band, held, system.load_d, system.hold)
+        return inverse(band, half, skew, system.load_d) if found is None else found
+
+
+def _pattern(system: System, response: Response) -> Pattern:
+    """An open crack asks for no entries in the matrix, however far it has moved."""
+    carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
+    return system.pattern(np.where(carries_q[:, None], response.contact.dof_qd, system.reference_dof_qd))
+
+
+def _skew(touch: Contact, p_q: np.ndarray, K_qdd: np.ndarray) -> Skew | None:
+    """What the upper half has more than the lower one: something only at points that slide off the master."""
+    if touch.fading_q is None:
+        return None
+    q = np.flatnonzero(touch.fading_q * p_q)
+    if q.size == 0:
+        return None
+    i, j = np.triu_indices(K_qdd.shape[1], 1)
+    d_qd = touch.dof_qd[q]
+    row, column, value = d_qd[:, i], d_qd[:, j], K_qdd[q][:, i, j] - K_qdd[q][:, j, i]
+    return Skew(row.ravel(), column.ravel(), value.ravel())
 
 
 def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.ndarray:
@@ -351,9 +400,21 @@ def _reachable(interface: Interface) -> list[np.ndarray]:
     return [np.concatenate([interface.conn_qa, interface.master.conn_ca[c_q]], axis=1) for c_q in neighbours]
 
 
-def _square(d_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and columns (n_q, n_d, n_d) of the matrices of all points."""
-    return np.broadcast_arrays(d_qd[:, :, None], d_qd[:, None, :])
+def _lower(d_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns (n_q, n_h) of the lower halves of the matrices of all points."""
+    i, j = _tril(d_qd.shape[1])
+    return d_qd[:, i], d_qd[:, j]
+
+
+@cache
+def _tril(n: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.tril_indices(n)
+
+
+def _pairs(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns of the lower half of a matrix over some degrees of freedom."""
+    i, j = _tril(d.size)
+    return d[i], d[j]
 
 
 def _positions(band: Band, entries: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:

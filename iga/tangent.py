@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from iga.banded import BandLU
 from iga.interface import holding
+from iga.inverse import Inverse
 from iga.landing import Kink
 from iga.system import Phase, Response, State, System, factorise, respond
 
@@ -93,13 +93,13 @@ def _along(
     system: System, response: Response, direction: float, growing_q: np.ndarray, kink: Kink | None, phase: Phase
 ) -> Tangent | None:
     """Solution of ``K du = f d_load`` for one set of points, turned forward."""
-    lu = factorise(system, response, phase)
-    if lu is None:
+    inverse = factorise(system, response, phase)
+    if inverse is None:
         return None
     with phase("solve"):
-        z_d = lu.solve(system.load_d[:, None])[:, 0]
+        z_d = inverse.under_load_d
         compliance = float(system.load_d @ z_d)
-        before = compliance if kink is None else float(system.load_d @ _before(system, response, kink, lu, z_d))
+        before = compliance if kink is None else float(system.load_d @ _before(system, response, kink, inverse))
     slope = 0.5 * (1.0 / compliance + 1.0 / before) if before * compliance > 0.0 else 1.0 / compliance
     rate_q = response.contact.rates(z_d)
     growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
@@ -109,9 +109,9 @@ def _along(
     return Tangent(sign * z_d, sign, slope, heading, sign * rate_q, growing_q, response.closed_q)
 
 
-def _before(system: System, response: Response, kink: Kink, lu: BandLU, z_d: np.ndarray) -> np.ndarray:
+def _before(system: System, response: Response, kink: Kink, inverse: Inverse) -> np.ndarray:
     """Solution with the tangent just before a kink: one point less stiff by its jump (Sherman and Morrison 1950)."""
     g_d = response.contact.row(kink.q, system.n_dof)
-    y_d = lu.solve(g_d[:, None])[:, 0]
+    y_d, z_d = inverse.solve(g_d), inverse.under_load_d
     weight = -kink.jump * system.interface.dA_q[kink.q]
     return z_d - y_d * (weight * float(g_d @ z_d) / (1.0 + weight * float(g_d @ y_d)))

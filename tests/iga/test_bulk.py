@@ -5,7 +5,7 @@ import pytest
 
 from iga.basis import block_basis
 from iga.bspline import open_knots
-from iga.bulk import all_entries, element_forces, element_stiffness, full_matrices, gradient, stiffness_entries
+from iga.bulk import all_values, element_forces, element_stiffness, full_matrices, gradient, stiffness_entries
 from iga.extraction import Mesh
 from iga.interface import dofs
 from iga.kinematics import KINEMATICS, cauchy_stress, finite_moduli, finite_stress, small_moduli
@@ -121,7 +121,7 @@ def test_element_stiffness_is_the_derivative_of_the_element_forces(kind, rng):
     assert np.allclose(full, full.swapaxes(1, 2), rtol=0, atol=1e-12 * np.abs(full).max())
     row, column = stiffness_entries(basis.conn_ea)
     n = u.size
-    scattered = np.bincount((row * n + column).ravel(), all_entries([K]), n * n).reshape(n, n)
+    scattered = np.bincount((row * n + column).ravel(), all_values([K]), n * n).reshape(n, n)
     direct = np.zeros((n, n))
     np.add.at(direct, (d[:, :, None], d[:, None, :]), full)
     assert np.allclose(scattered, direct, rtol=0, atol=1e-12 * np.abs(direct).max())
