@@ -66,7 +66,7 @@ def test_before_and_behind_the_peak_a_held_tangent_is_positive_definite(kinemati
     system.__dict__["hold"] = 0.0  # kept, as the property would be
     other, wrong = solved(system, growing(falling.state), rng)
     assert isinstance(other.factors, BandLU) and wrong < 1e-8
-    assert np.allclose(other.under_load_d, inverse.under_load_d, rtol=0, atol=1e-9 * np.abs(other.under_load_d).max())
+    assert np.allclose(other.under_load_d, inverse.under_load_d, rtol=0, atol=1e-6 * np.abs(other.under_load_d).max())
 
 
 def test_where_the_path_snaps_back_another_factor_takes_over(rng):
