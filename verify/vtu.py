@@ -1,21 +1,42 @@
-"""Meshes as VTU files of rational Bezier quadrilaterals: ParaView shows the geometry itself, not a sampling of it."""
+"""Elements as VTK's cells of higher order: ParaView shows geometry and displacement themselves, not a sampling."""
 
 from __future__ import annotations
 
-import base64
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from iga.bezier import homogeneous
-from iga.extraction import ElementBlock, Mesh
+from iga.extraction import Mesh
+from verify.vtk_xml import Grid, write_grid
 
-#: VTK_BEZIER_QUADRILATERAL of vtkCellType.h.
-BEZIER_QUADRILATERAL = 77
+#: VTK_LAGRANGE_QUADRILATERAL and VTK_BEZIER_QUADRILATERAL of vtkCellType.h.
+LAGRANGE_QUADRILATERAL, BEZIER_QUADRILATERAL = 70, 77
 
-_TYPES = {"float64": "Float64", "int64": "Int64", "uint8": "UInt8"}
+#: Weights that differ from one by less than this are rounding.
+NOTHING = 1e-12
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Quadrilaterals of the same degrees (p, q), each with n_b = (p + 1)(q + 1) points of its own.
+
+    Points are numbered j (p + 1) + i, i along the first direction: Bezier points with weights ``w_eb`` (n_e, n_b), or,
+    without weights, the evenly spaced nodes of Lagrange elements. ``fields`` (n_e, n_b, k) go with the points,
+    ``of_cells`` (n_e,) with the cells.
+    """
+
+    degrees: tuple[int, int]
+    X_ebI: np.ndarray
+    w_eb: np.ndarray | None
+    fields: Mapping[str, np.ndarray] = field(default_factory=dict)
+    of_cells: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+    @property
+    def type(self) -> int:
+        return LAGRANGE_QUADRILATERAL if self.w_eb is None else BEZIER_QUADRILATERAL
 
 
 def write_vtu(mesh: Mesh, path: Path | str, fields: Mapping[str, np.ndarray] | None = None) -> None:
@@ -30,38 +51,49 @@ def write_vtu(mesh: Mesh, path: Path | str, fields: Mapping[str, np.ndarray] | N
     ------
     OSError : the path cannot be written to.
     """
-    fields = {name: _three_columns(values) for name, values in (fields or {}).items()}
-    parts = [_block_points(mesh, block, fields) for block in mesh.blocks]
-    names = ("points", "RationalWeights", *fields)
-    points = {name: np.concatenate([part[name] for part in parts]) for name in names}
-    counts = [np.full(len(b.conn_ea), b.C_eab.shape[2]) for b in mesh.blocks]
-    degrees = [np.tile([*b.degrees, 0], (len(b.conn_ea), 1)).astype(float) for b in mesh.blocks]
-    n_n, n_e = len(points["points"]), mesh.elements
-    cells = {
-        "connectivity": np.arange(n_n),
-        "offsets": np.cumsum(np.concatenate(counts)),
-        "types": np.full(n_e, BEZIER_QUADRILATERAL, dtype=np.uint8),
-    }
-    vectors = [name for name, values in fields.items() if values.shape[1] == 3]
-    vectors = f" Vectors={quoteattr(vectors[0])}" if vectors else ""
-    coordinates = points.pop("points")
-    lines = [
-        '<?xml version="1.0"?>',
-        '<VTKFile type="UnstructuredGrid" version="2.2" byte_order="LittleEndian" header_type="UInt64">',
-        f'<UnstructuredGrid><Piece NumberOfPoints="{n_n}" NumberOfCells="{n_e}">',
-        f'<PointData RationalWeights="RationalWeights"{vectors}>',
-        *(_array(name, values) for name, values in points.items()),
-        '</PointData><CellData HigherOrderDegrees="HigherOrderDegrees">',
-        _array("HigherOrderDegrees", np.concatenate(degrees)),
-        f"</CellData><Points>{_array('Points', coordinates)}</Points>",
-        f"<Cells>{''.join(_array(name, values) for name, values in cells.items())}</Cells>",
-        "</Piece></UnstructuredGrid></VTKFile>",
-    ]
-    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
+    write_grid(path, grid(bezier_cells(mesh, fields or {})))
+
+
+def bezier_cells(mesh: Mesh, fields: Mapping[str, np.ndarray]) -> list[Cells]:
+    """Elements of a mesh with fields in its own functions, told by their control values (n_A,) or (n_A, k)."""
+    columns = {name: np.asarray(v, dtype=float).reshape(len(mesh.P_AI), -1) for name, v in fields.items()}
+    values_Af = np.concatenate([mesh.P_AI, *columns.values()], axis=1)
+    ends = np.cumsum([2, *(v.shape[1] for v in columns.values())])[:-1]
+    cells = []
+    for block in mesh.blocks:
+        H_ebf = homogeneous(values_Af, mesh.w_A, block)
+        X_ebI, *parts = np.split(H_ebf[..., :-1] / H_ebf[..., -1:], ends, axis=2)
+        cells.append(Cells(block.degrees, X_ebI, H_ebf[..., -1], dict(zip(columns, parts, strict=True))))
+    return cells
+
+
+def grid(cells: Sequence[Cells], whole: Mapping[str, float] | None = None) -> Grid:
+    """All cells with their fields, which are the same ones everywhere; RationalWeights where a weight is not one."""
+    rational = any(part.w_eb is not None and np.abs(part.w_eb - 1.0).max() > NOTHING for part in cells)
+    orders = [vtk_order(part.degrees) for part in cells]
+
+    def points(values: Sequence[np.ndarray]) -> np.ndarray:
+        ordered = (v.reshape(*v.shape[:2], -1)[:, order] for v, order in zip(values, orders, strict=True))
+        return _three_columns(np.concatenate([v.reshape(-1, v.shape[2]) for v in ordered]))
+
+    point_data = {"RationalWeights": points([part.w_eb for part in cells])} if rational else {}
+    point_data |= {name: points([part.fields[name] for part in cells]) for name in cells[0].fields}
+    sizes = [part.X_ebI.shape[:2] for part in cells]
+    degrees = [np.tile([*part.degrees, 0.0], (n_e, 1)) for part, (n_e, _) in zip(cells, sizes, strict=True)]
+    cell_data = {name: np.concatenate([part.of_cells[name] for part in cells]) for name in cells[0].of_cells}
+    return Grid(
+        points=points([part.X_ebI for part in cells]),
+        connectivity=np.arange(sum(n_e * n_b for n_e, n_b in sizes)),
+        offsets=np.cumsum(np.concatenate([np.full(n_e, n_b) for n_e, n_b in sizes])),
+        types=np.concatenate([np.full(n_e, part.type) for part, (n_e, _) in zip(cells, sizes, strict=True)]),
+        point_data=point_data,
+        cell_data={"HigherOrderDegrees": np.concatenate(degrees)} | cell_data,
+        whole=whole or {},
+    )
 
 
 def vtk_order(degrees: tuple[int, int]) -> np.ndarray:
-    """Bernstein indices j (p + 1) + i of a quadrilateral in VTK's order (vtkHigherOrderQuadrilateral).
+    """Point numbers j (p + 1) + i of a quadrilateral in VTK's order (vtkHigherOrderQuadrilateral).
 
     Corners counterclockwise; inner points of the edges j = 0, i = p, j = q, i = 0, each with i or j rising; the inside,
     i fastest.
@@ -73,25 +105,6 @@ def vtk_order(degrees: tuple[int, int]) -> np.ndarray:
     return np.concatenate([corners, *edges, number[1:-1, 1:-1].ravel()])
 
 
-def _block_points(mesh: Mesh, block: ElementBlock, fields: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Bezier points, weights and field values of a block, element by element in VTK's order."""
-    order_b = vtk_order(block.degrees)
-    values_Af = np.concatenate([_three_columns(mesh.P_AI), *fields.values()], axis=1)
-    H_ebf = homogeneous(values_Af, mesh.w_A, block)[:, order_b].reshape(-1, values_Af.shape[1] + 1)
-    parts = np.split(H_ebf[:, :-1] / H_ebf[:, -1:], np.cumsum([3, *(v.shape[1] for v in fields.values())]), axis=1)
-    return dict(zip(("points", *fields), parts, strict=False)) | {"RationalWeights": H_ebf[:, -1:]}
-
-
 def _three_columns(values: np.ndarray) -> np.ndarray:
     """Values (n, k) with k as it is, or 3 in place of 2."""
-    values = np.asarray(values, dtype=float).reshape(len(values), -1)
     return np.column_stack([values, np.zeros(len(values))]) if values.shape[1] == 2 else values
-
-
-def _array(name: str, values: np.ndarray) -> str:
-    """One DataArray: a base64 string of its length in bytes and its values."""
-    data = np.ascontiguousarray(values, dtype=values.dtype.newbyteorder("<")).tobytes()
-    text = base64.b64encode(np.array(len(data), dtype="<u8").tobytes() + data).decode()
-    components = values.shape[1] if values.ndim == 2 else 1
-    head = f'type="{_TYPES[values.dtype.name]}" Name={quoteattr(name)} NumberOfComponents="{components}"'
-    return f'<DataArray {head} format="binary">{text}</DataArray>'

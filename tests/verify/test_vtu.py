@@ -2,6 +2,7 @@
 
 import base64
 import xml.etree.ElementTree as ElementTree
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -33,9 +34,11 @@ def arrays(path: Path) -> tuple[dict[str, np.ndarray], ElementTree.Element]:
     types = {"Float64": "<f8", "Int64": "<i8", "UInt8": "u1"}
     found = {}
     for element in root.iter("DataArray"):
-        data = base64.b64decode(element.text)
-        assert int.from_bytes(data[:8], "little") == len(data) - 8
-        values = np.frombuffer(data[8:], types[element.get("type")])
+        blocks, size, rest, packed = np.frombuffer(base64.b64decode(element.text[:44]), "<u8").tolist()
+        data = zlib.decompress(base64.b64decode(element.text[44:]))
+        assert (blocks, rest) == (1, 0) and len(data) == size
+        assert packed == len(base64.b64decode(element.text[44:]))
+        values = np.frombuffer(data, types[element.get("type")])
         found[element.get("Name")] = values.reshape(-1, int(element.get("NumberOfComponents")))
     return found, root
 
