@@ -69,6 +69,8 @@ def parser() -> Parser:
     text = "Two load-opening curves: error, peak, energy; of runs, or of anybody's code."
     example = "compare my.csv run --opening-a U2 --load-a RF2 --curve-tol 0.01"
     _compare_options(command(commands.compare, text, example))
+    text = "One scene for another code: mesh, sets, interface pairs, material, law and steps."
+    _export_options(command(commands.export, text, "export dcb-czm1 --format abaqus"))
     _mesh_options(command(commands.mesh, "What a mesh file holds, and its picture.", "mesh arch.iga --out arch.vtu"))
     command(commands.scenes, "List the packaged scenes.", "scenes")
     command(commands.doctor, "What is installed, what works, how to get the rest.", "doctor")
@@ -127,6 +129,15 @@ def _hard_options(sub: Parser) -> None:
     sub.add_argument("names", nargs="*", metavar="NAME", help="hard cases; default: all")
     _out_option(sub, "debond-hard")
     _sweep_options(sub)
+
+
+def _export_options(sub: Parser) -> None:
+    _scene_argument(sub)
+    sub.add_argument("--format", required=True, metavar="F", help="abaqus, gmsh, vtu or csv")
+    sub.add_argument("--elements", type=positive, metavar="N", help="elements along the specimen, as dolfinx.elements")
+    sub.add_argument("--layers", type=positive, metavar="N", help="elements through each arm or the strip; default: 1")
+    _set_option(sub)
+    sub.add_argument("--out", type=Path, metavar="DIR", help="default: debond-export/SCENE-F")
 
 
 def _mesh_options(sub: Parser) -> None:

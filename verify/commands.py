@@ -214,6 +214,19 @@ def compare(options: argparse.Namespace) -> int:
     return 0 if all(check.passed for check in found) else FAILED
 
 
+def export(options: argparse.Namespace) -> int:
+    from verify.complaints import one_of
+    from verify.export.command import FORMATS, export
+    from verify.scene import load_scene
+
+    if options.format not in FORMATS:
+        raise Refusal(f"--format: must be {one_of(FORMATS)}, got {options.format!r}")
+    elements = [f"dolfinx.elements={options.elements}"] if options.elements else []
+    scene = load_scene(options.scene, [*elements, *options.overrides])
+    folder = options.out or Path("debond-export") / f"{scene.name}-{options.format}"
+    return _listed(export(scene, options.format, folder, options.layers))
+
+
 def mesh(options: argparse.Namespace) -> int:
     from verify.mesh_command import examine
 

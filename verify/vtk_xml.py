@@ -15,6 +15,8 @@ import numpy as np
 #: Arrays that VTK is told of as what they are, besides showing them: name -> attribute of the same name.
 _MEANT = ("RationalWeights", "HigherOrderDegrees")
 _TYPES = {"float64": "Float64", "int64": "Int64", "uint8": "UInt8"}
+#: Versions of the format: since which there are cells of higher order as they are now, and what everybody reads.
+_HIGHER, _PLAIN = "2.2", "1.0"
 _HEAD = 'byte_order="LittleEndian" header_type="UInt64"'
 
 
@@ -46,9 +48,10 @@ def write_grid(path: Path | str, grid: Grid) -> None:
     first = {"Vectors": vectors[0]} if vectors else {}
     cells = {"connectivity": grid.connectivity, "offsets": grid.offsets, "types": grid.types.astype(np.uint8)}
     whole = [_array(name, np.array([value], dtype=float), "NumberOfTuples") for name, value in grid.whole.items()]
+    version = _HIGHER if "HigherOrderDegrees" in grid.cell_data else _PLAIN
     lines = [
         '<?xml version="1.0"?>',
-        f'<VTKFile type="UnstructuredGrid" version="2.2" {_HEAD} compressor="vtkZLibDataCompressor">',
+        f'<VTKFile type="UnstructuredGrid" version="{version}" {_HEAD} compressor="vtkZLibDataCompressor">',
         f"<UnstructuredGrid><FieldData>{''.join(whole)}</FieldData>",
         f'<Piece NumberOfPoints="{len(grid.points)}" NumberOfCells="{len(grid.types)}">',
         *_data("PointData", grid.point_data, first),

@@ -1,0 +1,56 @@
+"""`debond export`: one scene, one format, one folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from verify.export.abaqus import write_abaqus
+from verify.export.gmsh import write_gmsh
+from verify.export.mesh import SceneMesh, scene_mesh
+from verify.export.numbers import notes, numbers
+from verify.export.tables import write_tables
+from verify.export.vtu import write_scene_vtu
+from verify.folder import write_json
+from verify.refusal import Refusal
+from verify.schema import Scene
+
+ENDINGS = {"abaqus": "inp", "gmsh": "msh", "vtu": "vtu"}
+FORMATS = (*ENDINGS, "csv")
+
+
+def export(scene: Scene, kind: str, folder: Path, layers: int | None = None) -> list[str]:
+    """Write a scene into a folder; what was written and what to know of it, a line each.
+
+    Parameters
+    ----------
+    kind : one of `FORMATS`
+    layers : elements through each arm, or through the strip
+
+    Raises
+    ------
+    Refusal : a degree above 2, too few elements, a folder that cannot be written to.
+    """
+    mesh = scene_mesh(scene, layers)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if kind == "csv":
+            files = list(write_tables(mesh, folder))
+        else:
+            files = [folder / f"{scene.name}.{ENDINGS[kind]}"]
+            _write(kind, scene, mesh, files[0])
+        files.append(folder / "scene.json")
+        write_json(files[-1], numbers(scene, mesh))
+    except OSError as error:
+        text = f"must be a folder that can be written to, got {str(folder)!r}: {error.strerror}"
+        raise Refusal(f"--out: {text}") from None
+    size = f"{len(mesh.X_nI)} nodes, {len(mesh.conn_ea)} elements of degree {mesh.degree}, {len(mesh.pair_kb)} pairs"
+    return [size, *notes(scene), *(f"written: {file}" for file in files)]
+
+
+def _write(kind: str, scene: Scene, mesh: SceneMesh, path: Path) -> None:
+    if kind == "abaqus":
+        write_abaqus(scene, mesh, path)
+    elif kind == "gmsh":
+        write_gmsh(mesh, path)
+    else:
+        write_scene_vtu(mesh, path)

@@ -1,0 +1,191 @@
+"""The mesh of a scene for another code: quadrilaterals of degree 1 or 2, on which the two sides of the bond match."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fem_reference.specimen import Body, Place, Specimen
+from verify.methods import dolfinx_problem
+from verify.refusal import Refusal
+from verify.schema import Scene
+
+#: Upper body first.
+BODIES: Mapping[str, tuple[str, str]] = {"dcb": ("upper", "lower"), "peel": ("strip", "substrate")}
+
+#: What the layers of a specimen are called by the problem of `fem_reference`.
+LAYERS: Mapping[str, str] = {"dcb": "elements_across", "peel": "strip_layers"}
+
+#: Integrals of the functions of a side of degree p over its length.
+SHARES: Mapping[int, np.ndarray] = {1: np.array([1, 1]) / 2, 2: np.array([1, 4, 1]) / 6}
+
+
+@dataclass(frozen=True)
+class LoadedFace:
+    """A loaded end face: ``weight_n`` of its nodes add up to 1.
+
+    The mean displacement of the face is the sum of weight times u_y, and a uniform traction of resultant P is the
+    nodal force weight times P. The face moves by ``factor`` times the opening.
+    """
+
+    name: str
+    node_n: np.ndarray
+    weight_n: np.ndarray
+    factor: float
+
+
+@dataclass(frozen=True)
+class Support:
+    """Nodes whose displacements in these components (0: x, 1: y) are zero."""
+
+    name: str
+    node_n: np.ndarray
+    components: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class SceneMesh:
+    """Nodes and elements of both bodies, counted from 0.
+
+    Parameters
+    ----------
+    degree : 1 (4 nodes) or 2 (8 nodes, none inside)
+    names : of the bodies, upper first
+    X_nI : (n, 2) reference positions
+    conn_ea : (n_e, 4 or 8) corners counter-clockwise, then the middles of the sides between them
+    body_e : (n_e,) 0 upper, 1 lower
+    pair_kb : (n_k, 2) nodes of the bond, lower and upper, X rising; ``degree`` + 1 of them make a side
+    length_k : (n_k,) length of the bond that belongs to each pair: integral of its function
+    """
+
+    degree: int
+    names: tuple[str, str]
+    X_nI: np.ndarray
+    conn_ea: np.ndarray
+    body_e: np.ndarray
+    pair_kb: np.ndarray
+    length_k: np.ndarray
+    loaded: tuple[LoadedFace, ...]
+    supports: tuple[Support, ...]
+
+    @property
+    def sets(self) -> dict[str, np.ndarray]:
+        """Every set of nodes by its name."""
+        bond = {f"{name}_bond": self.pair_kb[:, 1 - b] for b, name in enumerate(self.names)}
+        return {part.name: part.node_n for part in (*self.loaded, *self.supports)} | bond
+
+    @property
+    def cohesive_ea(self) -> np.ndarray:
+        """(n, 4) linear interface elements of no thickness: lower side, upper side, counter-clockwise.
+
+        A side of degree 2 has two of them.
+        """
+        lower, upper = self.pair_kb.T
+        return np.stack([lower[:-1], lower[1:], upper[1:], upper[:-1]], axis=1)
+
+
+def scene_mesh(scene: Scene, layers: int | None = None) -> SceneMesh:
+    """The mesh that the DOLFINx model has, as ``[dolfinx]`` asks for it; DOLFINx itself is not needed.
+
+    Parameters
+    ----------
+    layers : elements through each arm, or through the strip; default 1
+
+    Raises
+    ------
+    Refusal : a degree above 2, fewer elements than the specimen has parts.
+    """
+    degree, kind = scene.dolfinx.degree, scene.specimen.kind
+    if degree > 2:
+        raise Refusal(f"dolfinx.degree: must be 1 or 2 for export, got {degree}")
+    try:
+        problem = dolfinx_problem(scene)
+        specimen = (replace(problem, **{LAYERS[kind]: layers}) if layers else problem).specimen()
+    except ValueError as error:
+        raise Refusal(f"dolfinx.{error}") from None
+    return _meshed(specimen, degree, BODIES[kind])
+
+
+def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMesh:
+    grids, count = [], 0
+    for body in specimen.bodies:
+        grids.append(_Grid.of(body, specimen, degree, count))
+        count += len(grids[-1].X_nI)
+    bond = (tuple(sorted(specimen.bond)), (0.0, 0.0))
+    upper, lower = (grid.on(bond) for grid in grids)
+    X_nI = np.concatenate([grid.X_nI for grid in grids])
+    pairs = np.stack([lower, upper], axis=1)[np.argsort(X_nI[lower, 0])]
+    faces = [face for face in specimen.faces if face.load != 0.0]
+    size = sum(abs(face.load) for face in faces)
+    loaded = []
+    for face in faces:
+        body = specimen.bodies[face.body]
+        nodes = grids[face.body].on(((face.X, face.X), (body.Y[0], body.Y[-1])))
+        nodes = nodes[np.argsort(X_nI[nodes, 1])]
+        weights = _lengths(X_nI[nodes, 1], degree) / body.thickness
+        loaded.append(LoadedFace(f"{names[face.body]}_loaded", nodes, weights, face.load / size))
+    supports = tuple(
+        Support(
+            f"{names[held.body]}_held_{''.join('xy'[i] for i in held.components)}",
+            grids[held.body].on(held.place),
+            held.components,
+        )
+        for held in specimen.held
+    )
+    return SceneMesh(
+        degree=degree,
+        names=names,
+        X_nI=X_nI,
+        conn_ea=np.concatenate([grid.conn_ea for grid in grids]),
+        body_e=np.repeat([0, 1], [len(grid.conn_ea) for grid in grids]),
+        pair_kb=pairs,
+        length_k=_lengths(X_nI[pairs[:, 0], 0], degree),
+        loaded=tuple(loaded),
+        supports=supports,
+    )
+
+
+@dataclass(frozen=True)
+class _Grid:
+    """The mesh of one body; its nodes are counted from ``first`` on."""
+
+    X_nI: np.ndarray
+    conn_ea: np.ndarray
+    first: int
+    near: float
+
+    @staticmethod
+    def of(body: Body, specimen: Specimen, degree: int, first: int) -> _Grid:
+        X = _refined(specimen.X[specimen.X < body.length + specimen.near], degree)
+        Y = _refined(body.Y, degree)
+        inside = (np.arange(Y.size) % degree > 0)[:, None] & (np.arange(X.size) % degree > 0)
+        number = np.full(inside.shape, -1)
+        number[~inside] = first + np.arange(np.count_nonzero(~inside))
+        x, y = np.meshgrid(X, Y)
+        p = degree
+        corners = (number[:-1:p, :-1:p], number[:-1:p, p::p], number[p::p, p::p], number[p::p, :-1:p])
+        middles = (number[:-1:p, 1::p], number[1::p, p::p], number[p::p, 1::p], number[1::p, :-1:p]) if p == 2 else ()
+        conn = np.stack([part.ravel() for part in (*corners, *middles)], axis=1)
+        return _Grid(np.stack([x[~inside], y[~inside]], axis=1), conn, first, specimen.near)
+
+    def on(self, place: Place) -> np.ndarray:
+        """Nodes in a place."""
+        (left, right), (low, high) = place
+        x, y = self.X_nI.T
+        there = (x > left - self.near) & (x < right + self.near) & (y > low - self.near) & (y < high + self.near)
+        return self.first + np.flatnonzero(there)
+
+
+def _refined(lines: np.ndarray, degree: int) -> np.ndarray:
+    """Lines of nodes from those of element boundaries."""
+    return np.interp(np.arange(degree * (lines.size - 1) + 1) / degree, np.arange(lines.size), lines)
+
+
+def _lengths(at: np.ndarray, degree: int) -> np.ndarray:
+    """Integral (n,) of the function of every node over a line of sides; ``at`` rises."""
+    lengths = np.zeros(at.size)
+    for start, length in enumerate(at[degree::degree] - at[:-1:degree]):
+        lengths[start * degree : (start + 1) * degree + 1] += length * SHARES[degree]
+    return lengths

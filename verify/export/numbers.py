@@ -1,0 +1,109 @@
+"""What a mesh does not say of a scene, as plain numbers: materials, law, programme, sets, and what was left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from verify.effects import simulated
+from verify.export.mesh import SceneMesh
+from verify.law import Bilinear
+from verify.methods import counted_steps, elastic_constants
+from verify.schema import Scene
+from verify.specimen import Material
+
+
+def materials(scene: Scene) -> tuple[Material, Material]:
+    """Of the upper and of the lower body."""
+    return (scene.strip, scene.substrate) if scene.specimen.kind == "peel" else (scene.material, scene.material)
+
+
+def law(scene: Scene) -> Bilinear:
+    """The scene's traction law."""
+    i = scene.interface
+    return Bilinear(i.strength, i.toughness, i.ductility, i.penalty, effects(scene)["contact"])
+
+
+def effects(scene: Scene) -> dict[str, Any]:
+    """What is to be simulated; both bodies, always."""
+    return {key: value for key, value in simulated(scene, "").items() if key != "symmetry"}
+
+
+def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
+    """The content of ``scene.json``. Nodes are counted from 1 there; components are 1 for x and 2 for y."""
+    bond, specimen = law(scene), scene.specimen
+    return {
+        "scene": scene.name,
+        "units": scene.units,
+        "specimen": specimen.model_dump(exclude={"mesh"}),
+        "bodies": {
+            name: {**elastic_constants(material), "isotropic": hasattr(material, "young")}
+            for name, material in zip(mesh.names, materials(scene), strict=True)
+        },
+        "law": {
+            "kind": "bilinear, mode I: the gap along the normal alone bears traction",
+            "strength": bond.strength,
+            "toughness": bond.toughness,
+            "stiffness": bond.stiffness,
+            "g_max": bond.g_peak,
+            "g_u": bond.g_open,
+            "ductility": bond.ductility,
+            "penalty": bond.penalty,
+        },
+        "effects": effects(scene),
+        "programme": {"opening": list(scene.load.opening), "steps": counted_steps(scene)},
+        "mesh": {
+            "degree": mesh.degree,
+            "nodes": len(mesh.X_nI),
+            "elements": len(mesh.conn_ea),
+            "pairs": len(mesh.pair_kb),
+        },
+        "loaded": {
+            face.name: {
+                "part_of_the_opening": face.factor,
+                "nodes": _numbers(face.node_n),
+                "weights": list(face.weight_n),
+            }
+            for face in mesh.loaded
+        },
+        "held": {
+            part.name: {"components": [i + 1 for i in part.components], "nodes": _numbers(part.node_n)}
+            for part in mesh.supports
+        },
+        "pairs": [_numbers(pair) for pair in mesh.pair_kb],
+        "notes": notes(scene),
+    }
+
+
+def notes(scene: Scene) -> list[str]:
+    """What whoever solves the scene must know besides."""
+    simulate, bond = effects(scene), law(scene)
+    closing = (
+        f"a closed gap has the stiffness {bond.penalty:g}" if bond.contact else "a closed gap has that of the bond"
+    )
+    damage = "damage stays" if simulate["irreversible"] else "there is no history: traction follows the gap"
+    posed = scene.pose != type(scene.pose)()
+    return [
+        f"{simulate['kinematics']} kinematics; {closing}; {damage}",
+        "a loaded face moves up by its part of the opening in the mean (weights times u_y), free to turn and to move "
+        "along x; its load is a uniform traction that keeps its direction",
+        "the load of the curve is the force on one loaded face, of the whole width",
+        "the pose of the scene is left out, as no answer depends on it"
+        if posed
+        else "the mesh stands as the scene says: X along the specimen, the bond on Y = 0",
+    ]
+
+
+def header(scene: Scene, mesh: SceneMesh) -> Mapping[str, str]:
+    """The first lines of a file for people."""
+    return {
+        "scene": f"{scene.name} ({scene.units})",
+        "mesh": f"{len(mesh.X_nI)} nodes, {len(mesh.conn_ea)} elements of degree {mesh.degree}",
+        **{f"note {i}": note for i, note in enumerate(notes(scene), 1)},
+    }
+
+
+def _numbers(node_n: np.ndarray) -> list[int]:
+    return [int(node) + 1 for node in node_n]

@@ -1,0 +1,47 @@
+"""A scene as tables: nodes, elements, pairs of the bond, and sets. Everything is counted from 1."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from verify.export.mesh import SceneMesh
+
+
+def write_tables(mesh: SceneMesh, folder: Path) -> tuple[Path, ...]:
+    """Write nodes.csv, elements.csv, pairs.csv and sets.csv into a folder; their paths.
+
+    Corners of an element go counter-clockwise, then the middles of its sides. Pairs are ordered along the bond, and
+    ``length`` is what of it belongs to each. ``weight`` is a node's part of the load of a loaded face.
+    """
+    names, nodes = [mesh.names[b] for b in mesh.body_e], [f"n{a + 1}" for a in range(mesh.conn_ea.shape[1])]
+    elements = zip(names, mesh.conn_ea + 1, strict=True)
+    pairs = zip(mesh.pair_kb + 1, mesh.X_nI[mesh.pair_kb[:, 0]], mesh.length_k, strict=True)
+    weights = {face.name: face.weight_n for face in mesh.loaded}
+    tables = {
+        "nodes.csv": (("node", "x", "y"), ((n, *X) for n, X in enumerate(mesh.X_nI.tolist(), 1))),
+        "elements.csv": (("element", "body", *nodes), ((e, b, *conn) for e, (b, conn) in enumerate(elements, 1))),
+        "pairs.csv": (
+            ("pair", "lower", "upper", "x", "y", "length"),
+            ((k, *pair, *X.tolist(), float(length)) for k, (pair, X, length) in enumerate(pairs, 1)),
+        ),
+        "sets.csv": (
+            ("set", "node", "weight"),
+            (
+                (name, node + 1, "" if name not in weights else float(weights[name][i]))
+                for name, nodes in mesh.sets.items()
+                for i, node in enumerate(nodes)
+            ),
+        ),
+    }
+    for name, (columns, rows) in tables.items():
+        _write(folder / name, columns, rows)
+    return tuple(folder / name for name in tables)
+
+
+def _write(path: Path, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(columns)
+        writer.writerows(rows)
