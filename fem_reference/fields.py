@@ -10,17 +10,20 @@ import ufl
 from dolfinx import fem
 
 from fem_reference.dolfinx_api import evaluate, expression
-from fem_reference.forms import cauchy_stress, constant
+from fem_reference.forms import cauchy_stress, constant, second_stress
 from fem_reference.model import Model
 from fem_reference.state import State, ordered_along
 
 Snapshot = dict[str, Any]
+Sampler = Callable[[State], np.ndarray | None]
 
 
-def field_sampler(model: Model) -> Callable[[State], Snapshot | None]:
+def field_sampler(model: Model) -> Sampler:
     """A function that takes the fields of a state; it returns None on all ranks but the first.
 
-    Every element is sampled on its own grid of (degree + 1)^2 points, so that jumps between elements are kept.
+    Every element is sampled on its own grid of (degree + 1)^2 evenly spaced points, which are enough to tell the
+    displacement between them, and jumps between elements are kept: (n_e, k, k, 10) with X, Y, u_x, u_y, the Cauchy
+    stress xx, yy, xy, the second Piola-Kirchhoff stress 11, 22 over det F, and the number of the body.
     """
     k = model.problem.degree + 1
     line_u = np.linspace(0.0, 1.0, k)
@@ -30,27 +33,35 @@ def field_sampler(model: Model) -> Callable[[State], Snapshot | None]:
         domain = u.function_space.mesh
         D = constant(domain, body.D_IJ)
         X = ufl.SpatialCoordinate(domain)
-        stress = cauchy_stress(u, D, model.problem.kinematics == "finite")
-        samplers.append((expression(ufl.as_vector([X[0], X[1], u[0], u[1], stress[0, 0]]), points_qI), domain))
+        finite = model.problem.kinematics == "finite"
+        stress, S = cauchy_stress(u, D, finite), second_stress(u, D, finite)
+        J = ufl.det(ufl.Identity(2) + ufl.grad(u)) if finite else 1.0
+        of_stress = [stress[0, 0], stress[1, 1], stress[0, 1], S[0, 0] / J, S[1, 1] / J]
+        samplers.append((expression(ufl.as_vector([X[0], X[1], u[0], u[1], *of_stress]), points_qI), domain))
 
-    def sample(state: State) -> Snapshot | None:
+    def sample(state: State) -> np.ndarray | None:
         model.displace(state.u_n)
-        values_evc = np.concatenate([_owned_values(e, domain) for e, domain in samplers])
-        gathered = model.comm.gather(values_evc)
-        bond = _bond_fields(model, state)
-        if gathered is None:
-            return None
-        all_euvc = along_first(np.concatenate(gathered).reshape(-1, k, k, 5))
-        return {
-            "opening": state.opening,
-            "load": state.load,
-            **bond,
-            "X_euvi": all_euvc[..., :2],
-            "u_euvi": all_euvc[..., 2:4],
-            "stress_euv": all_euvc[..., 4],
-        }
+        parts = [_owned_values(e, domain) for e, domain in samplers]
+        numbered = [np.insert(part, part.shape[2], body, axis=2) for body, part in enumerate(parts)]
+        gathered = model.comm.gather(np.concatenate(numbered))
+        return None if gathered is None else along_first(np.concatenate(gathered).reshape(-1, k, k, 10))
 
     return sample
+
+
+def snapshot(model: Model, sample: Sampler, state: State) -> Snapshot | None:
+    """Fields along the interface, and a grid of samples for every element; None on all ranks but the first."""
+    values_euvc, bond = sample(state), _bond_fields(model, state)
+    if values_euvc is None:
+        return None
+    return {
+        "opening": state.opening,
+        "load": state.load,
+        **bond,
+        "X_euvi": values_euvc[..., :2],
+        "u_euvi": values_euvc[..., 2:4],
+        "stress_euv": values_euvc[..., 4],
+    }
 
 
 def along_first(values_euvc: np.ndarray) -> np.ndarray:

@@ -5,18 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 from mpi4py import MPI
 from petsc4py import PETSc
 
 from fem_reference.assembled import owned
-from fem_reference.fields import field_sampler
+from fem_reference.fields import field_sampler, snapshot
+from fem_reference.frames import frame
 from fem_reference.model import build_model
 from fem_reference.path import Failure, Separation, path
 from fem_reference.problem import Debonding
 from fem_reference.state import row_of
 
 OnStep = Callable[[Mapping[str, float]], None]
+
+#: Called with the opening of every converged step, and with what makes its frame (see `fem_reference.frames`).
+OnFrame = Callable[[float, Callable[[], dict[str, Any] | None]], None]
 
 
 @dataclass(frozen=True)
@@ -39,6 +45,7 @@ def solve_debonding(
     on_step: OnStep = lambda row: None,
     phase: Callable[[str], AbstractContextManager] = lambda name: nullcontext(),
     comm: MPI.Intracomm = MPI.COMM_WORLD,
+    on_frame: OnFrame | None = None,
 ) -> Solution:
     """Solve a `fem_reference.dcb.Problem` or a `fem_reference.peel.Problem`.
 
@@ -47,6 +54,7 @@ def solve_debonding(
     on_step : called on the first rank with the row of every converged step; the first row is the unloaded specimen.
     phase : context manager that times a part of the work: "mesh", "basis", "compile" (the forms, or reading what has
         been compiled before), "assembly", "factor", "solve".
+    on_frame : called on all ranks; a frame that is wanted must be made on all of them, and the first one gets it.
     """
     model = build_model(problem, phase, comm)
     with phase("compile"):
@@ -67,8 +75,10 @@ def solve_debonding(
             rows.append(row_of(model, point))
         if comm.rank == 0:
             on_step(rows[-1])
+        if on_frame is not None:
+            on_frame(point.opening, partial(frame, model, sample, point))
         while wanted and point.opening >= wanted[0] * (1 - 1e-12):
-            snapshots.append(sample(point))
+            snapshots.append(snapshot(model, sample, point))
             wanted.pop(0)
     return Solution(
         rows=tuple(rows),

@@ -16,7 +16,7 @@ from iga.point import Point
 from iga.pose import Pose
 from iga.problem import Debonding, smooth
 from iga.solid import joined
-from iga.solve import Solution, run
+from iga.solve import OnFrame, Solution, run
 from iga.specimen import Specimen
 from iga.system import Phase, State, System, untimed
 from iga.tmesh import TMesh
@@ -93,7 +93,10 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
 
 
 def solve(
-    problem: Problem, on_step: Callable[[Mapping[str, float]], None] | None = None, phase: Phase = untimed
+    problem: Problem,
+    on_step: Callable[[Mapping[str, float]], None] | None = None,
+    phase: Phase = untimed,
+    on_frame: OnFrame | None = None,
 ) -> Solution:
     """Solve a double cantilever beam.
 
@@ -102,6 +105,7 @@ def solve(
     problem : the specimen, its law, programme, mesh and pose.
     on_step : called with the row of every converged step, as it comes.
     phase : context manager that times "mesh", "basis", "assembly", "factor", "solve".
+    on_frame : called with the opening of every converged step and what makes its frame (see `iga.frames`).
 
     Returns
     -------
@@ -112,7 +116,7 @@ def solve(
     ValueError : a problem for which there is no mesh or no material.
     """
     if not follows(problem):
-        return run(problem, build(problem, phase), on_step, phase)
+        return run(problem, build(problem, phase), on_step, phase, on_frame=on_frame)
     first = first_window(problem)
 
     def adapt(specimen: Specimen, point: Point) -> tuple[Specimen, State] | None:
@@ -123,7 +127,7 @@ def solve(
         state = carried(specimen, moved, point, phase)
         return None if state is None else (moved, state)
 
-    return run(problem, build(problem, phase, first), on_step, phase, adapt)
+    return run(problem, build(problem, phase, first), on_step, phase, adapt, on_frame)
 
 
 def follows(problem: Problem) -> bool:

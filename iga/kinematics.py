@@ -80,6 +80,14 @@ def cauchy_stress(D: np.ndarray, H: np.ndarray, kinematics: str) -> np.ndarray:
     return np.einsum("iI...,IJ...,jJ...->ij...", F, S_v[np.array(VOIGT)], F) / det
 
 
+def material_stress(sigma: np.ndarray, H: np.ndarray, kinematics: str) -> np.ndarray:
+    """Second Piola-Kirchhoff stress over det F (2, 2, ...) of a Cauchy stress: ``F^-1 sigma F^-T``, or the same."""
+    if kinematics == "linear":
+        return sigma
+    inverse = np.linalg.inv(np.moveaxis(_deformation(H), (0, 1), (-2, -1)))
+    return np.einsum("...Ii,ij...,...Jj->IJ...", inverse, sigma, inverse)
+
+
 def _deformation(H: np.ndarray) -> np.ndarray:
     F = H.copy()
     F[0, 0] += 1.0

@@ -14,7 +14,7 @@ from iga.peel_meshes import meshes, tmeshes
 from iga.pose import Pose
 from iga.problem import Debonding, smooth
 from iga.solid import joined
-from iga.solve import Solution, run
+from iga.solve import OnFrame, Solution, run
 from iga.specimen import Specimen
 from iga.system import Phase, System, untimed
 from iga.tspline import tspline_rectangle
@@ -87,10 +87,13 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
 
 
 def solve(
-    problem: Problem, on_step: Callable[[Mapping[str, float]], None] | None = None, phase: Phase = untimed
+    problem: Problem,
+    on_step: Callable[[Mapping[str, float]], None] | None = None,
+    phase: Phase = untimed,
+    on_frame: OnFrame | None = None,
 ) -> Solution:
     """Solve a peel test; parameters, result and refusals as those of `iga.dcb.solve`."""
-    return run(problem, build(problem, phase), on_step, phase)
+    return run(problem, build(problem, phase), on_step, phase, on_frame=on_frame)
 
 
 def _free(substrate: Body, n_dof: int) -> np.ndarray:

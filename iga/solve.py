@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 from iga.condense import condensed
 from iga.fields import snapshot
+from iga.frames import frame
 from iga.observe import row
 from iga.path import End, Point, follow
 from iga.problem import Debonding
 from iga.specimen import Specimen
 from iga.system import Phase, State, System, respond, tangent_matrix
+
+#: Called with the opening of every converged step, and with what makes its frame (see `iga.frames`) where it is wanted.
+OnFrame = Callable[[float, Callable[[], dict[str, Any]]], None]
 
 
 @dataclass(frozen=True)
@@ -38,6 +44,7 @@ def run(
     on_step: Callable[[Mapping[str, float]], None] | None,
     phase: Phase,
     adapt: Callable[[Specimen, Point], tuple[Specimen, State] | None] | None = None,
+    on_frame: OnFrame | None = None,
 ) -> Solution:
     """Follow the programme of a problem; ``on_step`` is called with the row of every converged step, as it comes.
 
@@ -71,6 +78,8 @@ def run(
         rows.append(row(specimen, point))
         if on_step is not None:
             on_step(rows[-1])
+        if on_frame is not None:
+            on_frame(point.opening, partial(frame, specimen, point))
         if wanted and point.opening >= wanted[0]:
             wanted = [opening for opening in wanted if opening > point.opening]
             snapshots.append(snapshot(specimen, point))

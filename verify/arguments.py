@@ -13,6 +13,13 @@ def positive(text: str) -> int:
     return value
 
 
+def count(text: str) -> int:
+    value = int(text) if text.isascii() and text.isdigit() and len(text) < 10 else -1
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"must be an integer >= 0, got {text!r}")
+    return value
+
+
 def accuracy(text: str) -> float:
     share = text.removesuffix("%").strip()
     return fraction(share) / (100.0 if text.endswith("%") else 1.0)

@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence  # noqa: E402
 from pathlib import Path  # noqa: E402
 
 from verify import commands  # noqa: E402
-from verify.arguments import accuracy, column, fraction, number, numbers, positive, scale  # noqa: E402
+from verify.arguments import accuracy, column, count, fraction, number, numbers, positive, scale  # noqa: E402
 from verify.commands import FAILED  # noqa: E402
 from verify.refusal import Refusal  # noqa: E402
 from verify.say import say  # noqa: E402
@@ -99,7 +99,10 @@ def _solve_options(sub: Parser) -> None:
     sub.add_argument("--accuracy", type=accuracy, metavar="A", help=what)
     _set_option(sub)
     sub.add_argument("--out", type=Path, metavar="DIR", help="default: debond-out/SCENE-METHOD")
-    sub.add_argument("--fields", action="store_true", help="keep fields of a few steps in fields.npz")
+    what = "keep fields: of a few steps in fields.npz, and fields.pvd and interface.pvd for ParaView"
+    sub.add_argument("--fields", action="store_true", help=what)
+    what = "with --fields, frames for ParaView along the programme; default: 30, 0: none"
+    sub.add_argument("--frames", type=count, default=30, metavar="N", help=what)
 
 
 def _cost_options(sub: Parser) -> None:

@@ -78,6 +78,7 @@ def _watched(run, scene, options: argparse.Namespace, quiet: bool):
             options.out,
             options.fields,
             lambda row: progress.advance(travelled(row), f"opening {row['opening']:.4g} load {row['load']:.4g}"),
+            frames=options.frames if options.fields else 0,
         )
 
 

@@ -41,7 +41,7 @@ class Job:
 
     def _words(self, folder: str) -> list[str]:
         sets = [word for override in self.overrides for word in ("--set", override)]
-        fields = ["--fields"] if self.fields else []
+        fields = ["--fields", "--frames", "0"] if self.fields else []
         return ["solve", self.source, "--method", self.method, *sets, *fields, "--out", folder]
 
     @property

@@ -48,6 +48,9 @@ SMALL = 10
 
 OnStep = Callable[[Mapping[str, float]], None]
 
+#: Called with the opening of every converged step and with what makes its frame, see `verify.frames`.
+OnFrame = Callable[[float, Callable[[], Mapping[str, Any] | None]], None]
+
 
 class NotRun(Exception):
     """A method that this machine cannot run; the message says why."""
@@ -62,13 +65,14 @@ def dolfinx_installed() -> bool:
     return find_spec("dolfinx") is not None
 
 
-def solve(scene: Scene, method: str, on_step: OnStep | None = None) -> Result:
+def solve(scene: Scene, method: str, on_step: OnStep | None = None, on_frame: OnFrame | None = None) -> Result:
     """Solve a scene by one method.
 
     Parameters
     ----------
     method : one of ``METHODS``
     on_step : called with every converged row (``verify.result``), the first one zeros, as the run goes
+    on_frame : called at every converged step by the methods that have fields
 
     Raises
     ------
@@ -80,8 +84,10 @@ def solve(scene: Scene, method: str, on_step: OnStep | None = None) -> Result:
     Timed from the first line of work on: importing a solver is paid once a process, not once a solution.
     """
     require(scene, method)
-    solvers = {**dict.fromkeys(WITH_DOFS, _iga), "dolfinx": _dolfinx, "beam": _beam, "lefm": _lefm}
-    return solvers[method](scene, method, on_step or _nothing)
+    with_fields = {**dict.fromkeys(WITH_DOFS, _iga), "dolfinx": _dolfinx}
+    if method in with_fields:
+        return with_fields[method](scene, method, on_step or _nothing, on_frame)
+    return {"beam": _beam, "lefm": _lefm}[method](scene, method, on_step or _nothing)
 
 
 def require(scene: Scene, method: str) -> None:
@@ -227,12 +233,12 @@ def iga_problem(scene: Scene, method: str) -> tuple[ModuleType, Any]:
     return dcb, dcb.Problem(**_taken(dcb.Problem, problem_keys(scene, method) | _iga_keys(scene, method)))
 
 
-def _iga(scene: Scene, method: str, on_step: OnStep) -> Result:
+def _iga(scene: Scene, method: str, on_step: OnStep, on_frame: OnFrame | None) -> Result:
     solver, problem = iga_problem(scene, method)
     if problem.steps is None and not _smooth(scene, method):
         problem = replace(problem, steps=STEPS)
     watch = Stopwatch()
-    return _result(method, solver.solve(problem, on_step=on_step, phase=watch.phase), watch)
+    return _result(method, solver.solve(problem, on_step, watch.phase, on_frame), watch)
 
 
 def _smooth(scene: Scene, method: str) -> bool:
@@ -262,11 +268,12 @@ def dolfinx_problem(scene: Scene) -> Any:
     return dcb.Problem(**problem_keys(scene, "dolfinx"), **mesh)
 
 
-def _dolfinx(scene: Scene, method: str, on_step: OnStep) -> Result:
+def _dolfinx(scene: Scene, method: str, on_step: OnStep, on_frame: OnFrame | None) -> Result:
     from fem_reference.solve import solve_debonding
 
     watch = Stopwatch()
-    return _result(method, solve_debonding(dolfinx_problem(scene), on_step=on_step, phase=watch.phase), watch)
+    problem = dolfinx_problem(scene)
+    return _result(method, solve_debonding(problem, on_step=on_step, phase=watch.phase, on_frame=on_frame), watch)
 
 
 def _beam(scene: Scene, method: str, on_step: OnStep) -> Result:

@@ -8,6 +8,7 @@ import sys
 import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NoReturn
@@ -18,6 +19,7 @@ from verify import __version__, matched, neglected, process_zone
 from verify.checks import run_checks
 from verify.effects import decided, simulated
 from verify.folder import CurveWriter, write_fields, write_json
+from verify.frames import Frames, cleared
 from verify.memory import keep_freed_memory
 from verify.methods import solve
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
@@ -37,6 +39,7 @@ def run(
     keep_fields: bool = False,
     on_step: Callable[[Row], None] | None = None,
     solver: Solver = solve,
+    frames: int = 0,
 ) -> tuple[Result, tuple[Check, ...]]:
     """Solve a scene by one method and write its folder.
 
@@ -48,10 +51,14 @@ def run(
     folder : made where absent; an earlier run in it is replaced
     on_step : called after every converged step, for progress
     solver : what to run; ``verify.methods.solve``
+    frames : so many for ParaView on the way along the programme, see ``verify.frames``
     """
     keep_freed_memory()
+    if frames:
+        solver = partial(_filmed, solver, Frames(folder, scene, method, frames, writes=mpi_rank() == 0))
     if mpi_rank() > 0:  # the same numbers are on every rank: one of them writes
         return _silent(scene, method, solver), ()
+    cleared(folder)
     writer = CurveWriter(folder)
     rows: list[Row] = []
 
@@ -85,6 +92,12 @@ def _explained(scene: Scene, result: Result) -> Result:
         return result
     zone, _, _ = warning.partition(":")
     return replace(result, status=f"stopped: {zone}; {result.status.removeprefix('stopped: ')}")
+
+
+def _filmed(solver: Solver, frames: Frames, scene: Scene, method: str, on_step: Callable | None) -> Result:
+    result = solver(scene, method, on_step, on_frame=frames)
+    frames.finish()
+    return result
 
 
 def _silent(scene: Scene, method: str, solver: Solver) -> Result:
