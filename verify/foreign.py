@@ -1,0 +1,137 @@
+"""Curves of other codes in a verification: each judged like one of the methods, by the runs that are there."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from verify.compare import ROUNDING
+from verify.crosschecks import (
+    ANALYTICAL,
+    CROSS_CODE,
+    ON_SUBSTRATE,
+    SQUEEZED,
+    distance,
+    peak_load,
+    published_load,
+    published_meaning,
+    published_names,
+    squeeze,
+)
+from verify.curve_file import Reading, read_curve
+from verify.effects import simulated
+from verify.methods import METHODS
+from verify.refusal import Refusal
+from verify.result import Result
+from verify.schema import Scene
+from verify.verdict import Check, Run, SceneReport
+
+#: Codes that a curve from elsewhere is held against, with the relative tolerance that holds between them as well.
+CODES: Mapping[str, float] = {**{m: CROSS_CODE[m] for m in ("tspline", "nurbs")}, "dolfinx": CROSS_CODE["nurbs"]}
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Opening and load of another code, read from a file."""
+
+    name: str
+    path: Path
+    reading: Reading
+    result: Result
+
+    def command(self, run: Path) -> str:
+        """What compares the file with the folder of a run."""
+        given = {
+            "--opening-a": self.reading.opening,
+            "--load-a": self.reading.load,
+            "--opening-scale-a": _unless_one(self.reading.opening_scale),
+            "--load-scale-a": _unless_one(self.reading.load_scale),
+        }
+        words = [word for name, value in given.items() if value is not None for word in (name, str(value))]
+        return shlex.join(["debond", "compare", str(self.path), str(run), *words])
+
+
+def read_curves(words: Sequence[str], reading: Reading) -> tuple[Curve, ...]:
+    """The curves that ``FILE`` and ``NAME=FILE`` stand for; without a name the file's, or that of a run's folder.
+
+    Raises
+    ------
+    Refusal : no curve in a file, a name that is no word, that of a method, or one for two curves.
+    """
+    curves: list[Curve] = []
+    for word in words:
+        name, path = _named(word)
+        if not _NAME.fullmatch(name):
+            raise Refusal(f"--with: a name must be of letters, digits, dots, dashes and underscores, got {name!r}")
+        if name.partition("-")[0] in METHODS or name in [curve.name for curve in curves]:
+            whose = "another curve's" if name in [curve.name for curve in curves] else "a method's"
+            raise Refusal(f"--with: a name must not be {whose}, got {name!r}; NAME={path} gives another")
+        opening, load = read_curve(path, reading)
+        curves.append(Curve(name, path, reading, Result(name, {"opening": opening, "load": load})))
+    return tuple(curves)
+
+
+def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneReport:
+    """The report with the curves as runs of their own, and with checks of every run of a method that is not ours."""
+    against = next((run for run in report.runs if run.method == "nurbs" and run.result is not None), None)
+    runs = [
+        Run(curve.name, curve.name, curve.result, command=curve.command(out / against.folder) if against else "")
+        for curve in curves
+    ]
+    results = {run.method: run.result for run in reversed(report.runs) if run.result is not None}
+    others = {run.method: run.result for run in (*report.runs, *runs) if run.method not in METHODS and run.result}
+    checks = [check for name, other in others.items() for check in checks_of(report.scene, name, other, results)]
+    return replace(report, runs=(*report.runs, *runs), checks=(*report.checks, *checks))
+
+
+def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Result]) -> tuple[Check, ...]:
+    """A curve against the isogeometric codes, DOLFINx and the beam, and against what others published.
+
+    Parameters
+    ----------
+    results : the runs that are there, by method
+    """
+    end = max(scene.load.opening)
+    if curve.load.size < 2 or end <= 0:
+        return ()
+    missing = max(0.0, 1.0 - float(curve.opening.max()) / end)
+    meaning = "The curve goes as far as the load programme opens the specimen (missing part of it)."
+    checks = [Check("end", name, missing, ROUNDING, "cross-code", meaning)]
+    usable = {method: result for method, result in results.items() if result.load.size > 1}
+    for method, tolerance in CODES.items():
+        if method in usable:
+            pair = f"{name} / {method}"
+            error = distance(curve, usable[method], end)
+            meaning = "Two codes that share nothing draw the same curve (relative L2 of the load over the opening)."
+            checks.append(Check("curve", pair, error, tolerance, "cross-code", meaning))
+            ratio = peak_load(curve) / peak_load(usable[method]) - 1
+            meaning = "Two codes that share nothing find the same peak load (relative difference)."
+            checks.append(Check("peak", pair, ratio, tolerance, "cross-code", meaning))
+    if "beam" in usable and squeeze(scene) < SQUEEZED:
+        error = distance(curve, usable["beam"], end)
+        fine = ANALYTICAL[simulated(scene, "beam")["kinematics"]]
+        tolerance = ON_SUBSTRATE if scene.specimen.kind == "peel" else fine
+        meaning = "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening)."
+        checks.append(Check("beam-curve", f"{name} / beam", error, tolerance, "analytical", meaning))
+    for known_name, known in zip(published_names(scene), scene.published, strict=True):
+        value = known.deviation(published_load(known, curve))
+        checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))
+    return tuple(checks)
+
+
+def _named(word: str) -> tuple[str, Path]:
+    name, equals, file = word.partition("=")
+    if equals and not Path(word).exists():
+        return name, Path(file)
+    path = Path(word)
+    stem = path.resolve().name if path.is_dir() else path.stem
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", stem).lstrip("._-") or "curve", path
+
+
+def _unless_one(scale: float) -> float | None:
+    return None if scale == 1.0 else scale
