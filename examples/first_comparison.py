@@ -28,7 +28,6 @@ results = {method: solve(scene, method) for method in methods}
 nurbs, beam = results["nurbs"], results["beam"]
 distance = curve_error((nurbs.opening, nurbs.load), (beam.opening, beam.load), scene.load.opening[-1])
 print(f"NURBS against the beam: {distance:.3%} of the load over the whole curve")
-assert distance < 0.002
 
 # %% [markdown]
 # The deformed arms, coloured by the bending stress, and the curves.
@@ -54,3 +53,10 @@ figure.colorbar(shade, ax=right, label="stress along the arm (MPa)", orientation
 picture = Path(__file__).with_suffix(".png")
 figure.savefig(picture, dpi=110)
 print(f"picture: {picture.name}")
+
+# %% [markdown]
+# Two theories and two programs, one curve: that is what the rest of this package does for every scene and every pair of
+# methods. What it would take to be wrong by more is that both make the same mistake.
+
+# %%
+assert distance < 0.002
