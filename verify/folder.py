@@ -36,7 +36,7 @@ class CurveWriter:
             self._evidence = _opened(self._evidence_path, self._columns)
             _append(self._curve, CURVE_COLUMNS, dict.fromkeys(CURVE_COLUMNS, 0.0))  # by contract, the crack included
         else:
-            _append(self._curve, CURVE_COLUMNS, row)
+            _append(self._curve, CURVE_COLUMNS, dict.fromkeys(CURVE_COLUMNS, math.nan) | dict(row))
         _append(self._evidence, self._columns, row)
 
     def close(self) -> None:
@@ -58,6 +58,14 @@ def write_csv(path: Path, kind: type, rows: Iterable[Any]) -> None:
         writer = csv.DictWriter(stream, [field.name for field in fields(kind)])
         writer.writeheader()
         writer.writerows(asdict(row) for row in rows)
+
+
+def read_rows(path: Path, kind: type) -> list[Any]:
+    """The rows of ``write_csv``."""
+    read = {"float": float, "int": int, "str": str, "bool": lambda text: text == "True"}
+    types = {field.name: read[field.type] for field in fields(kind)}
+    with path.open(newline="") as stream:
+        return [kind(**{name: types[name](text) for name, text in line.items()}) for line in csv.DictReader(stream)]
 
 
 def write_fields(path: Path, snapshots: tuple[Snapshot, ...]) -> None:

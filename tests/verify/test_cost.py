@@ -289,7 +289,7 @@ def test_the_page_says_it_and_carries_the_rows(tmp_path: Path) -> None:
     assert "Curve error 0.3%: T-spline, degree 3, 400 unknowns" in page and "DOLFINx 3.8 ×" in page
     assert "a &lt;limit&gt;" in page and page.count("<svg") >= 6
     assert "http://" not in page.replace("http://www.w3.org", "") and "https://" not in page
-    data = json.loads(re.search(r'id="rows">(.*?)</script>', page, re.DOTALL)[1])
+    data = json.loads(re.search(r'class="rows">(.*?)</script>', page, re.DOTALL)[1])
     assert len(data["rows"]) == sum(one.measured for one in ROWS)
     assert len(page) < 1_000_000
 

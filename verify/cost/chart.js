@@ -1,8 +1,7 @@
-// The work-precision chart: draws the rows that the page carries, on any two of their quantities.
-(() => {
-  const data = JSON.parse(document.getElementById("rows").textContent);
-  const chart = document.getElementById("chart"), note = document.getElementById("point");
-  const [across, up] = ["across", "up"].map((id) => document.getElementById(id));
+// The work-precision charts: each draws the rows that the page carries with it, on any two of their quantities.
+for (const whole of document.querySelectorAll(".work-precision")) {
+  const data = JSON.parse(whole.querySelector(".rows").textContent);
+  const [chart, note, across, up] = [".chart", ".point-said", ".across", ".up"].map((name) => whole.querySelector(name));
   const hidden = new Set(), W = 760, H = 420, L = 64, B = 44, T = 12, R = 16;
   const make = (name, attributes, parent, text) => {
     const node = document.createElementNS("http://www.w3.org/2000/svg", name);
@@ -48,15 +47,15 @@
     make("path", { d: path, fill: "none", stroke: "var(--muted)", "stroke-width": 1 }, chart);
     for (const row of shown) {
       const place = `translate(${x.at(value(row, across))} ${y.at(value(row, up))})`;
-      const point = make("path", { d: shapes[row.degree], transform: place, fill: `var(--${data.colours[row.method]})`, tabindex: 0 }, chart);
+      const point = make("path", { d: shapes[row.degree], transform: place, fill: `var(--${data.colours[row.method]})`, tabindex: 0, role: "img" }, chart);
       point.classList.add("point");
       make("title", {}, point, row.words);
       for (const event of ["mouseenter", "focus", "click"]) point.addEventListener(event, () => { note.textContent = row.words; });
     }
   };
-  for (const box of document.querySelectorAll("#methods input"))
+  for (const box of whole.querySelectorAll("input"))
     box.addEventListener("change", () => { hidden[box.checked ? "delete" : "add"](box.value); draw(); });
   for (const axis of [across, up]) axis.addEventListener("change", draw);
-  document.getElementById("interactive").hidden = false;
+  whole.querySelector(".interactive").hidden = false;
   draw();
-})();
+}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +13,7 @@ from markupsafe import Markup
 from verify.cost.figures import METHODS, error_and_unknowns, named, phases, triple, work_precision
 from verify.cost.findings import LEVELS, Cheapest, cheapest, growth, of_equal_steps, orders
 from verify.cost.row import Row
+from verify.report.style import Panel
 from verify.report.template import rendered
 from verify.report.text import percent, seconds, sentence
 from verify.run import environment
@@ -56,6 +58,28 @@ class Level:
         return f"Curve error {self.name}: {took}. " + (f"Times of the others: {beaten}." if beaten else "")
 
 
+@dataclass(frozen=True)
+class Chart:
+    """What the template of the chart prints; ``data`` is for the script, ``static`` for a page without."""
+
+    across: tuple[tuple[str, str, int], ...]
+    up: tuple[tuple[str, str, int], ...]
+    methods: Mapping[str, tuple[str, str]]
+    data: Markup
+    static: Panel
+
+
+def chart(rows: Sequence[Row], key: str) -> Chart:
+    """The chart of some runs; ``key`` is unique in the page."""
+    methods = {method: METHODS[method] for method in METHODS if any(row.method == method for row in rows)}
+    return Chart(ACROSS, UP, methods, _for_script(rows), work_precision(rows, f"{key}-work-precision"))
+
+
+def script() -> Markup:
+    """What makes the charts of a page answer."""
+    return Markup(_SCRIPT.read_text(encoding="utf-8"))
+
+
 def write(study: Study, path: Path) -> None:
     """Write the page."""
     rows, equal = study.rows, of_equal_steps(study.rows)
@@ -71,23 +95,19 @@ def write(study: Study, path: Path) -> None:
         against=study.against,
         levels=levels,
         left_out=study.left_out,
-        methods={method: METHODS[method] for method in METHODS if any(row.method == method for row in rows)},
-        across=ACROSS,
-        up=UP,
-        static=work_precision(rows, "work-precision"),
+        chart=chart(rows, "chart"),
         figures=[error_and_unknowns(rows, found, "orders")],
         triple=triple(rows, "triple"),
         bars=phases(typical, "phases") if typical else None,
         growth=growth(rows),
         rows=sorted(rows, key=lambda row: (row.method, row.degree, row.dofs, row.asked)),
         environment=environment(),
-        data=_for_script(rows),
-        script=Markup(_SCRIPT.read_text(encoding="utf-8")),
+        script=script(),
     )
     path.write_text(page, encoding="utf-8")
 
 
-def _for_script(rows: tuple[Row, ...]) -> Markup:
+def _for_script(rows: Sequence[Row]) -> Markup:
     """The rows as JSON that cannot end the element that it stands in."""
     data = {
         "rows": [asdict(row) | {"words": _words(row)} for row in rows if row.measured],

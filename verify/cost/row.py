@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from math import isfinite, nan
@@ -13,6 +12,7 @@ import numpy as np
 from verify.cost.ladder import Try
 from verify.cost.reference import Reference, cubics, dissipated, distance, peak_load
 from verify.curve import oscillation
+from verify.folder import read_rows
 from verify.jobs import Outcome
 from verify.result import Result, Snapshot
 from verify.timing import PHASES
@@ -136,10 +136,7 @@ def traction_error(snapshots: Sequence[Snapshot], exact: Sequence[Snapshot]) -> 
 
 def read_csv(path: Path) -> list[Row]:
     """Rows that were written."""
-    kinds = {"float": float, "int": int, "str": str}
-    types = {field.name: kinds[field.type] for field in fields(Row)}
-    with path.open(newline="") as stream:
-        return [Row(**{name: types[name](text) for name, text in line.items()}) for line in csv.DictReader(stream)]
+    return read_rows(path, Row)
 
 
 def run_seconds(result: Result) -> float:

@@ -42,11 +42,10 @@ def write(cells: Sequence[Cell], out: Path) -> None:
     page = rendered(
         "verify.hard",
         "page.html.j2",
-        {"seconds": seconds, "worst": worst_first},
+        {"seconds": seconds, "worst": worst_first, "totals": totals},
         rows=rows,
         bases={basis: METHOD_NAMES[basis] for basis in BASES},
         held=sum(row.passed for row in rows),
-        totals=totals,
     )
     (out / "report.html").write_text(page, encoding="utf-8")
 

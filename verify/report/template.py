@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from verify.report.style import custom_properties
@@ -23,7 +23,7 @@ def rendered(package: str, template: str, filters: Mapping[str, Callable], /, **
     content : what the template names, beside the palettes ``light`` and ``dark`` and the style sheet ``css``
     """
     jinja = Environment(
-        loader=PackageLoader(package, "."),
+        loader=ChoiceLoader([PackageLoader(package, "."), PackageLoader("verify", ".")]),  # parts of other pages
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
