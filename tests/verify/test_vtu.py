@@ -1,12 +1,10 @@
 """VTU files of Bezier cells: what VTK makes of them, and without VTK what they say."""
 
-import base64
-import xml.etree.ElementTree as ElementTree
-import zlib
 from pathlib import Path
 
 import numpy as np
 import pytest
+from vtu_files import arrays
 
 from iga.bernstein import bernstein, tensor
 from iga.bspline import open_knots
@@ -26,21 +24,6 @@ def quarter_ring() -> Mesh:
     radii = 2.0 - np.linspace(0.0, 1.0, 4)  # s counterclockwise and t inwards: positive Jacobians
     P_AI = np.concatenate([radius * corner for radius in radii])
     return nurbs_mesh(kv_s, kv_t, P_AI, np.tile([1.0, np.sqrt(0.5), 1.0], 4))
-
-
-def arrays(path: Path) -> tuple[dict[str, np.ndarray], ElementTree.Element]:
-    """Data arrays of a file by name, decoded, and its root."""
-    root = ElementTree.parse(path).getroot()
-    types = {"Float64": "<f8", "Int64": "<i8", "UInt8": "u1"}
-    found = {}
-    for element in root.iter("DataArray"):
-        blocks, size, rest, packed = np.frombuffer(base64.b64decode(element.text[:44]), "<u8").tolist()
-        data = zlib.decompress(base64.b64decode(element.text[44:]))
-        assert (blocks, rest) == (1, 0) and len(data) == size
-        assert packed == len(base64.b64decode(element.text[44:]))
-        values = np.frombuffer(data, types[element.get("type")])
-        found[element.get("Name")] = values.reshape(-1, int(element.get("NumberOfComponents")))
-    return found, root
 
 
 def test_order_of_vtk():
