@@ -21,6 +21,9 @@ from verify.say import say  # noqa: E402
 
 REFUSED, INTERRUPTED = 2, 130
 
+#: What begins a negative number: argparse takes -1 and -0.5 for numbers, but -1e-3 for an option.
+NEGATIVE = re.compile(r"-\.?\d")
+
 Parser = argparse.ArgumentParser
 
 
@@ -88,7 +91,22 @@ def _verify_options(sub: Parser) -> None:
         "rules, and the figures of the paper"
     )
     sub.add_argument("--full", action="store_true", help=finer)
+    _with_options(sub)
+    beside = "md writes report.md beside report.html: its numbers, for a terminal or a forge"
+    sub.add_argument("--format", choices=("html", "md"), default="html", help=beside)
+    shown = "show what debond cost, effects or hard wrote there; folders in --out are found without it"
+    sub.add_argument("--include", type=Path, action="append", default=[], metavar="DIR", help=shown)
     _sweep_options(sub)
+
+
+def _with_options(sub: Parser) -> None:
+    sub._negative_number_matcher = NEGATIVE
+    what = "judge this load-opening curve of another code, a file or NAME=FILE, like one of the methods"
+    sub.add_argument("--with", dest="curves", action="append", default=[], metavar="FILE", help=what)
+    for key in ("opening", "load"):
+        sub.add_argument(f"--{key}", type=column, metavar="COLUMN", help=f"name or number of the curve's {key}")
+        what = f"multiplies the curve's {key}: units, and signs"
+        sub.add_argument(f"--{key}-scale", type=scale, default=1.0, metavar="X", help=what)
 
 
 def _solve_options(sub: Parser) -> None:
@@ -152,8 +170,7 @@ def _mesh_options(sub: Parser) -> None:
 
 
 def _compare_options(sub: Parser) -> None:
-    # argparse takes -1 and -0.5 for numbers, but -1e-3 for an option
-    sub._negative_number_matcher = re.compile(r"-\.?\d")
+    sub._negative_number_matcher = NEGATIVE
     sub.add_argument("a", metavar="A", type=Path, help="CSV file or folder of a run")
     sub.add_argument("b", metavar="B", type=Path, help="what A is held against")
     for side in "ab":

@@ -109,6 +109,7 @@ def _print_result(result, checks, folder: Path) -> None:
 
 
 def verify(options: argparse.Namespace) -> int:
+    from verify.included import named
     from verify.plane_study import load_plate
     from verify.scene import load_scene, verified_scenes
     from verify.verification import verify, would_run
@@ -128,10 +129,12 @@ def verify(options: argparse.Namespace) -> int:
     wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]
     if wrong:
         raise Refusal("\n".join(wrong))
+    included = named(options.include)
     if options.dry_run:
         return _listed(would_run(scenes, options.out, options.jobs, options.full))
     _folder(options.out)
-    return 0 if verify(scenes, options.out, options.jobs, options.full, plates, options.scheduler) else FAILED
+    what = (options.full, plates, options.scheduler, included, options.format == "md")
+    return 0 if verify(scenes, options.out, options.jobs, *what) else FAILED
 
 
 def cost(options: argparse.Namespace) -> int:

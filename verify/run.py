@@ -140,6 +140,11 @@ def machine() -> dict[str, Any]:
     return {"system": platform.platform(), "processor": _processor(), "cores": os.cpu_count()}
 
 
+def threads() -> int:
+    """Threads that numerical libraries may take."""
+    return _number("OMP_NUM_THREADS", default=os.cpu_count() or 1)
+
+
 def environment() -> dict[str, str]:
     """Versions, machine and threads in words, for the foot of a page."""
     about = machine()
@@ -191,7 +196,7 @@ def summary(scene: Scene, result: Result, checks: tuple[Check, ...]) -> dict[str
         "checks": {c.name: _verdict(c) for c in checks},
         "versions": versions(),
         "machine": machine(),
-        "threads": _number("OMP_NUM_THREADS", default=os.cpu_count() or 1),
+        "threads": threads(),
         "status": result.status,
         "ending": result.ending,
         "condition": result.condition,

@@ -43,6 +43,12 @@ class Run:
     folder: str = ""  # relative to the report
     command: str = ""  # repeats this run
     scene: Scene | None = None  # as this run had it; that of the report where left out
+    key: str = ""  # hash of what the result rests on (`verify.fingerprint`)
+
+    @property
+    def name(self) -> str:
+        """What checks call it, e.g. "nurbs-978": the last part of its folder."""
+        return self.folder.rpartition("/")[2] or self.method
 
 
 @dataclass(frozen=True)
@@ -57,3 +63,8 @@ class SceneReport:
     @property
     def passed(self) -> bool:
         return all(check.passed for check in self.checks)
+
+    def judged(self, check: Check) -> tuple[Run, ...]:
+        """The runs that a check is about, the one that it judges first; none for what is no run of this scene."""
+        named = {run.name: run for run in self.runs}
+        return tuple(named[name] for name in check.subject.split(" / ") if name in named)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from verify import neglected
+from verify import neglected, verdict_file
 from verify.checks import run_checks
-from verify.convergence import assess
-from verify.crosschecks import cross_checks, peak_load, remarks
+from verify.crosschecks import cross_checks, remarks
+from verify.foreign import Curve, joined
+from verify.included import Included, found_in
 from verify.jobs import Job, Outcome, dry_run, run_all
-from verify.methods import METHODS, WITH_DOFS
+from verify.mesh_sequences import sequences
+from verify.methods import WITH_DOFS, known_methods
 from verify.paper import peel, peel_statements, statements
 from verify.paper import plan as figures
 from verify.paper.comparison import lines
@@ -47,8 +50,11 @@ def verify(
     full: bool = False,
     plates: Sequence[Plate] = (),
     scheduler: str | None = None,
+    included: Sequence[Included] = (),
+    text: bool = False,
+    curves: Sequence[Curve] = (),
 ) -> bool:
-    """Run everything, write ``out``/report.html, print the checks; whether all of them hold.
+    """Run everything, write ``out``/verdict.json and report.html, print the checks; whether all of them hold.
 
     Parameters
     ----------
@@ -57,23 +63,27 @@ def verify(
     full : finer and coarser meshes as well, the study of the interface rules, the figures of the paper, and the
         rates of the bases in plane elasticity
     plates : meshes from CAD, on which plane problems with exact solutions are solved
+    curves : of other codes, each a run in the report of every scene
+    included : studies of other commands for the report to show, besides those in folders of ``out``
+    text : whether report.md is written, too
     """
     plan, beams, strips = _plans(scenes, full)
     outcomes = {outcome.job: outcome for outcome in run_all(_all_jobs(plan, beams, strips), out, jobs, scheduler)}
-    reports = tuple(
-        scene_report(scene, [outcomes[job] for job in plan if job.scene is scene], out) for _, scene in scenes
-    )
+    own = [scene_report(scene, [outcomes[job] for job in plan if job.scene is scene], out) for _, scene in scenes]
+    reports = tuple(joined(report, curves, out) for report in own)
     page, quadrature = out / "report.html", study() if full else None
     paper = measured(beams, outcomes) if full else None
     peels = peel.measured(strips, outcomes) if full else None
     planes = tuple(plane_study(plate) for plate in plates)
     bases = rates() if full else ()
-    write_page("verify.report", reports, page, environment(), quadrature, paper, planes, bases, peels)
-    checks = [(report.scene.name, check) for report in reports for check in report.checks]
-    checks += [(found.name, check) for found in planes for check in found.checks]
-    checks += [("plane elasticity", check) for check in rate_checks(bases)]
+    studies = tuple({(study.command, study.folder.resolve()): study for study in (*found_in(out), *included)}.values())
+    others = [(found.name, check) for found in planes for check in found.checks]
+    others += [("plane elasticity", check) for check in rate_checks(bases)]
+    verdict_file.write(out, reports, others, [os.path.relpath(study.folder, out) for study in studies])
+    write_page("verify.report", reports, page, environment(), quadrature, paper, planes, bases, peels, studies, text)
+    checks = [*((report.scene.name, check) for report in reports for check in report.checks), *others]
     tables = [line for found in planes for line in [*plane_lines(found), *check_table(found.checks), ""]]
-    print("\n".join([*overview(reports), *tables, *sequences(reports), *failures(checks)]))
+    print("\n".join([*overview(reports), *tables, *convergence(reports), *failures(checks)]))
     if quadrature is not None:
         print(finding(quadrature))
     if paper is not None:
@@ -101,7 +111,7 @@ def _all_jobs(plan: Sequence[Job], beams: figures.Plan, strips: peel.PeelPlan) -
 
 def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
     """The runs of one scene."""
-    for method in METHODS:
+    for method in known_methods():
         yield Job(source, scene, method, method)
     if full and scene.specimen.kind == "dcb":
         yield figures.cubic(source, scene)
@@ -127,29 +137,25 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     return SceneReport(scene, runs, (*checks, *cross_checks(scene, results)), said)
 
 
-def sequences(reports: Sequence[SceneReport]) -> list[str]:
-    """Observed order and grid convergence index of the NURBS peak load, where there are three meshes or more.
-
-    No check: it estimates an error, and nothing exact stands behind it.
-    """
-    lines = []
-    for report in reports:
-        runs = [run.result for run in report.runs if run.method == "nurbs" and run.result is not None]
-        if len({result.elements for result in runs}) >= 3:
-            found = assess([1 / result.elements for result in runs], [peak_load(result) for result in runs])
-            text = f"order {found.order:.2f}, limit {found.limit:.6g}, GCI {found.gci:.2%}; {found.verdict}"
-            lines.append(f"{report.scene.name}: peak load of {len(runs)} NURBS meshes: {text}")
-    return lines
+def convergence(reports: Sequence[SceneReport]) -> list[str]:
+    """Observed order and grid convergence index of the peak load, where there are three meshes or more."""
+    return [
+        f"{report.scene.name}: {one.quantity} of {len(one.runs)} {NAMES.get(one.method, one.method)} meshes: order "
+        f"{one.found.order:.2f}, limit {one.found.limit:.6g}, GCI {one.found.gci:.2%}; {one.found.verdict}"
+        for report in reports
+        for one in sequences(report)
+        if one.quantity == "peak load"
+    ]
 
 
 def _as_run(outcome: Outcome, out: Path) -> Run:
     job, result = outcome.job, outcome.result
     scene = job.solved
     mesh = {"dolfinx": scene.dolfinx, **dict.fromkeys(WITH_DOFS, scene.discretization)}.get(job.method)
-    name = NAMES[job.method] + (f" p={mesh.degree}" if mesh else "")
+    name = NAMES.get(job.method, job.method) + (f" p={mesh.degree}" if mesh else "")
     adaptive = job.method == "tspline" and scene.discretization.adaptive
     name, most = (f"{name}, adaptive", "at most ") if adaptive else (name, "")
     label = f"{name}, {most}{result.dofs} unknowns" if result is not None and result.dofs else name
-    folder = str(job.folder(out).relative_to(out))
+    folder, done = str(job.folder(out).relative_to(out)), result is not None or outcome.failed
     command = shlex.join(["debond", *job.command(out)])
-    return Run(label, job.method, result, outcome.left_out, folder, command, scene)
+    return Run(label, job.method, result, outcome.left_out, folder, command, scene, job.task().key if done else "")

@@ -20,7 +20,7 @@ from verify.jobs import Job, Outcome
 from verify.result import Result
 from verify.scene import Scene, load_scene
 from verify.verdict import Check, Run, SceneReport
-from verify.verification import planned, sequences, verify
+from verify.verification import convergence, planned, verify
 
 LINEAR = "dcb-czm1-linear"
 
@@ -53,7 +53,7 @@ def test_every_method_runs_on_every_scene(scene: Scene) -> None:
 def test_a_run_is_repeated_by_its_command(scene: Scene, tmp_path: Path) -> None:
     job = Job(LINEAR, scene, "dolfinx", "dolfinx-p3", ("dolfinx.degree=3",))
     assert " ".join(job.command(Path("out"))) == (
-        f"solve {LINEAR} --method dolfinx --set dolfinx.degree=3 --fields --out out/{LINEAR}/dolfinx-p3"
+        f"solve {LINEAR} --method dolfinx --set dolfinx.degree=3 --fields --frames 0 --out out/{LINEAR}/dolfinx-p3"
     )
 
 
@@ -134,9 +134,9 @@ def test_three_meshes_give_an_order_and_an_index(scene: Scene) -> None:
     """Peak loads 1 + h^2 on h = 1/8, 1/4, 1/2 of order two, whose limit is 1."""
     steps = {n: {"opening": np.array([0.0, 1.0]), "load": np.array([0.0, 1 + n**-2.0])} for n in (8, 4, 2)}
     runs = tuple(Run("", "nurbs", Result("nurbs", steps[n], elements=n)) for n in steps)
-    (line,) = sequences([SceneReport(scene, runs, ())])
+    (line,) = convergence([SceneReport(scene, runs, ())])
     assert line.startswith(f"{LINEAR}: peak load of 3 NURBS meshes: order 2.00, limit 1, GCI")
-    assert sequences([SceneReport(scene, runs[:2], ())]) == []
+    assert convergence([SceneReport(scene, runs[:2], ())]) == []
 
 
 def test_j_is_no_check_on_a_coarse_mesh_of_a_sequence(scene: Scene) -> None:

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from verify.scene import Scene
 
 
+#: Columns of the ledger; curves of other codes may do without.
+_LEDGER = {"external_work", "stored_energy", "dissipated_energy"}
+
+
 def load_opening(scene: Scene, runs: Sequence[Entry], key: str) -> Panel:
     """All curves, from zero to the end."""
     units = Units.of(scene.units)
@@ -50,7 +54,7 @@ def peak(scene: Scene, runs: Sequence[Entry], key: str) -> Panel:
             axes.plot(*path(entry.result), **entry.line.options())
             if entry.method not in ("lefm", "dolfinx"):
                 ink = colour(entry.line.colour)
-                axes.plot(entry.result.opening, entry.result.load, ".", markersize=3, color=ink, zorder=5)
+                axes.plot(entry.result.opening, entry.result.load, ".", markersize=4.5, color=ink, zorder=5)
         axes.set(xlim=(0.72 * x, 1.45 * x), ylim=(0.8 * y, 1.05 * max(t[1] for t in tops)))
         svg = to_svg(figure, key, f"Load against opening near the peak, {scene.name}")
     return Panel(svg, "The same near the peak; dots are converged steps.")
@@ -146,7 +150,7 @@ def energies(scene: Scene, entry: Entry, key: str) -> Panel | None:
 def ledger_gap(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
     """What the ledger of each run misses, relative to the work done so far."""
     gaps = []
-    for entry in runs:
+    for entry in (entry for entry in runs if _LEDGER <= set(entry.result.steps)):
         steps = entry.result.steps
         miss = np.abs(steps["external_work"] - steps["stored_energy"] - steps["dissipated_energy"])
         if entry.method != "lefm" and np.isfinite(miss).any():

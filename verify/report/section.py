@@ -8,12 +8,25 @@ from itertools import groupby
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
-from verify.report import cost, curves, drawing, fields, matched, meshes, peel_drawing, published, undeformed, zones
+from verify.report import (
+    converged,
+    cost,
+    curves,
+    drawing,
+    fields,
+    matched,
+    meshes,
+    opening,
+    peel_drawing,
+    published,
+    undeformed,
+    zones,
+)
 from verify.report.entry import Entry, entries
 from verify.report.style import Panel
 from verify.report.summary import KINDS, Tally, headline, tally
 from verify.report.text import NO_VALUE, Units, inputs, modelled, number, percent, quantity, seconds, sentence
-from verify.verdict import Check, SceneReport
+from verify.verdict import Check, Run, SceneReport
 
 if TYPE_CHECKING:
     from verify.scene import Scene
@@ -31,9 +44,16 @@ class Figures:
 @dataclass(frozen=True)
 class CheckRow:
     check: Check
+    runs: tuple[Run, ...]  # that it is about
     value: str
     tolerance: str
     used: float  # share of the tolerance, 0 .. 1
+
+    @property
+    def parts(self) -> tuple[tuple[str, Run | None], ...]:
+        """The words of its subject, each with the run that it names."""
+        named = {run.name: run for run in self.runs}
+        return tuple((name, named.get(name)) for name in self.check.subject.split(" / "))
 
 
 @dataclass(frozen=True)
@@ -73,6 +93,8 @@ class Section:
     headline: str
     inputs: tuple[tuple[str, tuple[tuple[str, str], ...]], ...]  # group, (name, value) ...
     specimen: Panel
+    frames: tuple[opening.Frame, ...]
+    convergence: tuple[converged.ConvergenceTable, ...]
     figures: tuple[Figures, ...]
     checks: tuple[tuple[Tally, tuple[CheckGroup, ...]], ...]
     rows: tuple[RunRow, ...]
@@ -106,8 +128,10 @@ def section(report: SceneReport, anchor: str) -> Section:
         headline=headline(len(checks), sum(not check.passed for check in checks), 1).removesuffix(" on 1 scene"),
         inputs=tuple((k, tuple(row[1:] for row in g)) for k, g in groupby(inputs(report.scene), itemgetter(0))),
         specimen=draw_specimen(report.scene, f"{anchor}-specimen", _zone(groups)),
+        frames=opening.frames(report.scene, [g for g in groups if g], drawn, f"{anchor}-frame"),
+        convergence=converged.tables(report, found),
         figures=_figures(report, drawn, groups, anchor),
-        checks=tuple((tally(kind, checks), _check_groups(kind, checks)) for kind in KINDS),
+        checks=tuple((tally(kind, checks), _check_groups(kind, report)) for kind in KINDS),
         rows=tuple(_run_row(entry, report.scene) for entry in found),
         matched=matched.sentences(report.scene, found),
         zones=zones.rows(report.scene, found),
@@ -165,12 +189,12 @@ def _figures(
     return tuple(Figures(*figures) for figures in kept if figures[1])
 
 
-def _check_groups(kind: str, checks: Sequence[Check]) -> tuple[CheckGroup, ...]:
+def _check_groups(kind: str, report: SceneReport) -> tuple[CheckGroup, ...]:
     """Checks of one kind by name, in the order of their first appearance."""
     groups: dict[tuple[str, str], list[CheckRow]] = {}
-    for c in checks:
+    for c in report.checks:
         if c.kind == kind:
-            row = CheckRow(c, number(c.value), number(c.tolerance), _used(c))
+            row = CheckRow(c, report.judged(c), number(c.value), number(c.tolerance), _used(c))
             groups.setdefault((c.name, c.meaning), []).append(row)
     return tuple(CheckGroup(name, meaning, tuple(rows)) for (name, meaning), rows in groups.items())
 

@@ -142,9 +142,13 @@ _BASE_LINES = {
 }
 
 
+#: Of methods of other packages and of other codes.
+OTHERS = Line("ink", 1.3, (6.0, 1.5, 1.2, 1.5), 1.0, 4.7)
+
+
 def line(method: str, repeat: int = 0) -> Line:
     """Style of the ``repeat``-th run of a method: further runs of the same method get thinner and fainter."""
-    base = _BASE_LINES.get(method, Line("muted", 1.0, (2.0, 2.0), 1.0, 3.0))
+    base = _BASE_LINES.get(method, OTHERS)
     fade = 0.6**repeat
     width, alpha = max(base.width * fade, 0.6), base.alpha * max(fade, 0.4)
     return Line(base.colour, width, base.dashes, alpha, base.order - 0.1 * repeat)
@@ -198,6 +202,8 @@ def _adapt(svg: str, key: str, title: str) -> str:
     svg = re.sub(r"font: ((?:[a-z0-9.]+ )*?)([\d.]+)px [^;\"]*", r"font-size: \2px", svg)
     svg = svg.replace("*{stroke-linejoin: round; stroke-linecap: butt}", "")
     svg = re.sub(r' d="[^"]*"|<use [^>]*>', _short_numbers, svg)
+    svg = re.sub(r">\s+<", "><", svg)
+    svg = re.sub(r'<use [^>]*style="([^"]*)"/>(?:<use [^>]*style="\1"/>)+', _shared_style, svg)
     svg = _private_ids(svg, key)
     width, height = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', svg).groups()
     head = (
@@ -208,8 +214,18 @@ def _adapt(svg: str, key: str, title: str) -> str:
 
 
 def _short_numbers(match: re.Match[str]) -> str:
-    """Coordinates to a hundredth of a point: a quarter of the page would be digits that nobody sees."""
-    return re.sub(r"\s+", " ", re.sub(r"(\.\d\d)\d+", r"\1", match[0]))
+    """Coordinates to a hundredth of a point: a quarter of the page would be digits that nobody sees.
+
+    What follows "M x y" without a letter is a line, too.
+    """
+    text = re.sub(r"\s+", " ", re.sub(r"(\.\d\d)\d+", r"\1", match[0]))
+    return re.sub(r"M [-\d.]+ [-\d.]+(?: L [-\d.]+ [-\d.]+)+", lambda run: run[0].replace(" L", ""), text)
+
+
+def _shared_style(match: re.Match[str]) -> str:
+    """Markers of one curve: their style once for all of them."""
+    style = f' style="{match[1]}"'
+    return f"<g{style}>{match[0].replace(style, '')}</g>"
 
 
 def _private_ids(svg: str, key: str) -> str:

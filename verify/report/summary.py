@@ -43,6 +43,16 @@ class Cell:
     head: str = ""
     tail: str = ""
     tone: str = ""  # "", "reference", "limit", "absent", "stopped"
+    run: str = ""  # its name
+
+
+@dataclass(frozen=True)
+class Sentence:
+    """Something said at the top, and where on the page it comes from."""
+
+    text: str
+    target: str = ""
+    link: str = ""
 
 
 @dataclass(frozen=True)
@@ -55,7 +65,7 @@ class Column:
 class Summary:
     headline: str
     tone: str  # "good", "bad", "none"
-    sentences: tuple[str, ...]
+    sentences: tuple[Sentence, ...]
     missing: tuple[str, ...]
     ways: tuple[str, ...]  # to DOLFINx, where it is missing
     tallies: tuple[Tally, ...]
@@ -73,7 +83,7 @@ def summarise(sections: Sequence[Section], planes: Sequence[PlaneSection | Rates
     return Summary(
         headline=headline(len(checks), len(failures), len(sections), len(planes)),
         tone="none" if not checks else "bad" if failures else "good",
-        sentences=(*_sentences(sections), *(plane.sentence for plane in planes)),
+        sentences=(*_sentences(sections), *(Sentence(p.sentence, p.anchor, "its numbers") for p in planes)),
         missing=tuple(_missing(sections)),
         ways=_ways(sections),
         tallies=tuple(tally(kind, [check for _, _, check in checks]) for kind in KINDS),
@@ -127,17 +137,18 @@ def _cell(section: Section, method: str, repeat: int) -> Cell:
     time = seconds(total_seconds(entry.result), "")
     unknowns = f"{entry.result.dofs} unknowns" if entry.result.dofs else ""
     tail = ", ".join(part for part in (time, unknowns) if part)
+    run = entry.run.name
     if entry.is_reference:
-        return Cell("reference", tail, "reference")
+        return Cell("reference", tail, "reference", run)
     if method == "lefm":
-        return Cell("limit, not compared", tail, "limit")
+        return Cell("limit, not compared", tail, "limit", run)
     if section.reference is None:
-        return Cell("no reference", tail, "absent")
+        return Cell("no reference", tail, "absent", run)
     error = percent(entry.agreement.error)
-    return Cell(error, tail) if entry.complete else Cell(f"{error}, stopped", tail, "stopped")
+    return Cell(error, tail, "", run) if entry.complete else Cell(f"{error}, stopped", tail, "stopped", run)
 
 
-def _sentences(sections: Sequence[Section]) -> list[str]:
+def _sentences(sections: Sequence[Section]) -> list[Sentence]:
     """One sentence a method: its largest distance to the reference and its times."""
     sentences = []
     for method, repeat, name in _columns(sections):
@@ -146,21 +157,25 @@ def _sentences(sections: Sequence[Section]) -> list[str]:
         took = f"{span(times, seconds)} a scene" if times else "time unknown"
         compared = [(e.agreement.error, s, e) for s, e in found if e.agreement.error == e.agreement.error]
         if compared:
-            error, worst, _ = max(compared, key=lambda row: row[0])
+            error, worst, entry = max(compared, key=lambda row: row[0])
             bases = sorted({s.reference.name for _, s, _ in compared})
             base = bases[0] if len(bases) == 1 else f"the reference ({' or '.join(bases)})"
             whole = all(e.complete for _, _, e in compared)
             extent = "over the whole curve" if whole else "as far as its runs came"
             where = f" (most on {worst.report.scene.name})" if len(compared) > 1 else ""
             agrees = f"load within {percent(error)} of {base} {extent}{where}"
-            sentences.append(f"{_capital(name)}: {agrees}; {took}.")
+            target = f"{worst.anchor}-run-{entry.run.name}"
+            sentences.append(Sentence(f"{_capital(name)}: {agrees}; {took}.", target, "that run"))
         elif any(e.is_reference for _, e in found):
-            sentences.append(f"{_capital(name)}: the reference of this page; {took}.")
+            section, entry = found[0]
+            target = f"{section.anchor}-run-{entry.run.name}"
+            sentences.append(Sentence(f"{_capital(name)}: the reference of this page; {took}.", target, "its run"))
     if any(e.method == "lefm" and e.agreement is not None for s in sections for e in s.entries):
-        sentences.append(
+        text = (
             "LEFM is the limit of a vanishing process zone. It is drawn for orientation; the distance to it is the "
             "effect of the interface's finite strength, not an error of any method."
         )
+        sentences.append(Sentence(text))
     return sentences
 
 

@@ -1,0 +1,61 @@
+"""Convergence tables: what a scene's sequences of meshes say of their limit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+
+from verify.mesh_sequences import Sequence, sequences
+from verify.report.entry import Entry
+from verify.report.style import METHOD_NAMES
+from verify.report.text import Units, number, percent, quantity
+from verify.scene import Scene
+from verify.verdict import SceneReport
+
+
+@dataclass(frozen=True)
+class MeshRow:
+    """One mesh: its entry, the value on it, and how far that is from the one on the next coarser mesh."""
+
+    entry: Entry
+    value: str
+    change: str
+
+
+@dataclass(frozen=True)
+class ConvergenceTable:
+    """One quantity of one method on all its meshes, finest first."""
+
+    method: str
+    quantity: str
+    rows: tuple[MeshRow, ...]
+    order: str
+    limit: str
+    error: str
+    gci: str
+    asymptotic: bool
+    verdict: str
+
+
+def tables(report: SceneReport, entries: tuple[Entry, ...]) -> tuple[ConvergenceTable, ...]:
+    """All of them; none without three meshes of one method."""
+    return tuple(_table(report.scene, one, entries) for one in sequences(report))
+
+
+def _table(scene: Scene, one: Sequence, entries: tuple[Entry, ...]) -> ConvergenceTable:
+    units, of_run = Units.of(scene.units), {entry.run: entry for entry in entries}
+    unit = units.force if one.quantity == "peak load" else units.energy
+    steps = ("–" if step is None else percent(step) for step in one.steps)
+    shown = zip(one.runs, one.value, steps, strict=True)
+    found = one.found
+    return ConvergenceTable(
+        METHOD_NAMES.get(one.method, one.method),
+        one.quantity,
+        tuple(MeshRow(of_run[run], quantity(value, unit), step) for run, value, step in shown),
+        order=number(found.order) if isfinite(found.order) else "none",
+        limit=quantity(found.limit, unit),
+        error=percent(found.error),
+        gci=percent(found.gci),
+        asymptotic=found.asymptotic,
+        verdict=found.verdict,
+    )
