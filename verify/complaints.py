@@ -109,6 +109,8 @@ def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) 
     if get_origin(annotation) is Literal:
         return one_of(get_args(annotation))
     if get_origin(annotation) is tuple and _table(annotation) is None:
+        if "mesh" in path:
+            return "a file name" if isinstance(path[-1], int) else "a file name, or a list of two"
         how_many = "at least one number" if get_args(annotation)[-1] is ... else "two"
         return "a number" if isinstance(path[-1], int) else f"a number, or a list of {how_many}"
     if annotation not in _KINDS:

@@ -27,11 +27,17 @@ class Published(Section):
     """
 
     quantity: Literal["peak", "load_at"]
+    """The largest load, or that at an opening."""
     opening: float | None = Field(default=None, gt=0, validate_default=True)
+    """Of load_at [length]."""
     value: Annotated[tuple[float, float], BeforeValidator(_as_range)]
+    """Load [force]; of codes that differ the lowest and the highest, like [4.3, 4.5]."""
     tolerance: float = Field(gt=0, lt=1)
+    """Relative, to the nearest end of that range."""
     kind: Literal["cross-code", "analytical"] = "cross-code"
+    """What the value rests on."""
     source: str
+    """Where it is written."""
 
     @field_validator("opening")
     @classmethod

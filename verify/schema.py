@@ -23,10 +23,15 @@ def _hundred_initial_stiffnesses(data: dict[str, Any]) -> float:
 
 class Interface(Section):
     law: Literal["bilinear"] = "bilinear"
+    """Traction over gap: up to the strength, then down to zero at g_u."""
     strength: Positive
+    """Largest traction p_max [stress]."""
     toughness: Positive
-    ductility: float = Field(default=12.5, gt=1)  # g_u / g_max: 1 is a vertical drop, which no Newton follows
-    penalty: float = Field(default_factory=_hundred_initial_stiffnesses, gt=0)  # so that the default has no units
+    """Work of separation G_Ic [energy per area]."""
+    ductility: float = Field(default=12.5, gt=1)
+    """g_u / g_max, gap at separation over gap at the strength; 1 is a vertical drop, which no Newton follows."""
+    penalty: float = Field(default_factory=_hundred_initial_stiffnesses, gt=0)
+    """Stiffness of the contact, on closing [stress per length]; left out: 100 times the stiffness of the bond."""
 
 
 def _as_programme(value: object) -> object:
@@ -36,6 +41,7 @@ def _as_programme(value: object) -> object:
 
 class Load(Section):
     opening: Annotated[tuple[float, ...], BeforeValidator(_as_programme), Field(min_length=1)]
+    """End of the displacement programme [length]; a list unloads and reloads, like [1.5, 0.2, 3.0]."""
 
     @field_validator("opening")
     @classmethod
@@ -51,9 +57,13 @@ class Effects(Section):
     """Only what is asked for is simulated."""
 
     kinematics: Literal["linear", "finite", "auto"] = "finite"
+    """Large or small displacements."""
     contact: bool | Literal["auto"] = True
+    """Whether the bodies push each other away on closing."""
     irreversible: bool | Literal["auto"] = True
+    """Whether damage stays on unloading."""
     symmetry: bool | Literal["auto"] = False
+    """Whether one arm is modelled for both; not for a peel."""
 
     @field_validator("contact", "irreversible", "symmetry", mode="before")
     @classmethod
@@ -76,23 +86,33 @@ class Pose(Section):
     Only the ``iga`` methods are told: no answer depends on it, and that is what it is there to show.
     """
 
-    angle: float = Field(default=0.0, ge=-360, le=360)  # degrees, counter-clockwise
+    angle: float = Field(default=0.0, ge=-360, le=360)
+    """Rotation, counter-clockwise [degrees]."""
     mirror: bool = False
+    """Whether X is reflected first."""
     shift: Annotated[tuple[float, float], BeforeValidator(_as_pair)] = (0.0, 0.0)
+    """Movement along X and Y [length]."""
 
 
 class Discretization(Section):
     """How finely the ``iga`` methods resolve the scene."""
 
     degree: int = Field(default=3, ge=1, le=5)
+    """Degree of the basis; 3 for tspline."""
     dofs: int = Field(default=1956, ge=40, le=1_000_000)
+    """Unknowns to aim at."""
     interface_rule: Literal["gauss", "lobatto", "lumped"] = "gauss"
+    """How the interface is integrated."""
     interface_points: int = Field(default=2, ge=1, le=12)
-    mismatch: float = Field(default=1.0, ge=0.05, le=20)  # element length of the lower body over that of the upper one
-    adaptive: bool = False  # tspline: elements follow the process zone, and dofs is the most at any time
-    slave: Literal["upper", "lower"] = "upper"  # the body whose points carry the interface
-    # equal opening increments, or "auto": the path chooses by accuracy where the mesh resolves the process zone
+    """Points in each interface element."""
+    mismatch: float = Field(default=1.0, ge=0.05, le=20)
+    """Element length of the lower body over that of the upper one."""
+    adaptive: bool = False
+    """For tspline: elements follow the process zone, and dofs is the most at any time."""
+    slave: Literal["upper", "lower"] = "upper"
+    """The body whose points carry the interface."""
     steps: int | Literal["auto"] = 150
+    """Equal opening increments; "auto": chosen by accuracy where the mesh resolves the process zone."""
 
     @field_validator("interface_points")
     @classmethod
@@ -114,7 +134,9 @@ class Dolfinx(Section):
     """How finely the DOLFINx model resolves the scene."""
 
     degree: int = Field(default=2, ge=1, le=4)
-    elements: int = Field(default=112, ge=2, le=100_000)  # along the specimen
+    """Degree of the Lagrange elements."""
+    elements: int = Field(default=112, ge=2, le=100_000)
+    """Elements along the specimen."""
 
 
 def _as_tables(value: object) -> object:
@@ -126,8 +148,10 @@ def _as_tables(value: object) -> object:
 class Scene(Section):
     """One physical problem. Every method solves the same one."""
 
-    name: str = Field(default="scene", pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=80)  # names folders
+    name: str = Field(default="scene", pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=80)
+    """Names folders; left out: that of the file."""
     units: str = "consistent units"
+    """Label of your own consistent set of units, which is only printed."""
     specimen: Specimen
     material: Material | None = Field(default=None, validate_default=True)
     strip: Material | None = Field(default=None, validate_default=True)
@@ -138,7 +162,7 @@ class Scene(Section):
     effects: Effects = Effects()
     discretization: Discretization = Discretization()
     dolfinx: Dolfinx = Dolfinx()
-    published: Annotated[tuple[Published, ...], BeforeValidator(_as_tables)] = ()  # what others found, for verify
+    published: Annotated[tuple[Published, ...], BeforeValidator(_as_tables)] = ()
 
     @field_validator("material", "strip", "substrate", mode="wrap")
     @classmethod

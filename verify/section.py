@@ -16,6 +16,11 @@ def refuse(text: str, *found: tuple[tuple[str | int, ...], object]) -> PydanticC
 
 
 class Section(BaseModel):
-    """A table of the scene file: nothing is coerced, nothing unknown is let through, nothing changes afterwards."""
+    """A table of the scene file: nothing is coerced, nothing unknown is let through, nothing changes afterwards.
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    The text below a key says what it is, for ``debond new``, with its dimension in brackets.
+    """
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, use_attribute_docstrings=True
+    )

@@ -26,12 +26,19 @@ class Dcb(Section):
     """
 
     kind: Literal["dcb"]
+    """Two arms, bonded from the precrack to the far end, pulled apart at X = 0."""
     length: Positive
+    """From the loaded end to the far end of the bond [length]."""
     arm_thickness: Positive
+    """Of one arm [length]."""
     precrack: Positive
+    """From the loaded end to the bond [length]; less than the length."""
     width: Positive = 1.0
+    """Out of the plane [length]."""
     plane: Literal["stress", "strain"] = "stress"
+    """Plane stress or plane strain."""
     mesh: Files = Field(default=(), max_length=2)
+    """`.iga` files of the upper and the lower arm for tspline; one stands for both; none: a mesh is made."""
 
     @field_validator("precrack")
     @classmethod
@@ -65,14 +72,23 @@ class Peel(Section):
     right end, substrate clamped at its base."""
 
     kind: Literal["peel"]
+    """A strip peeled off a substrate that is fixed at its base, pulled up at its free end."""
     strip_length: Positive
+    """The strip begins above the end of the substrate at X = 0 [length]."""
     strip_thickness: Positive
+    """Of the strip [length]."""
     substrate_length: Positive
+    """Of the substrate [length]."""
     substrate_thickness: Positive
+    """Of the substrate [length]."""
     bond_length: Positive
+    """From X = 0 on [length]; less than the strip, at most the substrate."""
     width: Positive = 1.0
+    """Out of the plane [length]."""
     plane: Literal["stress", "strain"] = "stress"
-    mesh: Files = ()  # `.iga` files of strip and substrate, for T-splines
+    """Plane stress or plane strain."""
+    mesh: Files = ()
+    """`.iga` files of strip and substrate for tspline; none: meshes are made."""
 
     @field_validator("mesh")
     @classmethod
@@ -124,16 +140,22 @@ MATERIALS: Mapping[str, tuple[str, ...]] = {"dcb": ("material",), "peel": ("stri
 
 class Isotropic(Section):
     young: Positive
+    """Young's modulus [stress]."""
     poisson: float = Field(gt=-1, lt=0.5)
+    """Poisson's ratio."""
 
 
 class Orthotropic(Section):
     """Axis 1 runs along the specimen; nu12 is the contraction along 2 for a pull along 1."""
 
     E1: Positive
+    """Young's modulus along the specimen [stress]."""
     E2: Positive
+    """Young's modulus through the thickness [stress]."""
     G12: Positive
+    """Shear modulus [stress]."""
     nu12: float
+    """Contraction along 2 for a pull along 1; |nu12| < sqrt(E1/E2)."""
 
     @field_validator("nu12")
     @classmethod
