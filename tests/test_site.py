@@ -1,0 +1,142 @@
+"""The teaching site: scripts become pages, links are looked at, and the whole of it can be built."""
+
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PROJECT = Path(__file__).parents[1]
+SITE = PROJECT / "examples" / "site"
+
+
+def loaded(name: str):
+    """A module of the site, which is no package."""
+    spec = importlib.util.spec_from_file_location(f"site_{name}", SITE / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # frozen dataclasses look themselves up
+    spec.loader.exec_module(module)
+    return module
+
+
+cells, links = loaded("cells"), loaded("links")
+
+SCRIPT = """# %% [markdown]
+# # Title
+#
+# Text with $x$.
+
+# %%
+x = 2
+
+# %%
+print(x + 1)
+figure = __import__("matplotlib.pyplot").pyplot.figure()
+"""
+
+
+def test_cells_are_told_apart():
+    title, first, second = cells.split(SCRIPT)
+    assert title.prose and title.text == "# Title\n\nText with $x$."
+    assert (first.text, first.prose, first.line) == ("x = 2", False, 7)
+    assert second.line == 10 and SCRIPT.splitlines()[second.line - 1] == second.text.splitlines()[0]
+
+
+@pytest.mark.parametrize("source", ["x = 1\n# %%\n", "# %% [raw]\nx\n", "# %% [markdown]\nx = 1\n"])
+def test_what_is_no_page_is_refused(source):
+    with pytest.raises(ValueError, match="cell|prose"):
+        cells.split(source)
+
+
+def test_a_page_has_what_its_script_prints_and_draws(tmp_path):
+    pytest.importorskip("matplotlib")
+    script = tmp_path / "small.py"
+    script.write_text(SCRIPT)
+    done = cells.run(script, tmp_path)
+    page = cells.page(script, done)
+    assert "```python\nx = 2\n```" in page and "```text\n3\n```" in page
+    (picture,) = done[-1][1].pictures
+    assert f"({picture})" in page and (tmp_path / picture).stat().st_size > 1000
+
+
+def test_an_assertion_that_fails_is_told_with_its_line(tmp_path):
+    script = tmp_path / "wrong.py"
+    script.write_text("# %%\nx = 1\n\n# %%\nassert x > 2\n")
+    command = [sys.executable, SITE / "cells.py", script, tmp_path]
+    run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(PROJECT)})
+    assert run.returncode != 0 and "wrong.py" in run.stderr and "line 5" in run.stderr
+
+
+def pages(folder: Path, **bodies: str) -> list[str]:
+    """What is wrong with pages of these bodies."""
+    for name, body in bodies.items():
+        (folder / f"{name}.html").write_text(f"<html><body>{body}</body></html>")
+    return links.wrong(folder)
+
+
+def test_links_that_lead_somewhere_are_fine(tmp_path):
+    (tmp_path / "style.css").write_text("a { background: url('data:image/png;base64,x') }")
+    one = '<link rel="stylesheet" href="style.css"><a href="two.html#there">x</a> <a href="https://example.org">y</a>'
+    assert pages(tmp_path, one=one, two='<h1 id="there">t</h1><a href="#there">z</a>') == []
+
+
+@pytest.mark.parametrize(
+    ("body", "complaint"),
+    [
+        ('<a href="three.html">x</a>', "three.html leads nowhere"),
+        ('<a href="#nowhere">x</a>', "#nowhere has no such place"),
+        ('<img src="https://example.org/x.png">', "fetches https://example.org/x.png"),
+        ('<script src="//example.org/x.js"></script>', "fetches //example.org/x.js"),
+        ('<link rel="stylesheet" href="https://example.org/x.css">', "fetches https://example.org/x.css"),
+    ],
+)
+def test_a_bad_link_is_found(tmp_path, body, complaint):
+    assert pages(tmp_path, one=body) == [f"one.html: {complaint}"]
+
+
+def test_a_style_that_fetches_is_found(tmp_path):
+    (tmp_path / "style.css").write_text('@import "https://example.org/font.css";')
+    assert pages(tmp_path, one="") == ["style.css: fetches from elsewhere"]
+
+
+def test_nothing_is_no_site(tmp_path):
+    assert links.wrong(tmp_path) == [f"{tmp_path}: has no pages"]
+
+
+def test_every_example_has_a_place_in_the_order():
+    """Without MkDocs, which the hooks themselves need."""
+    order = re.search(r"^ORDER = \((.*?)^\)", (SITE / "hooks.py").read_text(), re.MULTILINE | re.DOTALL)[1]
+    assert set(re.findall(r'"(\w+)"', order)) == {script.stem for script in (PROJECT / "examples").glob("*.py")}
+
+
+def test_written_pages_lead_to_pages_that_will_be():
+    examples = {f"{script.stem}.md" for script in (PROJECT / "examples").glob("*.py")}
+    for page in (SITE / "docs").rglob("*.md"):
+        for target in re.findall(r"\]\(\s*([^)#\s]+\.md)", page.read_text()):
+            goal = (page.parent / target).resolve().relative_to(SITE / "docs")
+            folder, name = goal.parts[0], goal.name
+            if folder == "examples":
+                assert name in examples, f"{page.name}: {target}"
+            elif folder == "modules":
+                package, module = name.removesuffix(".md").split(".")
+                assert (PROJECT / package / f"{module}.py").is_file(), f"{page.name}: {target}"
+            else:
+                assert (SITE / "docs" / goal).is_file(), f"{page.name}: {target}"
+
+
+@pytest.mark.slow
+def test_the_whole_site_is_built_and_has_no_bad_link(tmp_path):
+    for package in ("mkdocs", "material", "mkdocstrings", "latex2mathml", "matplotlib"):
+        pytest.importorskip(package)
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "-f", SITE / "mkdocs.yml", "-d", tmp_path / "site"]
+    run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(PROJECT)})
+    assert run.returncode == 0, run.stderr
+    site = tmp_path / "site"
+    assert "<math" in (site / "theory" / "law.html").read_text()
+    page = (site / "examples" / "bezier_extraction.html").read_text()
+    assert "13 Bezier points from 7 control points" in page and "bezier_extraction-1.png" in page
+    assert "bezier_extraction" in (site / "modules" / "iga.bspline.html").read_text()
+    assert links.wrong(site) == []
