@@ -1,0 +1,174 @@
+"""Frames in VTK, which ParaView is made of: the cells that it reads, their geometry and fields, and a picture."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pyvista", reason="the pyvista package is not installed")
+
+import pyvista as pv
+from vtkmodules.vtkCommonCore import reference
+from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
+
+from iga.basis import block_basis
+from iga.bezier import homogeneous, jacobian
+from iga.bspline import open_knots
+from iga.extraction import Mesh
+from iga.nurbs import nurbs_mesh
+from iga.quadrature import gauss, square
+from verify.frames import Frames
+from verify.methods import iga_problem
+from verify.scene import Scene, load_scene
+from verify.vtu import write_vtu
+
+
+def scene(*overrides: str, name: str = "dcb-czm1") -> Scene:
+    coarse = ("load.opening=1.5", "discretization.dofs=400", "discretization.steps=20")
+    return load_scene(name, [*coarse, *overrides])
+
+
+CASES = {
+    "nurbs": ("nurbs", scene()),
+    "linear, turned": ("nurbs", scene("effects.kinematics='linear'", "pose.angle=30")),
+    "adaptive": ("tspline", scene("discretization.adaptive=true")),
+    "Lagrange": ("lagrange", scene("discretization.degree=4")),
+    "one arm": ("tspline", scene("effects.symmetry=true")),
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def run(request, tmp_path_factory):
+    """Folder of the frames, method, and specimen and point of the last one."""
+    method, scene = CASES[request.param]
+    folder, kept = tmp_path_factory.mktemp("run"), []
+    frames = Frames(folder, scene, method, 3)
+
+    def on_frame(opening, make):
+        frames(opening, make)
+        kept[:] = make.args
+
+    solver, problem = iga_problem(scene, method)
+    assert solver.solve(problem, on_frame=on_frame).status == "complete"
+    frames.finish()
+    return folder, method, *kept
+
+
+def last(folder: Path, name: str):
+    """The last grid of a series as pyvista's reader of collections finds it."""
+    reader = pv.get_reader(str(folder / f"{name}.pvd"))
+    reader.set_active_time_value(reader.time_values[-1])
+    (found,) = reader.read()
+    return found
+
+
+def evaluated(grid, cell: int, s: float, t: float, field: str) -> np.ndarray:
+    """A field at parameters of a cell, by VTK's own shape functions."""
+    element = grid.GetCell(cell)
+    weights = [0.0] * element.GetNumberOfPoints()
+    element.EvaluateLocation(reference(0), [s, t, 0.0], [0.0] * 3, weights)
+    ids = [element.GetPointIds().GetId(i) for i in range(len(weights))]
+    return weights @ np.asarray(grid.point_data[field])[ids]
+
+
+def test_cells_and_times(run):
+    folder, method, specimen, point = run
+    grid, line = last(folder, "fields"), last(folder, "interface")
+    assert grid.n_cells == sum(mesh.elements for mesh in specimen.meshes)
+    name = "vtkLagrangeQuadrilateral" if method == "lagrange" else "vtkBezierQuadrilateral"
+    assert {grid.GetCell(i).GetClassName() for i in range(grid.n_cells)} == {name}
+    assert line.n_cells == 1 and line.GetCell(0).GetClassName() == "vtkPolyLine"
+    assert line.n_points == specimen.system.interface.points
+    assert grid.field_data["opening"][0] == line.field_data["opening"][0] == point.opening
+    times = pv.get_reader(str(folder / "fields.pvd")).time_values
+    assert times[0] == 0.0 and times[-1] >= point.opening and np.all(np.diff(times) > 0)
+
+
+def test_displacement_is_that_of_the_solver(run):
+    folder, _, specimen, point = run
+    grid, cell = last(folder, "fields"), 0
+    st_qk = np.random.default_rng(2).random((3, 2))
+    for body in specimen.bodies:
+        u_Ai = point.state.u_d.reshape(-1, 2)[body.points]
+        for block in body.mesh.blocks:
+            basis = block_basis(body.mesh, block, st_qk, np.ones(3))
+            u_eqi = np.einsum("eqa,eai->eqi", basis.N_eqa, u_Ai[basis.conn_ea])
+            for u_qi in u_eqi:
+                for (s, t), u_i in zip(st_qk, u_qi, strict=True):
+                    assert evaluated(grid, cell, s, t, "displacement")[:2] == pytest.approx(u_i, abs=1e-9)
+                cell += 1
+    assert np.abs(grid.point_data["displacement"]).max() > 0.5
+
+
+def test_deformed_bodies_are_what_the_solver_deformed(run):
+    """Warp By Vector and what VTK draws of it, against Gauss quadrature of the deformed elements."""
+    folder, _, specimen, point = run
+    warped = last(folder, "fields").warp_by_vector("displacement")
+    area = 0.0
+    for body in specimen.bodies:
+        x_Ai = body.mesh.P_AI + point.state.u_d.reshape(-1, 2)[body.points]
+        for block in body.mesh.blocks:
+            points_q, weights_q = square(gauss(5), gauss(5))
+            H_ebI = homogeneous(x_Ai, body.mesh.w_A, block)
+            area += float(np.sum(jacobian(H_ebI, block.degrees, points_q) * weights_q))
+    assert drawn_area(warped) == pytest.approx(area, rel=1e-6)
+
+
+def surface(grid, level: int):
+    """The grid in triangles, as ParaView draws it at this nonlinear subdivision level."""
+    drawn = vtkDataSetSurfaceFilter()
+    drawn.SetInputData(grid)
+    drawn.SetNonlinearSubdivisionLevel(level)
+    drawn.Update()
+    return pv.wrap(drawn.GetOutput())
+
+
+def drawn_area(grid) -> float:
+    """Area of the triangles, with the length of their sides taken to nothing (Richardson)."""
+    coarse, middle, fine = (surface(grid, level).area for level in (3, 4, 5))
+    once, again = (4.0 * middle - coarse) / 3.0, (4.0 * fine - middle) / 3.0
+    return (16.0 * again - once) / 15.0
+
+
+def quarter_ring() -> Mesh:
+    """Quarter of a ring between radii 1 and 2: exact with weights 1, 1/sqrt(2), 1."""
+    corner = np.array([(1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+    kv_s, kv_t = open_knots(np.array([0.0, 1.0]), 2), open_knots(np.array([0.0, 1.0]), 3)
+    P_AI = np.concatenate([radius * corner for radius in 2.0 - np.linspace(0.0, 1.0, 4)])
+    return nurbs_mesh(kv_s, kv_t, P_AI, np.tile([1.0, np.sqrt(0.5), 1.0], 4))
+
+
+def test_rational_edges_are_round(tmp_path):
+    """A ring, and the ring that a displacement makes of it: points of the drawn edges lie on their circles."""
+    ring = quarter_ring()
+    write_vtu(ring, tmp_path / "ring.vtu", {"displacement": 2.0 * ring.P_AI})
+    grid = pv.read(tmp_path / "ring.vtu")
+    for bodies, factor in ((grid, 1.0), (grid.warp_by_vector("displacement"), 3.0)):
+        edge = surface(bodies, 4).extract_feature_edges(
+            boundary_edges=True, feature_edges=False, manifold_edges=False, non_manifold_edges=False
+        )
+        x, y = edge.points[:, 0] / factor, edge.points[:, 1] / factor
+        inside = np.minimum(x, y) > 1e-6  # the straight edges lie on the axes
+        r = np.hypot(x, y)[inside]
+        assert len(r) > 20 and np.minimum(np.abs(r - 1.0), np.abs(r - 2.0)).max() < 1e-6
+        assert drawn_area(bodies) == pytest.approx(0.75 * np.pi * factor**2, rel=1e-6)
+
+
+def test_a_picture_shows_the_bodies(run):
+    """The stress on the deformed specimen with the damage on the interface, off-screen."""
+    folder, *_ = run
+    plotter = pv.Plotter(off_screen=True, window_size=(800, 400))
+    plotter.background_color = "white"
+    drawn = surface(last(folder, "fields").warp_by_vector("displacement"), 3)
+    plotter.add_mesh(drawn, scalars="stress", component=0, show_scalar_bar=False, cmap="coolwarm", lighting=False)
+    line = last(folder, "interface").warp_by_vector("displacement")
+    plotter.add_mesh(line, scalars="damage", show_scalar_bar=False, line_width=3)
+    plotter.view_xy()
+    plotter.camera.tight(padding=0.1)
+    image = plotter.screenshot(return_img=True).astype(float)
+    plotter.close()
+    painted = np.any(image[..., :3] != 255.0, axis=2)
+    assert 0.01 < painted.mean() < 0.9
+    red, green, blue = np.moveaxis(image[..., :3], 2, 0)
+    assert ((red - blue > 80.0) & (green < 130.0)).any()  # pulled
+    assert ((blue - red > 80.0) & (green < 130.0)).any()  # pressed
