@@ -138,7 +138,7 @@ def growing(scene: Scene, steps: Steps) -> np.ndarray:
 
     None of another specimen, or where the columns do not tell.
     """
-    if scene.specimen.kind != "peel" or not _has(steps, "tip_opening", "damage_front"):
+    if scene.specimen.kind != "peel" or not _has(steps, "tip_opening", "damage_front", "dissipated_energy"):
         return np.zeros(steps["opening"].size, dtype=bool)
     open_ = steps["tip_opening"] > law_of(scene).g_open
     inside = steps["damage_front"] < (1.0 - AT_THE_END) * scene.specimen.extent
@@ -147,7 +147,7 @@ def growing(scene: Scene, steps: Steps) -> np.ndarray:
 
 def _j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     """(J - integral of p dg) / G_Ic at every step (n_steps,), 0 where that need not hold."""
-    if not _has(steps, "face_slope_top", "face_slope_bottom", "face_energy", "tip_opening"):
+    if not _has(steps, "face_slope_top", "face_slope_bottom", "face_energy", "tip_opening", "dissipated_energy"):
         return None
     slopes = np.abs(steps["face_slope_top"]) + np.abs(steps["face_slope_bottom"])
     J = steps["load"] * slopes / scene.specimen.width - steps["face_energy"]
@@ -226,6 +226,8 @@ def dissipation_gap(scene: Scene, steps: Steps) -> float | None:
     drops out of the difference, but for its slow change of length and the distance of the points that see the crack.
     It is counted until the zone reaches the far end.
     """
+    if not _has(steps, "crack_length", "dissipated_energy"):
+        return None
     before = far_from_end(scene, steps)
     steps = {name: column[before] for name, column in steps.items()}
     crack = np.maximum.accumulate(steps["crack_length"])

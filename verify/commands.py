@@ -7,9 +7,13 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from verify.refusal import Refusal
 from verify.say import say
+
+if TYPE_CHECKING:
+    from verify.foreign import Curve
 
 FAILED = 1
 
@@ -129,12 +133,27 @@ def verify(options: argparse.Namespace) -> int:
     wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]
     if wrong:
         raise Refusal("\n".join(wrong))
+    curves = _curves(options, len(scenes), len(plates))
     included = named(options.include)
     if options.dry_run:
         return _listed(would_run(scenes, options.out, options.jobs, options.full))
     _folder(options.out)
-    what = (options.full, plates, options.scheduler, included, options.format == "md")
+    what = (options.full, plates, options.scheduler, included, options.format == "md", curves)
     return 0 if verify(scenes, options.out, options.jobs, *what) else FAILED
+
+
+def _curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curve, ...]:
+    """Those of other codes, with what the options say of their columns."""
+    from verify.curve_file import Reading
+    from verify.foreign import read_curves
+
+    keys = ("opening", "load", "opening_scale", "load_scale")
+    reading = Reading(**{key: getattr(options, key) for key in keys})
+    if options.curves and (scenes, plates) != (1, 0):
+        raise Refusal(f"--with: needs one SCENE, which its curve is of, got {scenes + plates}")
+    if not options.curves and reading != Reading():
+        raise Refusal("--with: is missing, its FILE is what --opening, --load and their scales are about")
+    return read_curves(options.curves, reading)
 
 
 def cost(options: argparse.Namespace) -> int:
@@ -238,6 +257,7 @@ def mesh(options: argparse.Namespace) -> int:
 
 
 def scenes(options: argparse.Namespace) -> int:
+    from verify.plugins import plugins
     from verify.scene import load_scene, packaged_scenes
 
     for name in packaged_scenes():
@@ -247,6 +267,8 @@ def scenes(options: argparse.Namespace) -> int:
             f"{name:24} {specimen.kind}, {scene.effects.kinematics} kinematics, strength {law.strength:g}, "
             f"toughness {law.toughness:g}, opened to {opening:g} ({scene.units})"
         )
+    for plugin in plugins().values():
+        print(f"method of another package: {plugin.name} ({plugin.package})")
     return 0
 
 
@@ -279,11 +301,12 @@ def _alone(command: str) -> None:
 
 def _known_method(method: str, dofs: int | None) -> None:
     from verify.complaints import one_of, suggestion
-    from verify.methods import METHODS, WITH_DOFS
+    from verify.methods import WITH_DOFS, known_methods
 
-    if method not in METHODS:
-        later = f"; {suggestion(method, METHODS)}".rstrip("; ")
-        raise Refusal(f"--method: must be {one_of(METHODS)}, got {method!r}{later}")
+    known = known_methods()
+    if method not in known:
+        later = f"; {suggestion(method, known)}".rstrip("; ")
+        raise Refusal(f"--method: must be {one_of(known)}, got {method!r}{later}")
     if dofs and method not in WITH_DOFS:
         other = "; --set dolfinx.elements=N sets its mesh" if method == "dolfinx" else ""
         raise Refusal(f"--dofs: is only for --method {one_of(WITH_DOFS)}, got {dofs} for {method}{other}")
@@ -300,7 +323,8 @@ def _folder(path: Path) -> None:
 
 
 def _not_run(error: Exception) -> int:
-    from verify.methods import DOLFINX_WAYS
+    from verify.methods import DOLFINX_MISSING, DOLFINX_WAYS
 
-    say("\n".join([f"{error}. Ways to get it:", *(f"  {way}" for way in DOLFINX_WAYS)]))
+    ways = [". Ways to get it:", *(f"\n  {way}" for way in DOLFINX_WAYS)] if str(error) == DOLFINX_MISSING else []
+    say("".join([str(error), *ways]))
     return FAILED

@@ -7,7 +7,8 @@ import sys
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 
-from verify.methods import DOLFINX_WAYS, dolfinx_installed
+from verify.methods import DOLFINX_WAYS, NotRun, dolfinx_installed
+from verify.plugins import Plugin, plugins
 
 #: module -> (distribution, what it is for, whether nothing works without it)
 PACKAGES = {
@@ -35,6 +36,7 @@ def examine() -> tuple[list[str], bool]:
     lines.append("")
     report = all(find_spec(module) for module in ("jinja2", "matplotlib"))
     lines += [
+        *map(_state, plugins().values()),
         f"tspline, nurbs, lagrange, beam, lefm: {'work' if needed else 'do not work'}",
         f"dolfinx: {'works' if dolfinx_installed() else 'does not work'}",
         f"report: {'works' if report else 'does not work'}",
@@ -44,6 +46,15 @@ def examine() -> tuple[list[str], bool]:
     if not dolfinx_installed():
         lines += ["\nDOLFINx is not on PyPI. Three ways to it:", *(f"  {way}" for way in DOLFINX_WAYS)]
     return lines, needed
+
+
+def _state(plugin: Plugin) -> str:
+    """Whether the method of another package can be loaded, in one line."""
+    try:
+        plugin.load()
+    except NotRun as error:
+        return f"{plugin.name}: does not work, {str(error).removeprefix('not run: ')}"
+    return f"{plugin.name}: works ({plugin.package})"
 
 
 def _version(distribution: str) -> str:

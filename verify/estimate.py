@@ -12,6 +12,9 @@ from verify.schema import Scene
 BESIDES = {"dolfinx": 4.0}
 PER_STEP = {"tspline": 0.03, "nurbs": 0.03, "lagrange": 0.03, "dolfinx": 0.02, "beam": 0.03, "lefm": 0.001}
 
+#: Of a method of another package.
+UNKNOWN = 0.03
+
 #: While a crack grows the front of the zone goes ahead by an eighth of the full opening a step: so many steps for every
 #: length of the zone, and so many besides. Measured on ``dcb-czm1`` and ``peel-120``, by both codes.
 STEPS_PER_ZONE, STEPS_BESIDES = 8.2, 20
@@ -22,7 +25,8 @@ STEPS_CHOSEN = 60
 
 def seconds(scene: Scene, method: str) -> float:
     """Estimated time of a run."""
-    return BESIDES.get(method, 2.0) + steps(scene, method) * PER_STEP[method] * unknowns(scene, method) / 1000
+    per_step = PER_STEP.get(method, UNKNOWN) * unknowns(scene, method) / 1000
+    return BESIDES.get(method, 2.0) + steps(scene, method) * per_step
 
 
 def steps(scene: Scene, method: str) -> int:

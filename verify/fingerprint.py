@@ -9,7 +9,8 @@ import platform
 from functools import cache
 from pathlib import Path
 
-from verify.methods import WITH_DOFS
+from verify import plugins
+from verify.methods import METHODS, WITH_DOFS
 from verify.run import machine, versions
 from verify.schema import Scene
 
@@ -26,7 +27,8 @@ def fingerprint(scene: Scene, method: str, *besides: str) -> str:
     ----------
     besides : what else tells two runs apart
     """
-    return digest(_ground(scene, method), besides, source(_PACKAGES.get(method, ())), _here())
+    plugged = [] if method in METHODS else plugins.content(method)
+    return digest(_ground(scene, method), besides, source(_PACKAGES.get(method, ())), plugged, _here())
 
 
 def source(packages: tuple[str, ...] = (), own: tuple[str, ...] = (".",)) -> str:

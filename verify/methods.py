@@ -60,6 +60,14 @@ class Unsuitable(Refusal):
     """A method that cannot solve this scene on any machine."""
 
 
+def known_methods() -> dict[str, str]:
+    """``METHODS``, and those of other packages (`verify.plugins`)."""
+    from verify.plugins import plugins
+
+    others = {name: f"plug-in of {plugin.package}" for name, plugin in plugins().items() if name not in METHODS}
+    return {**METHODS, **others}
+
+
 def dolfinx_installed() -> bool:
     """Whether DOLFINx can be imported, without importing it."""
     return find_spec("dolfinx") is not None
@@ -70,7 +78,7 @@ def solve(scene: Scene, method: str, on_step: OnStep | None = None, on_frame: On
 
     Parameters
     ----------
-    method : one of ``METHODS``
+    method : one of ``known_methods``
     on_step : called with every converged row (``verify.result``), the first one zeros, as the run goes
     on_frame : called at every converged step by the methods that have fields
 
@@ -84,6 +92,10 @@ def solve(scene: Scene, method: str, on_step: OnStep | None = None, on_frame: On
     Timed from the first line of work on: importing a solver is paid once a process, not once a solution.
     """
     require(scene, method)
+    if method not in METHODS:
+        from verify import plugins
+
+        return plugins.solve(scene, method, on_step or _nothing)
     with_fields = {**dict.fromkeys(WITH_DOFS, _iga), "dolfinx": _dolfinx}
     if method in with_fields:
         return with_fields[method](scene, method, on_step or _nothing, on_frame)
@@ -92,6 +104,11 @@ def solve(scene: Scene, method: str, on_step: OnStep | None = None, on_frame: On
 
 def require(scene: Scene, method: str) -> None:
     """Raise ``Unsuitable`` where the method is not made for the scene, ``NotRun`` where this machine lacks it."""
+    if method not in METHODS:
+        from verify import plugins
+
+        plugins.require(scene, method)
+        return
     if method == "dolfinx":
         _require_elements(scene)
     if method == "dolfinx" and not dolfinx_installed():

@@ -75,7 +75,8 @@ def run(
         raise
     except Exception as error:
         (folder / "error.log").write_text(traceback.format_exc())
-        why = f"{type(error).__name__}: {error} (an error in the program: please report it with error.log)"
+        whose = getattr(error, "whose", "the program: please report it with error.log")
+        why = f"{type(error).__name__}: {error} (an error in {whose})"
         result = _stopped(method, rows, why)
         if mpi_size() > 1:
             _finish(folder, scene, result, keep_fields)
@@ -180,7 +181,7 @@ def summary(scene: Scene, result: Result, checks: tuple[Check, ...]) -> dict[str
         "dofs": result.dofs,
         "elements": result.elements,
         "steps": max(int(load.size) - 1, 0),
-        "newton_iterations": int(np.sum(result.steps["newton_iterations"])),
+        "newton_iterations": int(np.sum(result.steps.get("newton_iterations", 0))),
         "rejected_steps": result.rejected_steps,
         "peak_load": float(load[peak]) if load.size else 0.0,
         "peak_opening": float(opening[peak]) if load.size else 0.0,

@@ -16,7 +16,7 @@ class Entry:
     """One run on the page; ``agreement`` is None where there is no curve."""
 
     run: Run
-    repeat: int  # how many runs of the same method come before
+    repeat: int  # how many runs of the same method come before, or of methods of other packages and other codes
     line: Line
     agreement: Agreement | None
     is_reference: bool
@@ -65,8 +65,9 @@ def entries(report: SceneReport) -> tuple[Entry, ...]:
     seen: dict[str, int] = {}
     found = []
     for run in sorted(report.runs, key=lambda run: rank(run.method)):
-        repeat = seen.get(run.method, 0)
-        seen[run.method] = repeat + 1
+        kind = run.method if run.method in METHODS else ""  # the others share a line
+        repeat = seen.get(kind, 0)
+        seen[kind] = repeat + 1
         compared = agreement(run, reference) if usable(run) else None
         found.append(Entry(run, repeat, line(run.method, repeat), compared, run is reference))
     return tuple(found)

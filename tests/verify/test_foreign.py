@@ -1,0 +1,149 @@
+"""`debond verify SCENE --with FILE`: a curve from elsewhere is a method of the report, and its checks count."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from verify import verification
+from verify.cli import main
+from verify.curve_file import Reading
+from verify.foreign import checks_of, joined, read_curves
+from verify.methods import METHODS, solve
+from verify.result import Result
+from verify.scene import load_scene
+from verify.store import NAME
+from verify.verdict import Run, SceneReport
+from verify.verification import planned
+
+LINEAR = "dcb-czm1-linear"
+
+
+@pytest.fixture(scope="module")
+def beam() -> Result:
+    return solve(load_scene(LINEAR), "beam")
+
+
+@pytest.fixture
+def folder(beam: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A beam's curve as another code hands it over: half the opening downwards, in kilonewtons; and with errors."""
+    monkeypatch.chdir(tmp_path)
+    for name, factor, end in (("mycode", 1.0, 3.0), ("off", 1.02, 3.0), ("short", 1.0, 2.0)):
+        kept = beam.opening <= end
+        rows = zip(-beam.opening[kept] / 2, -1e-3 * factor * beam.load[kept], strict=True)
+        lines = ["X, U2, RF2", *(f"0, {d:.9g}, {P:.9g}" for d, P in rows)]
+        (tmp_path / f"{name}.csv").write_text("\n".join(lines) + "\n")
+    (tmp_path / "empty.csv").write_text("")
+    return tmp_path
+
+
+AS = ("--opening", "U2", "--load", "RF2", "--opening-scale", "-2", "--load-scale", "-1e3")
+
+
+def only(monkeypatch: pytest.MonkeyPatch, *methods: str) -> None:
+    monkeypatch.setattr(
+        verification, "planned", lambda *given: (job for job in planned(*given) if job.method in methods)
+    )
+
+
+def test_a_file_becomes_a_method_of_the_report(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("jinja2")
+    only(monkeypatch, "beam", "lefm")
+    assert main(["verify", LINEAR, "--out", "out", "--jobs", "1", "--with", "mycode.csv", *AS]) == 0
+    said = capsys.readouterr().out
+    assert re.search(r"beam-curve +analytical +\d\.\de-\d\d", said) and "mycode" in said.splitlines()[0]
+    page = (folder / "out" / "report.html").read_text()
+    (row,) = re.findall(r"<tr>\s*<th scope=\"row\"><svg class=\"sample\".*?mycode</th>.*?</tr>", page, re.DOTALL)
+    assert "no reference" not in row and re.search(r"<td>[\d.]+ %|<td>[^<]*10", row)
+    assert re.search(r"mycode(</a>)? / (<a[^>]*>)?beam", page) and "stroke: var(--ink)" in page
+
+    before = sorted(path for path in (folder / "out" / NAME).iterdir() if path.is_dir())
+    times = [path.stat().st_mtime_ns for path in before]
+    assert main(["verify", LINEAR, "--out", "out", "--jobs", "1", "--with", "off.csv", *AS]) == 1
+    said = capsys.readouterr()
+    assert "2 of 2 runs are at hand" in said.err
+    assert re.search(rf"FAIL {LINEAR} +analytical +beam-curve +off / beam +2\.0\de-02", said.out)
+    assert sorted(path for path in (folder / "out" / NAME).iterdir() if path.is_dir()) == before
+    assert [path.stat().st_mtime_ns for path in before] == times, "nothing was computed anew"
+
+
+def test_a_curve_that_ends_too_early_fails(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    monkeypatch.setattr(verification, "write_page", lambda *what: None)
+    only(monkeypatch, "lefm")
+    assert main(["verify", LINEAR, "--out", "out", "--jobs", "1", "--with", "mine=short.csv", *AS]) == 1
+    assert re.search(r"FAIL .* cross-code +end +mine +3\.3\de-01", capsys.readouterr().out)
+
+
+def test_every_code_that_is_there_judges(beam: Result) -> None:
+    """Within half a percent of the codes and of the published values it holds, beyond it does not; each of its kind."""
+    scene = load_scene("compdam-dcb")
+    opening = np.linspace(0.0, max(scene.load.opening), 200)
+    load = 7.96 * np.minimum(opening / 1.2, (1.2 / np.maximum(opening, 0.1)) ** 0.457)
+    others = {method: Result(method, {"opening": opening, "load": load}) for method in METHODS}
+    for factor, holds in ((1.004, True), (1.006, False)):
+        found = checks_of(scene, "mine", Result("mine", {"opening": opening, "load": factor * load}), others)
+        judged = {(check.name, check.subject.partition(" / ")[2]): check for check in found}
+        for code in ("tspline", "nurbs", "dolfinx"):
+            for name in ("curve", "peak"):
+                check = judged[name, code]
+                assert check.passed == holds and check.kind == "cross-code"
+                assert check.value == pytest.approx(factor - 1)
+        assert ("curve", "lagrange") not in judged and ("curve", "lefm") not in judged
+        assert judged["published-peak", ""].value == pytest.approx(
+            0.0 if factor < 1 else factor * 7.96 / 8.0 - 1, abs=2e-2
+        )
+        assert {check.kind for check in found} <= {"cross-code", "analytical"}
+    beams = [check for check in found if check.name == "beam-curve"]
+    assert [(check.kind, check.tolerance) for check in beams] in ([("analytical", 0.005)], [("analytical", 0.002)], [])
+
+
+def test_the_report_says_how_to_compare_it(folder: Path, beam: Result) -> None:
+    (curve,) = read_curves(["mycode.csv"], Reading("U2", "RF2", -2.0, -1e3))
+    report = SceneReport(load_scene(LINEAR), (Run("NURBS", "nurbs", beam, folder=f"{LINEAR}/nurbs"),), ())
+    found = joined(report, [curve], Path("out"))
+    words = f"debond compare mycode.csv out/{LINEAR}/nurbs --opening-a U2 --load-a RF2 "
+    assert found.runs[-1].command == words + "--opening-scale-a -2.0 --load-scale-a -1000.0"
+    assert np.allclose(found.runs[-1].result.load, beam.load) and found.runs[-1].method == "mycode"
+    assert joined(report, [], Path("out")) == report
+
+
+def test_names_come_from_files_or_are_given(folder: Path) -> None:
+    (folder / "run").mkdir()
+    (folder / "run" / "curve.csv").write_text("opening,load\n0,0\n1,1\n2,1\n")
+    (folder / "a=b.csv").write_text("0 0\n1 1\n")
+    (folder / "my code (2).txt").write_text("0 0\n1 1\n")
+    words = ["run", "other=run/curve.csv", "a=b.csv", "my code (2).txt"]
+    assert [curve.name for curve in read_curves(words, Reading())] == ["run", "other", "a-b", "my-code-2-"]
+
+
+REFUSED = {
+    f"verify {LINEAR} --with missing.csv": "missing.csv: must be a file with a curve",
+    f"verify {LINEAR} --with empty.csv": "empty.csv: must hold a curve of at least 2 points, got an empty file",
+    f"verify {LINEAR} --with mycode.csv": "the header must name opening and load, got X, U2, RF2",
+    f"verify {LINEAR} --with nurbs=mycode.csv {' '.join(AS)}": "a name must not be a method's, got 'nurbs'",
+    f"verify {LINEAR} --with dolfinx-p3=mycode.csv {' '.join(AS)}": "a name must not be a method's, got 'dolfinx-p3'",
+    f"verify {LINEAR} --with a=mycode.csv --with a=off.csv {' '.join(AS)}": "must not be another curve's, got 'a'",
+    f"verify {LINEAR} --with a/b=mycode.csv {' '.join(AS)}": "a name must be of letters, digits",
+    f"verify {LINEAR} dcb-czm2 --with mycode.csv {' '.join(AS)}": "needs one SCENE, which its curve is of, got 2",
+    f"verify --with mycode.csv {' '.join(AS)}": "--with: needs one SCENE",
+    f"verify {LINEAR} --load RF2": "--with: is missing, its FILE is what --opening, --load and their scales are about",
+    f"verify {LINEAR} --with mycode.csv --load-scale 0": "--load-scale: must be a finite number other than 0",
+}
+
+
+@pytest.mark.parametrize("line", REFUSED)
+def test_what_is_no_curve_is_refused_before_any_run(line: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    before = sorted(folder.rglob("*"))
+    try:
+        code = main(line.split())
+    except SystemExit as end:
+        code = end.code
+    said = capsys.readouterr()
+    assert code == 2 and REFUSED[line] in said.err and "Traceback" not in said.err
+    assert sorted(folder.rglob("*")) == before
