@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curve import PROPAGATION, curve_error, envelope, load_at, oscillation, peak
+from verify.curve import PROPAGATION, envelope, load_at, oscillation, peak
 from verify.curve_file import CurveError
 from verify.verdict import Check
 
@@ -132,15 +132,12 @@ def compare(
             span = f"up to {common:.6g}" if begin == 0.0 else f"from {begin:.6g} to {common:.6g}"
             raise CurveError(f"{names[1]}: the loads {span} must go above 0, got at most {top:g}")
         length = common - begin
-        scaled = [((part.opening - begin) / length, part.load / top) for part in (part_a, part_b)]
-        error = curve_error(*scaled, end=1.0, n=SAMPLES)
-        whole = part_a, part_b
-        if begin > 0.0:
-            whole = _part(a, 0.0, common), _part(b, 0.0, common)
-            scaled = [(part.opening / common, part.load / top) for part in whole]
-        wave = _wave(scaled, whole[1].peak_opening / common)
-        grid = begin + length * (np.arange(1, SAMPLES + 1) / SAMPLES)
+        grid = np.minimum(begin + length * (np.arange(1, SAMPLES + 1) / SAMPLES), common)  # the sum may round beyond
         loads = [load_at((part.opening, part.load), grid) for part in (part_a, part_b)]
+        error = _distance(*(load / top for load in loads))
+        whole = (part_a, part_b) if begin == 0.0 else (_part(a, 0.0, common), _part(b, 0.0, common))
+        size = whole[1].peak_load
+        wave = _wave([(part.opening / common, part.load / size) for part in whole], whole[1].peak_opening / common)
     return Comparison(part_a, part_b, asked, common, error, *wave, grid, *loads, names, begin)
 
 
@@ -167,6 +164,12 @@ def _part(curve: Points, begin: float, end: float) -> Part:
     at, load = peak(envelope(d, P))
     work = float(np.sum((P[1:] / 2.0 + P[:-1] / 2.0) * np.diff(d)))
     return Part(d, P, first, last, at, load, work)
+
+
+def _distance(load: np.ndarray, wanted: np.ndarray) -> float:
+    """Relative L2 distance of the very samples that are shown: taken anew at openings over their range, one that falls
+    on a vertical drop may come out on its other side."""
+    return float(np.sqrt(np.sum((load - wanted) ** 2) / np.sum(wanted**2)))
 
 
 def _from_origin(d: np.ndarray, P: np.ndarray) -> Points:

@@ -119,7 +119,18 @@ def test_only_the_part_from_the_beginning_counts():
     assert found.opening_n[[0, -1]] == pytest.approx([0.51 + 2.49 / 400, 3.0])
 
 
+#: A drop upon which a sample falls, which an opening over the range of the comparison misses by its last digit.
+DROP = (
+    (np.array([0, 0, 0, 0, 3.0]), np.array([0, 1, 1, 1, 1.0])),
+    (
+        np.array([0, 1, 2, 2.9, 2.9, 3.0]),
+        np.array([0, 1, 1, 1, 2, 1.0]),
+    ),
+)
+
+
 @given(paths(), paths(), st.floats(0.05, 2.5))
+@example(*DROP, 2.0)
 def test_the_beginning_only_takes_part_of_the_whole(a, b, begin):
     """The loads are those of the whole curves, whatever the paths did before, and so is the largest of them."""
     found, whole = compare(a, b, begin=begin), compare(a, b, begin=0.0)
@@ -127,7 +138,7 @@ def test_the_beginning_only_takes_part_of_the_whole(a, b, begin):
     for loads, part in ((found.load_a_n, a), (found.load_b_n, b)):
         assert loads == pytest.approx(load_at(part, found.opening_n), rel=1e-9, abs=1e-9)
     error = np.linalg.norm(found.load_a_n - found.load_b_n) / np.linalg.norm(found.load_b_n)
-    assert found.curve_error == pytest.approx(error, rel=1e-6)
+    assert found.curve_error == pytest.approx(error, rel=1e-9, abs=1e-12)
     np.testing.assert_equal(found.oscillation_rms, whole.oscillation_rms)
     assert found.a.peak_load <= whole.a.peak_load + 1e-12
 
