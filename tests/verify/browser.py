@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,14 @@ def found() -> str | None:
     return next((path for name in NAMES if (path := shutil.which(name))), None)
 
 
+#: The browser reads from 3 and writes to 4, which may be in use here, the other way round even.
+_START = """import fcntl, os, sys
+read, write = (fcntl.fcntl(int(one), fcntl.F_DUPFD, 10) for one in sys.argv[1:3])
+os.dup2(read, 3), os.dup2(write, 4)
+os.execv(sys.argv[3], sys.argv[3:])
+"""
+
+
 class Browser:
     """One page in a browser of its own, with everything that it asks for and complains about."""
 
@@ -35,9 +44,9 @@ class Browser:
         here_in, there_out = os.pipe()
         there_in, here_out = os.pipe()
         command = [program, *_FLAGS, f"--user-data-dir={profile}", "about:blank"]
-        shell = ["sh", "-c", f'exec "$@" 3<&{there_in} 4>&{there_out}', "sh", *command]
+        start = [sys.executable, "-c", _START, str(there_in), str(there_out), *command]
         quiet = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        self._process = subprocess.Popen(shell, pass_fds=(there_in, there_out), **quiet)
+        self._process = subprocess.Popen(start, pass_fds=(there_in, there_out), **quiet)
         os.close(there_in)
         os.close(there_out)
         os.set_blocking(here_in, False)

@@ -43,7 +43,7 @@ def tables(report: SceneReport, entries: tuple[Entry, ...]) -> tuple[Convergence
 
 
 def _table(scene: Scene, one: Sequence, entries: tuple[Entry, ...]) -> ConvergenceTable:
-    units, of_run = Units.of(scene.units), {entry.run: entry for entry in entries}
+    units, of_run = Units.of(scene.units), {id(entry.run): entry for entry in entries}
     unit = units.force if one.quantity == "peak load" else units.energy
     steps = ("–" if step is None else percent(step) for step in one.steps)
     shown = zip(one.runs, one.value, steps, strict=True)
@@ -51,7 +51,7 @@ def _table(scene: Scene, one: Sequence, entries: tuple[Entry, ...]) -> Convergen
     return ConvergenceTable(
         METHOD_NAMES.get(one.method, one.method),
         one.quantity,
-        tuple(MeshRow(of_run[run], quantity(value, unit), step) for run, value, step in shown),
+        tuple(MeshRow(of_run[id(run)], quantity(value, unit), step) for run, value, step in shown),
         order=number(found.order) if isfinite(found.order) else "none",
         limit=quantity(found.limit, unit),
         error=percent(found.error),

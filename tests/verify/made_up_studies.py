@@ -1,0 +1,73 @@
+"""Folders as ``debond cost``, ``effects`` and ``hard`` leave them, with made-up numbers."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, fields
+from pathlib import Path
+
+from verify.cost.row import Row as CostRow
+from verify.folder import write_csv, write_json
+from verify.hard.one import Line, Verdict
+from verify.switches.row import Row as EffectRow
+from verify.verdict import Check
+
+
+def cost(folder: Path, scene: str = "dcb-czm1", source: str = "") -> Path:
+    """Four runs of two methods, one of which stopped."""
+    rows = [
+        _cost("nurbs", 3, 500, 0.004, 0.5),
+        _cost("nurbs", 3, 2000, 0.0005, 2.0),
+        _cost("dolfinx", 2, 2700, 0.0008, 3.0),
+        _cost("dolfinx", 1, 900, float("nan"), float("nan")),
+    ]
+    about = {
+        "scene": {"name": scene},
+        "reference": {
+            "label": "cubic NURBS",
+            "dofs": 9000,
+            "uncertainty": {"curve": 0.0002},
+            "other_code": "DOLFINx of degree 3",
+            "other_code_apart": 0.0003,
+        },
+        "left_out": [],
+        "source": source,
+    }
+    return _written(folder, "cost", CostRow, rows, about)
+
+
+def effects(folder: Path, scene: str = "dcb-czm1") -> Path:
+    """One effect that was switched, and one that could not be."""
+    numbers = {f.name: 0.01 for f in fields(EffectRow) if f.type == "float"}
+    words = {"with_it": "on", "without": "off", "scene_has": True, "times": 3}
+    rows = [
+        EffectRow(effect="contact", key="contact", status="complete", **words, **numbers | {"time_ratio": 1.25}),
+        EffectRow(effect="symmetry", key="symmetry", status="with it: stopped", **words, **numbers),
+    ]
+    return _written(folder, "effects", EffectRow, rows, {"scene": {"name": scene}, "left_out": [], "source": ""})
+
+
+def hard(folder: Path) -> Path:
+    """One case that holds on NURBS and not on T-splines."""
+    for basis, ledger in (("nurbs", 1e-5), ("tspline", 0.5)):
+        check = Check("energy-ledger", "base", ledger, 0.01, "exact", "The ledger closes.")
+        line = Line("base", "complete", 40, 2, ledger, 1e6, 1.5)
+        there = folder / "coarse-czm2" / basis
+        there.mkdir(parents=True)
+        write_json(there / "verdict.json", asdict(Verdict("coarse-czm2", basis, (line,), (check,), ())))
+    return folder
+
+
+def _cost(method: str, degree: int, dofs: int, error: float, seconds: float) -> CostRow:
+    numbers = {f.name: error for f in fields(CostRow) if f.type == "float"}
+    counts = {f.name: 40 for f in fields(CostRow) if f.type == "int"}
+    words = {"asked": "80", "run": f"cost/{method}-p{degree}-{dofs}", "status": "complete"}
+    known = {"method": method, "degree": degree, "dofs": dofs, "seconds": seconds, "peak_memory_mb": 100.0}
+    return CostRow(**numbers | counts | words | known)
+
+
+def _written(folder: Path, name: str, kind: type, rows: list, about: dict) -> Path:
+    folder.mkdir(parents=True)
+    write_csv(folder / f"{name}.csv", kind, rows)
+    (folder / f"{name}.json").write_text(json.dumps(about))
+    return folder
