@@ -53,9 +53,9 @@ def _table(scene: Scene, one: Sequence, entries: tuple[Entry, ...]) -> Convergen
         one.quantity,
         tuple(MeshRow(of_run[id(run)], quantity(value, unit), step) for run, value, step in shown),
         order=number(found.order) if isfinite(found.order) else "none",
-        limit=quantity(found.limit, unit),
-        error=percent(found.error),
-        gci=percent(found.gci),
+        limit=quantity(found.limit, unit) if isfinite(found.limit) else "–",
+        error=percent(found.error) if isfinite(found.error) else "–",
+        gci=percent(found.gci) if isfinite(found.gci) else "–",
         asymptotic=found.asymptotic,
         verdict=found.verdict,
     )

@@ -1,0 +1,110 @@
+"""Studies of other commands on the page of a verification, and the same page in Markdown."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("matplotlib")
+pytest.importorskip("jinja2")
+
+import made_up_studies  # noqa: E402
+from made_up_runs import ENVIRONMENT, made_up, scene_report  # noqa: E402
+
+from verify import report  # noqa: E402
+from verify.cli import main  # noqa: E402
+from verify.included import found_in, named  # noqa: E402
+from verify.refusal import Refusal  # noqa: E402
+from verify.report.markdown import code, plain, table  # noqa: E402
+
+
+@pytest.fixture
+def out(tmp_path: Path) -> Path:
+    made_up_studies.cost(tmp_path / "cost", scene="</script><b>")
+    made_up_studies.effects(tmp_path / "effects")
+    made_up_studies.hard(tmp_path / "hard")
+    return tmp_path
+
+
+def bare(given):
+    """A report without fields, which take long to draw."""
+    runs = tuple(replace(run, result=replace(run.result, snapshots=())) for run in given.runs if run.method != "lefm")
+    return replace(given, runs=runs)
+
+
+def test_studies_are_found_by_what_they_left(out: Path) -> None:
+    assert [(one.command, one.folder.name) for one in found_in(out)] == [
+        ("cost", "cost"), ("effects", "effects"), ("hard", "hard")
+    ]  # fmt: skip
+    (out / "cost" / "cost.csv").unlink()
+    assert [one.command for one in found_in(out)] == ["effects", "hard"]
+
+
+def test_a_folder_without_a_study_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    with pytest.raises(Refusal, match="--include: must be a folder that debond cost, effects or hard has written"):
+        named([tmp_path])
+    assert main(["verify", "dcb-czm1", "--include", str(tmp_path / "none"), "--out", str(tmp_path / "out")]) == 2
+    assert "--include: " in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def test_page_has_chart_effects_and_matrix_and_no_text_becomes_markup(out: Path) -> None:
+    report.write((bare(scene_report()),), out / "report.html", ENVIRONMENT, included=found_in(out))
+    page = (out / "report.html").read_text()
+    data = json.loads(re.search(r'class="rows">(.*?)</script>', page, re.DOTALL)[1])
+    assert [row["dofs"] for row in data["rows"]] == [500, 2000, 2700]  # what stopped is no point
+    assert "What accuracy costs: &lt;/script&gt;&lt;b&gt;" in page
+    assert '<a href="./cost/%3C/script%3E%3Cb%3E/cost/nurbs-p3-500/">NURBS, degree 3</a>' in page
+    assert "1.25" in page and "with it: stopped" in page
+    assert "0 of 1 hard cases hold" in page and "./hard/coarse-czm2/nurbs/base/curve.csv" in page
+    assert page.count("takes no part in the verdict") == 3
+
+
+def test_rows_of_the_chart_cannot_end_their_script(out: Path) -> None:
+    rows = (out / "cost" / "cost.csv").read_text()
+    (out / "cost" / "cost.csv").write_text(rows.replace("cost/nurbs-p3-500", "</script><script>alert(1)</script>"))
+    report.write((), out / "report.html", ENVIRONMENT, included=found_in(out))
+    page = (out / "report.html").read_text()
+    assert "<script>alert" not in page and page.count("<script") == page.count("</script>")
+    data = json.loads(re.search(r'class="rows">(.*?)</script>', page, re.DOTALL)[1])
+    assert data["rows"][0]["run"] == "</script><script>alert(1)</script>"
+
+
+@pytest.mark.parametrize("source", ["", "another"])
+def test_a_study_of_other_sources_says_so(tmp_path: Path, source: str) -> None:
+    (study,) = named([made_up_studies.cost(tmp_path / "cost", source=source)])
+    report.write((), tmp_path / "report.html", ENVIRONMENT, included=[study])
+    assert ("solvers have changed" in (tmp_path / "report.html").read_text()) == bool(source)
+
+
+def test_markdown_says_what_the_page_says(out: Path) -> None:
+    given = bare(scene_report())
+    fine = given.runs[0]
+    coarse = tuple(
+        replace(fine, folder=f"{fine.folder}-{n}", result=made_up("nurbs", wobble, 1.0, n, n // 18))
+        for n, wobble in ((978, 1.6e-3), (489, 3.2e-3))
+    )
+    given = replace(given, runs=(*given.runs, *(replace(run, key="0123456789abcdef0123") for run in coarse)))
+    report.write((given,), out / "report.html", ENVIRONMENT, included=found_in(out), text=True)
+    text = (out / "report.md").read_text()
+    assert text.startswith("# Verification report\n\n**All 6 checks hold on 1 scene.**")
+    for check in given.checks:
+        assert re.search(rf"\| {check.kind} +\| {check.name} .*\| ✓ holds", text)
+    assert "[nurbs / dolfinx](<./dcb-czm1/nurbs/>)" in text
+    assert "hash `0123456789abcdef0123`; `debond solve dcb-czm1 --method nurbs --fields`" in text
+    assert "### Convergence" in text and "in the asymptotic range, observed order 1.05" in text
+    assert "## Hard cases" in text and "| ✓ holds, 1.5\u00a0s" in text and "✗ **fails**" in text
+    page = (out / "report.html").read_text()
+    assert 'class="methods convergence"' in page and page.count("observed order 1.05") == text.count("order 1.05")
+
+
+def test_markdown_texts_stay_texts() -> None:
+    assert plain("<b>1 < 2</b> | *x* [a](b) p_max _y_\n\n# no") == (
+        r"\<b>1 < 2\</b> \| \*x\* \[a\](b) p_max \_y\_ # no"
+    )
+    assert plain("# no &lt; ~~x") == r"\# no \&lt; \~~x"
+    assert code("a `b` c") == "``a `b` c``" and code("`x") == "`` `x ``"
+    assert table(["a", "b"], [["1", "longer"]]) == ["| a   | b      |", "| --- | ------ |", "| 1   | longer |"]
