@@ -35,6 +35,13 @@ def bond(
     Beyond the bond the bodies may touch from end to end of ``touching``, which holds the extent, at p + 1 points a
     side. Lumped partners are one to one, and only on the bond.
     """
+    found = _bonded(problem, bodies, extent, touching)
+    return found if problem.search or problem.kinematics == "linear" else settled(found)
+
+
+def _bonded(
+    problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float], touching: tuple[float, float] | None
+) -> Interface:
     if problem.interface_rule == "lumped":
         return lumped(_interface(problem, bodies, *_everywhere(problem, bodies, extent, gauss(problem.degree + 1))))
     rule = RULES[problem.interface_rule](problem.interface_points)
@@ -61,7 +68,12 @@ def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, flo
     X_q = problem.pose.own(_interface(problem, bodies, c_q, xi_q, w_q).X_qi)[:, 0]
     ends = [int(np.argmin(np.abs(X_q - X))) for X in extent]
     found = _interface(problem, bodies, c_q[ends], xi_q[ends], w_q[ends])
-    return replace(found, at_rest=contact(found, np.zeros(found.P_AI.size), pair(found))) if found.frozen else found
+    return settled(found) if found.frozen else found
+
+
+def settled(interface: Interface) -> Interface:
+    """The same where partners and normals stay what they are: gaps then change in proportion."""
+    return replace(interface, at_rest=contact(interface, np.zeros(interface.P_AI.size), pair(interface)))
 
 
 def _everywhere(
@@ -95,7 +107,7 @@ def _interface(
     return replace(
         between(face, master, P_AI, problem.law, (c_q, xi_q, w_q), problem.width),
         mirror_i=problem.pose.axes_kI[1] if alone else None,
-        frozen=problem.kinematics == "linear",
+        frozen=problem.kinematics == "linear" or not problem.search,
     )
 
 

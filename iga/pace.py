@@ -16,7 +16,7 @@ from iga.system import System
 #: step in parts of the one asked for.
 FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.125, 1.0, 1.0 / 4096
 #: Steps chosen by accuracy: the first and the largest one in parts of the programme, and by how much of the peak the
-#: load may leave the tangent of a step.
+#: load may leave the tangent of a step, if nothing else is asked for.
 FIRST, LARGEST, BEND = 1.0 / 30.0, 0.25, 0.005
 #: Fewer steps than these would not draw the curve: what is asked for is then a least number of steps. How long they are
 #: once one that was chosen by accuracy has failed, in such parts of the programme.
@@ -40,6 +40,8 @@ class Pace:
 
     ``by_accuracy``: the steps are not counted but as long as the curve allows, and end where a point breaks; once one
     has failed they are ``counted``, each of this length.
+    ``bend`` is by how much of the peak the load may leave the tangent of such a step; the front may go as much further
+    as steps are longer for it.
     ``attempt`` counts how often the next one has failed: careful steps end at the kinks of the law; they change the
     control, and then their length.
     """
@@ -49,6 +51,7 @@ class Pace:
     by_accuracy: bool = False
     attempt: int = 0
     counted: float = 0.0
+    bend: float = BEND
 
     @property
     def careful(self) -> bool:
@@ -73,7 +76,7 @@ class Pace:
 
     @property
     def front(self) -> float:
-        return 0.5**self.level * (FRONT_BY_ACCURACY if self.by_accuracy else FRONT)
+        return 0.5**self.level * (FRONT_BY_ACCURACY * (self.bend / BEND) ** 0.5 if self.by_accuracy else FRONT)
 
     def slower(self) -> Pace:
         return Pace(self.counted, self.counted) if self.by_accuracy else replace(self, attempt=self.attempt + 1)
@@ -85,18 +88,19 @@ class Pace:
         if not self.by_accuracy:
             return self
         moved = end.opening - start.opening
-        bend = abs(end.state.load - start.state.load - start.slope * moved) / (BEND * peak)
+        bend = abs(end.state.load - start.state.load - start.slope * moved) / (self.bend * peak)
         grown = abs(moved) * float(np.clip(bend**-0.5 if bend > 0.0 else 2.0, 0.5, 2.0))
         return replace(self, step=float(np.clip(grown, SMALLEST * self.largest, self.largest)))
 
 
-def paced(programme: np.ndarray, steps: int | None) -> Pace:
-    """The pace at which a programme begins."""
+def paced(programme: np.ndarray, steps: int | None, bend: float = BEND) -> Pace:
+    """The pace at which a programme begins; ``bend`` as in `follow`."""
     whole = float(np.sum(np.abs(np.diff(programme, prepend=0.0))))
     asked = whole / steps if steps else np.inf
     if steps and steps >= FEWEST:
         return Pace(asked, asked)
-    return Pace(min(LARGEST * whole, asked), min(FIRST * whole, asked), by_accuracy=True, counted=whole / SAFE)
+    first, largest = min(FIRST * whole, asked), min(LARGEST * whole, asked)
+    return Pace(largest, first, by_accuracy=True, counted=whole / SAFE, bend=bend)
 
 
 def next_step(system: System, point: Point, goal: float, pace: Pace, direction: float) -> Step:

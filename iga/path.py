@@ -15,7 +15,7 @@ import numpy as np
 from iga.control import opening_control
 from iga.landing import SEVERAL, broken_between, landed, slope_over_arcs
 from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium, roughly
-from iga.pace import Pace, Step, next_step, paced
+from iga.pace import BEND, Pace, Step, next_step, paced
 from iga.point import End, Point
 from iga.system import Phase, State, System, energies, respond, untimed
 from iga.tangent import tangent
@@ -38,6 +38,7 @@ def follow(
     newton: Newton = DEFAULT,
     phase: Phase = untimed,
     renew: Callable[[Point], tuple[System, State] | None] | None = None,
+    bend: float = BEND,
 ) -> Iterator[Point | End]:
     """Walk through a programme of openings; yields every converged `Point` and, last, the `End`.
 
@@ -47,9 +48,10 @@ def follow(
     steps : number of steps asked for over the whole programme; None lets the path choose them, few and by accuracy,
         and so does a number too small to draw the curve. A step that fails is made to end at the next kink of the law,
         then tried with other controls, then halved, down to 1/4096, and grows again afterwards.
+    bend : by how much of the peak the load may leave the tangent of a step that the path chooses.
     renew : may answer a converged point with another system, and its state in equilibrium at the same opening.
     """
-    pace, reach = paced(np.array(programme), steps), float(np.max(np.abs(programme)))
+    pace, reach = paced(np.array(programme), steps, bend), float(np.max(np.abs(programme)))
     rejected, peak, most = 0, 0.0, 0.0
     direction = float(np.sign(programme[0]))
     point = _departing(system, system.start(), direction, 0.0, phase)

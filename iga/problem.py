@@ -18,7 +18,9 @@ class Debonding:
     ``meshes`` are those of the bodies, upper first, in the specimen's own frame; made by the solver where left out.
 
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
-    body, "upper" or "lower", whose points are projected. The specimen is reflected X -> -X where ``mirror`` is set,
+    body, "upper" or "lower", whose points are projected: in every configuration where ``search`` is set, else once, and
+    gaps are measured along the normal there for good. Steps that the path chooses leave the tangent by ``bend`` of the
+    peak load. The specimen is reflected X -> -X where ``mirror`` is set,
     then turned by ``angle`` degrees counter-clockwise, then moved by ``shift``, with its supports and its load; what is
     read from it is told in its own terms, wherever it lies.
     """
@@ -39,9 +41,11 @@ class Debonding:
     meshes: tuple[Mesh, ...] = ()
     mismatch: float = 1.0
     slave: str = "upper"
+    search: bool = True
     interface_rule: str = "gauss"
     interface_points: int = 2
     steps: int | None = 150
+    bend: float = 0.005
     snapshot_openings: tuple[float, ...] = ()
     angle: float = 0.0
     mirror: bool = False

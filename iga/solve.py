@@ -68,7 +68,8 @@ def run(
     with phase("basis"):
         small = condensed(specimen.system) if adapt is None else None
     system = specimen.system if small is None else small.system
-    for item in follow(system, by_way_of(problem.opening, wanted), problem.steps, phase=phase, renew=renew):
+    programme = by_way_of(problem.opening, wanted)
+    for item in follow(system, programme, problem.steps, phase=phase, renew=renew, bend=problem.bend):
         if isinstance(item, End):
             end = item
             continue

@@ -5,6 +5,7 @@ Every estimate is of beam theory, made before anything is solved; `verify.neglec
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import atan2, degrees, exp, sqrt
 from typing import Any
@@ -29,9 +30,9 @@ RIGID = 1.6
 #: What a method cannot choose: the DOLFINx model has both arms, the beam one; LEFM has no interface, and its crack
 #: never heals. Beneath the strip of a peel test the beam has its substrate, too.
 _FIXED: dict[str, dict[str, Any]] = {
-    "dolfinx": {"symmetry": False},
-    "beam": {"symmetry": True},
-    "lefm": {"symmetry": True, "contact": False, "irreversible": True},
+    "dolfinx": {"symmetry": False, "search": False},
+    "beam": {"symmetry": True, "search": False},
+    "lefm": {"symmetry": True, "search": False, "contact": False, "irreversible": True},
 }
 
 
@@ -50,12 +51,24 @@ class Decision:
 
 def simulated(scene: Scene, method: str) -> dict[str, Any]:
     """The effects as a method simulates them: ``auto`` replaced by what it stands for, the rest as far as it has it."""
-    return scene.effects.model_dump() | {one.key: one.value for one in decided(scene)} | _fixed(scene, method)
+    found = scene.effects.model_dump() | {one.key: one.value for one in decided(scene)} | _fixed(scene, method)
+    return found if searches(found) else found | {"search": False}
+
+
+def searches(effects: Mapping[str, Any]) -> bool:
+    """Whether anything is looked for: not for one arm alone, nor where nothing moves away from where it was."""
+    return effects["search"] and effects["kinematics"] == "finite" and not effects["symmetry"]
 
 
 def decided(scene: Scene, method: str = "") -> tuple[Decision, ...]:
     """What is chosen for every effect that is ``auto``, but those that a method cannot choose."""
-    rules = {"kinematics": _kinematics, "contact": _contact, "irreversible": _irreversible, "symmetry": _symmetry}
+    rules = {
+        "kinematics": _kinematics,
+        "contact": _contact,
+        "irreversible": _irreversible,
+        "symmetry": _symmetry,
+        "search": _search,
+    }
     fixed = _fixed(scene, method)
     chosen = (key for key, value in scene.effects if value == "auto" and key not in fixed)
     return tuple(Decision(key, *rules[key](scene)) for key in chosen)
@@ -157,6 +170,11 @@ def _symmetry(scene: Scene) -> tuple[bool, str]:
     if mesh.mismatch != 1.0 or mesh.slave != "upper":
         return False, "the arms are meshed differently, or the lower one carries the interface"
     return True, "the arms are alike"
+
+
+def _search(scene: Scene) -> tuple[bool, str]:
+    alike, why = _symmetry(scene)
+    return not alike, f"{why} and turn alike" if alike else why
 
 
 def _fixed(scene: Scene, method: str) -> dict[str, Any]:

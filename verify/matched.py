@@ -1,9 +1,9 @@
 """What a matched interface leaves out: the tilt of the lower surface, and what the upper one slides along it there.
 
-The DOLFINx model pairs points for good and measures gap and traction along the undeformed normal. Where the lower
-surface has turned by theta and a pair has slid apart by s lengthwise, the gap g along the current normal is
-g cos(theta) - s sin(theta), and the tractions pull lengthwise by p sin(theta). Both are read from the fields that a run
-keeps, and are a bound of what a code with a moving projection may find otherwise.
+The DOLFINx model, as every other without ``effects.search``, pairs points for good and measures gap and traction along
+the undeformed normal. Where the lower surface has turned by theta and a pair has slid apart by s lengthwise, the gap g
+along the current normal is g cos(theta) - s sin(theta), and the tractions pull lengthwise by p sin(theta). Both are
+read from the fields that a run keeps, and are a bound of what a code with a moving projection may find otherwise.
 """
 
 from __future__ import annotations
@@ -65,22 +65,30 @@ def of_run(scene: Scene, result: Result) -> LeftOut | None:
     return left_out(result.snapshots, law_of(scene), loaded_at, specimen.width)
 
 
-def left_out(snapshots: tuple[Snapshot, ...], law: Bilinear, loaded_at: float, width: float = 1.0) -> LeftOut:
+def left_out(
+    snapshots: tuple[Snapshot, ...], law: Bilinear, loaded_at: float, width: float = 1.0, between: bool = False
+) -> LeftOut:
     """What the fields of a run with a matched interface say of it.
 
     Parameters
     ----------
     loaded_at : X of the loaded end, from which the snapshots count distances; the bodies meet on Y = 0.
+    between : the surface half way between both is the one that counts, not the lower one: with arms that are alike
+        tractions act across it, and their tilt is an error of whoever takes the normal of either.
     """
-    found = [_of(snapshot, law, loaded_at, width) for snapshot in snapshots]
+    found = [_of(snapshot, law, loaded_at, width, between) for snapshot in snapshots]
     return LeftOut(*(float(np.max(values)) for values in zip(*found, strict=True))) if found else LeftOut(0, 0, 0)
 
 
-def _of(snapshot: Snapshot, law: Bilinear, loaded_at: float, width: float) -> tuple[float, float, float]:
+def _of(
+    snapshot: Snapshot, law: Bilinear, loaded_at: float, width: float, between: bool
+) -> tuple[float, float, float]:
     below_X, below_u, turn = _surface(snapshot, upper=False)
-    above_X, above_u, _ = _surface(snapshot, upper=True)
+    above_X, above_u, above_turn = _surface(snapshot, upper=True)
     X_q = np.abs(loaded_at - snapshot.s_q)
     turn_q = np.interp(X_q, below_X, turn)
+    if between:
+        turn_q = 0.5 * (turn_q + np.interp(X_q, above_X, above_turn))
     slid_q = np.interp(X_q, above_X, above_u[:, 0]) - np.interp(X_q, below_X, below_u[:, 0])
     g_q, p_q = snapshot.gap_q, snapshot.traction_q
     zone_q = (g_q > law.g_peak) & (g_q < law.g_open)
@@ -96,11 +104,13 @@ def _of(snapshot: Snapshot, law: Bilinear, loaded_at: float, width: float) -> tu
 
 def _surface(snapshot: Snapshot, upper: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """X (n,), displacements (n, 2) and turn (n,) along a body's side of Y = 0, element by element, X rising."""
-    X_euvi, v = snapshot.X_euvi, 0 if upper else -1
+    X_euvi, u_euvi, v = snapshot.X_euvi, snapshot.u_euvi, 0 if upper else -1
+    if np.ptp(X_euvi[..., 1], axis=1).max() > np.ptp(X_euvi[..., 1], axis=2).max():  # the grid may run across first
+        X_euvi, u_euvi = X_euvi.swapaxes(1, 2), u_euvi.swapaxes(1, 2)
     Y_euv = X_euvi[..., 1]
     on_side = np.all(np.abs(Y_euv[:, :, v]) < 1e-9 * np.ptp(Y_euv), axis=1)
     on_side &= (Y_euv.mean(axis=(1, 2)) > 0.0) == upper
-    X_eu, u_eui = X_euvi[on_side][:, :, v, 0], snapshot.u_euvi[on_side][:, :, v]
+    X_eu, u_eui = X_euvi[on_side][:, :, v, 0], u_euvi[on_side][:, :, v]
     order = np.argsort(X_eu[:, 0])
     X_eu, u_eui = X_eu[order], u_eui[order]
     t_u = np.linspace(0.0, 1.0, X_eu.shape[1])

@@ -222,6 +222,8 @@ def _iga_keys(scene: Scene, method: str) -> dict[str, Any]:
         "adaptive": mesh.adaptive,
         "mismatch": mesh.mismatch,
         "slave": mesh.slave,
+        "search": simulated(scene, method)["search"],
+        "bend": mesh.bend,
         "steps": None if mesh.steps == "auto" else mesh.steps,
         "angle": pose.angle,
         "mirror": pose.mirror,

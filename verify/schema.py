@@ -64,8 +64,11 @@ class Effects(Section):
     """Whether damage stays on unloading."""
     symmetry: bool | Literal["auto"] = False
     """Whether one arm is modelled for both; not for a peel."""
+    search: bool | Literal["auto"] = True
+    """For a dcb: whether points look for the place on the other face that they are opposite to now, or keep the first
+    one and the normal there; linear kinematics always keeps them."""
 
-    @field_validator("contact", "irreversible", "symmetry", mode="before")
+    @field_validator("contact", "irreversible", "symmetry", "search", mode="before")
     @classmethod
     def _switched_or_chosen(cls, effect: object) -> object:
         if not isinstance(effect, bool) and effect != "auto":
@@ -113,6 +116,8 @@ class Discretization(Section):
     """The body whose points carry the interface."""
     steps: int | Literal["auto"] = 150
     """Equal opening increments; "auto": chosen by accuracy where the mesh resolves the process zone."""
+    bend: float = Field(default=0.005, ge=1e-5, le=0.2)
+    """For steps "auto": how far off its tangent the load may be, as a part of the peak load."""
 
     @field_validator("interface_points")
     @classmethod
@@ -202,6 +207,8 @@ class Scene(Section):
         specimen = info.data.get("specimen")
         if effects.symmetry is True and specimen is not None and specimen.kind == "peel":
             raise refuse("false for a peel: strip and substrate differ", (("symmetry",), True))
+        if effects.search is False and specimen is not None and specimen.kind == "peel":
+            raise refuse("true for a peel: strip and substrate turn", (("search",), False))
         return effects
 
     @field_validator("discretization")

@@ -312,6 +312,22 @@ def test_steps_chosen_by_accuracy_end_in_balance(basis, kinematics):
     assert end.status == "complete" and max(residuals) <= DEFAULT.settle
 
 
+def test_the_further_steps_may_leave_their_tangents_the_fewer_there_are():
+    system = build(replace(CZM1, dofs=800, interface_points=4)).system
+    taken = []
+    for bend in (0.003, 0.03):
+        *points, end = follow(system, (2.0,), None, bend=bend)
+        away = [
+            abs(b.state.load - a.state.load - a.slope * (b.opening - a.opening))
+            for a, b in zip(points, points[1:], strict=False)
+        ]
+        peak = max(loads(points))
+        assert end.status == "complete" and np.median(away) < bend * peak
+        taken.append(len(points) - 1)
+    print(f"{taken} steps")
+    assert taken[1] < 0.7 * taken[0]
+
+
 NUMBERS = ("length", "arm_thickness", "precrack", "E1", "E2", "G12", "nu12", "strength", "toughness", "ductility")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from math import sin, sqrt
 from pathlib import Path
 
@@ -23,7 +24,7 @@ from verify.scene import Scene, load_scene
 from verify.verification import scene_report
 
 COARSE = ("discretization.dofs=300", "discretization.steps=12", "effects.kinematics=linear")
-ALL_AUTO = tuple(f"effects.{key}=auto" for key in ("kinematics", "contact", "irreversible", "symmetry"))
+ALL_AUTO = tuple(f"effects.{key}=auto" for key in ("kinematics", "contact", "irreversible", "symmetry", "search"))
 
 #: A strip on a soft layer, with a penalty no stiffer than the bond: contact matters little there.
 PEEL = (*COARSE, "discretization.dofs=700", "effects.contact=false", "load.opening=2.0")
@@ -99,10 +100,13 @@ def test_what_a_squeezed_bond_is_worth_is_that_of_a_beam_on_it(alpha: float) -> 
         ("dcb-czm1", ("discretization.mismatch=2",), "symmetry", False, "meshed differently"),
         ("dcb-czm1", ('specimen.mesh=["a.iga", "b.iga"]',), "symmetry", False, "a mesh of its own"),
         ("peel-60", (), "symmetry", False, "differ"),
+        ("dcb-czm1", ("effects.symmetry=false",), "search", False, "alike"),
+        ("dcb-czm1", ("discretization.mismatch=2",), "search", True, "meshed differently"),
+        ("peel-60", (), "search", True, "differ"),
     ],
 )
 def test_auto_decides_and_says_why(name: str, overrides: tuple[str, ...], key: str, value: object, why: str) -> None:
-    scene = load_scene(name, (*overrides, *ALL_AUTO))
+    scene = load_scene(name, (*ALL_AUTO, "effects.kinematics=finite", *overrides, f"effects.{key}=auto"))
     found = next(one for one in decided(scene) if one.key == key)
     assert found.value == value and simulated(scene, "tspline")[key] == value
     assert why in str(found) and str(found).startswith(f"effects.{key}: ")
@@ -134,6 +138,29 @@ def run_of(name: str, overrides: tuple[str, ...]) -> tuple[Scene, Result]:
     result = solve(scene, "nurbs")
     assert result.complete
     return scene, result
+
+
+def test_alike_arms_need_no_search_and_the_run_shows_it() -> None:
+    """The same curve, and a bond that turns with neither arm; turned by hand it says so."""
+    finite = ("discretization.dofs=400", "discretization.steps=40", "load.opening=1.0")
+    scene, result = run_of("dcb-czm1", (*finite, "effects.search=false"))
+    assert distance(cubics(result), solve(load_scene("dcb-czm1", finite), "nurbs")) < 2e-3
+    (said,) = neglected.of_run(scene, result)
+    assert said.key == "search" and said.negligible and said.value < 1e-9
+    turn, snapshots = 0.1, []
+    for snapshot in result.snapshots:
+        x = snapshot.X_euvi + snapshot.u_euvi
+        turned = np.stack([x[..., 0] - turn * x[..., 1], x[..., 1] + turn * x[..., 0]], -1) / sqrt(1.0 + turn**2)
+        snapshots.append(replace(snapshot, u_euvi=turned - snapshot.X_euvi))
+    (said,) = neglected.of_run(scene, replace(result, snapshots=tuple(snapshots)))
+    assert not said.negligible and "tilts by up to 5.7 degrees" in said.sentence
+
+
+@pytest.mark.parametrize("effects", ["effects.kinematics=linear", "effects.symmetry=true"])
+def test_nothing_is_looked_for_where_nothing_moves_away_or_there_is_one_arm(effects: str) -> None:
+    scene = load_scene("dcb-czm1", (effects,))
+    assert scene.effects.search is True and simulated(scene, "nurbs")["search"] is False
+    assert "search" not in {one.key for one in neglected.of_run(*run_of("dcb-czm1", (*COARSE[:2], effects)))}
 
 
 @pytest.mark.parametrize("key", WITHOUT)

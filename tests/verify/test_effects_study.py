@@ -54,10 +54,11 @@ def test_every_effect_is_switched_from_what_the_scene_has() -> None:
         "contact": ("as it is", "effects.contact=false"),
         "irreversible": ("as it is", "effects.irreversible=false"),
         "symmetry": ("effects.symmetry=true", "as it is"),
+        "search": ("as it is", "effects.search=false"),
     }
-    assert plan.reasons == () and len(plan.jobs) == 5 and len(set(job.place for job in plan.jobs)) == 5
+    assert plan.reasons == () and len(plan.jobs) == 6 and len(set(job.place for job in plan.jobs)) == 6
     again = list(plan.repeats())
-    assert len(again) == 5 * TIMES and len({job.task().key for job in (*plan.jobs, *again)}) == 5 * (TIMES + 1)
+    assert len(again) == 6 * TIMES and len({job.task().key for job in (*plan.jobs, *again)}) == 6 * (TIMES + 1)
     assert [job.repeat for job in again[:5]] == [1] * 5, "all of them one after the other, and then again"
 
 
@@ -84,7 +85,7 @@ def test_what_is_automatic_is_switched_from_what_it_stands_for() -> None:
 def test_what_a_scene_does_not_admit_is_left_out_in_words(name: str, method: str, reason: str) -> None:
     plan = planned(name, load_scene(name), method)
     assert any(text.startswith(reason) for text in plan.reasons)
-    assert len(plan.pairs) + len(plan.reasons) == 4
+    assert len(plan.pairs) + len(plan.reasons) == 5
 
 
 # --- two runs
@@ -183,7 +184,7 @@ def test_a_study_from_runs_to_files(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert float(rows["kinematics"]["time_ratio"]) == pytest.approx(3.1)
     assert float(rows["kinematics"]["end_change"]) == pytest.approx(1 / 0.99 - 1)
     about = json.loads((tmp_path / "effects.json").read_text())
-    assert set(about["effects"]) == {"kinematics", "contact", "irreversible", "symmetry"}
+    assert set(about["effects"]) == {"kinematics", "contact", "irreversible", "symmetry", "search"}
     assert about["effects"]["kinematics"]["sentence"].endswith("3.1 x time") and about["method"] == "nurbs"
     assert about["simulated"]["kinematics"] == "finite" and about["left_out"] == []
     pytest.importorskip("matplotlib")

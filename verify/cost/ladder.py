@@ -16,10 +16,10 @@ from verify.schema import Scene
 RATIO, RUNGS = 1.4, 8
 
 #: Steps asked for in the first place, enough for the sharp peak of ``peel-120``; few ones for every mesh that is
-#: accurate, and others for the best of them. The ``iga`` path chooses its own, few steps where it is asked to; those of
-#: the DOLFINx path are counted, and the front adds to them.
-STEPS, FEW_STEPS, OTHER_STEPS = 80, {"dolfinx": 20}, (40, 150)
-FEW_STEPS_OF_IGA = "auto"
+#: accurate, and others for the best of them. The ``iga`` path chooses its own, few where it is asked to, fewer where
+#: they may leave their tangents further; those of the DOLFINx path are counted, and the front adds to them.
+STEPS, FEW_STEPS, OTHER_STEPS = 80, {"dolfinx": (20,)}, (40, 150)
+FEW_STEPS_OF_IGA = ("auto", "auto-0.02", "auto-0.05")
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class Try:
     def with_few_steps(self) -> Iterator[Try]:
         """The same mesh with as few steps as the path takes."""
         if self.family is not BEAM:
-            yield replace(self, steps=FEW_STEPS.get(self.family.solver, FEW_STEPS_OF_IGA))
+            yield from (replace(self, steps=few) for few in FEW_STEPS.get(self.family.solver, FEW_STEPS_OF_IGA))
 
     def with_other_steps(self) -> Iterator[Try]:
         """The same mesh with other numbers of steps."""
@@ -113,14 +113,17 @@ def ladders(source: str, scene: Scene, given: Sequence[str]) -> tuple[dict[Famil
 
 
 def _overrides(family: Family, scene: Scene, size: int, steps: int | str) -> tuple[str, ...]:
-    paced = f"discretization.steps={steps}"
+    """As the DOLFINx model keeps its pairs of points for good, ``iga`` does, too, where the arms are alike."""
+    asked, _, bend = str(steps).partition("-")
+    paced = (f"discretization.steps={asked}", *((f"discretization.bend={bend}",) if bend else ()))
     if family.solver == "beam":
-        return (paced,)
+        return paced
     if family.solver == "dolfinx":
-        return (paced, f"dolfinx.degree={family.degree}", f"dolfinx.elements={size}")
+        return (*paced, f"dolfinx.degree={family.degree}", f"dolfinx.elements={size}")
     points = max(family.degree + MORE_POINTS, scene.discretization.interface_points)
     return (
-        paced,
+        *paced,
+        *(("effects.search=auto",) if scene.effects.search is True else ()),
         f"discretization.degree={family.degree}",
         f"discretization.dofs={size}",
         f"discretization.interface_points={points}",

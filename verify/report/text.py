@@ -151,6 +151,7 @@ def _effects(scene: Scene) -> str:
         },
         "irreversible": {True: "irreversible damage", False: "reversible damage (nothing is dissipated)"},
         "contact": {True: "contact on closing", False: "no contact"},
+        "search": {True: "points look for the other face", False: "points keep their places on the other face"},
         "symmetry": {True: "one arm against the symmetry plane", False: f"both {_bodies(scene)} modelled"},
     }
     return ", ".join(words[key][found[key]] + (", chosen automatically" if key in chosen else "") for key in words)

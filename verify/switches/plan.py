@@ -33,6 +33,7 @@ SWITCHES = (
     Switch("contact", "contact", "true", "false"),
     Switch("irreversible", "irreversible damage", "true", "false"),
     Switch("symmetry", "symmetry", "true", "false"),
+    Switch("search", "search for the other face", "true", "false"),
 )
 
 
