@@ -26,15 +26,15 @@ width, G_c = scene.specimen.width, scene.interface.toughness
 # The only parts of the boundary that contribute are the two loaded faces. With the mean slope $s = du_y/dX$ of each,
 # the load $P$, and the strain energy density $W$ on the faces:
 #
-# $$ J = \frac{P}{b} \bigl( |s_1| + |s_2| \bigr) - \sum_{faces} \int W \, dY . $$
+# $$ J = \frac{P}{b} \bigl( |s_1| + |s_2| \bigr) - \sum_{\mathrm{faces}} \int W \, dY . $$
 #
 # ## From the inside
 #
-# Along the interface $J$ is the work of the tractions up to the gap $g_{tip}$ at the end of the precrack:
+# Along the interface $J$ is the work of the tractions up to the gap $g_{\mathrm{tip}}$ at the end of the precrack:
 #
-# $$ J = \int_0^{g_{tip}} p(g) \, dg , $$
+# $$ J = \int_0^{g_{\mathrm{tip}}} p(g) \, dg , $$
 #
-# and once that gap is beyond $g_u$ the area is all there is: $J = G_{Ic}$, while the crack grows, for ever.
+# and once that gap is beyond $g_u$ the area is all there is: $J = G_{\mathrm{Ic}}$, while the crack grows, for ever.
 
 
 # %%

