@@ -1,17 +1,21 @@
 """Frames for ParaView: which ones are written, and that they say what the solver has found."""
 
 import xml.etree.ElementTree as ElementTree
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from iga_files import real
 from vtu_files import arrays
 
+from iga.arms import arm_meshes
 from iga.basis import block_basis
 from iga.bernstein import bernstein, tensor
+from iga.boundary import body_mesh
 from iga.bulk import gradient
 from iga.kinematics import cauchy_stress
+from iga.surface import surface
 from verify.cli import parser
 from verify.frames import Frames, bezier_values, cleared, solid_cells, through_thickness
 from verify.jobs import Job
@@ -125,12 +129,28 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", CASES)
+def rational(problem):
+    """The problem on arms whose weights change through them: the same rectangles, in rational functions."""
+    meshes = arm_meshes(problem)
+    return replace(problem, meshes=tuple(replace(m, w_A=1.0 + 2.0 * np.abs(m.P_AI[:, 1])) for m in meshes))
+
+
+def unstructured() -> Scene:
+    """Two squares of a file with extraordinary points, one on the other."""
+    path = real("square_unstructured")
+    body = body_mesh(path)
+    ends = surface(body, body.chains["bottom"], 0).bezier_points(body.P_AI)[:, 0, 0]
+    tip = float(ends[np.argmin(np.abs(ends - 0.5))])
+    shape = ("specimen.length=1.0", "specimen.arm_thickness=1.0", f"specimen.precrack={tip}", "discretization.steps=4")
+    return dcb(f"specimen.mesh=['{path}']", *shape, "load.opening=2e-4", "interface.strength=40.0")
+
+
+@pytest.mark.parametrize("case", [*CASES, "rational", "unstructured"])
 def test_files_say_what_the_solver_found(case, tmp_path):
-    method, scene = CASES[case]
+    method, scene = CASES[case] if case in CASES else ("tspline", unstructured() if case == "unstructured" else dcb())
     watched = Watched(Frames(tmp_path, scene, method, 4), [])
     solver, problem = iga_problem(scene, method)
-    solution = solver.solve(problem, on_frame=watched)
+    solution = solver.solve(rational(problem) if case == "rational" else problem, on_frame=watched)
     assert solution.status == "complete" and len(watched.written) >= 4
     for (_, file), (specimen, point) in zip(series(tmp_path), watched.written, strict=True):
         found, _ = arrays(file)
@@ -139,7 +159,8 @@ def test_files_say_what_the_solver_found(case, tmp_path):
         assert found["body"].ravel().tolist() == [
             number for number, mesh in enumerate(specimen.meshes) for _ in range(mesh.elements)
         ]
-        assert "RationalWeights" not in found  # all weights are one
+        # elsewhere all are one; the file of the plug-in has them so to its last digits
+        assert ("RationalWeights" in found) == (case in ("rational", "unstructured"))
         first = 0
         for body in specimen.bodies:
             u_Ai = point.state.u_d.reshape(-1, 2)[body.points]
@@ -157,7 +178,8 @@ def compared(found, first, body, block, u_Ai, kinematics, method, scene) -> int:
     p, q = block.degrees
     n_e, n_b = len(block.conn_ea), (p + 1) * (q + 1)
     assert np.all(found["HigherOrderDegrees"][first : first + n_e] == [p, q, 0])
-    rows = slice(n_b * first, n_b * (first + n_e))
+    start = 0 if first == 0 else found["offsets"][first - 1, 0]
+    rows = slice(start, start + n_b * n_e)
     s, t = np.meshgrid(np.linspace(0.0, 1.0, p + 1), np.linspace(0.0, 1.0, q + 1))
     points_q = np.stack([s.ravel(), t.ravel()], -1)
     basis = block_basis(body.mesh, block, points_q, np.ones(n_b))
@@ -166,8 +188,11 @@ def compared(found, first, body, block, u_Ai, kinematics, method, scene) -> int:
     else:
         shape_qb = tensor(bernstein(p, points_q[:, 0]), bernstein(q, points_q[:, 1]))[:, vtk_order((p, q))]
 
+    w_eb = found["RationalWeights"][rows].reshape(n_e, n_b) if "RationalWeights" in found else np.ones((n_e, n_b))
+
     def at_points(name):
-        return shape_qb @ found[name][rows].reshape(n_e, n_b, -1)
+        values_eqk = shape_qb @ (found[name][rows].reshape(n_e, n_b, -1) * w_eb[..., None])
+        return values_eqk / (w_eb @ shape_qb.T)[..., None]
 
     size = np.abs(body.mesh.P_AI).max()
     assert np.abs(at_points("Points")[..., :2] - basis.X_eqI).max() < 1e-13 * size
