@@ -18,6 +18,7 @@ from verify.arguments import accuracy, column, count, fraction, number, numbers,
 from verify.commands import FAILED  # noqa: E402
 from verify.refusal import Refusal  # noqa: E402
 from verify.say import say  # noqa: E402
+from verify.shell.spelling import Help, parsed  # noqa: E402
 
 REFUSED, INTERRUPTED = 2, 130
 
@@ -29,55 +30,82 @@ Parser = argparse.ArgumentParser
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; its exit code: 0 fine, 1 something failed, 2 bad input, 130 interrupted."""
-    options = parser().parse_args(arguments)
+    options = None
     try:
+        options = parsed(parser(), sys.argv[1:] if arguments is None else arguments)
         return options.command(options)
     except Refusal as error:
         say(str(error))
         return REFUSED
     except KeyboardInterrupt:
-        where = f"; what is in {options.out} is valid" if getattr(options, "out", None) else ""
-        say(f"interrupted{where}")
+        say(f"interrupted{_how_to_go_on(options)}")
         return INTERRUPTED
     except BrokenPipeError:  # the reader of our output has left: no more of it, and no complaint at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
 
 
+def _how_to_go_on(options: argparse.Namespace | None) -> str:
+    """What an interrupt has left, and what the same command does with it."""
+    if options is None or not options.keeps or getattr(options, "dry_run", False):
+        return "; the same command again starts over"
+    kept, then = options.keeps
+    return f"; {kept} in {options.out}, and the same command again {then}"
+
+
 def parser() -> Parser:
     """Every command with its options and one example."""
-    text = "Verify codes for interface debonding."
-    top = Parser(prog="debond", description=text, epilog="example: debond verify", allow_abbrev=False)
+    top = Parser(
+        prog="debond",
+        description="Verify codes for interface debonding.",
+        epilog="example: debond verify\n         # every method on every scene; read debond-report/report.html",
+        formatter_class=Help,
+        allow_abbrev=False,
+    )
     subs = top.add_subparsers(title="commands", required=True, metavar="COMMAND")
 
-    def command(function: Callable[[argparse.Namespace], int], text: str, example: str) -> Parser:
-        texts = {"help": text, "description": text, "epilog": f"example: debond {example}"}
-        sub = subs.add_parser(function.__name__, **texts, allow_abbrev=False)
-        sub.set_defaults(command=function)
+    def command(function: Callable[[argparse.Namespace], int], text: str, example: str, leaves: str) -> Parser:
+        texts = {"help": text, "description": text, "epilog": f"example: debond {example}\n         # {leaves}"}
+        sub = subs.add_parser(function.__name__, **texts, formatter_class=Help, allow_abbrev=False)
+        sub.set_defaults(command=function, keeps=None)
         return sub
 
     text = "Every method on every scene, all checks, one report."
-    _verify_options(command(commands.verify, text, "verify dcb-czm1 --jobs 2"))
+    leaves = "read debond-report/report.html; exit 0: all checks hold"
+    _verify_options(command(commands.verify, text, "verify dcb-czm1 --jobs 2", leaves))
     text = "One scene by one method: T-splines, NURBS, Lagrange or DOLFINx elements, a beam, LEFM."
     example = "solve dcb-czm1 --method tspline --set discretization.adaptive=true"
-    _solve_options(command(commands.solve, text, example))
+    leaves = "curve.csv and result.json in debond-out/dcb-czm1-tspline"
+    _solve_options(command(commands.solve, text, example, leaves))
     text = "What accuracy costs in time: every method on ever finer meshes, one chart."
-    _cost_options(command(commands.cost, text, "cost dcb-czm1 --out cost"))
+    _cost_options(command(commands.cost, text, "cost dcb-czm1 --out cost", "read cost/report.html"))
     text = "What each effect changes and costs: on and off, everything else as the scene says."
-    _effects_options(command(commands.effects, text, "effects dcb-czm1 --out effects"))
+    _effects_options(command(commands.effects, text, "effects dcb-czm1 --out effects", "read effects/report.html"))
     text = "How time and memory grow up to 100,000 unknowns, what more ranks gain, what to expect of many."
-    _scaling_options(command(commands.scaling, text, "scaling dcb-czm1 --out scaling"))
+    _scaling_options(command(commands.scaling, text, "scaling dcb-czm1 --out scaling", "read scaling/report.html"))
     text = "The cases on which cohesive codes stop or go wrong."
-    _hard_options(command(commands.hard, text, "hard coarse-czm2 --jobs 2"))
+    _hard_options(command(commands.hard, text, "hard coarse-czm2 --jobs 2", "read debond-hard/report.html"))
     text = "Two load-opening curves: error, peak, energy; of runs, or of anybody's code."
     example = "compare my.csv run --opening-a U2 --load-a RF2 --curve-tol 0.01"
-    _compare_options(command(commands.compare, text, example))
+    _compare_options(command(commands.compare, text, example, "a table; exit 1: my.csv is more than 1 % off the run"))
     text = "One scene for another code: mesh, sets, interface pairs, material, law and steps."
-    _export_options(command(commands.export, text, "export dcb-czm1 --format abaqus"))
-    _mesh_options(command(commands.mesh, "What a mesh file holds, and its picture.", "mesh arch.iga --out arch.vtu"))
-    command(commands.scenes, "List the packaged scenes.", "scenes")
-    command(commands.doctor, "What is installed, what works, how to get the rest.", "doctor")
-    sub = command(commands.test, "Run the tests; arguments go to pytest.", "test -k curve")
+    leaves = "input files in debond-export/dcb-czm1-abaqus"
+    _export_options(command(commands.export, text, "export dcb-czm1 --format abaqus", leaves))
+    text = "What a mesh file holds, and its picture."
+    _mesh_options(command(commands.mesh, text, "mesh arch.iga --out arch.vtu", "facts here, cells for ParaView there"))
+    text = "The packaged scenes, a line each; those that are named with a drawing and their numbers."
+    sub = command(commands.scenes, text, "scenes dcb-czm1", "the specimen, drawn")
+    sub.add_argument("scenes", nargs="*", metavar="SCENE", help="a packaged name or a file; default: the list")
+    text = "A scene file to start from: every key with what it is, its unit, its range and its default."
+    sub = command(commands.new, text, "new dcb > my.toml", "change it, then: debond solve my.toml")
+    sub.add_argument("kind", metavar="KIND", help="dcb or peel")
+    text = "What completes commands, options, scenes, methods and keys at the tab key of a shell."
+    sub = command(commands.completion, text, "completion bash > ~/.debond-completion", "source it in ~/.bashrc")
+    sub.add_argument("shell", metavar="SHELL", help="bash, zsh or fish")
+    sub.set_defaults(parser=top)
+    text = "What is installed, what works, how to get the rest."
+    command(commands.doctor, text, "doctor", "one line a package, then what works")
+    sub = command(commands.test, "Run the tests; arguments go to pytest.", "test -k curve", "the tests of curves")
     sub.add_argument("rest", nargs=argparse.REMAINDER, metavar="ARG")
     return top
 
@@ -121,6 +149,7 @@ def _solve_options(sub: Parser) -> None:
     sub.add_argument("--fields", action="store_true", help=what)
     what = "with --fields, frames for ParaView along the programme; default: 30, 0: none"
     sub.add_argument("--frames", type=count, default=30, metavar="N", help=what)
+    sub.set_defaults(keeps=("what is done is valid", "starts over"))
 
 
 def _cost_options(sub: Parser) -> None:
@@ -215,6 +244,7 @@ def _jobs_option(sub: Parser, what: str) -> None:
 
 def _dry_run_option(sub: Parser) -> None:
     sub.add_argument("--dry-run", action="store_true", help="print the runs and the time that they would take")
+    sub.set_defaults(keeps=("the runs that are done are kept", "does the rest"))
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from shutil import get_terminal_size
 from typing import TYPE_CHECKING
 
 from verify.refusal import Refusal
@@ -259,16 +260,32 @@ def mesh(options: argparse.Namespace) -> int:
 def scenes(options: argparse.Namespace) -> int:
     from verify.plugins import plugins
     from verify.scene import load_scene, packaged_scenes
+    from verify.shell import scene_list
 
+    width = get_terminal_size((200, 24)).columns  # one line a scene for programs
+    if options.scenes:
+        return _listed(["\n\n".join([scene_list.page(load_scene(name), width) for name in options.scenes])])
     for name in packaged_scenes():
-        scene = load_scene(name)
-        law, specimen, opening = scene.interface, scene.specimen, max(scene.load.opening)
-        print(
-            f"{name:24} {specimen.kind}, {scene.effects.kinematics} kinematics, strength {law.strength:g}, "
-            f"toughness {law.toughness:g}, opened to {opening:g} ({scene.units})"
-        )
+        print(scene_list.line(name, load_scene(name), width))
     for plugin in plugins().values():
         print(f"method of another package: {plugin.name} ({plugin.package})")
+    return 0
+
+
+def new(options: argparse.Namespace) -> int:
+    from verify.shell.new_scene import new_scene
+
+    print(new_scene(options.kind), end="")
+    return 0
+
+
+def completion(options: argparse.Namespace) -> int:
+    from verify.complaints import one_of
+    from verify.shell.completion import SHELLS, script
+
+    if options.shell not in SHELLS:
+        raise Refusal(f"SHELL: must be {one_of(SHELLS)}, got {options.shell!r}")
+    print(script(options.parser, options.shell), end="")
     return 0
 
 

@@ -57,12 +57,22 @@ def _sentence(e: ErrorDetails, raw: Mapping[str, Any]) -> str:
     key = _dotted(path, raw)
     if e["type"] == "extra_forbidden":
         known = list(model.model_fields)
-        hint = suggestion(str(path[-1]), known) or f"the keys here are {', '.join(known)}"
+        name = str(path[-1])
+        other = "" if path[0] in _ALTERNATIVES else _elsewhere(name)  # bodies of one kind lack keys of the others
+        hint = other or suggestion(name, known) or f"the keys here are {', '.join(known)}"
         return f"{key}: is not a key of a scene, got {_shown(e['input'])}; {hint}"
     if e["type"] == "missing":
         return f"{key}: is missing, must be {_expected(field, path, full=True)}"
     outside = e["type"].startswith(("greater_than", "less_than"))
     return f"{key}: must be {_expected(field, path, full=not outside)}, got {_shown(e['input'])}"
+
+
+def _elsewhere(name: str) -> str:
+    """Where a key of this name would be one, if it has been put into the wrong table."""
+    from verify.shell.keys import dotted_keys  # which reads scenes, and so needs this file
+
+    places = [key for key in dotted_keys() if "." in key and key.rpartition(".")[2] == name]
+    return f"did you mean {one_of(places)}?" if places else ""
 
 
 def _place(loc: tuple[str | int, ...]) -> tuple[type[Section], FieldInfo | None, tuple[str | int, ...]]:

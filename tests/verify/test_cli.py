@@ -15,7 +15,9 @@ import numpy as np
 import pytest
 
 from verify import lefm, methods
-from verify.cli import main
+from verify.cli import main, parser
+from verify.shell.completion import Command, commands
+from verify.shell.spelling import parsed
 
 PROJECT = Path(__file__).resolve().parents[2]
 PROGRAM = [sys.executable, "-P", "-m", "verify.cli"]
@@ -25,7 +27,16 @@ CURVE = "opening,load\n0,0\n1,2\n3,1\n"
 #: command line -> what its message must say
 REFUSED = {
     "": "COMMAND",
-    "nosuch": "nosuch",
+    "nosuch": "nosuch: is no command; the commands are verify,",
+    "sovle dcb-czm1": 'sovle: is no command; did you mean "solve"?',
+    "solve dcb-czm1 --metod nurbs": '--metod: is no option of solve; did you mean "--method"',
+    "solve dcb-czm1 nurbs": "nurbs: is more than solve takes",
+    "solve dcb-czm1 --set strength=4": 'strength: is not a key of a scene, got 4; did you mean "interface.strength"?',
+    "solve dcb-czm1 --set load.strength=4": 'did you mean "interface.strength"?',
+    "solve dcb-czm1 --set interfce.strength=4": 'did you mean "interface"?',
+    "solve dcb-czm1 --set specimen.mesh=5": "specimen.mesh: must be a file name, or a list of two, got 5",
+    "effects dcb-czm1 --method nubrs": 'did you mean "nurbs"?',
+    "hard coarse-cmz2": 'coarse-cmz2: is no hard case; did you mean "coarse-czm2"?',
     "solve": "SCENE",
     "solve dcb-czm3": 'did you mean "dcb-czm2"',
     "solve /dev/null": "specimen: is missing",
@@ -72,7 +83,8 @@ REFUSED = {
     "compare curve.csv holes.csv": "holes.csv:3: column 'load' must be a finite number, got ''",
     "compare curve.csv point.csv": "point.csv: must hold at least 2 points of different opening",
     "compare curve.csv curve.csv --tolerance -1": "argument --curve-tol/--tolerance: must be a number >= 0, got '-1'",
-    "scenes all": "all",
+    "scenes all": "is neither a packaged scene nor a file",
+    "doctor all": "all: is more than doctor takes",
 }
 
 
@@ -123,10 +135,21 @@ def test_the_smallest_mesh_is_the_one_that_the_solver_takes() -> None:
                 arm_meshes(Problem(basis=method, degree=degree, dofs=least - 1, **keys))
 
 
-@pytest.mark.parametrize("command", ["", "verify", "solve", "hard", "compare", "scenes", "doctor", "test"])
-def test_help_has_an_example(command: str, capsys: pytest.CaptureFixture) -> None:
-    assert exit_code([*command.split(), "--help"]) == 0
-    assert f"example: debond {command}" in capsys.readouterr().out
+@pytest.mark.parametrize("columns", [40, 200])
+@pytest.mark.parametrize("command", [None, *commands(parser())], ids=lambda command: command.name if command else "")
+def test_help_ends_with_an_example_that_can_be_typed(
+    command: Command | None, columns: int, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(columns))
+    assert exit_code([*([command.name] if command else []), "--help"]) == 0
+    said = capsys.readouterr().out
+    example, leaves = said.splitlines()[-2:]
+    assert example.startswith("example: debond ") and leaves.startswith("         # ")
+    words = shlex.split(example.removeprefix("example: debond ").partition(" > ")[0])
+    assert command is None or words[0] == command.name
+    if words[0] != "test":  # pytest reads those
+        assert parsed(parser(), words).command.__name__ == words[0]
+    assert "\x1b" not in said
 
 
 def test_solve_writes_a_folder(folder: Path, capsys: pytest.CaptureFixture) -> None:

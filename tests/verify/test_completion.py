@@ -1,0 +1,90 @@
+"""Completion, as the shells themselves do it."""
+
+from __future__ import annotations
+
+import shlex
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from verify.cli import main, parser
+from verify.hard.cases import CASES
+from verify.methods import METHODS
+from verify.scene import packaged_scenes
+from verify.shell.completion import SHELLS, commands, script
+from verify.shell.keys import dotted_keys
+
+
+@pytest.fixture(scope="module")
+def bash(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("completion") / "debond.bash"
+    path.write_text(script(parser(), "bash"))
+    return path
+
+
+def completed(bash: Path, *words: str) -> list[str]:
+    """What bash offers for the last of the words of a command line."""
+    if shutil.which("bash") is None:
+        pytest.skip("needs bash")
+    ask = f"""
+        source {shlex.quote(str(bash))}
+        COMP_WORDS=(debond {shlex.join(words)}) COMP_CWORD={len(words)}
+        compopt() {{ :; }}  # there is no command line to set the options of
+        $(complete -p debond | sed 's/.*-F \\([^ ]*\\) .*/\\1/')
+        printf '%s\\n' "${{COMPREPLY[@]}}"
+    """
+    ended = subprocess.run(["bash", "-c", ask], capture_output=True, text=True, timeout=60, cwd=bash.parent)
+    assert ended.stderr == ""
+    return ended.stdout.split()
+
+
+def test_bash_completes_commands_options_and_words(bash: Path) -> None:
+    assert completed(bash, "") == ["--help", *(one.name for one in commands(parser()))]
+    assert completed(bash, "so") == ["solve"]
+    assert completed(bash, "solve", "--m") == ["--method"]
+    assert completed(bash, "solve", "dcb-czm1", "--method", "") == list(METHODS)
+    assert completed(bash, "effects", "dcb-czm1", "--method", "nu") == ["nurbs"]
+    assert completed(bash, "solve", "dcb-czm1", "--set", "interface.") == [
+        f"interface.{key}=" for key in ("ductility", "law", "penalty", "strength", "toughness")
+    ]
+    assert completed(bash, "solve", "dcb-czm1", "--set", "")[-1] == f"{dotted_keys()[-1]}="
+    assert completed(bash, "solve", "dcb-czm1", "--dofs", "") == []
+    assert completed(bash, "hard", "") == list(CASES)
+    assert completed(bash, "new", "") == ["dcb", "peel"]
+    assert completed(bash, "completion", "") == list(SHELLS)
+    assert completed(bash, "verify", "--format", "") == ["html", "md"]
+
+
+def test_bash_completes_scenes_and_files(bash: Path) -> None:
+    (bash.parent / "dcb-own.toml").touch()
+    for command in ("solve", "verify", "cost", "scenes"):
+        found = completed(bash, command, "dcb-")
+        assert set(found) == {name for name in packaged_scenes() if name.startswith("dcb-")} | {"dcb-own.toml"}
+    assert completed(bash, "compare", "dcb-") == ["dcb-own.toml"]
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_every_command_and_option_is_in_the_script(shell: str, capsys: pytest.CaptureFixture) -> None:
+    assert main(["completion", shell]) == 0
+    text = capsys.readouterr().out
+    for one in commands(parser()):
+        assert one.name in text
+        for option in one.options:
+            assert (f"-l {option[2:]} " if shell == "fish" and option[1] == "-" else option[2:]) in text
+    assert all(word in text for word in (*packaged_scenes(), *METHODS, *CASES, *dotted_keys()))
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_the_shell_can_read_its_script(shell: str, tmp_path: Path) -> None:
+    if shutil.which(shell) is None:
+        pytest.skip(f"needs {shell}")
+    (tmp_path / "script").write_text(script(parser(), shell))
+    ended = subprocess.run([shell, "-n", str(tmp_path / "script")], capture_output=True, text=True, timeout=60)
+    assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def test_another_shell_is_refused(capsys: pytest.CaptureFixture) -> None:
+    assert main(["completion", "tcsh"]) == 2
+    assert 'SHELL: must be "bash", "zsh" or "fish", got \'tcsh\'' in capsys.readouterr().err

@@ -1,0 +1,117 @@
+"""Scenes to start from, and scenes as a terminal shows them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from verify.cli import main
+from verify.complaints import _bounds
+from verify.published import Published
+from verify.scene import load_scene, packaged_scenes, parse_scene
+from verify.shell.keys import SPECIMENS, keys, keys_of
+from verify.shell.new_scene import PUBLISHED, new_scene
+from verify.shell.scene_list import line, page
+from verify.shell.sketch import sketch
+from verify.specimen import MATERIALS, Orthotropic
+
+KINDS = tuple(SPECIMENS)
+
+
+def given(text: str) -> dict[str, dict]:
+    """The tables of a scene, with those keys that stand behind a comment sign."""
+    text, published = text.split("# [[published]]")
+    bare = re.sub(r"^# (\w+ = )", r"\1", text, flags=re.MULTILINE)
+    mine = re.sub(r"^# ", "", published, flags=re.MULTILINE)
+    return tomllib.loads(bare) | {"published": tomllib.loads(mine)}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_it_is_a_scene_with_nothing_but_defaults(kind: str) -> None:
+    scene = parse_scene(tomllib.loads(new_scene(kind)))
+    least = scene.model_dump()
+    for key in keys(kind):
+        if key.table and not key.field.is_required():
+            del least[key.table][key.name]
+    assert parse_scene({name: table for name, table in least.items() if table}) == scene
+    assert scene.specimen.kind == kind
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_key_is_there_with_what_it_is_and_its_range(kind: str) -> None:
+    text = new_scene(kind)
+    tables = given(text)
+    for key in (*keys(kind), *keys_of("published", Published)):
+        assert key.name in (tables[key.table] if key.table else tables), key.dotted
+        assert key.field.description, f"{key.dotted}: say in the schema what it is"
+        for limit, sign in _bounds(key.field):
+            assert f"{sign} {limit:g}" in text
+    for name in MATERIALS[kind]:
+        assert set(Orthotropic.model_fields) <= set(tables[name])
+    assert "[length]" not in text and "[mm]" in text and "[stress]" not in text
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_stands_behind_comment_signs_is_valid_too(kind: str) -> None:
+    scene = tomllib.loads(new_scene(kind))
+    tables = given(new_scene(kind))
+    with_all = scene | {name: tables[name] for name in ("specimen", "interface")}
+    for name in MATERIALS[kind]:
+        with_all[name] = {key: tables[name][key] for key in Orthotropic.model_fields}
+    full = parse_scene(with_all | {"published": [PUBLISHED | {"source": "a book"}]})
+    assert full.interface == parse_scene(scene).interface
+
+
+def test_it_runs(tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for kind in KINDS:
+        assert main(["new", kind]) == 0
+        Path(f"{kind}.toml").write_text(capsys.readouterr().out)
+        assert main(["verify", f"{kind}.toml", "--dry-run"]) == 0
+        assert f"my-{kind}/nurbs" in capsys.readouterr().out
+    assert main(["solve", "dcb.toml", "--method", "lefm"]) == 0
+
+
+def test_another_kind_is_refused(capsys: pytest.CaptureFixture) -> None:
+    assert main(["new", "pel"]) == 2
+    assert 'pel: is no kind of specimen; did you mean "peel"?' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("width", [40, 80, 200])
+@pytest.mark.parametrize("name", packaged_scenes())
+def test_scenes_fit_the_terminal(name: str, width: int) -> None:
+    scene = load_scene(name)
+    for text in (line(name, scene, width), page(scene, width)):
+        assert "\x1b" not in text
+        words = max(map(len, text.split()))
+        assert all(len(one) <= max(width, words + 11) for one in text.splitlines())
+    assert "\n".join(sketch(scene, width)).isascii()
+    assert f"opening {scene.load.opening[0]:g}" in "\n".join(sketch(scene, width))
+
+
+@pytest.mark.parametrize("width", [40, 100])
+def test_lengths_are_drawn_to_scale(width: int) -> None:
+    def bond(share: float) -> int:
+        scene = load_scene("dcb-czm1", [f"specimen.precrack={14 * (1 - share)}", "load.opening=1"])
+        return max(one.count(":") for one in sketch(scene, width))
+
+    whole = bond(0.999)
+    assert bond(0.5) == pytest.approx(whole / 2, abs=1) and bond(0.25) == pytest.approx(whole / 4, abs=1)
+    peel = sketch(load_scene("peel-60"), width)
+    strip, base = (max(one.count(sign) for one in peel) for sign in "-/")
+    assert base / strip == pytest.approx(120 / 150, abs=0.06)
+
+
+def test_scenes_are_listed_or_shown(capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    assert main(["scenes"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) >= len(packaged_scenes())
+    monkeypatch.setenv("COLUMNS", "40")
+    assert main(["scenes", "peel-60", "dcb-czm2"]) == 0
+    text = capsys.readouterr().out
+    assert "////" in text and text.count("::::") >= 2 and max(map(len, text.splitlines())) <= 40
+    assert main(["scenes", "peel-61"]) == 2
+    assert 'did you mean "peel-60"' in capsys.readouterr().err
