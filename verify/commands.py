@@ -45,6 +45,8 @@ def solve(options: argparse.Namespace) -> int:
     if not quiet:
         for remark in (*decided(scene, options.method), *warnings(scene, options.method)):
             say(remark)
+        if options.fields and options.frames and options.method in ("beam", "lefm"):
+            say(f"--fields: the method {options.method} has no bodies to draw: no frames for ParaView")
     result, checks = _watched(run, scene, options, quiet)
     if not quiet:
         _print_result(result, checks, options.out)

@@ -16,7 +16,7 @@ from iga.boundary import body_mesh
 from iga.bulk import gradient
 from iga.kinematics import cauchy_stress
 from iga.surface import surface
-from verify.cli import parser
+from verify.cli import main, parser
 from verify.frames import Frames, bezier_values, cleared, solid_cells, through_thickness
 from verify.jobs import Job
 from verify.methods import iga_problem
@@ -283,6 +283,12 @@ def test_studies_ask_for_none():
     words = Job("dcb-czm1", dcb(), "nurbs", "nurbs").command(Path())
     assert "--fields" in words and parser().parse_args(words).frames == 0
     assert parser().parse_args(["solve", "dcb-czm1", "--fields"]).frames == 30
+
+
+def test_a_method_without_bodies_says_that_it_has_no_frames(tmp_path, capsys):
+    assert main(["solve", "dcb-czm1-linear", "--method", "lefm", "--fields", "--out", str(tmp_path)]) == 0
+    assert "--fields: the method lefm has no bodies to draw" in "".join(capsys.readouterr())
+    assert not list(tmp_path.rglob("*.pvd"))
 
 
 @pytest.mark.parametrize("value", ["-1", "2.5", "many"])
