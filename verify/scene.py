@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from verify.complaints import complaints, suggestion
+from verify.magnitudes import out_of_proportion, too_large
 from verify.refusal import Refusal
 from verify.schema import Discretization, Dolfinx, Effects, Interface, Load, Pose, Scene
 from verify.specimen import Dcb, Isotropic, Orthotropic, Peel
@@ -69,7 +70,8 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
     Parameters
     ----------
     name_or_path : a packaged name, or the path of a TOML file
-    overrides : ``dotted.key=value`` with a TOML value; a bare word is taken as text
+    overrides : ``dotted.key=value`` with a TOML value; a bare word is taken as text. Mesh files that are named here are
+        found from the working directory and may lie anywhere; those of a scene file lie in its folder or below.
 
     Raises
     ------
@@ -78,7 +80,10 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
     """
     source = str(name_or_path)
     path = _FOLDER / f"{source}.toml" if source in packaged_scenes() else Path(name_or_path)
-    return parse_scene({"name": _as_name(path.stem), **_beside(path, _read(path, source))}, overrides, source)
+    raw = _read(path, source)
+    if not any(_key_of(override) in ("specimen", "specimen.mesh") for override in overrides):
+        raw = _beside(path, raw, source)
+    return parse_scene({"name": _as_name(path.stem), **raw}, overrides, source)
 
 
 def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: str = "scene") -> Scene:
@@ -89,10 +94,16 @@ def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: s
             raw = _override(raw, override)
         except ValueError as error:
             wrong.append(str(error))
+    sizes = too_large(raw)
     try:
         scene = Scene.model_validate(raw)
+        wrong += sizes or out_of_proportion(scene)
     except ValidationError as error:
-        wrong += complaints(error, raw)
+        found = complaints(error, raw)
+        named = {sentence.partition(":")[0] for sentence in found}
+        wrong += found + [sentence for sentence in sizes if sentence.partition(":")[0] not in named]
+    except ArithmeticError:  # a rule between numbers of such sizes
+        wrong += sizes
     if wrong:
         raise SceneError(source, wrong)
     return scene
@@ -117,16 +128,32 @@ def _read(path: Path, source: str) -> dict[str, Any]:
         raise SceneError(source, [f"is not a usable TOML file: {str(error)[:100]}"]) from None
 
 
-def _beside(path: Path, raw: dict[str, Any]) -> dict[str, Any]:
-    """The scene with its mesh files found from where the scene file is."""
+def _beside(path: Path, raw: dict[str, Any], source: str) -> dict[str, Any]:
+    """The scene with its mesh files found from where the scene file is, and not from elsewhere.
+
+    A scene comes from others more often than a command line: it must not have files read that it was not sent with.
+    """
     specimen = raw.get("specimen")
     if not isinstance(specimen, Mapping) or "mesh" not in specimen:
         return raw
     names = specimen["mesh"]
-    found = [
-        str(path.parent / name) for name in ([names] if isinstance(names, str) else names) if isinstance(name, str)
-    ]
-    return {**raw, "specimen": {**specimen, "mesh": found}} if isinstance(names, str | list) and found else raw
+    if not isinstance(names, str | list):
+        return raw
+    listed = [names] if isinstance(names, str) else names
+    outside = [name for name in listed if isinstance(name, str) and not _is_below(path.parent, name)]
+    if outside:
+        rule = "must name files in the folder of the scene or below it; --set specimen.mesh=... may name any other"
+        raise SceneError(source, [f"specimen.mesh: {rule}, got {name!r}" for name in outside])
+    found = [str(path.parent / name) if isinstance(name, str) else name for name in listed]
+    return {**raw, "specimen": {**specimen, "mesh": found}}
+
+
+def _is_below(folder: Path, name: str) -> bool:
+    """Whether a path, links followed, stays in a folder."""
+    try:
+        return (folder / name).resolve().is_relative_to(folder.resolve())
+    except (OSError, ValueError, RuntimeError):  # a NUL, links in a circle
+        return False
 
 
 def _file_and_line(source: str, text: str, message: str) -> str:
@@ -141,10 +168,14 @@ def _as_name(stem: str) -> str:
 
 def _override(raw: Mapping[str, Any], override: str) -> dict[str, Any]:
     """``raw`` with one key replaced; tables on the way are made."""
-    key, equals, text = (part.strip() for part in override.partition("="))
+    key, (_, equals, text) = _key_of(override), (part.strip() for part in override.partition("="))
     if not equals or not _KEY.fullmatch(key):
         raise ValueError(f'--set {override}: must be KEY=VALUE with a dotted key, like "interface.strength=6"')
     return _replaced(raw, key.split("."), _toml_value(text, override))
+
+
+def _key_of(override: str) -> str:
+    return override.partition("=")[0].strip()
 
 
 def _replaced(table: object, path: list[str], value: object) -> dict[str, Any]:
