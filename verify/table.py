@@ -24,7 +24,8 @@ def overview(reports: Iterable[SceneReport]) -> list[str]:
         names = dict.fromkeys((check.name, check.kind) for check in report.checks)
         lines.append(f"{report.scene.name:29}" + "".join(f"{run:>12}" for run in runs))
         for name, kind in names:
-            cells = {_run(check): _cell(check) for check in report.checks if check.name == name}
+            found = sorted((check for check in report.checks if check.name == name), key=_used)
+            cells = {_run(check): _cell(check) for check in found}  # of several the one that is nearest to failing
             lines.append(f"  {name:16} {kind:10}" + "".join(f"{cells.get(run, ''):>12}" for run in runs))
         lines += [f"  {run.method}: {run.left_out}" for run in report.runs if run.result is None]
         lines += [*(f"  {remark}" for remark in report.remarks), ""]
@@ -39,6 +40,11 @@ def failures(checks: Sequence[tuple[str, Check]]) -> list[str]:
 def _run(check: Check) -> str:
     """The run that a check judges; of a pair the first."""
     return check.subject.split(" / ")[0]
+
+
+def _used(check: Check) -> tuple[bool, float]:
+    """What orders checks from well within to far beyond their tolerances; NaN fails."""
+    return not check.passed, abs(check.value) / check.tolerance if check.tolerance else 0.0
 
 
 def _cell(check: Check) -> str:

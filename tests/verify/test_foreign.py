@@ -16,7 +16,8 @@ from verify.methods import METHODS, solve
 from verify.result import Result
 from verify.scene import load_scene
 from verify.store import NAME
-from verify.verdict import Run, SceneReport
+from verify.table import overview
+from verify.verdict import Check, Run, SceneReport
 from verify.verification import planned
 
 LINEAR = "dcb-czm1-linear"
@@ -62,6 +63,8 @@ def test_a_file_becomes_a_method_of_the_report(
     (row,) = re.findall(r"<tr>\s*<th scope=\"row\"><svg class=\"sample\".*?mycode</th>.*?</tr>", page, re.DOTALL)
     assert "no reference" not in row and re.search(r"<td>[\d.]+ %|<td>[^<]*10", row)
     assert re.search(r"mycode(</a>)? / (<a[^>]*>)?beam", page) and "stroke: var(--ink)" in page
+
+    assert "its code knows" in page, "what is behind a file nobody tells"
 
     before = sorted(path for path in (folder / "out" / NAME).iterdir() if path.is_dir())
     times = [path.stat().st_mtime_ns for path in before]
@@ -111,6 +114,19 @@ def test_the_report_says_how_to_compare_it(folder: Path, beam: Result) -> None:
     assert found.runs[-1].command == words + "--opening-scale-a -2.0 --load-scale-a -1000.0"
     assert np.allclose(found.runs[-1].result.load, beam.load) and found.runs[-1].method == "mycode"
     assert joined(report, [], Path("out")) == report
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_of_several_codes_the_overview_shows_the_worst(order: int) -> None:
+    found = [
+        Check("curve", "mine / nurbs", 0.004, 0.005, "cross-code", ""),
+        Check("curve", "mine / tspline", 0.009, 0.005, "cross-code", ""),
+        Check("curve", "mine / dolfinx", 0.001, 0.005, "cross-code", ""),
+    ]
+    (row,) = [
+        line for line in overview([SceneReport(load_scene(LINEAR), (), tuple(found[::order]))]) if "curve" in line
+    ]
+    assert "9.0e-03!" in row
 
 
 def test_names_come_from_files_or_are_given(folder: Path) -> None:

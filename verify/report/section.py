@@ -23,7 +23,7 @@ from verify.report import (
     zones,
 )
 from verify.report.entry import Entry, entries
-from verify.report.style import Panel
+from verify.report.style import METHODS, Panel
 from verify.report.summary import KINDS, Tally, headline, tally
 from verify.report.text import NO_VALUE, Units, inputs, modelled, number, percent, quantity, seconds, sentence
 from verify.verdict import Check, Run, SceneReport
@@ -205,7 +205,8 @@ def _used(check: Check) -> float:
 
 
 def _run_row(entry: Entry, scene: Scene) -> RunRow:
-    units, effects = Units.of(scene.units), modelled(scene, entry.method)
+    units, ours = Units.of(scene.units), entry.method in METHODS or entry.run.folder
+    effects = modelled(scene, entry.method) if ours else "its code knows"
     if entry.agreement is None:
         return RunRow(entry, entry.run.left_out or "no converged step", effects)
     result, found = entry.result, entry.agreement
