@@ -38,23 +38,23 @@ def finite_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
     ``E = (F'F - 1)/2``, ``S = D:E``, ``P = F S``.
     """
-    F = _deformation(H)
+    F, P = _deformation(H), np.empty_like(H)
     S_v, W = _svk(D, H)
-    S = S_v[np.array(VOIGT)]
-    return np.stack([[F[i, 0] * S[0, I] + F[i, 1] * S[1, I] for I in range(2)] for i in range(2)]), W
+    for i, I in product(range(2), repeat=2):
+        P[i, I] = F[i, 0] * S_v[VOIGT[0][I]] + F[i, 1] * S_v[VOIGT[1][I]]
+    return P, W
 
 
 def finite_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
     """``A_iIjJ = delta_ij S_IJ + L_v,iI D_vw L_w,jJ`` with ``L_v,iI = dE_v/dH_iI``."""
-    F = _deformation(H)
-    S = _svk(D, H)[0][np.array(VOIGT)]
+    F, S_v = _deformation(H), _svk(D, H)[0]
     DL = _stress_rates(D, F)
     A = np.empty((2, 2, 2, 2, *H.shape[2:]))
     for i, I, j, J in product(range(2), repeat=4):
         if (i, I) <= (j, J):
             A[i, I, j, J] = F[i, I] * DL[j][J][I] + F[i, 1 - I] * DL[j][J][2]
             if i == j:
-                A[i, I, j, J] += S[I, J]
+                A[i, I, j, J] += S_v[VOIGT[I][J]]
             A[j, J, i, I] = A[i, I, j, J]
     return A
 
@@ -97,15 +97,12 @@ def _deformation(H: np.ndarray) -> np.ndarray:
 
 def _svk(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Second Piola-Kirchhoff stress (3, ...) and energy; E is formed from H to keep its digits near F = 1."""
-    E_v = np.stack(
-        [
-            H[0, 0] + 0.5 * (H[0, 0] ** 2 + H[1, 0] ** 2),
-            H[1, 1] + 0.5 * (H[0, 1] ** 2 + H[1, 1] ** 2),
-            H[0, 1] + H[1, 0] + H[0, 0] * H[0, 1] + H[1, 0] * H[1, 1],
-        ]
-    )
-    S_v = np.tensordot(D, E_v, axes=1)
-    return S_v, 0.5 * np.sum(S_v * E_v, axis=0)
+    E_v = np.empty((3, *H.shape[2:]))
+    E_v[0] = H[0, 0] + 0.5 * (H[0, 0] ** 2 + H[1, 0] ** 2)
+    E_v[1] = H[1, 1] + 0.5 * (H[0, 1] ** 2 + H[1, 1] ** 2)
+    E_v[2] = H[0, 1] + H[1, 0] + H[0, 0] * H[0, 1] + H[1, 0] * H[1, 1]
+    S_v = (D @ E_v.reshape(3, -1)).reshape(E_v.shape)
+    return S_v, 0.5 * (S_v * E_v).sum(0)
 
 
 def _stress_rates(D: np.ndarray, F: np.ndarray) -> list[list[list[np.ndarray]]]:
