@@ -140,3 +140,21 @@ def test_the_whole_site_is_built_and_has_no_bad_link(tmp_path):
     assert "13 Bezier points from 7 control points" in page and "bezier_extraction-1.png" in page
     assert "bezier_extraction" in (site / "modules" / "iga.bspline.html").read_text()
     assert links.wrong(site) == []
+    browsed(site, tmp_path / "profile")
+
+
+def browsed(site: Path, profile: Path) -> None:
+    """A browser, where there is one, asks for nothing but files and has nothing to complain about."""
+    from browser import Browser, found
+
+    if found() is None:
+        return
+    with Browser(found(), profile) as browser:
+        for page in (site / name for name in ("index.html", "theory/law.html", "examples/snap_back.html")):
+            browser.open(page)
+            assert browser.complaints == [] and all(asked.startswith(("file:", "data:")) for asked in browser.requests)
+            assert page.parent.name != "theory" or _drawn(browser)
+
+
+def _drawn(browser) -> bool:
+    return browser.ask("document.querySelector('math').getBoundingClientRect().height") > 10
