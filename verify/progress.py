@@ -14,10 +14,14 @@ class Progress:
     """Counts up to ``total``; ``advance`` to where the work is now.
 
     On a terminal with tqdm a bar, otherwise a line when there is news after ten seconds; both with the time left.
+
+    Parameters
+    ----------
+    pace : how much of ``total`` is done in a second, as far as that is known before; 0 where it is not
     """
 
-    def __init__(self, title: str, total: float, quiet: bool = False) -> None:
-        self._title, self._total, self._done = title, total, 0.0
+    def __init__(self, title: str, total: float, quiet: bool = False, pace: float = 0.0) -> None:
+        self._title, self._total, self._done, self._pace = title, total, 0.0, pace
         self._quiet = quiet
         self._start = self._said = monotonic()
         self._bar = None if quiet else _bar(title, total)
@@ -38,6 +42,13 @@ class Progress:
         elif not self._quiet and monotonic() - self._said > LINES_EVERY_SECONDS:
             self.line(f"{self._title}: {done / self._total:4.0%}{self.left} {news}")
 
+    def alive(self, news: str) -> None:
+        """Show that the work goes on, though nothing more of it is done."""
+        if self._bar is not None:
+            self._bar.set_postfix_str(f"{news}{self.left}")
+        elif not self._quiet and monotonic() - self._said > LINES_EVERY_SECONDS:
+            self.line(f"{self._title}: {news}{self.left}")
+
     def line(self, text: str) -> None:
         """A whole line, above the bar where there is one."""
         self._said = monotonic()
@@ -49,9 +60,11 @@ class Progress:
     @property
     def left(self) -> str:
         """The time that the rest takes at the rate so far: ", 3 min 20 s left", or nothing where none can be told."""
-        if not 0.0 < self._done < self._total:
-            return ""
-        return f", {duration((monotonic() - self._start) * (self._total / self._done - 1.0))} left"
+        spent = monotonic() - self._start
+        if 0.0 < self._done < self._total:
+            return f", {duration(spent * (self._total / self._done - 1.0))} left"
+        expected = self._total / self._pace - spent if self._pace and not self._done else 0.0
+        return f", about {duration(expected)} left" if expected > 0.0 else ""
 
 
 def duration(seconds: float) -> str:

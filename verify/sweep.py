@@ -13,9 +13,11 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TextIO
 
+from verify.folder import damage
 from verify.pools import Pool
 from verify.progress import Progress, duration
 from verify.store import NAME, Store, link, opened
@@ -24,6 +26,8 @@ PROJECT = Path(__file__).resolve().parent.parent
 
 #: Stands in a program for the folder that it is to write into.
 FOLDER = "{folder}"
+
+ALIVE_EVERY_SECONDS = 1.0
 
 #: Exit codes of a program that came to its end: all is well, or what it found is not.
 ENDED = (0, 1)
@@ -74,16 +78,23 @@ def sweep(tasks: Sequence[Task], out: Path, pool: Pool, title: str, say: Callabl
     say : what to tell of a task that is done, in short
     """
     with opened(out) as store:
+        damaged = {task.key: name for task in tasks if store.whole(task.key) and (name := _damage(task, store))}
+        for key in damaged:
+            store.set_aside(key)
         missing = [task for task in tasks if not store.whole(task.key)]
         at_hand = [task for task in tasks if store.whole(task.key)]
-        with Progress(title, sum(task.seconds for task in missing)) as progress:
+        with Progress(title, sum(task.seconds for task in missing), pace=_at_once(pool)) as progress:
+            if damaged:
+                names = ", ".join(sorted(set(damaged.values())))
+                progress.line(f"{title}: {len(damaged)} runs in {out} are damaged ({names}) and are done again")
             if at_hand:
                 progress.line(f"{title}: {len(at_hand)} of {len(tasks)} runs are at hand in {out}")
             for task in at_hand:
                 link(out, task.place, store.folder(task.key))
                 yield Done(task, out / task.place, at_hand=True)
             spent = 0.0
-            for count, (task, why) in enumerate(_done(missing, store, pool), len(at_hand) + 1):
+            alive = partial(_alive, progress)
+            for count, (task, why) in enumerate(_done(missing, store, pool, alive), len(at_hand) + 1):
                 kept = store.failed(task.key) if why else store.folder(task.key)
                 if kept.is_dir():
                     link(out, task.place, kept)
@@ -92,6 +103,10 @@ def sweep(tasks: Sequence[Task], out: Path, pool: Pool, title: str, say: Callabl
                 progress.advance(spent, f"{count} of {len(tasks)} runs")
                 progress.line(f"{task.place}: {say(done)} ({count} of {len(tasks)}{progress.left})")
                 yield done
+
+
+def _damage(task: Task, store: Store) -> str:
+    return damage(store.folder(task.key), task.proof)
 
 
 def listed(tasks: Sequence[Task], out: Path, jobs: int) -> list[str]:
@@ -112,8 +127,24 @@ def listed(tasks: Sequence[Task], out: Path, jobs: int) -> list[str]:
     return [*lines, f"{len(missing)} of {len(tasks)} runs to do{at_once}: about {duration(whole)}"]
 
 
-def _done(tasks: Sequence[Task], store: Store, pool: Pool) -> Iterator[tuple[Task, str]]:
+def _at_once(pool: Pool) -> int:
+    """Runs at a time, which is how many of their seconds pass in one; 0 where nobody answers."""
+    try:
+        return pool.slots()
+    except OSError:
+        return 0
+
+
+def _alive(progress: Progress, running: Sequence[Task]) -> None:
+    progress.alive(f"{running[0].place} and {len(running) - 1} more" if len(running) > 1 else running[0].place)
+
+
+def _done(
+    tasks: Sequence[Task], store: Store, pool: Pool, alive: Callable[[Sequence[Task]], None]
+) -> Iterator[tuple[Task, str]]:
     """Tasks with why they failed, as they end; of those with the same key only one runs.
+
+    ``alive`` is told every second what is running.
 
     No more than the pool can do at once are handed over, so that a lane's next task never waits behind all the others.
     """
@@ -129,7 +160,10 @@ def _done(tasks: Sequence[Task], store: Store, pool: Pool) -> Iterator[tuple[Tas
             for task in _next(waiting, list(running.values()), room):
                 waiting.remove(task)
                 running[_submitted(task, store, pool)] = task
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
+            ended = wait(running, ALIVE_EVERY_SECONDS, return_when=FIRST_COMPLETED).done
+            if running and not ended:
+                alive(list(running.values()))
+            for future in ended:
                 task = running.pop(future)
                 why = _why(future)
                 yield from ((twin, why) for twin in tasks if twin.key == task.key)
