@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import ufl
-from dolfinx import fem
+from dolfinx import fem, mesh
 
 from fem_reference.dolfinx_api import evaluate, expression
 from fem_reference.forms import cauchy_stress, constant, second_stress
@@ -78,7 +78,7 @@ def along_first(values_euvc: np.ndarray) -> np.ndarray:
     return straight[np.lexsort((rounded[:, 0], -rounded[:, 1]))]
 
 
-def _owned_values(e: fem.Expression, domain) -> np.ndarray:
+def _owned_values(e: fem.Expression, domain: mesh.Mesh) -> np.ndarray:
     return evaluate(e, domain, np.arange(domain.topology.index_map(2).size_local, dtype=np.int32))
 
 

@@ -101,7 +101,13 @@ def _newton(
         model.factorise(u_n, k_q)
         du_n, d_load = bordered_step(model, control, u_n, r_n)
 
-        def residual_at(s: float, u_n=u_n, load=load, du_n=du_n, d_load=d_load) -> np.ndarray:
+        def residual_at(
+            s: float,
+            u_n: np.ndarray = u_n,
+            load: float = load,
+            du_n: np.ndarray = du_n,
+            d_load: float = d_load,
+        ) -> np.ndarray:
             return model.residual(u_n + s * du_n, load + s * d_load, k_q)
 
         s, r_n = choose_length(model, residual_at, du_n, r_n)

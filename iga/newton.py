@@ -119,7 +119,9 @@ def _iterate(
             return None, tuple(residuals)
         decide = not met or norm > max(newton.settle, 10.0 * floor)
 
-        def at(s: float, trial=trial, move=move, decide=decide) -> tuple[State, Response, float]:
+        def at(
+            s: float, trial: State = trial, move: tuple[np.ndarray, float] = move, decide: bool = decide
+        ) -> tuple[State, Response, float]:
             moved = replace(trial, u_d=trial.u_d + s * move[0], load=trial.load + s * move[1])
             return _evaluate(system, moved, decide, phase)
 

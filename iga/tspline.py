@@ -67,7 +67,8 @@ def extracted(mesh: TMesh) -> Extraction:
     e_n, A_n = _supported(mesh, box_ek)
     count_e = np.bincount(e_n, minlength=len(box_ek))
     start_e = np.cumsum(count_e) - count_e
-    blocks, block_e, place_e = [], np.zeros(len(box_ek), dtype=int), np.zeros(len(box_ek), dtype=int)
+    blocks: list[ElementBlock] = []
+    block_e, place_e = np.zeros(len(box_ek), dtype=int), np.zeros(len(box_ek), dtype=int)
     for n_a in np.unique(count_e):
         e = np.flatnonzero(count_e == n_a)
         conn_ea = A_n[start_e[e][:, None] + np.arange(n_a)]
@@ -136,7 +137,9 @@ def _faces(mesh: TMesh, across: np.ndarray, up: np.ndarray) -> np.ndarray:
     return box[has_area]
 
 
-def _check_rectangles(across: np.ndarray, up: np.ndarray, i0, i1, j0, j1) -> None:
+def _check_rectangles(
+    across: np.ndarray, up: np.ndarray, i0: np.ndarray, i1: np.ndarray, j0: np.ndarray, j1: np.ndarray
+) -> None:
     """Boxes that start at every lower left corner have all cells between them, and their sides are all edges."""
     cells = int(np.sum((i1 - i0) * (j1 - j0)))
     shape = up.shape[0], across.shape[1]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.linalg import solve_banded
 
 STAGES = 8
@@ -110,16 +111,22 @@ def linearise(field: Field, f: np.ndarray, df: np.ndarray) -> Linearised:
     system = -np.einsum("e,ij,ejab->eiajb", length, MATRIX, df).reshape(n, s * states, s * states)
     system += np.eye(s * states)
     residual = field.stage - field.node[:-1, None] - np.einsum("e,ij,eja->eia", length, MATRIX, f)
-    right = np.concatenate((np.broadcast_to(np.tile(np.eye(states), (s, 1)), (n, s * states, states)),
-                            -residual.reshape(n, s * states, 1)), axis=2)
+    right = np.concatenate(
+        (
+            np.broadcast_to(np.tile(np.eye(states), (s, 1)), (n, s * states, states)),
+            -residual.reshape(n, s * states, 1),
+        ),
+        axis=2,
+    )
     solved = np.linalg.solve(system, right).reshape(n, s, states, states + 1)
     carried = np.einsum("e,j,ejab,ejbc->eac", length, WEIGHTS, df, solved)
     defect = field.node[:-1] - field.node[1:] + np.einsum("e,j,eja->ea", length, WEIGHTS, f) + carried[..., -1]
     return Linearised(field.x, np.eye(states) + carried[..., :-1], defect, solved[..., :-1], solved[..., -1])
 
 
-def change(linear: Linearised, left: Rows, right: Rows, control: tuple[int, np.ndarray, float],
-           homogeneous: bool = False) -> Field:
+def change(
+    linear: Linearised, left: Rows, right: Rows, control: tuple[int, np.ndarray, float], homogeneous: bool = False
+) -> Field:
     """Newton change of a field.
 
     ``left`` and ``right`` = conditions (b, a) on the states at the first and the last node and their values (b,);
@@ -134,10 +141,10 @@ def change(linear: Linearised, left: Rows, right: Rows, control: tuple[int, np.n
     rhs = np.zeros(states * (n + 1))
     a = np.arange(states)
 
-    def put(row, column, value):
+    def put(row: ArrayLike, column: np.ndarray, value: ArrayLike) -> None:
         band[above + row - column, column] = value
 
-    def conditions(row, node, rows, values):
+    def conditions(row: int, node: int, rows: np.ndarray, values: np.ndarray) -> None:
         place = row + np.arange(len(values))
         put(place[:, None], states * node + a, rows)
         rhs[place] = values

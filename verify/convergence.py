@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,7 +48,7 @@ def observed_order(size: Sequence[float], value: Sequence[float]) -> float:
         return float("nan")
     s, level = np.sign(e32 / e21), np.log(abs(e32 / e21))
 
-    def step(p):
+    def step(p: float) -> float:
         q = np.log((r21**p - s) / (r32**p - s)) if r21 != r32 else 0.0
         return abs(level + q) / np.log(r21)
 
@@ -56,7 +56,7 @@ def observed_order(size: Sequence[float], value: Sequence[float]) -> float:
         return _fixed_point(step, abs(level) / np.log(r21))
 
 
-def _fixed_point(step, p: float) -> float:
+def _fixed_point(step: Callable[[float], float], p: float) -> float:
     """Fixed point of ``step`` from ``p``; where the iteration wanders, the bracketed root of step(p) - p."""
     for _ in range(200):
         new = step(p) if p > 0.0 else float("nan")

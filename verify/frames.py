@@ -108,7 +108,9 @@ def solid_cells(part: Mapping[str, Any], through_k: np.ndarray) -> Cells:
     return Cells(degrees, X_ebI, w_eb, fields, {"body": np.full(len(X_ebI), part["body"])})
 
 
-def bezier_values(values_eqf: np.ndarray, w_eb: np.ndarray, degrees: tuple[int, int], points_q: np.ndarray):
+def bezier_values(
+    values_eqf: np.ndarray, w_eb: np.ndarray, degrees: tuple[int, int], points_q: np.ndarray
+) -> np.ndarray:
     """Bezier values (n_e, n_b, n_f) with the weights of the element that interpolate values at its n_b points."""
     B_qb = _bernstein(degrees, points_q)
     W_eq = w_eb @ B_qb.T

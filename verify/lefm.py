@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -151,8 +152,14 @@ def _beam(problem: LefmProblem, end: float) -> tuple[Branch, Branch]:
     first, then = _split(problem, reach * (problem.precrack + more) ** 2, end)
     A = np.full_like(first, problem.precrack + more)
     stiffness = 3.0 * EI / (arms * A**3)
-    loading = Branch(first, stiffness * first, np.full_like(first, problem.precrack), stiffness,
-                     0.5 * stiffness * first**2, -stiffness * first * A**2 / (2.0 * EI))
+    loading = Branch(
+        first,
+        stiffness * first,
+        np.full_like(first, problem.precrack),
+        stiffness,
+        0.5 * stiffness * first**2,
+        -stiffness * first * A**2 / (2.0 * EI),
+    )
     A = np.sqrt(then / reach)
     P = np.sqrt(2.0 / arms * Gw * EI) / A
     growth = Branch(then, P, A - more, -0.5 * P / then, 0.5 * P * then, -P * A**2 / (2.0 * EI))
@@ -175,26 +182,33 @@ def _factors(problem: LefmProblem, end: float) -> tuple[Branch, Branch]:
         onset = float(_fixed_point(lambda d: simple * _N(d / a0) / np.sqrt(_F(d / a0)), simple))
     first, then = _split(problem, onset, end)
 
-    def stored(opening, a):
+    def stored(opening: np.ndarray, a: Any) -> np.ndarray:
         r = opening / a
         return -0.75 * EI * a**2 / (a + more) ** 3 * np.log1p(-N2 * r**2) / N2
 
-    def load(opening, a):
+    def load(opening: np.ndarray, a: Any) -> np.ndarray:
         return 3.0 * EI * opening / (2.0 * (a + more) ** 3 * _N(opening / a))
 
     r = first / a0
-    loading = Branch(first, load(first, a0), np.full_like(first, a0),
-                     3.0 * EI / (2.0 * (a0 + more) ** 3) * (1.0 + N2 * r**2) / _N(r) ** 2, stored(first, a0),
-                     np.full_like(first, np.nan))
-    a = _fixed_point(lambda a: np.sqrt(then / reach * np.sqrt(_F(then / a)) / _N(then / a)) - more,
-                     np.maximum(np.sqrt(then / reach) - more, a0))
+    loading = Branch(
+        first,
+        load(first, a0),
+        np.full_like(first, a0),
+        3.0 * EI / (2.0 * (a0 + more) ** 3) * (1.0 + N2 * r**2) / _N(r) ** 2,
+        stored(first, a0),
+        np.full_like(first, np.nan),
+    )
+    a = _fixed_point(
+        lambda a: np.sqrt(then / reach * np.sqrt(_F(then / a)) / _N(then / a)) - more,
+        np.maximum(np.sqrt(then / reach) - more, a0),
+    )
     P = load(then, a)
     slope = _slope_of_growth(P, then, a, more)
     growth = Branch(then, P, a, slope, stored(then, a), np.full_like(then, np.nan))
     return loading, growth
 
 
-def _slope_of_growth(P, opening, a, more):
+def _slope_of_growth(P: Any, opening: Any, a: Any, more: float) -> Any:
     """dP/d(opening) along r a = const (a + more)^2 N / sqrt(F), by the logarithmic derivatives of F and N in r."""
     r = opening / a
     dF, dN = -2.0 * F2 * r**2 / _F(r), -2.0 * N2 * r**2 / _N(r)
@@ -213,15 +227,15 @@ def _work(problem: LefmProblem, loading: Branch, growth: Branch) -> np.ndarray:
     return np.concatenate((loading.stored, loading.stored[-1] + np.cumsum(pieces)))
 
 
-def _F(r):
+def _F(r: Any) -> Any:
     return 1.0 - F2 * r**2
 
 
-def _N(r):
+def _N(r: Any) -> Any:
     return 1.0 - N2 * r**2
 
 
-def _fixed_point(step, value):
+def _fixed_point(step: Callable[[Any], Any], value: Any) -> Any:
     """Iterate to rounding; the factors change slowly, so that this contracts.
 
     Raises
@@ -263,8 +277,14 @@ def _kendall(problem: LefmProblem, end: float) -> tuple[Branch, Branch]:
     load = 2.0 * Gw / (1.0 + np.sqrt(1.0 + 2.0 * Gw / EA))  # not EA (sqrt(1 + 2 Gw / EA) - 1), which cancels
     first, then = _split(problem, a0 * (1.0 + load / EA), end)
     P = EA * np.maximum(first / a0 - 1.0, 0.0)
-    loading = Branch(first, P, np.full_like(first, a0), np.where(first > a0, EA / a0, 0.0), 0.5 * P**2 * a0 / EA,
-                     np.full_like(first, np.nan))
+    loading = Branch(
+        first,
+        P,
+        np.full_like(first, a0),
+        np.where(first > a0, EA / a0, 0.0),
+        0.5 * P**2 * a0 / EA,
+        np.full_like(first, np.nan),
+    )
     crack = then / (1.0 + load / EA)
     constant = np.full_like(then, load)
     growth = Branch(then, constant, crack, np.zeros_like(then), 0.5 * load**2 * crack / EA, np.full_like(then, np.nan))
@@ -288,6 +308,9 @@ def _rows(problem: LefmProblem, loading: Branch, growth: Branch) -> tuple[dict[s
         columns["external_work"] = _work(problem, loading, growth)
     elif problem.named_theory != "kendall":
         other = -both["face_slope"] if problem.arms == 2 else np.zeros_like(dissipated)
-        columns |= {"face_slope_top": both["face_slope"], "face_slope_bottom": other,
-                    "face_energy": np.zeros_like(dissipated)}
+        columns |= {
+            "face_slope_top": both["face_slope"],
+            "face_slope_bottom": other,
+            "face_energy": np.zeros_like(dissipated),
+        }
     return tuple({name: float(column[i]) for name, column in columns.items()} for i in range(len(dissipated)))

@@ -100,7 +100,7 @@ def _full(right: list[float], kinds: list[int]) -> Zones:
     return Zones(np.append(0.0, np.array(right)[full]), np.array(kinds)[full])
 
 
-def _last_above(x, v, slope, level, low, high) -> float:
+def _last_above(x: np.ndarray, v: np.ndarray, slope: np.ndarray, level: float, low: float, high: float) -> float:
     """Last place in [low, high] where v falls through ``level``; ``low`` if it is never above."""
     inside = np.flatnonzero((x >= low) & (x <= high) & (v >= level))
     if len(inside) == 0:
@@ -111,7 +111,9 @@ def _last_above(x, v, slope, level, low, high) -> float:
     return min(_root(x[i : i + 2], v[i : i + 2] - level, slope[i : i + 2]), high)
 
 
-def _waves(x, v, slope, front, followed, strain) -> list[float]:
+def _waves(
+    x: np.ndarray, v: np.ndarray, slope: np.ndarray, front: float, followed: int, strain: np.ndarray
+) -> list[float]:
     """Sign changes of v beyond ``front``, as long as the wave behind them is worth it; ``followed`` of them were.
 
     ``strain`` is the traction of every sample as a part of p_max.
@@ -127,7 +129,7 @@ def _waves(x, v, slope, front, followed, strain) -> list[float]:
     return [_root(x[i : i + 2], v[i : i + 2], slope[i : i + 2]) for i in kept]
 
 
-def _root(x, v, slope) -> float:
+def _root(x: np.ndarray, v: np.ndarray, slope: np.ndarray) -> float:
     """Root of the cubic through two points and slopes that bracket it, safeguarded Newton."""
     h = x[1] - x[0]
     low, high, t = 0.0, 1.0, v[0] / (v[0] - v[1]) if v[0] != v[1] else 0.0

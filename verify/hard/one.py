@@ -19,6 +19,7 @@ from verify.hard.criteria import common, ledger
 from verify.methods import Unsuitable, solve
 from verify.result import Result, steps_from_rows
 from verify.run import Solver, run
+from verify.schema import Scene
 from verify.verdict import Check
 
 
@@ -96,7 +97,7 @@ def read_verdict(folder: Path) -> Verdict:
     return Verdict(known["case"], known["basis"], read(Line, "runs"), read(Check, "checks"), read(Number, "numbers"))
 
 
-def _run(scene, basis: str, folder: Path, solver: Solver) -> Result:
+def _run(scene: Scene, basis: str, folder: Path, solver: Solver) -> Result:
     """A run; one that is refused, for a mesh too coarse or a specimen not known, is a run without a step."""
     try:
         return run(scene, basis, folder, keep_fields=False, solver=solver)[0]

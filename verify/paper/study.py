@@ -24,7 +24,8 @@ from verify.schema import Scene
 class AnyCase(Protocol):
     """What a run is meant to show: hashable, with the problem that it solves."""
 
-    basis: str
+    @property
+    def basis(self) -> str: ...
 
     @property
     def problem(self) -> Hashable: ...

@@ -11,7 +11,7 @@ from verify.report.text import number, seconds
 
 if TYPE_CHECKING:
     from verify.report.entry import Entry
-    from verify.report.included import IncludedSection
+    from verify.report.included import HardRow, IncludedSection
     from verify.report.plane import PlaneSection
     from verify.report.plane_rates import RatesSection
     from verify.report.section import Section
@@ -186,7 +186,7 @@ def _study(study: IncludedSection) -> Iterator[str]:
         yield from ("", *table(["Case", *study.bases.values()], rows))
 
 
-def _held(row, basis: str) -> str:
+def _held(row: HardRow, basis: str) -> str:
     cell = next((cell for cell, _ in row.cells if cell.basis == basis), None)
     if cell is None:
         return "–"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -152,7 +153,7 @@ def _on_body(tmesh: TMesh, mesh: Mesh, x_ni: np.ndarray) -> np.ndarray:
     return (N @ (mesh.w_A[:, None] * mesh.P_AI)) / (N @ mesh.w_A)[:, None]
 
 
-def _dots(axes: Axes, x_ni: np.ndarray, label: str, style: dict[str, object]) -> None:
+def _dots(axes: Axes, x_ni: np.ndarray, label: str, style: dict[str, Any]) -> None:
     axes.plot(*x_ni.T, linestyle="none", label=label, rasterized=len(x_ni) > _MANY, **style)
 
 
