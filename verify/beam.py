@@ -75,8 +75,10 @@ class BeamProblem:
         """
         programme = np.concatenate(([0.0], np.atleast_1d(np.asarray(self.opening, dtype=float))))
         if np.any(np.diff(programme) <= 0.0):
-            raise ValueError(f"load.opening: must only increase for the method beam, got {programme[1:].tolist()}; "
-                             "a programme that unloads needs one of the solvers")
+            raise ValueError(
+                f"load.opening: must only increase for the method beam, got {programme[1:].tolist()}; "
+                "a programme that unloads needs one of the solvers"
+            )
         return float(programme[-1])
 
 

@@ -96,9 +96,7 @@ def published_names(scene: Scene) -> tuple[str, ...]:
         "published-peak" if known.quantity == "peak" else f"published-load-{known.opening:g}"
         for known in scene.published
     ]
-    return tuple(
-        name + (f"-{plain[: i + 1].count(name)}" if name in plain[:i] else "") for i, name in enumerate(plain)
-    )
+    return tuple(name + (f"-{plain[: i + 1].count(name)}" if name in plain[:i] else "") for i, name in enumerate(plain))
 
 
 def published_load(known: Published, result: Result) -> float:

@@ -80,9 +80,7 @@ def left_out(
     return LeftOut(*(float(np.max(values)) for values in zip(*found, strict=True))) if found else LeftOut(0, 0, 0)
 
 
-def _of(
-    snapshot: Snapshot, law: Bilinear, loaded_at: float, width: float, between: bool
-) -> tuple[float, float, float]:
+def _of(snapshot: Snapshot, law: Bilinear, loaded_at: float, width: float, between: bool) -> tuple[float, float, float]:
     below_X, below_u, turn = _surface(snapshot, upper=False)
     above_X, above_u, above_turn = _surface(snapshot, upper=True)
     X_q = np.abs(loaded_at - snapshot.s_q)

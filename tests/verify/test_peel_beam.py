@@ -143,8 +143,9 @@ def test_elastic_stiffness_is_the_closed_form(bond_at_edge):
     Before the bond the free surface of the layer has w ~ exp(sqrt(k / g) x), or ends where the bond begins.
     """
     base = replace(PEEL, length=300.0 if bond_at_edge else 380.0)
-    problem = replace(B120, length=400.0, precrack=100.0, contact=False, kinematics="linear", opening=0.1,
-                      substrate=base)
+    problem = replace(
+        B120, length=400.0, precrack=100.0, contact=False, kinematics="linear", opening=0.1, substrate=base
+    )
     EI, GA, K, a = problem.bending, 5 / 6 * problem.shear * 2.0, problem.law.stiffness, 100.0
     k, g = base.beneath(EI, K)
     A = np.zeros((6, 6))  # v, rotation, V, M, w, w'
@@ -245,9 +246,22 @@ def test_runs_until_the_strip_comes_off(kinematics):
 def test_units(metre, newton):
     stress = newton / metre**2
     base = Layer.of(120 * metre, 10 * metre, 5e3 * stress, 5e3 * stress, 5e3 / 2.4 * stress, 0.2)
-    there = BeamProblem(150 * metre, 2 * metre, 30 * metre, metre, 250e3 * stress, 250e3 / 2.4 * stress, 6 * stress,
-                        0.1 * newton / metre, 10.0, 1e3 * stress / metre, kinematics="finite", opening=0.8 * metre,
-                        points=30, substrate=base)
+    there = BeamProblem(
+        150 * metre,
+        2 * metre,
+        30 * metre,
+        metre,
+        250e3 * stress,
+        250e3 / 2.4 * stress,
+        6 * stress,
+        0.1 * newton / metre,
+        10.0,
+        1e3 * stress / metre,
+        kinematics="finite",
+        opening=0.8 * metre,
+        points=30,
+        substrate=base,
+    )
     for name, unit in {"opening": metre, "load": newton, "external_work": newton * metre}.items():
         assert steps(there)[name] == pytest.approx(steps(SHORT)[name] * unit, rel=1e-9)
 

@@ -38,7 +38,7 @@ BROKEN = {
         "published[1].opening: must be <= 3, the largest load.opening, got 3.1"
     ),
     '[{quantity = "force", value = 1.0, tolerance = 0.03, source = "them"}]': (
-        "published[0].quantity: must be \"peak\" or \"load_at\", got 'force'"
+        'published[0].quantity: must be "peak" or "load_at", got \'force\''
     ),
     '[{quantity = "peak", value = 1.0, tolerance = 1.0, source = "them"}]': (
         "published[0].tolerance: must be > 0 and < 1, got 1.0"
@@ -48,7 +48,7 @@ BROKEN = {
         "published[0].source: must be a text that says where the value is written, got ' '"
     ),
     f'[{{{PEAK}, value = 1.0, kind = "exact"}}]': (
-        "published[0].kind: must be \"cross-code\" or \"analytical\", got 'exact'"
+        'published[0].kind: must be "cross-code" or "analytical", got \'exact\''
     ),
     f"[{{{PEAK}, value = 1.0, tolerence = 0.1}}]": (
         'published[0].tolerence: is not a key of a scene, got 0.1; did you mean "tolerance"?'

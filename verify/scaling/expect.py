@@ -157,9 +157,7 @@ def larger(ranks: int, base: Row, columns: int, iteration: Fit, memory: Fit, mod
     times = dofs / base.dofs
     seconds = _onwards(iteration.at(dofs), times * base.iteration)
     shared = seconds[0] / ranks, seconds[1] / ranks
-    return Larger(
-        ranks, dofs, round(columns * times), seconds, shared, _onwards(memory.at(dofs), times * model_mb)
-    )
+    return Larger(ranks, dofs, round(columns * times), seconds, shared, _onwards(memory.at(dofs), times * model_mb))
 
 
 def _onwards(fitted: Range, in_proportion: float) -> Range:
