@@ -8,6 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from verify.compare import ROUNDING
 from verify.crosschecks import (
     ANALYTICAL,
@@ -23,7 +25,7 @@ from verify.crosschecks import (
 )
 from verify.curve_file import Reading, read_curve
 from verify.effects import simulated
-from verify.methods import METHODS
+from verify.methods import METHODS, known_methods
 from verify.refusal import Refusal
 from verify.result import Result
 from verify.schema import Scene
@@ -64,11 +66,12 @@ def read_curves(words: Sequence[str], reading: Reading) -> tuple[Curve, ...]:
     Refusal : no curve in a file, a name that is no word, that of a method, or one for two curves.
     """
     curves: list[Curve] = []
+    taken = known_methods() if words else {}
     for word in words:
         name, path = _named(word)
         if not _NAME.fullmatch(name):
             raise Refusal(f"--with: a name must be of letters, digits, dots, dashes and underscores, got {name!r}")
-        if name.partition("-")[0] in METHODS or name in [curve.name for curve in curves]:
+        if name in taken or name.partition("-")[0] in METHODS or name in [curve.name for curve in curves]:
             whose = "another curve's" if name in [curve.name for curve in curves] else "a method's"
             raise Refusal(f"--with: a name must not be {whose}, got {name!r}; NAME={path} gives another")
         opening, load = read_curve(path, reading)
@@ -77,10 +80,21 @@ def read_curves(words: Sequence[str], reading: Reading) -> tuple[Curve, ...]:
 
 
 def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneReport:
-    """The report with the curves as runs of their own, and with checks of every run of a method that is not ours."""
+    """The report with the curves as runs of their own, and with checks of every run of a method that is not ours.
+
+    Each curve as it was read stands in ``out``/SCENE/NAME/curve.csv then.
+    """
+    for curve in curves:
+        _keep(curve, out / report.scene.name / curve.name)
     against = next((run for run in report.runs if run.method == "nurbs" and run.result is not None), None)
     runs = [
-        Run(curve.name, curve.name, curve.result, command=curve.command(out / against.folder) if against else "")
+        Run(
+            curve.name,
+            curve.name,
+            curve.result,
+            folder=f"{report.scene.name}/{curve.name}",
+            command=curve.command(out / against.folder) if against else "",
+        )
         for curve in curves
     ]
     results = {run.method: run.result for run in reversed(report.runs) if run.result is not None}
@@ -122,6 +136,15 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
         value = known.deviation(published_load(known, curve))
         checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))
     return tuple(checks)
+
+
+def _keep(curve: Curve, folder: Path) -> None:
+    """Write opening and load into a folder of their own, never into one that a run is linked to."""
+    if folder.is_symlink():
+        folder.unlink()
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = np.stack([curve.result.opening, curve.result.load], axis=1)
+    np.savetxt(folder / "curve.csv", rows, "%.17g", ",", header="opening,load", comments="")
 
 
 def _named(word: str) -> tuple[str, Path]:

@@ -10,7 +10,7 @@ import pytest
 
 from verify import verification
 from verify.cli import main
-from verify.curve_file import Reading
+from verify.curve_file import Reading, read_curve
 from verify.foreign import checks_of, joined, read_curves
 from verify.methods import METHODS, solve
 from verify.result import Result
@@ -104,6 +104,18 @@ def test_every_code_that_is_there_judges(beam: Result) -> None:
         assert {check.kind for check in found} <= {"cross-code", "analytical"}
     beams = [check for check in found if check.name == "beam-curve"]
     assert [(check.kind, check.tolerance) for check in beams] in ([("analytical", 0.005)], [("analytical", 0.002)], [])
+
+
+def test_the_curve_is_kept_as_it_was_read_and_never_in_the_folder_of_a_run(folder: Path, beam: Result) -> None:
+    (curve,) = read_curves(["mycode.csv"], Reading("U2", "RF2", -2.0, -1e3))
+    (folder / "out" / LINEAR).mkdir(parents=True)
+    (folder / "out" / "of-a-run").mkdir()
+    (folder / "out" / LINEAR / "mycode").symlink_to(folder / "out" / "of-a-run")
+    for _ in range(2):
+        found = joined(SceneReport(load_scene(LINEAR), (), ()), [curve], Path("out"))
+    kept = read_curve(folder / "out" / found.runs[-1].folder)
+    assert np.array_equal(kept, (curve.result.opening, curve.result.load)) and np.allclose(kept[1], beam.load)
+    assert not list((folder / "out" / "of-a-run").iterdir())
 
 
 def test_the_report_says_how_to_compare_it(folder: Path, beam: Result) -> None:

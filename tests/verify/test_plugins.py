@@ -178,6 +178,12 @@ def test_its_name_is_known_where_names_are_asked_for(package: Path, capsys: pyte
     assert "method of another package: good (fakecode 0.3)" in capsys.readouterr().out
 
 
+def test_a_curve_of_another_code_cannot_take_its_name(package: Path, tmp_path: Path, capsys) -> None:
+    (tmp_path / "good.csv").write_text("opening,load\n0,0\n1,1\n")
+    assert main(["verify", LINEAR, "--with", str(tmp_path / "good.csv"), "--out", str(tmp_path / "out")]) == 2
+    assert "--with: a name must not be a method's, got 'good'" in capsys.readouterr().err
+
+
 def test_a_changed_solver_is_run_again(package: Path) -> None:
     scene = load_scene(LINEAR)
     first = fingerprint(scene, "good")

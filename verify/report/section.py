@@ -205,7 +205,7 @@ def _used(check: Check) -> float:
 
 
 def _run_row(entry: Entry, scene: Scene) -> RunRow:
-    units, ours = Units.of(scene.units), entry.method in METHODS or entry.run.folder
+    units, ours = Units.of(scene.units), entry.method in METHODS or entry.run.scene is not None
     effects = modelled(scene, entry.method) if ours else "its code knows"
     if entry.agreement is None:
         return RunRow(entry, entry.run.left_out or "no converged step", effects)
