@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Event, Thread
 from time import monotonic
 from types import TracebackType
 from typing import Any, Self
@@ -65,6 +68,25 @@ class Progress:
             return f", {duration(spent * (self._total / self._done - 1.0))} left"
         expected = self._total / self._pace - spent if self._pace and not self._done else 0.0
         return f", about {duration(expected)} left" if expected > 0.0 else ""
+
+
+@contextmanager
+def telling(title: str, seconds: float) -> Iterator[None]:
+    """Progress of work that does not say how far it is and takes about so many seconds."""
+    over = Event()
+
+    def tick(progress: Progress) -> None:
+        while not over.wait(1.0):
+            progress.alive("at work")
+
+    with Progress(title, seconds, pace=1.0) as progress:
+        clock = Thread(target=tick, args=(progress,), daemon=True)
+        clock.start()
+        try:
+            yield
+        finally:
+            over.set()
+            clock.join()
 
 
 def duration(seconds: float) -> str:

@@ -5,6 +5,11 @@ from __future__ import annotations
 import sys
 from importlib import import_module
 
+from verify.progress import telling
+
+#: About how long a page with its figures takes.
+PAGE_SECONDS = 5.0
+
 
 def say(text: str) -> None:
     print(f"debond: {text}", file=sys.stderr, flush=True)
@@ -17,4 +22,5 @@ def write_page(module: str, *what: object) -> None:
     except ImportError as error:
         say(f"no report: {error.name} is missing; pip install 'debond[report]'")
         return
-    write(*what)
+    with telling("report", PAGE_SECONDS):
+        write(*what)

@@ -23,6 +23,7 @@ from verify.plane_rates import rate_checks, rates
 from verify.plane_study import Plate
 from verify.plane_study import lines as plane_lines
 from verify.plane_study import study as plane_study
+from verify.progress import telling
 from verify.quadrature_study import finding, study
 from verify.run import environment
 from verify.say import write_page
@@ -41,6 +42,9 @@ NAMES = {
 
 #: T-splines that follow the process zone, with at most a third of the unknowns that the meshes at rest have.
 ADAPTIVE = ("discretization.adaptive=true", "discretization.dofs=700")
+
+#: About how long interface rules, figures and rates take after the runs, and each mesh from CAD.
+STUDIES_SECONDS, PLATE_SECONDS = 15.0, 3.0
 
 
 def verify(
@@ -71,11 +75,13 @@ def verify(
     outcomes = {outcome.job: outcome for outcome in run_all(_all_jobs(plan, beams, strips), out, jobs, scheduler)}
     own = [scene_report(scene, [outcomes[job] for job in plan if job.scene is scene], out) for _, scene in scenes]
     reports = tuple(joined(report, curves, out) for report in own)
-    page, quadrature = out / "report.html", study() if full else None
-    paper = measured(beams, outcomes) if full else None
-    peels = peel.measured(strips, outcomes) if full else None
-    planes = tuple(plane_study(plate) for plate in plates)
-    bases = rates() if full else ()
+    page = out / "report.html"
+    with telling("studies", STUDIES_SECONDS * full + PLATE_SECONDS * len(plates)):
+        quadrature = study() if full else None
+        paper = measured(beams, outcomes) if full else None
+        peels = peel.measured(strips, outcomes) if full else None
+        planes = tuple(plane_study(plate) for plate in plates)
+        bases = rates() if full else ()
     studies = tuple({(study.command, study.folder.resolve()): study for study in (*found_in(out), *included)}.values())
     others = [(found.name, check) for found in planes for check in found.checks]
     others += [("plane elasticity", check) for check in rate_checks(bases)]

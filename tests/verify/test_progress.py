@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import threading
+import time
 from pathlib import Path
 
 import pytest
 
 from verify import progress, sweep
 from verify.pools import pool
-from verify.progress import Progress
+from verify.progress import Progress, telling
 
 
 @pytest.fixture
@@ -67,3 +68,13 @@ def test_a_sweep_tells_what_is_running(
         assert len(list(sweep.sweep(tasks, tmp_path, workers, "runs", lambda done: "done"))) == 2
     said = capsys.readouterr().err.splitlines()
     assert said[0].startswith("runs: a and 1 more, about ") and said[-1].endswith(": done (2 of 2)")
+
+
+def test_work_that_does_not_say_how_far_it_is(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
+    monkeypatch.setattr(progress, "LINES_EVERY_SECONDS", 0.0)
+    with telling("report", 60.0):
+        time.sleep(1.1)
+    assert capsys.readouterr().err.startswith("report: at work, about 59 s left\n")
+    with pytest.raises(ValueError, match="it"), telling("report", 60.0):
+        raise ValueError("it")
+    assert not [one for one in threading.enumerate() if one.daemon and "tick" in one.name]
