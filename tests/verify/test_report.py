@@ -19,6 +19,7 @@ from verify import report  # noqa: E402
 from verify.curve import curve_error  # noqa: E402
 from verify.methods import DOLFINX_MISSING, DOLFINX_WAYS  # noqa: E402
 from verify.report.agreement import path  # noqa: E402
+from verify.report.style import _short_numbers  # noqa: E402
 from verify.report.summary import KINDS  # noqa: E402
 from verify.report.text import number, percent, quantity, seconds  # noqa: E402
 from verify.result import CURVE_COLUMNS, Result  # noqa: E402
@@ -246,3 +247,15 @@ def test_drawn_path_is_the_cubic_through_values_and_slopes() -> None:
     assert len(path(replace(result, method="lefm"))[0]) == len(x)  # a kink has no slope
     steep = replace(result, steps=result.steps | {"load_slope": 3 * x**2 - 1 + 40 * (x == 1)})
     assert np.abs(path(steep)[1] - load).max() < 0.01 * 6  # no arc where it would be an invention
+
+
+def test_steps_of_a_drawn_line_add_up_to_its_points() -> None:
+    """Path data of a figure, by the steps between points, are where matplotlib had put them, to a tenth of a point."""
+    at = np.column_stack([np.linspace(20, 300, 400), 80 + 60 * np.sin(np.linspace(0, 9, 400))])
+    data = "M " + " L ".join(f"{x:.6f} {y:.6f}" for x, y in at)
+    text = _short_numbers(re.match(r' d="[^"]*"', f' d="{data}"'))
+    start, _, steps = text.removeprefix(' d="M').removesuffix('"').partition("l")
+    moved = np.cumsum(np.array([start.split(), *np.reshape(steps.split(), (-1, 2))], float), axis=0)
+    assert np.abs(moved - at).max() < 0.061 and len(text) < 0.6 * len(data)
+    marker = ' d="M -1.5 1.25 L 1.5 1.25 L 0.25 -1.5 z"'
+    assert _short_numbers(re.match(r' d="[^"]*"', marker)) == marker

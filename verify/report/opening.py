@@ -28,9 +28,6 @@ if TYPE_CHECKING:
 #: Inches: the tractions below the arms, between them, and at the foot.
 _TRACTION, _BETWEEN, _FOOT, _HEAD = 1.25, 0.3, 0.42, 0.24
 
-#: Dots an inch of the stress: there are many frames.
-_DPI = 150
-
 
 @dataclass(frozen=True)
 class Frame:
@@ -99,14 +96,14 @@ def _one(
         tractions = place(LEFT, _FOOT, WHOLE, _TRACTION)
         load = place(LEFT + WHOLE + GAP, _FOOT, CLOSE, total - _FOOT - _HEAD)
         x_euvi = np.asarray(snapshot.X_euvi) + np.asarray(snapshot.u_euvi)
-        paint(arms, x_euvi, np.asarray(snapshot.stress_euv), scales.stress, x, y, _DPI)
+        paint(arms, x_euvi, np.asarray(snapshot.stress_euv), scales.stress, x, y)
         arms.grid(False)
         arms.set_title(f"{entry.label}, stress along the specimen", color=colour(entry.line.colour))
         arms.tick_params(labelbottom=False)
         _tractions(tractions, scene, group, scales)
         _place(load, scene, [other for other in drawn if other.method != "lefm"], entry, snapshot)
         said = _said(scene, snapshot)
-        svg = to_svg(figure, key, f"The crack of {scene.name}: {said}", dpi=_DPI)
+        svg = to_svg(figure, key, f"The crack of {scene.name}: {said}")
     caption = (
         f"{said[:1].upper()}{said[1:]}. True scale, stress to ± {quantity(scales.stress, units.stress, 3)}; below, the "
         "normal traction of all runs with fields along the same axis, and on the right the place on the curve."

@@ -12,6 +12,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from html import escape
+from typing import Any
+from zlib import crc32
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -121,7 +123,7 @@ class Line:
     alpha: float
     order: float
 
-    def options(self) -> dict[str, object]:
+    def options(self) -> dict[str, Any]:
         """Keyword arguments for ``Axes.plot``."""
         style = (0, self.dashes) if self.dashes else "solid"
         return {
@@ -215,12 +217,18 @@ def _adapt(svg: str, key: str, title: str) -> str:
 
 
 def _short_numbers(match: re.Match[str]) -> str:
-    """Coordinates to a hundredth of a point: a quarter of the page would be digits that nobody sees.
-
-    What follows "M x y" without a letter is a line, too.
-    """
+    """Coordinates to a hundredth of a point: a quarter of the page would be digits that nobody sees."""
     text = re.sub(r"\s+", " ", re.sub(r"(\.\d\d)\d+", r"\1", match[0]))
-    return re.sub(r"M [-\d.]+ [-\d.]+(?: L [-\d.]+ [-\d.]+)+", lambda run: run[0].replace(" L", ""), text)
+    return re.sub(r"M [-\d.]+ [-\d.]+(?: L [-\d.]+ [-\d.]+)+", _steps, text)
+
+
+def _steps(match: re.Match[str]) -> str:
+    """Straight pieces by the steps from point to point, to a tenth of a point; rounding does not add up."""
+    at = [round(10 * float(value)) for value in re.findall(r"-?[\d.]+", match[0])]
+    if max(map(abs, at)) < 100:  # a marker: its shape would suffer
+        return match[0]
+    steps = [value - before for before, value in zip(at, at[2:], strict=False)]
+    return f"M{at[0] / 10:g} {at[1] / 10:g}l" + " ".join(f"{step / 10:g}" for step in steps)
 
 
 def _shared_style(match: re.Match[str]) -> str:
@@ -231,11 +239,12 @@ def _shared_style(match: re.Match[str]) -> str:
 
 def _private_ids(svg: str, key: str) -> str:
     """Drop the ids that nothing refers to, and make the others unique in the page."""
-    used = set(re.findall(r'(?:url\(#|href="#)([^)"]+)', svg))
+    used = dict.fromkeys(re.findall(r'(?:url\(#|href="#)([^)"]+)', svg))
+    short = {name: f"p{crc32(key.encode()):x}-{i}" for i, name in enumerate(used)}  # hundreds of markers repeat them
 
     def rename(match: re.Match[str]) -> str:
-        return f' id="{key}-{match[1]}"' if match[1] in used else ""
+        return f' id="{short[match[1]]}"' if match[1] in used else ""
 
     svg = re.sub(r' id="([^"]*)"', rename, svg)
-    svg = re.sub(r"url\(#([^)]+)\)", rf"url(#{key}-\1)", svg)
-    return re.sub(r'(?:xlink:)?href="#([^"]+)"', rf'href="#{key}-\1"', svg)
+    svg = re.sub(r"url\(#([^)]+)\)", lambda match: f"url(#{short[match[1]]})", svg)
+    return re.sub(r'(?:xlink:)?href="#([^"]+)"', lambda match: f'href="#{short[match[1]]}"', svg)
