@@ -9,6 +9,7 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")  # before NumPy is imported; timings would mean little otherwise
 
 import argparse  # noqa: E402
+import errno  # noqa: E402
 import re  # noqa: E402
 from collections.abc import Callable, Sequence  # noqa: E402
 from pathlib import Path  # noqa: E402
@@ -42,6 +43,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return INTERRUPTED
     except BrokenPipeError:  # the reader of our output has left: no more of it, and no complaint at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except OSError as error:
+        from verify.folder import NO_ROOM  # here, as it brings NumPy along
+
+        if error.errno not in (*NO_ROOM, errno.EACCES):
+            raise
+        say(f"{error.filename or 'the output'}: cannot be written: {error.strerror}{_how_to_go_on(options)}")
+        if error.filename is None:  # maybe standard output itself, which is not to be tried again at exit
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
 
 

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import csv
+import errno
 import json
 import math
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, fields
+from io import FileIO
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
 
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Result, Snapshot
 
 FILES = ("curve.csv", "evidence.csv", "result.json", "fields.npz", "error.log")
+
+#: Numbers of the errors of a disk that is full, over its quota or a limit, read-only or broken.
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 
 
 class CurveWriter:
@@ -26,7 +31,7 @@ class CurveWriter:
         for name in FILES:  # nothing of an earlier run may pass for this one
             (folder / name).unlink(missing_ok=True)
         self._curve = _opened(folder / "curve.csv", CURVE_COLUMNS)
-        self._evidence: TextIO | None = None
+        self._evidence: FileIO | None = None
         self._evidence_path = folder / "evidence.csv"
         self._columns: tuple[str, ...] = ()
 
@@ -48,8 +53,13 @@ class CurveWriter:
 def write_json(path: Path, content: Mapping[str, Any]) -> None:
     """Write beside and rename, so that the file is whole or absent. NaN and infinity, which JSON lacks, become null."""
     beside = path.with_name(f".{path.name}.{os.getpid()}")
-    beside.write_text(json.dumps(_finite(content), indent=2) + "\n")
-    beside.replace(path)
+    text = json.dumps(_finite(content), indent=2) + "\n"
+    try:
+        beside.write_text(text)
+        beside.replace(path)
+    except OSError as error:  # of a full disk, which does not say where
+        beside.unlink(missing_ok=True)
+        raise OSError(error.errno, error.strerror, str(path)) from None
 
 
 def write_csv(path: Path, kind: type, rows: Iterable[Any]) -> None:
@@ -108,6 +118,21 @@ def read_result(folder: Path) -> Result:
     )
 
 
+def damage(folder: Path, proof: str) -> str:
+    """What cannot be read of a result that was whole once, or nothing; ``proof`` is the file that was written last."""
+    name = proof
+    try:
+        about = json.loads((folder / proof).read_bytes()) if proof.endswith(".json") else (folder / proof).read_bytes()
+        for name in ("curve.csv", "evidence.csv"):
+            if (folder / name).exists():
+                rows = min(map(len, read_columns(folder / name).values()))
+                if proof == "result.json" and rows != about["steps"] + 1 and about["status"] == "complete":
+                    return name
+    except (OSError, ValueError, KeyError, TypeError):
+        return name
+    return ""
+
+
 def read_fields(path: Path) -> tuple[Snapshot, ...]:
     """The snapshots of ``write_fields``; none where there is no file."""
     if not path.exists():
@@ -120,17 +145,31 @@ def read_fields(path: Path) -> tuple[Snapshot, ...]:
     return tuple(Snapshot(**{k: float(v) if k in scalars else v for k, v in table.items()}) for table in tables)
 
 
-def _opened(path: Path, columns: tuple[str, ...]) -> TextIO:
-    stream = path.open("w", newline="")
-    stream.write(",".join(columns) + "\n")
-    stream.flush()
+def _opened(path: Path, columns: tuple[str, ...]) -> FileIO:
+    stream = FileIO(path, "w")
+    _write(stream, ",".join(columns) + "\n")
     return stream
 
 
-def _append(stream: TextIO, columns: tuple[str, ...], row: Mapping[str, float]) -> None:
-    """One write call a row, line end included: a reader or a kill never sees half of one."""
-    stream.write(",".join(f"{float(row[name]):.17g}" for name in columns) + "\n")
-    stream.flush()
+def _append(stream: FileIO, columns: tuple[str, ...], row: Mapping[str, float]) -> None:
+    _write(stream, ",".join(f"{float(row[name]):.17g}" for name in columns) + "\n")
+
+
+def _write(stream: FileIO, line: str) -> None:
+    """One write call a row, line end included: a reader or a kill never sees half of one, nor does a full disk leave
+    half of one behind, whose last number would be another.
+
+    Raises
+    ------
+    OSError : with the name of the file.
+    """
+    start, rest = stream.tell(), line.encode()
+    try:
+        while rest:
+            rest = rest[stream.write(rest) :]
+    except OSError as error:
+        stream.truncate(start)
+        raise OSError(error.errno, error.strerror, str(stream.name)) from None
 
 
 def _finite(value: Any) -> Any:

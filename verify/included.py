@@ -30,7 +30,10 @@ class Included:
     def about(self) -> Mapping[str, Any]:
         """What the study says of itself; nothing where it does not."""
         path = self.folder / f"{self.command}.json"
-        return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        try:
+            return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        except ValueError as error:
+            raise Refusal(f"{path}: must be as debond {self.command} has written it, got: {error}") from None
 
     @property
     def outdated(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from importlib.util import find_spec
@@ -288,11 +289,27 @@ def dolfinx_problem(scene: Scene) -> Any:
 
 
 def _dolfinx(scene: Scene, method: str, on_step: OnStep, on_frame: OnFrame | None) -> Result:
-    from fem_reference.solve import solve_debonding
-
     watch = Stopwatch()
     problem = dolfinx_problem(scene)
-    return _result(method, solve_debonding(problem, on_step=on_step, phase=watch.phase, on_frame=on_frame), watch)
+    try:
+        from fem_reference.solve import solve_debonding
+
+        solution = solve_debonding(problem, on_step=on_step, phase=watch.phase, on_frame=on_frame)
+    except (ImportError, AttributeError, TypeError) as error:
+        error.whose = _whose_dolfinx(error)
+        raise
+    return _result(method, solution, watch)
+
+
+def _whose_dolfinx(error: Exception) -> str:
+    """Whose an error is of a call that another DOLFINx does not have, or not in this way."""
+    from verify.doctor import NEWEST, OLDEST, supported
+
+    found = str(getattr(sys.modules.get("dolfinx"), "__version__", ""))
+    if not found or supported(found):
+        return getattr(error, "whose", "the program: please report it with error.log")
+    oldest, newest = (".".join(map(str, numbers)) for numbers in (OLDEST, NEWEST))
+    return f"DOLFINx {found}, or for it: debond takes {oldest} to {newest}, see debond doctor"
 
 
 def _beam(scene: Scene, method: str, on_step: OnStep) -> Result:

@@ -18,13 +18,14 @@ import numpy as np
 from verify import __version__, matched, neglected, process_zone
 from verify.checks import run_checks
 from verify.effects import decided, simulated
-from verify.folder import CurveWriter, write_fields, write_json
+from verify.folder import NO_ROOM, CurveWriter, write_fields, write_json
 from verify.frames import Frames, cleared
 from verify.memory import keep_freed_memory
 from verify.methods import solve
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
 from verify.say import say
 from verify.scene import Scene
+from verify.store import alone_in
 from verify.timing import PHASES, peak_memory_mb
 from verify.verdict import Check
 
@@ -44,7 +45,7 @@ def run(
     """Solve a scene by one method and write its folder.
 
     Whatever ends the run, the files are valid: rows are written as they come, and ``result.json`` says in ``status``
-    why a run stopped. An interrupt by the user is recorded and passed on.
+    why a run stopped. An interrupt by the user is recorded and passed on; so is a disk that takes no more.
 
     Parameters
     ----------
@@ -52,12 +53,25 @@ def run(
     on_step : called after every converged step, for progress
     solver : what to run; ``verify.methods.solve``
     frames : so many for ParaView on the way along the programme, see ``verify.frames``
+
+    Raises
+    ------
+    Refusal : another run is at work in the folder.
+    OSError : the folder takes no more; what is in it is valid.
     """
     keep_freed_memory()
     if frames:
         solver = partial(_filmed, solver, Frames(folder, scene, method, frames, writes=mpi_rank() == 0))
     if mpi_rank() > 0:  # the same numbers are on every rank: one of them writes
         return _silent(scene, method, solver), ()
+    folder.mkdir(parents=True, exist_ok=True)
+    with alone_in(folder):
+        return _recorded(scene, method, folder, keep_fields, on_step, solver)
+
+
+def _recorded(
+    scene: Scene, method: str, folder: Path, keep_fields: bool, on_step: Callable[[Row], None] | None, solver: Solver
+) -> tuple[Result, tuple[Check, ...]]:
     cleared(folder)
     writer = CurveWriter(folder)
     rows: list[Row] = []
@@ -74,6 +88,10 @@ def run(
         _finish(folder, scene, _stopped(method, rows, "interrupted"), keep_fields)
         raise
     except Exception as error:
+        if isinstance(error, OSError) and error.errno in NO_ROOM:
+            if mpi_size() > 1:
+                _take_down_all_ranks(str(error))
+            raise
         (folder / "error.log").write_text(traceback.format_exc())
         whose = getattr(error, "whose", "the program: please report it with error.log")
         why = f"{type(error).__name__}: {error} (an error in {whose})"

@@ -32,6 +32,11 @@ class Store:
     def failed(self, key: str) -> Path:
         return self.root / f"{key}.failed"
 
+    def set_aside(self, key: str) -> None:
+        """Keep a result that turns out to be damaged for reading, and not as a result."""
+        shutil.rmtree(self.failed(key), ignore_errors=True)
+        self.folder(key).rename(self.failed(key))
+
     def begin(self, key: str) -> Path:
         """A new folder to work in; nobody takes it for a result."""
         return Path(tempfile.mkdtemp(prefix=f".{key}.", dir=self.root))
@@ -52,6 +57,28 @@ class Store:
         work.chmod(0o755)
         shutil.rmtree(self.failed(key), ignore_errors=True)
         work.rename(self.failed(key))
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Keep other runs out of a folder; the lock is on the folder itself and leaves no file.
+
+    Raises
+    ------
+    Refusal : another run is at work there.
+    """
+    place = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(place, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(place)
+        raise Refusal(f"--out: must be a folder that no other debond is at work in, got {str(folder)!r}") from None
+    except OSError:  # a file system without locks, as some of a network are
+        pass
+    try:
+        yield
+    finally:
+        os.close(place)
 
 
 @contextmanager
