@@ -11,7 +11,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from verify import run
@@ -118,8 +118,8 @@ WORDS = st.one_of(
     st.sampled_from("dcb-czm1 peel-60 own.toml broken.toml curve.csv other.csv body.iga /dev/null . missing".split()),
     st.sampled_from(
         "--out --method --dofs --set --jobs --full --dry-run --fields --frames --accuracy --end --begin --at "
-        "--tolerance --curve-tol --load-scale-a --opening-a --with --opening --format --json --elements --layers --include --help "
-        "--scheduler -- -x".split()
+        "--tolerance --curve-tol --load-scale-a --opening-a --with --opening --format --json --elements --layers "
+        "--include --help --scheduler -- -x".split()
     ),
     st.sampled_from("nurbs dolfinx beam lefm 0 1 -1 1e-3 80 1e999 nan 0.3% 1,2 abaqus csv md here here/x".split()),
     st.text(st.characters(exclude_characters="\0", exclude_categories=("Cs",)), max_size=8),
@@ -227,6 +227,7 @@ def test_overrides(overrides: list[str], scene: str, door: Path, capsys: pytest.
 
 
 @given(words=LINES)
+@example(words=["--out", "verify"])
 @SOME
 def test_command_lines(words: list[str], door: Path, capsys: pytest.CaptureFixture) -> None:
     line_is_answered(words, door, capsys)

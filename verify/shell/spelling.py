@@ -30,7 +30,8 @@ def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Na
         raise Refusal(f"{words[0]}: is no command; {hint}")
     options, extra = parser.parse_known_args(words)
     if extra:
-        raise Refusal(_too_much(extra, words[0], subs.choices[words[0]]))
+        name = next(word for word in words if word in subs.choices)  # behind options that are none, as it may be
+        raise Refusal(_too_much(extra, name, subs.choices[name]))
     return options
 
 
