@@ -131,6 +131,40 @@ def test_cache_that_cannot_be_written_is_a_sentence(tmp_path: Path, monkeypatch:
     assert "Traceback" not in done.stderr
 
 
+def started_by(version: tuple[int, ...], tmp_path: Path) -> subprocess.CompletedProcess:
+    """The launcher by a Python that takes itself for another, which finds no newer one."""
+    script = (
+        f"import runpy, sys; sys.version_info = {version}; sys.version = '{'.'.join(map(str, version))} (made up)'\n"
+        f"sys.argv = ['debond', 'exec', 'true']; runpy.run_path({str(PROJECT / 'debond')!r}, run_name='__main__')"
+    )
+    own = {"DEBOND_CACHE": str(tmp_path / "cache"), "DEBOND_NO_DOLFINX": "1", "PATH": str(tmp_path)}
+    return subprocess.run([sys.executable, "-c", script], env=own, capture_output=True, text=True, timeout=60)
+
+
+def test_a_python_that_is_too_old_is_a_sentence(tmp_path: Path) -> None:
+    done = started_by((3, 8, 18), tmp_path)
+    assert done.returncode == 3
+    assert done.stderr == "debond: must be started by Python 3.9 or newer, got 3.8.18; install one\n"
+    done = started_by((3, 10, 2), tmp_path)
+    assert done.returncode == 3
+    assert done.stderr == "debond: Python 3.11 or newer is needed and this is 3.10.2; install a newer one\n"
+
+
+def test_the_first_start_without_network_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The real pip against a server that nobody is: nothing that is half built is taken for whole afterwards."""
+    monkeypatch.setenv("DEBOND_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("DEBOND_NO_DOLFINX", "1")
+    monkeypatch.setenv("PIP_INDEX_URL", "http://127.0.0.1:9/simple")
+    monkeypatch.setenv("PIP_RETRIES", "1")
+    monkeypatch.setenv("PIP_CONFIG_FILE", os.devnull)
+    for name in ("PIP_EXTRA_INDEX_URL", "PIP_FIND_LINKS"):
+        monkeypatch.delenv(name, raising=False)
+    done = start("exec", "true")
+    assert done.returncode == 3 and "Traceback" not in done.stderr
+    assert "the package server cannot be reached; check the network" in done.stderr.splitlines()[-1]
+    assert not list((tmp_path / "cache").glob("venv-*/whole"))
+
+
 @pytest.fixture
 def builds(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     """The roots that a made-up builder has built."""
