@@ -49,14 +49,14 @@ def _known() -> Mapping[str, tuple[str, ...]]:
     """Where an argument's values go -> words that it may have."""
     from verify.export.command import FORMATS
     from verify.hard.cases import CASES
-    from verify.methods import METHODS
+    from verify.methods import known_methods
     from verify.scene import packaged_scenes
     from verify.shell.keys import SPECIMENS, dotted_keys
 
     return {
         "scene": (*packaged_scenes(), *FILES),
         "scenes": (*packaged_scenes(), *FILES),
-        "method": tuple(METHODS),
+        "method": tuple(known_methods()),
         "names": tuple(CASES),
         "overrides": tuple(f"{key}=" for key in dotted_keys()),
         "format": tuple(FORMATS),
