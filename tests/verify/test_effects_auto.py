@@ -186,6 +186,12 @@ def test_a_bond_that_is_squeezed_wants_contact_though_nothing_closes() -> None:
     assert load_of_squeezing(scene) == pytest.approx(begin, rel=0.15)
 
 
+def test_a_beam_that_is_peeled_has_no_faces_to_look_at() -> None:
+    scene = load_scene("peel-60", ["load.opening=0.3"])
+    result = solve(scene, "beam")
+    assert result.snapshots and "search" not in neglected.summary(scene, result)
+
+
 def test_the_end_and_not_the_way_there_counts_for_the_turn() -> None:
     """Before the crack grows a turn is worth more: 16/35 and not 6/35 of its square."""
     scene, result = run_of("dcb-czm1", (*COARSE, "load.opening=0.1"))
