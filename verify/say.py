@@ -19,7 +19,7 @@ def write_page(module: str, *what: object) -> None:
     """Call ``write`` of a module; without the packages that a page needs the numbers are still worth having."""
     try:
         write = import_module(module).write
-    except ImportError as error:
+    except ModuleNotFoundError as error:
         say(f"no report: {error.name} is missing; pip install 'debond[report]'")
         return
     with telling("report", PAGE_SECONDS):

@@ -86,7 +86,8 @@ def verify(
     others = [(found.name, check) for found in planes for check in found.checks]
     others += [("plane elasticity", check) for check in rate_checks(bases)]
     verdict_file.write(out, reports, others, [os.path.relpath(study.folder, out) for study in studies])
-    write_page("verify.report", reports, page, environment(), quadrature, paper, planes, bases, peels, studies, text)
+    what = (reports, page, environment(), quadrature, paper, planes, bases, peels, studies, text)
+    write_page("verify.report.page", *what)
     checks = [*((report.scene.name, check) for report in reports for check in report.checks), *others]
     tables = [line for found in planes for line in [*plane_lines(found), *check_table(found.checks), ""]]
     print("\n".join([*overview(reports), *tables, *convergence(reports), *failures(checks)]))

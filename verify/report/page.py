@@ -1,0 +1,104 @@
+"""The page of a verification: sections by scene, plane problems, figures of the paper, studies of other commands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from markupsafe import Markup
+
+from verify.cost.figures import named
+from verify.cost.page import script as chart_script
+from verify.hard.suite import totals
+from verify.included import Included
+from verify.paper.peel import PeelStudy
+from verify.paper.study import Study as Figures
+from verify.plane_rates import Convergence
+from verify.plane_study import PlaneStudy
+from verify.quadrature_study import Study
+from verify.report import markdown, paper_section, peel_section, plane, plane_rates, study
+from verify.report.included import IncludedSection
+from verify.report.included import sections as shown
+from verify.report.section import Section, section
+from verify.report.summary import summarise
+from verify.report.template import rendered
+from verify.report.text import percent, seconds, symbols
+from verify.switches.page import in_cell
+from verify.verdict import SceneReport
+
+__all__ = ["write"]
+
+_HERE = Path(__file__).parent
+
+_FILTERS = {
+    "symbols": symbols,
+    "percent": percent,
+    "seconds": seconds,
+    "named": named,
+    "in_cell": in_cell,
+    "totals": totals,
+}
+
+
+def write(
+    reports: tuple[SceneReport, ...],
+    path: Path,
+    environment: Mapping[str, str],
+    quadrature: Study | None = None,
+    paper: Figures | None = None,
+    planes: Sequence[PlaneStudy] = (),
+    rates: tuple[Convergence, ...] = (),
+    peels: PeelStudy | None = None,
+    included: Sequence[Included] = (),
+    text: bool = False,
+) -> None:
+    """Write the page.
+
+    Parameters
+    ----------
+    reports : one for each scene, in the order of the page
+    path : the HTML file; its folder is made
+    environment : what to print about versions and machine, name to value
+    quadrature : the study of the interface rules, where it was made
+    paper : the runs behind the figures of the paper, where they were made
+    planes : the studies of plane problems, one a mesh file
+    rates : the convergence of the bases in plane elasticity, where it was measured
+    peels : the runs behind Figure 9 of the paper, where they were made
+    included : studies of other commands, to be shown as well
+    text : whether the same is written in Markdown, too, beside the page
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    sections = tuple(section(report, f"scene-{i + 1}") for i, report in enumerate(reports))
+    plane_sections = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(planes))
+    rates_section = plane_rates.section(rates, "rates") if rates else None
+    summary = summarise(sections, (*plane_sections, *filter(None, [rates_section])))
+    studies = shown(included, path.parent)
+    page = rendered(
+        "verify.report",
+        "page.html.j2",
+        _FILTERS,
+        sections=sections,
+        summary=summary,
+        included=studies,
+        scripts=_scripts(sections, studies),
+        planes=plane_sections,
+        rates=rates_section,
+        quadrature=None if quadrature is None else study.section(quadrature, "quadrature"),
+        paper=None if paper is None else paper_section.section(paper, "figures"),
+        peels=None if peels is None else peel_section.section(peels, "figure-9"),
+        environment=dict(environment),
+    )
+    path.write_text(page, encoding="utf-8")
+    if text:
+        told = markdown.lines(summary, sections, plane_sections, rates_section, studies, environment)
+        path.with_suffix(".md").write_text("\n".join(told), encoding="utf-8")
+
+
+def _scripts(sections: Sequence[Section], studies: Sequence[IncludedSection]) -> tuple[Markup, ...]:
+    """Those that something on the page needs."""
+    stepper = (_HERE / "stepper.js").read_text(encoding="utf-8")
+    return (
+        *((Markup(stepper),) if any(s.frames for s in sections) else ()),
+        *((chart_script(),) if any(s.chart for s in studies) else ()),
+    )
