@@ -18,6 +18,8 @@ FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.125, 1.0, 1.0 / 4096
 #: Steps chosen by accuracy: the first and the largest one in parts of the programme, and by how much of the peak the
 #: load may leave the tangent of a step, if nothing else is asked for.
 FIRST, LARGEST, BEND = 1.0 / 30.0, 0.25, 0.005
+#: How often a step chosen by accuracy may fail.
+SPARED = 2
 #: Fewer steps than these would not draw the curve: what is asked for is then a least number of steps. How long they are
 #: once one that was chosen by accuracy has failed, in such parts of the programme.
 FEWEST, SAFE = 40, 150
@@ -38,8 +40,9 @@ class Step:
 class Pace:
     """Step length: ``step`` of the opening, at most ``largest``, and a part of g_u at the cohesive front.
 
-    ``by_accuracy``: the steps are not counted but as long as the curve allows, and end where a point breaks; once one
-    has failed they are ``counted``, each of this length.
+    ``by_accuracy``: the steps are not counted but as long as the curve allows, and end where a point breaks. One that
+    fails is halved, and the front goes half as far from there on; where that is ``spared`` no more they are
+    ``counted``, each of this length.
     ``bend`` is by how much of the peak the load may leave the tangent of such a step; the front may go as much further
     as steps are longer for it.
     ``attempt`` counts how often the next one has failed: careful steps end at the kinks of the law; they change the
@@ -52,6 +55,7 @@ class Pace:
     attempt: int = 0
     counted: float = 0.0
     bend: float = BEND
+    spared: int = SPARED
 
     @property
     def careful(self) -> bool:
@@ -76,10 +80,16 @@ class Pace:
 
     @property
     def front(self) -> float:
-        return 0.5**self.level * (FRONT_BY_ACCURACY * (self.bend / BEND) ** 0.5 if self.by_accuracy else FRONT)
+        if not self.by_accuracy:
+            return 0.5**self.level * FRONT
+        return 0.5 ** (SPARED - self.spared) * FRONT_BY_ACCURACY * (self.bend / BEND) ** 0.5
 
     def slower(self) -> Pace:
-        return Pace(self.counted, self.counted) if self.by_accuracy else replace(self, attempt=self.attempt + 1)
+        if not self.by_accuracy:
+            return replace(self, attempt=self.attempt + 1)
+        if self.spared == 0:
+            return Pace(self.counted, self.counted)
+        return replace(self, step=0.5 * self.step, spared=self.spared - 1)
 
     def after(self, start: Point, end: Point, peak: float) -> Pace:
         """The next step where one from ``start`` to ``end`` has converged."""
