@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -50,6 +51,8 @@ def program(*words: str, most: int | None = None, **keys: object) -> subprocess.
 
 def mounted(folder: Path, *options: str) -> bool:
     folder.mkdir(exist_ok=True)
+    if shutil.which("mount") is None:
+        return False
     return subprocess.run(["mount", *options, str(folder)], capture_output=True, check=False).returncode == 0
 
 
