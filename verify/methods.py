@@ -289,11 +289,11 @@ def dolfinx_problem(scene: Scene) -> Any:
 
 
 def _dolfinx(scene: Scene, method: str, on_step: OnStep, on_frame: OnFrame | None) -> Result:
-    watch = Stopwatch()
     problem = dolfinx_problem(scene)
     try:
         from fem_reference.solve import solve_debonding
 
+        watch = Stopwatch()
         solution = solve_debonding(problem, on_step=on_step, phase=watch.phase, on_frame=on_frame)
     except (ImportError, AttributeError, TypeError) as error:
         error.whose = _whose_dolfinx(error)
