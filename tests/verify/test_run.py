@@ -9,12 +9,15 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
 
+from verify import methods
 from verify.folder import read_columns, read_result, write_json
 from verify.result import CURVE_COLUMNS, Result, Snapshot, steps_from_rows
 from verify.run import run
@@ -196,3 +199,19 @@ def test_nested_phases_count_once() -> None:
     assert seconds["factor"] >= 0.03 and seconds["other"] >= 0.01
     assert 0.01 <= watch.compile <= seconds["basis"] < seconds["total"]
     assert sum(seconds.values()) - seconds["total"] == pytest.approx(seconds["total"])
+
+
+def test_the_time_of_a_run_is_not_that_of_importing_its_solver(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A module that is slow to come, and a solver that has nothing to do."""
+    solution = SimpleNamespace(rows=({"opening": 0.0, "load": 0.0},), status="complete", rejected_steps=0, snapshots=())
+
+    class Slow(ModuleType):
+        def __getattr__(self, name: str) -> Callable[..., SimpleNamespace]:
+            if name != "solve_debonding":
+                raise AttributeError(name)
+            time.sleep(0.5)
+            return lambda problem, **keys: solution
+
+    monkeypatch.setitem(sys.modules, "fem_reference.solve", Slow("fem_reference.solve"))
+    monkeypatch.setattr(methods, "dolfinx_installed", lambda: True)
+    assert methods.solve(load_scene("dcb-czm1"), "dolfinx").seconds["total"] < 0.4
