@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from iga.pose import Pose
 from iga.quadrature import gauss, square
 from iga.solid import Solid
 from iga.surface import Surface, surface
+
+#: Intervals between samples along each direction of an element.
+SAMPLES = 3
 
 
 @dataclass(frozen=True)
@@ -32,6 +36,13 @@ class Body:
     def points(self) -> slice:
         """Its control points."""
         return slice(self.first, self.first + len(self.mesh.P_AI))
+
+    @cached_property
+    def sampled(self) -> tuple[BlockBasis, ...]:
+        """Bases of the blocks on a grid of points an element, for pictures; numbered as in the mesh."""
+        t, s = np.meshgrid(*[np.linspace(0.0, 1.0, SAMPLES + 1)] * 2, indexing="ij")
+        points_q = np.stack([s.ravel(), t.ravel()], -1)
+        return tuple(block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)
 
     def surface(self, name: str) -> Surface:
         return surface(self.mesh, self.mesh.chains[name], self.first)

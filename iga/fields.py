@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from iga.basis import block_basis
+from iga.body import SAMPLES
 from iga.bulk import gradient
 from iga.kinematics import cauchy_stress
 from iga.path import Point
 from iga.specimen import Specimen
-
-#: Sample intervals along each direction of an element.
-INTERVALS = 3
 
 
 def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
     """Interface profile, ordered along the specimen, and one grid of samples an element, in the specimen's own frame.
 
     Keys: opening, load; s_q, gap_q, traction_q, damage_q (n_q,); X_euvi, u_euvi (n_e, k+1, k+1, 2) and stress_euv
-    (n_e, k+1, k+1), the Cauchy stress along it, with k = `INTERVALS`; of T-splines the edges line_nki (n, 2, 2)
+    (n_e, k+1, k+1), the Cauchy stress along it, with k = `SAMPLES`; of T-splines the edges line_nki (n, 2, 2)
     and T-junctions junction_ni (n, 2) of the T-meshes.
     """
     system, state, response = specimen.system, point.state, point.response
@@ -55,16 +52,12 @@ def _tmesh(specimen: Specimen) -> dict[str, np.ndarray]:
 
 def _grids(specimen: Specimen, number: int, u_d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     body, pose = specimen.bodies[number], specimen.pose
-    mesh, u_Ai = body.mesh, u_d.reshape(-1, 2)[body.points]
-    t, s = np.meshgrid(*[np.linspace(0.0, 1.0, INTERVALS + 1)] * 2, indexing="ij")
-    points_q = np.stack([s.ravel(), t.ravel()], -1)
-    along_i, parts = pose.axes_kI[0], []
-    for block in mesh.blocks:
-        basis = block_basis(mesh, block, points_q, np.ones(len(points_q)))
+    u_Ai, along_i, parts = u_d.reshape(-1, 2)[body.points], pose.axes_kI[0], []
+    for basis in body.sampled:
         u_eqi = np.einsum("eqa,eai->eqi", basis.N_eqa, u_Ai[basis.conn_ea])
         sigma = cauchy_stress(body.D, gradient(basis, u_Ai), specimen.system.kinematics)
         stress_eq = np.einsum("i,ijeq,j->eq", along_i, sigma, along_i)
         parts.append((pose.own(basis.X_eqI), pose.components(u_eqi), stress_eq))
-    shape = (-1, INTERVALS + 1, INTERVALS + 1)
+    shape = (-1, SAMPLES + 1, SAMPLES + 1)
     X, u, stress = (np.concatenate([part[i] for part in parts]) for i in range(3))
     return X.reshape(*shape, 2), u.reshape(*shape, 2), stress.reshape(shape)

@@ -140,13 +140,20 @@ class Contact:
         """Points (n_q,) that face the master; the others are free."""
         return self.share_q > 0.0
 
-    def rates(self, v_d: np.ndarray) -> np.ndarray:
-        """Rates (n_q,) of the gaps when the displacements change by v_d."""
-        return np.sum(self.V_qrd[:, 0] * v_d[self.dof_qd], axis=1)
+    def rates(self, v_d: np.ndarray, q: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Rates (n_q, ...) of the gaps, or of some of them, when the displacements change by v_d (n_dof, ...)."""
+        G_qd, v_qd = self.V_qrd[q, 0], v_d[self.dof_qd[q]]
+        return np.sum(G_qd * v_qd, axis=1) if v_d.ndim == 1 else (G_qd[:, None] @ v_qd)[:, 0]
+
+    def rows(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
+        """Gradients (n_dof, n_m) of the gaps at some points."""
+        rows_dm = np.zeros((n_dof, q_m.size), order="F")
+        np.add.at(rows_dm, (self.dof_qd[q_m], np.arange(q_m.size)[:, None]), self.V_qrd[q_m, 0])
+        return rows_dm
 
     def row(self, q: int, n_dof: int) -> np.ndarray:
         """Gradient (n_dof,) of the gap at one point."""
-        return np.bincount(self.dof_qd[q], weights=self.V_qrd[q, 0], minlength=n_dof)
+        return self.rows(np.array([q]), n_dof)[:, 0]
 
 
 def pair(interface: Interface) -> Pairing | None:

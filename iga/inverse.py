@@ -27,10 +27,10 @@ class Inverse:
     under_load_d: np.ndarray
     hold: float = 0.0
 
-    def solve(self, b_d: np.ndarray) -> np.ndarray:
-        """Displacements (n_dof,) for forces (n_dof,), zero where fixed."""
-        x_d = self.factors.solve(b_d[:, None])[:, 0]
-        return x_d + self.hold * float(self.load_d @ x_d) * self.under_load_d if self.hold else x_d
+    def solve(self, b_dm: np.ndarray) -> np.ndarray:
+        """Displacements (n_dof, n_m) for forces (n_dof, n_m), zero where fixed."""
+        x_dm = self.factors.solve(b_dm)
+        return x_dm + self.under_load_d[:, None] * (self.hold * (self.load_d @ x_dm)) if self.hold else x_dm
 
 
 def held_inverse(band: Band | Dense, half: np.ndarray, load_d: np.ndarray, hold: float) -> Inverse | None:

@@ -15,10 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.control import gap_control
-from iga.interface import holding
-from iga.newton import Equilibrium, Newton, equilibrium
-from iga.system import Phase, State, System
+from iga.interface import Contact, holding
+from iga.system import State, System
 
 #: How far beyond the kink a step ends, in parts of its gap, and how many points break on one that passes over arcs.
 BEYOND, SEVERAL = 1e-9, 2
@@ -35,16 +33,27 @@ class Kink:
     jump: float
 
 
-def landed(
-    system: System, old: State, found: Equilibrium, newton: Newton, phase: Phase, follows_on: bool = False
-) -> tuple[Equilibrium, Kink | None]:
-    """The equilibrium moved to the nearest kink: where a point breaks or, as long as none has, passes its strength.
+@dataclass(frozen=True)
+class Landing:
+    """Where a step is to end: with the gap ``target`` at point ``q``, on a ``kink`` or, without one, half an arc on.
 
-    ``old`` is the state before the step. Where there is no such kink, or no equilibrium at it, the equilibrium stays.
-    A step over several arcs that ``follows_on`` one on which points broke, too, ends on no kink but half an arc on.
+    ``least`` is the gap of the kink, below which it has not been reached.
     """
-    law, touch = system.interface.law, found.response.contact
-    g_q = np.where(holding(system.interface, touch), touch.g_q, 0.0)
+
+    q: int
+    target: float
+    least: float
+    kink: Kink | None
+
+
+def landing(system: System, old: State, touch: Contact, g_q: np.ndarray, follows_on: bool = False) -> Landing | None:
+    """The kink nearest to the gaps g_q (n_q,): where a point breaks or, as long as none has, passes its strength.
+
+    ``old`` is the state before the step, and ``touch`` tells which points face the master. None where there is no such
+    kink. A step over several arcs that ``follows_on`` one on which points broke, too, ends half an arc on from there.
+    """
+    law = system.interface.law
+    g_q = np.where(holding(system.interface, touch), g_q, 0.0)
     broken = bool(np.any(g_q >= law.g_u))
     gap = law.g_u if broken else law.g_max
     softening = -law.strength / (law.g_u - law.g_max)
@@ -54,12 +63,8 @@ def landed(
     half = follows_on and broken and np.count_nonzero(passed_q) >= SEVERAL and ahead_q.size > 0
     target = gap + 0.5 * (np.min(ahead_q) - g_q[q]) if half else gap * (1.0 + BEYOND)
     if not np.any(g_q >= gap) or old.k_q[q] >= gap or g_q[q] == target:
-        return found, None
-    there = equilibrium(system, found.state, gap_control(system, q), target, target - g_q[q], newton, phase)
-    if there is None or there.response.contact.g_q[q] < gap:
-        return found, None
-    there = Equilibrium(there.state, there.response, found.residuals + there.residuals)
-    return there, None if half else Kink(q, -softening if broken else softening - law.stiffness)
+        return None
+    return Landing(q, target, gap, None if half else Kink(q, -softening if broken else softening - law.stiffness))
 
 
 def broken_between(system: System, old: State, new: State) -> int:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 
+@cache
 def orthotropic(E1: float, E2: float, G12: float, nu12: float, plane: str) -> np.ndarray:
     """Elasticity matrix D (3, 3), axis 1 along X.
 
@@ -29,7 +32,9 @@ def orthotropic(E1: float, E2: float, G12: float, nu12: float, plane: str) -> np
         raise ValueError(f'plane must be "stress" or "strain", got {plane!r}')
     if not np.all(np.linalg.eigvalsh(D) > 0):
         raise ValueError(f"the elastic constants E1={E1}, E2={E2}, G12={G12}, nu12={nu12} store negative energy")
-    return 0.5 * (D + D.T)
+    D = 0.5 * (D + D.T)
+    D.flags.writeable = False  # whoever asks again is given this very one
+    return D
 
 
 def isotropic(young: float, poisson: float, plane: str) -> np.ndarray:

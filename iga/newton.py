@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.control import Control
+from iga.inner import bordered, settled_step
+from iga.interface import traction
 from iga.inverse import Inverse
 from iga.system import Phase, Response, State, System, factorise, respond, rounding
 
@@ -113,19 +115,20 @@ def _iterate(
             tangent = factorise(system, response, phase)
         if tangent is None:
             return None, tuple(residuals)
-        with phase("solve"):
-            move = _correction(system, trial, response, tangent, control, target)
-        if move is None:
-            return None, tuple(residuals)
         decide = not met or norm > max(newton.settle, 10.0 * floor)
+        inner = advance is _full and decide and norm > newton.rough
+        with phase("solve"):
+            corrected = correction(system, trial, response, tangent, control, target, inner)
+        if corrected is None:
+            return None, tuple(residuals)
+        step_d = corrected[0]
 
         def at(
-            s: float, trial: State = trial, move: tuple[np.ndarray, float] = move, decide: bool = decide
+            s: float, trial: State = trial, step_d: np.ndarray = step_d, decide: bool = decide
         ) -> tuple[State, Response, float]:
-            moved = replace(trial, u_d=trial.u_d + s * move[0], load=trial.load + s * move[1])
-            return _evaluate(system, moved, decide, phase)
+            return _evaluate(system, trial.moved(s * step_d), decide, phase)
 
-        trial, response, norm = advance(system, at, move[0], (trial, response, norm))
+        trial, response, norm = advance(system, at, step_d[:-1], (trial, response, norm))
         residuals.append(norm)
 
 
@@ -171,21 +174,28 @@ def _evaluate(system: System, trial: State, decide: bool, phase: Phase) -> tuple
     return found, response, residual_norm(system, trial.load, response)
 
 
-def _correction(
-    system: System, trial: State, response: Response, tangent: Inverse, control: Control, target: float
-) -> tuple[np.ndarray, float] | None:
-    """Bordered step: ``du = v + z d_load`` with K v = -r, K z = f, and d_load from the linearised control.
+def correction(
+    system: System, trial: State, response: Response, inverse: Inverse, control: Control, target: float, inner: bool
+) -> tuple[np.ndarray, bool] | None:
+    """Step (n_dof + 1,) of displacements and load, bordered by the linearised control; None where that feels no load.
 
-    None where the control does not feel the load.
+    The ``inner`` Newton puts all tractions on the law; whether it has, is told, too.
     """
-    residual_d = response.internal_d - trial.load * system.load_d
-    v, z = tangent.solve(-residual_d), tangent.under_load_d
     value, a_d, a_load = control(trial, response)
-    grip = float(a_d @ z) + a_load
-    if grip == 0.0:
+    tied = bordered(inverse, a_d, a_load)
+    if tied is None:
         return None
-    d_load = (target - value - float(a_d @ v)) / grip
-    return v + d_load * z, d_load
+    residual_d = response.internal_d - trial.load * system.load_d
+    plain_d = tied.solve(-residual_d[:, None], target - value)[:, 0]
+    if not inner:
+        return plain_d, False
+    interface, touch = system.interface, response.contact
+
+    def law(g_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return traction(interface, replace(touch, g_q=g_q), trial.k_q, g_q < 0.0)[:2]
+
+    found = settled_step(interface, touch, law, (response.p_q, response.dp_q), plain_d, tied)
+    return (plain_d, False) if found is None else (found, True)
 
 
 def _full(system: System, at: Callable, du_d: np.ndarray, before: tuple) -> tuple[State, Response, float]:

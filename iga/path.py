@@ -13,13 +13,13 @@ from dataclasses import replace
 import numpy as np
 
 from iga.control import opening_control
-from iga.landing import SEVERAL, broken_between, landed, slope_over_arcs
-from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium, roughly
-from iga.pace import BEND, Pace, Step, next_step, paced
+from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium
+from iga.pace import BEND, Step, next_step, paced
 from iga.point import End, Point
+from iga.step import advance, foresee
 from iga.system import Phase, State, System, energies, respond, untimed
-from iga.tangent import tangent
-from iga.work import leaks, slid_off, step_work, straight_work
+from iga.tangent import Linearised, tangent
+from iga.work import leaks
 
 #: A specimen has separated when its load, and all that the path could bring back, is below this part of the peak.
 SEPARATED = 1e-3
@@ -27,8 +27,6 @@ SEPARATED = 1e-3
 TRIFLE = 1e-6
 #: Parts of the penalty with which contact is searched for, one after the other, where it is too stiff to be found.
 SOFTER = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
-#: An opening that is this part of the one before is none.
-HOME = 1e-9
 
 
 def follow(
@@ -54,21 +52,25 @@ def follow(
     pace, reach = paced(np.array(programme), steps, bend), float(np.max(np.abs(programme)))
     rejected, peak, most = 0, 0.0, 0.0
     direction = float(np.sign(programme[0]))
-    point = _departing(system, system.start(), direction, 0.0, phase)
-    if point is None:
+    departed = _departing(system, system.start(), direction, 0.0, phase)
+    if departed is None:
         raise ValueError("the system is singular: the supports or the interface do not hold the bodies")
+    point, known = departed
     yield point
     for goal in by_way_of_zero(programme):
-        if direction * (goal - point.opening) < 0.0 or point.opening == 0.0:
+        if direction * (goal - point.opening) < 0.0 or (point.opening == 0.0 and point.iterations > 0):
             direction = float(np.sign(goal - point.opening))
-            point = _departing(system, point.state, direction, point.external_work, phase) or point
+            point, known = _departing(system, point.state, direction, point.external_work, phase) or (point, None)
         while point.opening != goal:
             asked = next_step(system, point, goal, pace, direction)
-            reached = _advance(system, point, asked, direction, pace, newton, phase)
+            foreseen, known = foresee(system, point, asked, known, phase), None  # of all that is held the largest
+            reached, known = advance(system, point, asked, foreseen, direction, pace, newton, phase)
             if reached is not None and direction * (reached.opening - goal) > 0.0 and not asked.exact:
-                asked = _onto(system, point, goal)
-                reached = _advance(system, point, asked, direction, pace, newton, phase)
+                asked, known = _onto(system, point, goal), None
+                foreseen = foresee(system, point, asked, None, phase)
+                reached, known = advance(system, point, asked, foreseen, direction, pace, newton, phase)
             if reached is None or leaks(system, point, reached, most):
+                known = None
                 rejected, pace = rejected + 1, pace.slower()
                 if pace.exhausted:
                     yield End(_advice(point.opening, leapt=reached is not None), rejected)
@@ -84,10 +86,11 @@ def follow(
             renewed = renew(point) if renew is not None else None
             if renewed is not None:
                 system, state = renewed
-                point = _departing(system, state, direction, point.external_work, phase)
-                if point is None:
+                departed = _departing(system, state, direction, point.external_work, phase)
+                if departed is None:
                     yield End(f"stopped: the new mesh at opening {goal:.6g} has a singular tangent", rejected)
                     return
+                point, known = departed
     yield End("complete", rejected)
 
 
@@ -110,7 +113,9 @@ def _separated(system: System, point: Point, reach: float, peak: float) -> bool:
     return broken > 0.5 and abs(point.state.load) <= small and falling
 
 
-def _departing(system: System, state: State, direction: float, work: float, phase: Phase) -> Point | None:
+def _departing(
+    system: System, state: State, direction: float, work: float, phase: Phase
+) -> tuple[Point, Linearised] | None:
     """A converged state at which the programme sets out or turns round.
 
     Where many points touch at once their rates alone may not sort them out. Then a state a trifle ahead does, which
@@ -120,9 +125,10 @@ def _departing(system: System, state: State, direction: float, work: float, phas
     for ahead in (False, True):
         with phase("assembly"):
             response = respond(system, state, decide=False)
-        found = tangent(system, state, response, direction, phase, turning=not ahead)
-        if found is None:
+        answer = tangent(system, state, response, direction, phase, turning=not ahead)
+        if answer is None:
             return None
+        found, known = answer
         start = Point(
             replace(state, closed_q=found.closed_q),
             response,
@@ -144,7 +150,7 @@ def _departing(system: System, state: State, direction: float, work: float, phas
         tried = _touching(system, moved, opening + trifle, trifle, phase)
         if tried is not None:
             state = replace(state, closed_q=tried.state.closed_q)
-    return start
+    return start, known
 
 
 def _touching(system: System, trial: State, opening: float, change: float, phase: Phase) -> Equilibrium | None:
@@ -169,58 +175,6 @@ def _touching(system: System, trial: State, opening: float, change: float, phase
 def _onto(system: System, point: Point, goal: float) -> Step:
     """The step that ends on the goal."""
     return Step(opening_control(system), (goal - point.opening) / float(system.load_d @ point.tangent.du_d), exact=True)
-
-
-def _advance(
-    system: System, point: Point, asked: Step, direction: float, pace: Pace, newton: Newton, phase: Phase
-) -> Point | None:
-    """One step from the tangent predictor, or None; nothing is committed before it has converged."""
-    old, path, control = point.state, point.tangent, asked.control
-    value, a_d, a_load = control(old, point.response)
-    rate = float(a_d @ path.du_d) + a_load * path.d_load
-    if rate == 0.0:  # what stands still leads nowhere
-        return None
-    change = rate * asked.away
-    trial = replace(old, u_d=old.u_d + asked.away * path.du_d, load=old.load + asked.away * path.d_load)
-    by_kinks = pace.by_accuracy and not pace.careful
-    lands, kink = by_kinks and not asked.exact, None
-    found = equilibrium(system, trial, control, value + change, change, roughly(newton) if lands else newton, phase)
-    if found is not None and lands:
-        nearly = found
-        found, kink = landed(system, old, nearly, newton, phase, follows_on=point.before is not None)
-        if found is nearly:
-            found = equilibrium(system, nearly.state, control, value + change, change, newton, phase)
-    if found is None:
-        return None
-    state, response = found.state, found.response
-    opening = float(system.load_d @ state.u_d)
-    if asked.exact and abs(opening) <= HOME * abs(point.opening):
-        # nothing has a gap here whose sign means anything: contact is what it was on the way
-        state = replace(state, closed_q=old.closed_q)
-        response = respond(system, replace(state, k_q=old.k_q), decide=False)
-    state = replace(state, k_q=response.k_q, scale=max(old.scale, response.scale))
-    leaving = tangent(system, state, response, direction, phase, kink=kink)
-    if leaving is None:
-        return None
-    broken = broken_between(system, old, state) if by_kinks else 0
-    before = (point.opening, old.load) if broken else None
-    if broken >= SEVERAL and point.before is not None:
-        slope = slope_over_arcs(point.before, (point.opening, old.load), (opening, state.load))
-        leaving = leaving if slope is None else replace(leaving, slope=slope)
-    reached = Point(state, response, opening, leaving, 0.0, energies(system, state, response), found.residuals, before)
-    there, b_d, b_load = control(state, response)
-    end_rate = float(b_d @ leaving.du_d) + b_load * leaving.d_load
-    if end_rate == 0.0:
-        return None
-    away, back = (there - value) / rate, (there - value) / end_rate
-    if by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
-        work = straight_work(point, reached)
-    else:
-        work = step_work(system, point, reached, away, back)
-    slid = slid_off(system, point, reached, away, back)
-    spent = replace(reached.energies, dissipated=reached.energies.dissipated + slid)
-    reached = replace(reached, state=replace(state, slid=old.slid + slid), energies=spent)
-    return replace(reached, external_work=point.external_work + work)
 
 
 def _advice(opening: float, leapt: bool) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
@@ -66,6 +66,10 @@ class State:
     pairing: Pairing | None
     scale: float = 0.0
     slid: float = 0.0
+
+    def moved(self, step_d: np.ndarray) -> State:
+        """Displacements and load moved on by a step (n_dof + 1,), the load last."""
+        return replace(self, u_d=self.u_d + step_d[:-1], load=self.load + float(step_d[-1]))
 
 
 @dataclass(frozen=True)

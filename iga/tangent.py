@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from iga.inner import Bordered, settled_step
 from iga.interface import holding
 from iga.inverse import Inverse
 from iga.landing import Kink
@@ -40,6 +41,14 @@ class Tangent:
     agreed: bool = False
 
 
+@dataclass(frozen=True)
+class Linearised:
+    """A response with every point on the branch that it leaves on, and the inverse of its tangent."""
+
+    response: Response
+    inverse: Inverse
+
+
 def on_envelope(system: System, state: State, g_q: np.ndarray) -> np.ndarray:
     """Points that soften: their damage grows as soon as they open any further."""
     law, k_q = system.interface.law, state.k_q
@@ -54,8 +63,8 @@ def tangent(
     phase: Phase,
     turning: bool = False,
     kink: Kink | None = None,
-) -> Tangent | None:
-    """Tangent of the path at a converged state; None where the matrix is singular.
+) -> tuple[Tangent, Linearised] | None:
+    """Tangent of the path at a converged state, and what it was read from; None where the matrix is singular.
 
     Parameters
     ----------
@@ -70,36 +79,83 @@ def tangent(
     growing_q = soft_q if direction > 0.0 or not law.irreversible else np.zeros_like(soft_q)
     flat_q = law.contact & (np.abs(g_q) <= NO_GAP * law.g_max)
     closed_q = state.closed_q
-    found = None
     for attempt in range(ATTEMPTS):
         if attempt > 0 or turning:
             # a history larger by a rounding is enough to be on the secant
             k_q = np.where(soft_q & ~growing_q, state.k_q * (1.0 + 1e-12), state.k_q)
             with phase("assembly"):
                 response = respond(system, replace(state, k_q=k_q, closed_q=closed_q), decide=False)
-        found = _along(system, response, direction, growing_q, kink, phase)
-        if found is None:
+        inverse = None  # before the next one is made
+        inverse = factorise(system, response, phase)
+        if inverse is None:
             return None
+        with phase("solve"):
+            found = _along(system, response, inverse, direction, growing_q, kink)
         least = NO_RATE * float(np.max(np.abs(found.rate_q), initial=0.0))
         agreeing_q = soft_q & (found.rate_q > np.where(growing_q, -least, least)) if law.irreversible else soft_q
         touching_q = np.where(flat_q & turning, found.rate_q < 0.0, closed_q)
         if np.array_equal(agreeing_q, growing_q) and np.array_equal(touching_q, closed_q):
-            return replace(found, agreed=True)
+            return replace(found, agreed=True), Linearised(response, inverse)
+        if attempt == 0 and turning:
+            with phase("solve"):
+                agreeing_q, touching_q = _sorted_out(system, state, response, inverse, direction, soft_q, flat_q) or (
+                    agreeing_q,
+                    touching_q,
+                )
         growing_q, closed_q = agreeing_q, touching_q
-    return found
+    return found, Linearised(response, inverse)
+
+
+def _sorted_out(
+    system: System,
+    state: State,
+    response: Response,
+    inverse: Inverse,
+    direction: float,
+    soft_q: np.ndarray,
+    flat_q: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Points that grow and points that touch, under a load that changes in a direction; None where that is not found.
+
+    As a rate has a slope where it opens and another where it closes, rates are gaps of a law with a kink at zero.
+    """
+    interface, law = system.interface, system.interface.law
+    touch = replace(response.contact, g_q=np.zeros(interface.points))
+    held_q = np.where(holding(interface, touch), touch.share_q, 0.0)
+    secant_q, falling = held_q * law.secant(state.k_q), -law.strength / (law.g_u - law.g_max)
+    pressed_q = touch.share_q * law.penalty
+
+    def growing(rate_q: np.ndarray) -> np.ndarray:
+        return soft_q & (rate_q > 0.0) if law.irreversible else soft_q
+
+    def touching(rate_q: np.ndarray) -> np.ndarray:
+        return np.where(flat_q, rate_q < 0.0, response.closed_q)
+
+    def rates(rate_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        slope_q = np.where(touching(rate_q), pressed_q, np.where(growing(rate_q), held_q * falling, secant_q))
+        return slope_q * rate_q, slope_q
+
+    load = Bordered(inverse, np.zeros(system.n_dof), 1.0)
+    plain_d, tangents = direction * np.append(inverse.under_load_d, 1.0), (np.zeros(interface.points), response.dp_q)
+    step_d = settled_step(interface, touch, rates, tangents, plain_d, load)
+    if step_d is None:
+        return None
+    rate_q = touch.rates(step_d[:-1])
+    return growing(rate_q), touching(rate_q)
 
 
 def _along(
-    system: System, response: Response, direction: float, growing_q: np.ndarray, kink: Kink | None, phase: Phase
-) -> Tangent | None:
+    system: System,
+    response: Response,
+    inverse: Inverse,
+    direction: float,
+    growing_q: np.ndarray,
+    kink: Kink | None,
+) -> Tangent:
     """Solution of ``K du = f d_load`` for one set of points, turned forward."""
-    inverse = factorise(system, response, phase)
-    if inverse is None:
-        return None
-    with phase("solve"):
-        z_d = inverse.under_load_d
-        compliance = float(system.load_d @ z_d)
-        before = compliance if kink is None else float(system.load_d @ _before(system, response, kink, inverse))
+    z_d = inverse.under_load_d
+    compliance = float(system.load_d @ z_d)
+    before = compliance if kink is None else float(system.load_d @ _before(system, response, kink, inverse))
     slope = 0.5 * (1.0 / compliance + 1.0 / before) if before * compliance > 0.0 else 1.0 / compliance
     rate_q = response.contact.rates(z_d)
     growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
@@ -112,6 +168,6 @@ def _along(
 def _before(system: System, response: Response, kink: Kink, inverse: Inverse) -> np.ndarray:
     """Solution with the tangent just before a kink: one point less stiff by its jump (Sherman and Morrison 1950)."""
     g_d = response.contact.row(kink.q, system.n_dof)
-    y_d, z_d = inverse.solve(g_d), inverse.under_load_d
+    y_d, z_d = inverse.solve(g_d[:, None])[:, 0], inverse.under_load_d
     weight = -kink.jump * system.interface.dA_q[kink.q]
     return z_d - y_d * (weight * float(g_d @ z_d) / (1.0 + weight * float(g_d @ y_d)))

@@ -46,7 +46,7 @@ def solved(system, state, rng) -> tuple[object, float]:
     wrong = np.abs((ahead - behind) / (2 * h) - K @ v_d)[system.free_d].max() / (np.abs(K) @ np.abs(v_d)).max()
     b_d, free = rng.standard_normal(system.n_dof), np.flatnonzero(system.free_d)
     expected = np.linalg.solve(K[np.ix_(free, free)], np.stack([b_d, system.load_d], -1)[free]).T
-    for x_d, exact in zip((inverse.solve(b_d), inverse.under_load_d), expected, strict=True):
+    for x_d, exact in zip((inverse.solve(b_d[:, None])[:, 0], inverse.under_load_d), expected, strict=True):
         wrong = max(wrong, 1e-3 * np.abs(x_d[free] - exact).max() / np.abs(exact).max())
     return inverse, wrong
 

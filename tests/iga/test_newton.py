@@ -79,7 +79,7 @@ def test_stiff_contact_is_found_where_full_steps_go_round_in_circles(kinematics,
     arms = tuple(rectangle("nurbs", (3, 3), x, np.array([y, y + h])) for y in (0.0, -h))
     system = build(replace(CZM1, kinematics=kinematics, penalty=1e10, meshes=arms)).system
     start, law = system.start(), system.interface.law
-    path = tangent(system, start, respond(system, start, decide=False), 1.0, untimed, turning=True)
+    path = tangent(system, start, respond(system, start, decide=False), 1.0, untimed, turning=True)[0]
     trifle = TRIFLE * law.g_max
     away = trifle / float(system.load_d @ path.du_d)
     trial = replace(start, u_d=away * path.du_d, load=away * path.d_load, closed_q=path.closed_q)

@@ -136,7 +136,7 @@ def test_at_a_turning_point_every_point_is_on_its_secant():
     top = next(
         point for point in points_of(system, (1.0,)) if np.sum(point.tangent.growing_q) >= 2 and point.slope < 0.0
     )
-    back = tangent(system, top.state, respond(system, top.state, decide=False), -1.0, untimed, turning=True)
+    back = tangent(system, top.state, respond(system, top.state, decide=False), -1.0, untimed, turning=True)[0]
     assert back.agreed and back.heading == -1.0 and not np.any(back.growing_q)
     assert back.slope == pytest.approx(top.state.load / top.opening, rel=1e-8)
     assert np.linalg.norm(back.du_d / back.d_load - top.state.u_d / top.state.load) < 1e-7 * np.linalg.norm(
@@ -148,7 +148,7 @@ def test_at_a_turning_point_the_way_back_is_the_difference_quotient():
     """Finite kinematics and contact."""
     system = build(replace(PAPER, dofs=400)).system
     top = points_of(system, (0.7,))[-1]
-    back = tangent(system, top.state, respond(system, top.state, decide=False), -1.0, untimed, turning=True)
+    back = tangent(system, top.state, respond(system, top.state, decide=False), -1.0, untimed, turning=True)[0]
     turned = replace(top, tangent=back)
     near = beside(system, turned, opening_control(system), -1e-5)
     assert back.slope == pytest.approx((near.state.load - top.state.load) / -1e-5, rel=1e-4)

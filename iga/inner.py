@@ -1,0 +1,115 @@
+"""Newton on the gaps alone, with the bulk as it was when its tangent was factorised.
+
+With bulk and normals linearised all that is left nonlinear of a step is the law, and of that only the points that
+arrive on another branch. By the tractions ``w`` that leave their tangents there
+
+    g = g0 - C w(g)
+
+under the control, with ``g0`` the gaps after the plain step and ``C`` the compliance of the specimen for tractions at
+the points: a few equations, solved by Newton before the bulk is evaluated again. Only columns of such points are needed
+(Woodbury 1950), and as the law is piecewise linear it ends exactly, on the branches where all points belong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import qr
+
+from iga.interface import Contact, Interface
+from iga.inverse import Inverse
+
+#: Corrections of the gaps, and how far tractions may be from the law, in parts of the largest.
+CORRECTIONS, AGREED = 20, 1e-12
+#: Solutions that this may take: two tangents or so, each of which is worth 25 to 40 of them.
+MOST = 64
+#: Fewer points than these are solved for one by one; part of the largest below which what they add is rounding.
+FEW, NOTHING = 6, 1e-14
+
+
+@dataclass(frozen=True)
+class Bordered:
+    """Equilibrium ``K du = b + f d_load`` closed by one equation, ``a . du + a_load d_load = c``.
+
+    ``a_d`` (n_dof,) is the gradient of the control, ``grip`` what it feels of a unit load.
+    """
+
+    inverse: Inverse
+    a_d: np.ndarray
+    grip: float
+
+    def solve(self, b_dm: np.ndarray, c: float = 0.0) -> np.ndarray:
+        """Steps (n_dof + 1, n_m), the load last, for forces b_dm (n_dof, n_m)."""
+        v_dm = self.inverse.solve(b_dm)
+        d_load_m = (c - self.a_d @ v_dm) / self.grip
+        return np.concatenate([v_dm + self.inverse.under_load_d[:, None] * d_load_m, d_load_m[None]])
+
+
+def bordered(inverse: Inverse, a_d: np.ndarray, a_load: float) -> Bordered | None:
+    """None where the control does not feel the load."""
+    grip = float(a_d @ inverse.under_load_d) + a_load
+    return None if grip == 0.0 else Bordered(inverse, a_d, grip)
+
+
+def settled_step(
+    interface: Interface,
+    touch: Contact,
+    law: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
+    tangents: tuple[np.ndarray, np.ndarray],
+    plain_d: np.ndarray,
+    system: Bordered,
+) -> np.ndarray | None:
+    """The step (n_dof + 1,) of displacements and load with all tractions on the law; None where none is found.
+
+    Parameters
+    ----------
+    touch : gaps and their gradients where the step begins.
+    law : tractions and slopes (n_q,) for gaps (n_q,).
+    tangents : tractions and slopes (n_q,) there, as the tangent has them.
+    plain_d : the step (n_dof + 1,) with all points on their tangents.
+    """
+    (p0_q, dp0_q), g0_q = tangents, touch.g_q + touch.rates(plain_d[:-1])
+    g_q, points, w_m, steps_dm = g0_q, np.zeros(0, dtype=int), np.zeros(0), np.zeros((plain_d.size, 0))
+    solutions = 0
+    for _ in range(CORRECTIONS):
+        p_q, dp_q = law(g_q)
+        w_q = p_q - p0_q - dp0_q * (g_q - touch.g_q)
+        left_q = w_q.copy()
+        left_q[points] -= w_m
+        leaving_q = np.abs(left_q) > AGREED * np.abs(p_q).max()
+        if not leaving_q.any():
+            return plain_d - steps_dm @ w_m
+        leaving_q[points] = False
+        new = np.flatnonzero(leaving_q)
+        if new.size:
+            pulls_dr, parts_rm = _spanned(touch.rows(new, plain_d.size - 1) * interface.dA_q[new])
+            solutions += pulls_dr.shape[1]
+            if solutions > MOST:
+                return None
+            more_dm = system.solve(pulls_dr) @ parts_rm
+            points, steps_dm = np.append(points, new), np.concatenate([steps_dm, more_dm], axis=1)
+            C_mm = touch.rates(steps_dm[:-1], points)
+        slope, w = (dp_q - dp0_q)[points], w_q[points]
+        matrix, right = np.eye(points.size) + C_mm * slope, g0_q[points] - C_mm @ (w - slope * g_q[points])
+        w_m = w + slope * (np.linalg.solve(matrix, right) - g_q[points])
+        g_q = g0_q - touch.rates(steps_dm[:-1] @ w_m)
+    return None
+
+
+def _spanned(rows_dm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Vectors (n_dof, n_r) that span some others, and the parts (n_r, n_m) in which they make these up.
+
+    Points of an element share its functions: there are less independent ones than points.
+    """
+    n_m = rows_dm.shape[1]
+    if n_m < FEW:
+        return rows_dm, np.eye(n_m)
+    used = np.flatnonzero(rows_dm.any(axis=1))
+    Q, R, order = qr(rows_dm[used], mode="economic", pivoting=True, check_finite=False)
+    size_r = np.abs(np.diagonal(R))
+    rank = int(np.count_nonzero(size_r > NOTHING * size_r[0]))
+    vectors_dr, parts_rm = np.zeros((len(rows_dm), rank), order="F"), np.empty((rank, n_m))
+    vectors_dr[used], parts_rm[:, order] = Q[:, :rank], R[:rank]
+    return vectors_dr, parts_rm

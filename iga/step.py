@@ -1,0 +1,124 @@
+"""One step of the path: what is foreseen, the equilibrium, and what the step has cost in energy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from iga.control import gap_control
+from iga.landing import SEVERAL, Kink, broken_between, landing, slope_over_arcs
+from iga.newton import Equilibrium, Newton, correction, equilibrium, roughly
+from iga.pace import Pace, Step
+from iga.point import Point
+from iga.system import Phase, State, System, energies, respond
+from iga.tangent import Linearised, tangent
+from iga.work import slid_off, step_work, straight_work
+
+#: An opening that is this part of the one before is none.
+HOME = 1e-9
+
+
+@dataclass(frozen=True)
+class Foreseen:
+    """Where a step is to set out for equilibrium; the gaps g_q (n_q,) there, where these say where points break.
+
+    ``spent`` are the residuals of the iterations that this has taken.
+    """
+
+    state: State
+    g_q: np.ndarray | None = None
+    spent: tuple[float, ...] = ()
+
+
+def foresee(system: System, point: Point, asked: Step, known: Linearised | None, phase: Phase) -> Foreseen:
+    """Along the tangent; where its inverse is still known, with what the law makes of the step, the bulk as it is."""
+    old, path = point.state, point.tangent
+    along_d = asked.away * np.append(path.du_d, path.d_load)
+    if known is not None:
+        value, a_d, a_load = asked.control(old, known.response)
+        target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
+        with phase("solve"):
+            found = correction(system, old, known.response, known.inverse, asked.control, target, inner=True)
+        if found is not None and found[1]:
+            touch = known.response.contact
+            return Foreseen(old.moved(found[0]), touch.g_q + touch.rates(found[0][:-1]))
+    return Foreseen(old.moved(along_d))
+
+
+def advance(
+    system: System,
+    point: Point,
+    asked: Step,
+    foreseen: Foreseen,
+    direction: float,
+    pace: Pace,
+    newton: Newton,
+    phase: Phase,
+) -> tuple[Point, Linearised] | tuple[None, None]:
+    """The point where a step ends, and its tangent's inverse; nothing is committed before it converged."""
+    old, path, control = point.state, point.tangent, asked.control
+    value, a_d, a_load = control(old, point.response)
+    rate = float(a_d @ path.du_d) + a_load * path.d_load
+    if rate == 0.0:  # what stands still leads nowhere
+        return None, None
+    change = rate * asked.away
+    by_kinks = pace.by_accuracy and not pace.careful
+    found, kink = None, None
+    if by_kinks and not asked.exact:
+        if foreseen.g_q is None:
+            nearly = equilibrium(system, foreseen.state, control, value + change, change, roughly(newton), phase)
+            if nearly is None:
+                return None, None
+            foreseen = Foreseen(nearly.state, nearly.response.contact.g_q, nearly.residuals)
+        found, kink = _landed(system, point, foreseen, newton, phase)
+    if found is None:
+        found = equilibrium(system, foreseen.state, control, value + change, change, newton, phase)
+    if found is None:
+        return None, None
+    state, response = found.state, found.response
+    opening = float(system.load_d @ state.u_d)
+    if asked.exact and abs(opening) <= HOME * abs(point.opening):
+        # nothing has a gap here whose sign means anything: contact is what it was on the way
+        state = replace(state, closed_q=old.closed_q)
+        response = respond(system, replace(state, k_q=old.k_q), decide=False)
+    state = replace(state, k_q=response.k_q, scale=max(old.scale, response.scale))
+    left = tangent(system, state, response, direction, phase, kink=kink)
+    if left is None:
+        return None, None
+    leaving, known = left
+    broken = broken_between(system, old, state) if by_kinks else 0
+    before = (point.opening, old.load) if broken else None
+    if broken >= SEVERAL and point.before is not None:
+        slope = slope_over_arcs(point.before, (point.opening, old.load), (opening, state.load))
+        leaving = leaving if slope is None else replace(leaving, slope=slope)
+    residuals = foreseen.spent + found.residuals
+    reached = Point(state, response, opening, leaving, 0.0, energies(system, state, response), residuals, before)
+    there, b_d, b_load = control(state, response)
+    end_rate = float(b_d @ leaving.du_d) + b_load * leaving.d_load
+    if end_rate == 0.0:
+        return None, None
+    away, back = (there - value) / rate, (there - value) / end_rate
+    if by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
+        work = straight_work(point, reached)
+    else:
+        work = step_work(system, point, reached, away, back)
+    slid = slid_off(system, point, reached, away, back)
+    spent = replace(reached.energies, dissipated=reached.energies.dissipated + slid)
+    reached = replace(reached, state=replace(state, slid=old.slid + slid), energies=spent)
+    return replace(reached, external_work=point.external_work + work), known
+
+
+def _landed(
+    system: System, point: Point, foreseen: Foreseen, newton: Newton, phase: Phase
+) -> tuple[Equilibrium | None, Kink | None]:
+    """Equilibrium at the kink nearest to what is foreseen; None where there is none."""
+    touch, old = point.response.contact, point.state
+    place = landing(system, old, touch, foreseen.g_q, follows_on=point.before is not None)
+    if place is None:
+        return None, None
+    control, change = gap_control(system, place.q), place.target - foreseen.g_q[place.q]
+    there = equilibrium(system, foreseen.state, control, place.target, change, newton, phase)
+    if there is None or there.response.contact.g_q[place.q] < place.least:
+        return None, None
+    return there, place.kink

@@ -1,0 +1,104 @@
+"""Newton on the gaps alone: what it says of a step against the forces themselves."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from specimens import PAPER
+
+from iga import inner
+from iga.control import gap_control, opening_control
+from iga.dcb import build
+from iga.inner import bordered
+from iga.newton import correction, residual_norm
+from iga.path import Point, follow
+from iga.system import System, factorise, respond, untimed
+
+CZM1 = replace(PAPER, opening=(1.5,), dofs=700)
+
+
+@cache
+def walked(**effects) -> tuple[System, list[Point]]:
+    """A system and its path."""
+    system = build(replace(CZM1, **effects)).system
+    return system, [point for point in follow(system, (1.5,), 60) if isinstance(point, Point)]
+
+
+def leap(system, point: Point, control, by: float):
+    """State and response where a step that changes the control ``by`` so much leads; whether the law is settled."""
+    old = point.state
+    response = respond(system, old, decide=False)
+    known, (value, _, _) = factorise(system, response, untimed), control(old, response)
+    found = correction(system, old, response, known, control, value + by, inner=True)
+    moved = old.moved(found[0])
+    return moved, respond(system, moved), found[1]
+
+
+@pytest.mark.parametrize("contact", [True, False])
+@pytest.mark.parametrize("at", [0.0, 0.2, 0.6, 0.9])
+def test_a_linear_bulk_is_in_equilibrium_after_one_step(at, contact):
+    """Whatever breaks, begins to soften or closes on the way: nothing else is nonlinear."""
+    system, points = walked(kinematics="linear", contact=contact)
+    start = points[int(at * (len(points) - 1))]
+    before = start.response.dp_q
+    moved, response, settled = leap(system, start, opening_control(system), 0.3)
+    changed = int(np.count_nonzero(np.abs(response.dp_q - before) > 1e-9 * np.abs(before).max()))
+    assert settled and changed > 2, f"only {changed} points changed their branch"
+    assert residual_norm(system, moved.load, response) < 1e-8
+    assert float(system.load_d @ (moved.u_d - start.state.u_d)) == pytest.approx(0.3, rel=1e-9)
+
+
+@pytest.mark.parametrize("search", [True, False])
+def test_of_a_finite_bulk_only_its_own_curvature_is_left(search):
+    """Twice the step leaves four times the residual, though twice as many points change their branch."""
+    system, points = walked(search=search)
+    left = []
+    for by in (0.01, 0.02, 0.04):
+        moved, response, settled = leap(system, points[40], opening_control(system), by)
+        assert settled
+        left.append(residual_norm(system, moved.load, response))
+    order = np.diff(np.log2(left))
+    assert np.all(np.abs(order - 2.0) < 0.2), order
+
+
+def test_a_leap_of_the_front_breaks_points_in_order():
+    system, points = walked(kinematics="linear", contact=True)
+    start = points[40]
+    g_q, law = start.response.contact.g_q, system.interface.law
+    q = int(np.argmax(np.where(g_q < law.g_u, g_q, -np.inf)))
+    moved, response, settled = leap(system, start, gap_control(system, q), 2.0 * law.g_u)
+    assert settled and np.count_nonzero((response.contact.g_q > law.g_u) & (g_q < law.g_u)) > 3
+    assert response.contact.g_q[q] == pytest.approx(g_q[q] + 2.0 * law.g_u, rel=1e-9)
+    assert residual_norm(system, moved.load, response) < 1e-8
+
+
+def test_too_many_points_are_left_to_a_new_tangent(monkeypatch):
+    system, points = walked(kinematics="linear", contact=True)
+    monkeypatch.setattr(inner, "MOST", 2)
+    moved, response, settled = leap(system, points[40], opening_control(system), 0.3)
+    assert not settled and residual_norm(system, moved.load, response) > 1e-6, "the plain step is no equilibrium"
+
+
+@pytest.mark.parametrize("chosen", ["opening", "load and opening"])
+def test_a_bordered_step_meets_both_equations(chosen, rng):
+    system = build(CZM1).system
+    response = respond(system, system.start(), decide=False)
+    known, a_load = factorise(system, response, untimed), 0.0 if chosen == "opening" else 3.0
+    tied = bordered(known, system.load_d, a_load)
+    b_dm = rng.standard_normal((system.n_dof, 2))
+    step_dm = tied.solve(b_dm, 0.7)
+    again = known.solve(b_dm + np.outer(system.load_d, step_dm[-1]))
+    assert np.allclose(step_dm[:-1], again, rtol=0, atol=1e-9 * np.abs(again).max())
+    assert system.load_d @ step_dm[:-1] + a_load * step_dm[-1] == pytest.approx([0.7, 0.7])
+    assert bordered(known, np.zeros(system.n_dof), 0.0) is None, "nothing feels the load"
+
+
+def test_points_of_one_element_span_no_more_than_its_functions(rng):
+    functions_rd, parts_mr = rng.standard_normal((5, 300)), rng.standard_normal((40, 5))
+    rows_dm = (parts_mr @ functions_rd).T
+    vectors_dr, parts_rm = inner._spanned(rows_dm)
+    assert vectors_dr.shape[1] == 5
+    assert np.allclose(vectors_dr @ parts_rm, rows_dm, rtol=0, atol=1e-12 * np.abs(rows_dm).max())
+    few = inner._spanned(rows_dm[:, :3])
+    assert np.array_equal(few[0] @ few[1], rows_dm[:, :3])
