@@ -110,13 +110,14 @@ def _iterate(
             return (trial, response), tuple(residuals)
         if _hopeless(residuals, newton):
             return None, tuple(residuals)
-        if tangent is None or not _holds(residuals, newton.tolerance):
+        stale = tangent is not None and _holds(residuals, newton.tolerance)
+        if not stale:
             tangent = None  # before the next one is made: of all that a run holds it is the largest
             tangent = factorise(system, response, phase)
         if tangent is None:
             return None, tuple(residuals)
         decide = not met or norm > max(newton.settle, 10.0 * floor)
-        inner = advance is _full and decide and norm > newton.rough
+        inner = advance is _full and decide and norm > newton.rough and not stale
         with phase("solve"):
             corrected = correction(system, trial, response, tangent, control, target, inner)
         if corrected is None:
