@@ -81,7 +81,7 @@ def half_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def half_values(K_eapb: np.ndarray) -> np.ndarray:
     """Their values (n_e, n_h)."""
     n_e, n_a, _, _ = K_eapb.shape
-    return np.take(K_eapb.reshape(n_e, -1), half(n_a), axis=1)
+    return K_eapb.reshape(n_e, -1)[:, half(n_a)]
 
 
 def full_matrices(K_eapb: np.ndarray) -> np.ndarray:

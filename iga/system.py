@@ -163,12 +163,12 @@ class System:
 
     @cached_property
     def band(self) -> Band | Dense:
-        """Numbering for bulk and interface, with room for every point to move one side on in either direction."""
+        """Numbering for bulk and interface before anything moves; what slides may ask for a wider band."""
         if self.bulk_dd is not None:
             return Dense(self.n_dof)
         springs = [np.flatnonzero(a_d)[None] for a_d in self.springs_rd]
-        touching = [dofs(conn_qa) for conn_qa in _reachable(self.interface)]
-        return number([*self.element_dofs, *touching, *springs, self.loaded[None]], self.x_d, self.free_d)
+        touching = self.reference_dof_qd
+        return number([*self.element_dofs, touching, *springs, self.loaded[None]], self.x_d, self.free_d)
 
     @cached_property
     def loaded(self) -> np.ndarray:
@@ -393,15 +393,6 @@ def _bulk_stiffness(system: System, gradients: Sequence[np.ndarray]) -> list[np.
     return [
         element_stiffness(solid.basis, moduli(solid.D, H)) for solid, H in zip(system.solids, gradients, strict=False)
     ]
-
-
-def _reachable(interface: Interface) -> list[np.ndarray]:
-    """Control points that a point touches where it is now and one side on either way."""
-    pairing = pair(interface)
-    if pairing is None:
-        return [interface.known_conn_qa]
-    neighbours = (np.clip(pairing.c_q + step, 0, interface.master.sides - 1) for step in (-1, 0, 1))
-    return [np.concatenate([interface.conn_qa, interface.master.conn_ca[c_q]], axis=1) for c_q in neighbours]
 
 
 def _lower(d_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
