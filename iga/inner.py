@@ -60,6 +60,7 @@ def settled_step(
     tangents: tuple[np.ndarray, np.ndarray],
     plain_d: np.ndarray,
     system: Bordered,
+    guess_q: np.ndarray | None = None,
 ) -> np.ndarray | None:
     """The step (n_dof + 1,) of displacements and load with all tractions on the law; None where none is found.
 
@@ -69,18 +70,20 @@ def settled_step(
     law : tractions and slopes (n_q,) for gaps (n_q,).
     tangents : tractions and slopes (n_q,) there, as the tangent has them.
     plain_d : the step (n_dof + 1,) with all points on their tangents.
+    guess_q : gaps (n_q,) to begin with, those of the plain step if left out.
     """
     (p0_q, dp0_q), g0_q = tangents, touch.g_q + touch.rates(plain_d[:-1])
-    g_q, points, w_m, steps_dm = g0_q, np.zeros(0, dtype=int), np.zeros(0), np.zeros((plain_d.size, 0))
-    solutions = 0
+    points, w_m, steps_dm, solutions = np.zeros(0, dtype=int), np.zeros(0), np.zeros((plain_d.size, 0)), 0
+    g_q, guessed = (g0_q, False) if guess_q is None else (guess_q, True)
     for _ in range(CORRECTIONS):
         p_q, dp_q = law(g_q)
         w_q = p_q - p0_q - dp0_q * (g_q - touch.g_q)
         left_q = w_q.copy()
         left_q[points] -= w_m
         leaving_q = np.abs(left_q) > AGREED * np.abs(p_q).max()
-        if not leaving_q.any():
+        if not (guessed or leaving_q.any()):
             return plain_d - steps_dm @ w_m
+        guessed = False
         leaving_q[points] = False
         new = np.flatnonzero(leaving_q)
         if new.size:
@@ -90,7 +93,7 @@ def settled_step(
                 return None
             more_dm = system.solve(pulls_dr) @ parts_rm
             points, steps_dm = np.append(points, new), np.concatenate([steps_dm, more_dm], axis=1)
-            C_mm = touch.rates(steps_dm[:-1], points)
+        C_mm = touch.rates(steps_dm[:-1], points)
         slope, w = (dp_q - dp0_q)[points], w_q[points]
         matrix, right = np.eye(points.size) + C_mm * slope, g0_q[points] - C_mm @ (w - slope * g_q[points])
         w_m = w + slope * (np.linalg.solve(matrix, right) - g_q[points])

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.interface import Contact, holding
+from iga.interface import Contact, Interface, holding
 from iga.system import State, System
 
 #: How far beyond the kink a step ends, in parts of its gap, and how many points break on one that passes over arcs.
@@ -65,6 +65,26 @@ def landing(system: System, old: State, touch: Contact, g_q: np.ndarray, follows
     if not np.any(g_q >= gap) or old.k_q[q] >= gap or g_q[q] == target:
         return None
     return Landing(q, target, gap, None if half else Kink(q, -softening if broken else softening - law.stiffness))
+
+
+def travelled(interface: Interface, g_q: np.ndarray, q: int, target: float) -> np.ndarray | None:
+    """Gaps (n_q,) after the crack has run on, as far as it takes the one at point q to a larger ``target``.
+
+    While a crack runs its gaps travel along the interface with it and change little. None where they are nowhere as
+    large as the target.
+    """
+    s_q = (interface.X_qi - interface.X_qi[q]) @ (interface.X_qi[-1] - interface.X_qi[0])
+    order = np.argsort(s_q)
+    s, g = s_q[order], g_q[order]
+    at = int(np.flatnonzero(order == q)[0])
+    way = 1 if g[min(at + 1, g.size - 1)] > g[max(at - 1, 0)] else -1
+    further = np.flatnonzero(g[at::way] >= target)
+    if further.size == 0 or further[0] == 0:
+        return None
+    there = at + way * int(further[0])
+    part = (target - g[there - way]) / (g[there] - g[there - way])
+    moved = s[there - way] + part * (s[there] - s[there - way])
+    return np.interp(s_q + moved, s, g)
 
 
 def broken_between(system: System, old: State, new: State) -> int:

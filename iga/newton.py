@@ -101,7 +101,7 @@ def _iterate(
 ) -> tuple[tuple[State, Response] | None, tuple[float, ...]]:
     """The converged state with its response, or None, and the residual norms on the way."""
     trial, response, norm = _evaluate(system, trial, True, phase)
-    residuals, tangent = [norm], None
+    residuals, tangent, inner = [norm], None, advance is _full
     while True:
         floor = _floor(system, trial, response, newton) if norm < newton.rough else newton.tolerance
         stays = len(residuals) > 1 and norm > 0.25 * residuals[-2]
@@ -117,12 +117,13 @@ def _iterate(
         if tangent is None:
             return None, tuple(residuals)
         decide = not met or norm > max(newton.settle, 10.0 * floor)
-        inner = advance is _full and decide and norm > newton.rough and not stale
+        tried = inner and decide and norm > newton.rough and not stale
         with phase("solve"):
-            corrected = correction(system, trial, response, tangent, control, target, inner)
+            corrected = correction(system, trial, response, tangent, control, target, tried)
         if corrected is None:
             return None, tuple(residuals)
-        step_d = corrected[0]
+        step_d, settled = corrected
+        inner = inner and (settled or not tried)  # where it does not find its way once, it will not the next time
 
         def at(
             s: float, trial: State = trial, step_d: np.ndarray = step_d, decide: bool = decide
@@ -176,11 +177,19 @@ def _evaluate(system: System, trial: State, decide: bool, phase: Phase) -> tuple
 
 
 def correction(
-    system: System, trial: State, response: Response, inverse: Inverse, control: Control, target: float, inner: bool
+    system: System,
+    trial: State,
+    response: Response,
+    inverse: Inverse,
+    control: Control,
+    target: float,
+    inner: bool,
+    guess_q: np.ndarray | None = None,
 ) -> tuple[np.ndarray, bool] | None:
     """Step (n_dof + 1,) of displacements and load, bordered by the linearised control; None where that feels no load.
 
-    The ``inner`` Newton puts all tractions on the law; whether it has, is told, too.
+    The ``inner`` Newton puts all tractions on the law, from the gaps ``guess_q`` (n_q,) where these are told; whether
+    it has, is told, too.
     """
     value, a_d, a_load = control(trial, response)
     tied = bordered(inverse, a_d, a_load)
@@ -195,7 +204,7 @@ def correction(
     def law(g_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return traction(interface, replace(touch, g_q=g_q), trial.k_q, g_q < 0.0)[:2]
 
-    found = settled_step(interface, touch, law, (response.p_q, response.dp_q), plain_d, tied)
+    found = settled_step(interface, touch, law, (response.p_q, response.dp_q), plain_d, tied, guess_q)
     return (plain_d, False) if found is None else (found, True)
 
 

@@ -62,6 +62,11 @@ class Pace:
         return self.attempt > 0
 
     @property
+    def by_kinks(self) -> bool:
+        """Whether steps end where a point breaks, that do not end on a goal."""
+        return self.by_accuracy and not self.careful
+
+    @property
     def level(self) -> int:
         """How often the step has been halved."""
         return max(self.attempt - 1, 0) // len(CAREFUL)
@@ -132,7 +137,7 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
         return Step(opening_control(system), away, exact)
     if 0.0 < direction * left < pace.step and not pace.careful and path.heading == direction:
         return Step(opening_control(system), left / opening_rate, exact=True)
-    q = int(np.argmax(np.where(path.growing_q, g_q, -np.inf)))
+    q = point.front
     away = min(pace.front * law.g_u / abs(path.rate_q[q]), pace.length / abs(opening_rate))
     if pace.careful and event is not None and event.away < away:
         q, away = event.q, event.beyond

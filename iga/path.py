@@ -63,11 +63,14 @@ def follow(
             point, known = _departing(system, point.state, direction, point.external_work, phase) or (point, None)
         while point.opening != goal:
             asked = next_step(system, point, goal, pace, direction)
-            foreseen, known = foresee(system, point, asked, known, phase), None  # of all that is held the largest
+            foreseen, known = (
+                foresee(system, point, asked, pace.by_kinks and not asked.exact, known, phase),
+                None,
+            )  # of all that is held the largest
             reached, known = advance(system, point, asked, foreseen, direction, pace, newton, phase)
             if reached is not None and direction * (reached.opening - goal) > 0.0 and not asked.exact:
                 asked, known = _onto(system, point, goal), None
-                foreseen = foresee(system, point, asked, None, phase)
+                foreseen = foresee(system, point, asked, False, None, phase)
                 reached, known = advance(system, point, asked, foreseen, direction, pace, newton, phase)
             if reached is None or leaks(system, point, reached, most):
                 known = None

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from iga.system import Energies, Response, State
 from iga.tangent import Tangent
 
@@ -34,6 +36,11 @@ class Point:
     @property
     def heading(self) -> float:
         return self.tangent.heading
+
+    @property
+    def front(self) -> int:
+        """Of the points whose damage grows along the path the one that has opened furthest."""
+        return int(np.argmax(np.where(self.tangent.growing_q, self.response.contact.g_q, -np.inf)))
 
     @property
     def iterations(self) -> int:

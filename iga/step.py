@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.control import gap_control
-from iga.landing import SEVERAL, Kink, broken_between, landing, slope_over_arcs
+from iga.landing import SEVERAL, Kink, Landing, broken_between, landing, slope_over_arcs, travelled
 from iga.newton import Equilibrium, Newton, correction, equilibrium, roughly
 from iga.pace import Pace, Step
 from iga.point import Point
@@ -21,29 +21,43 @@ HOME = 1e-9
 
 @dataclass(frozen=True)
 class Foreseen:
-    """Where a step is to set out for equilibrium; the gaps g_q (n_q,) there, where these say where points break.
+    """Where a step sets out for equilibrium, and the kink it is to end at, if any; ``settled``: with the law as it is.
 
     ``spent`` are the residuals of the iterations that this has taken.
     """
 
     state: State
-    g_q: np.ndarray | None = None
+    settled: bool = False
+    place: Landing | None = None
     spent: tuple[float, ...] = ()
 
 
-def foresee(system: System, point: Point, asked: Step, known: Linearised | None, phase: Phase) -> Foreseen:
+def foresee(
+    system: System, point: Point, asked: Step, by_kinks: bool, known: Linearised | None, phase: Phase
+) -> Foreseen:
     """Along the tangent; where its inverse is still known, with what the law makes of the step, the bulk as it is."""
     old, path = point.state, point.tangent
     along_d = asked.away * np.append(path.du_d, path.d_load)
-    if known is not None:
-        value, a_d, a_load = asked.control(old, known.response)
-        target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
-        with phase("solve"):
-            found = correction(system, old, known.response, known.inverse, asked.control, target, inner=True)
-        if found is not None and found[1]:
-            touch = known.response.contact
-            return Foreseen(old.moved(found[0]), touch.g_q + touch.rates(found[0][:-1]))
-    return Foreseen(old.moved(along_d))
+    if known is None:
+        return Foreseen(old.moved(along_d))
+    response, touch, control = known.response, known.response.contact, asked.control
+    value, a_d, a_load = control(old, response)
+    target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
+    follows_on, guess_q, place = point.before is not None, None, None
+    with phase("solve"):
+        if np.any(path.growing_q):
+            q = point.front
+            guess_q = travelled(system.interface, touch.g_q, q, touch.g_q[q] + asked.away * path.rate_q[q])
+        if by_kinks and guess_q is not None:
+            place = landing(system, old, touch, guess_q, follows_on)
+        if place is not None:
+            control, target = gap_control(system, place.q), place.target
+        found = correction(system, old, response, known.inverse, control, target, True, guess_q)
+    if found is None or not found[1]:
+        return Foreseen(old.moved(along_d))
+    if by_kinks and place is None:
+        place = landing(system, old, touch, touch.g_q + touch.rates(found[0][:-1]), follows_on)
+    return Foreseen(old.moved(found[0]), True, place)
 
 
 def advance(
@@ -63,15 +77,17 @@ def advance(
     if rate == 0.0:  # what stands still leads nowhere
         return None, None
     change = rate * asked.away
-    by_kinks = pace.by_accuracy and not pace.careful
     found, kink = None, None
-    if by_kinks and not asked.exact:
-        if foreseen.g_q is None:
+    if pace.by_kinks and not asked.exact:
+        if not foreseen.settled:
             nearly = equilibrium(system, foreseen.state, control, value + change, change, roughly(newton), phase)
             if nearly is None:
                 return None, None
-            foreseen = Foreseen(nearly.state, nearly.response.contact.g_q, nearly.residuals)
-        found, kink = _landed(system, point, foreseen, newton, phase)
+            touch = nearly.response.contact
+            place = landing(system, old, touch, touch.g_q, follows_on=point.before is not None)
+            foreseen = Foreseen(nearly.state, True, place, nearly.residuals)
+        if foreseen.place is not None:
+            found, kink = _landed(system, point, foreseen.state, foreseen.place, newton, phase)
     if found is None:
         found = equilibrium(system, foreseen.state, control, value + change, change, newton, phase)
     if found is None:
@@ -87,7 +103,7 @@ def advance(
     if left is None:
         return None, None
     leaving, known = left
-    broken = broken_between(system, old, state) if by_kinks else 0
+    broken = broken_between(system, old, state) if pace.by_kinks else 0
     before = (point.opening, old.load) if broken else None
     if broken >= SEVERAL and point.before is not None:
         slope = slope_over_arcs(point.before, (point.opening, old.load), (opening, state.load))
@@ -99,7 +115,7 @@ def advance(
     if end_rate == 0.0:
         return None, None
     away, back = (there - value) / rate, (there - value) / end_rate
-    if by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
+    if pace.by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
         work = straight_work(point, reached)
     else:
         work = step_work(system, point, reached, away, back)
@@ -110,15 +126,11 @@ def advance(
 
 
 def _landed(
-    system: System, point: Point, foreseen: Foreseen, newton: Newton, phase: Phase
+    system: System, point: Point, trial: State, place: Landing, newton: Newton, phase: Phase
 ) -> tuple[Equilibrium | None, Kink | None]:
-    """Equilibrium at the kink nearest to what is foreseen; None where there is none."""
-    touch, old = point.response.contact, point.state
-    place = landing(system, old, touch, foreseen.g_q, follows_on=point.before is not None)
-    if place is None:
-        return None, None
-    control, change = gap_control(system, place.q), place.target - foreseen.g_q[place.q]
-    there = equilibrium(system, foreseen.state, control, place.target, change, newton, phase)
+    """Equilibrium at a kink; None where there is none."""
+    change = place.target - point.response.contact.g_q[place.q]
+    there = equilibrium(system, trial, gap_control(system, place.q), place.target, change, newton, phase)
     if there is None or there.response.contact.g_q[place.q] < place.least:
         return None, None
     return there, place.kink

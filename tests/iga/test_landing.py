@@ -1,6 +1,7 @@
 """Steps that end at a kink of the law: where they end, and which slope they tell there."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from specimens import PAPER
 
 from iga.control import gap_control
 from iga.dcb import build
-from iga.landing import SEVERAL, broken_between, slope_over_arcs
+from iga.landing import SEVERAL, broken_between, slope_over_arcs, travelled
 from iga.newton import DEFAULT, equilibrium
 from iga.pace import Pace
 from iga.path import End, follow
@@ -162,3 +163,24 @@ def test_where_the_load_turns_the_slope_is_the_one_behind_the_kink(monkeypatch):
             errors.append(abs(end.slope - after) / abs(after))
     print(f"load turns at {len(errors)} kinks, the slope behind met within {errors}")
     assert len(errors) > 2 and max(errors) < 1e-5
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("turn", [0.0, 2.1])
+def test_gaps_travel_with_the_crack(way, turn, rng):
+    """The profile of a crack that has run on is the same one elsewhere, in whatever order and place the points are."""
+    s_q = np.sort(rng.uniform(0.0, 3.0, 200))[:: int(way)]
+    X_qi = np.stack([np.cos(turn) * s_q, np.sin(turn) * s_q], -1)
+    touching = SimpleNamespace(X_qi=X_qi)
+
+    def profile(s):
+        return 2.0 - s if way > 0 else s - 1.0
+
+    q, target = 90, profile(s_q[90]) + 0.4
+    moved_q = travelled(touching, profile(s_q), q, target)
+    inside = (moved_q < profile(s_q).max()) & (moved_q > profile(s_q).min() + 0.4)
+    assert np.count_nonzero(inside) > 100
+    assert moved_q[inside] == pytest.approx(profile(s_q[inside]) + 0.4, abs=1e-12)
+    assert moved_q[q] == pytest.approx(target, abs=1e-12)
+    assert travelled(touching, profile(s_q), q, profile(s_q).max() + 1.0) is None, "nowhere as open as that"
+    assert travelled(touching, profile(s_q), q, profile(s_q)[q] - 0.1) is None, "it closes"
