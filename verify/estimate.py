@@ -10,7 +10,7 @@ from verify.schema import Scene
 #: Seconds besides the steps, and seconds a step for a thousand unknowns, in proportion to them; with `dcb-czm1`, finite
 #: kinematics, on one core of 2023. A rough guide: another machine is as likely to be twice as fast.
 BESIDES = {"dolfinx": 4.0}
-PER_STEP = {"tspline": 0.03, "nurbs": 0.03, "lagrange": 0.03, "dolfinx": 0.02, "beam": 0.03, "lefm": 0.001}
+PER_STEP = {"tspline": 0.01, "nurbs": 0.01, "lagrange": 0.01, "dolfinx": 0.02, "beam": 0.03, "lefm": 0.001}
 
 #: Of a method of another package.
 UNKNOWN = 0.03
@@ -19,8 +19,8 @@ UNKNOWN = 0.03
 #: length of the zone, and so many besides. Measured on ``dcb-czm1`` and ``peel-120``, by both codes.
 STEPS_PER_ZONE, STEPS_BESIDES = 8.2, 20
 #: Steps that the path chooses itself, as many as take the same time if they are counted: each ends on a kink of the law
-#: and takes nearly twice the iterations. Measured on ``dcb-czm1`` (31 steps) and ``peel-120`` (41).
-STEPS_CHOSEN = 60
+#: and takes half as many iterations again. Measured on ``dcb-czm1`` (29 steps) and ``peel-120`` (42).
+STEPS_CHOSEN = 50
 
 
 def seconds(scene: Scene, method: str) -> float:

@@ -37,7 +37,7 @@ FAMILY = next(family for family in FAMILIES if family.name == "nurbs-p2")
 FINEST, COARSEST, SAFETY = 0.0005, 0.05, 1.2
 
 #: Newton iterations a step, measured on ``dcb-czm1`` and ``peel-120``.
-ITERATIONS_PER_STEP = 4.4
+ITERATIONS_PER_STEP = 3.2
 
 #: A trial goes this part of the way in about so many steps.
 TRIAL, TRIAL_STEPS = 0.02, 10
