@@ -80,3 +80,7 @@ class Law:
 
     def _closed(self, g_q: np.ndarray) -> np.ndarray:
         return (g_q < 0.0) & self.contact
+
+
+#: Name in a scene -> law; another one has all that `Law` has.
+LAWS: dict[str, type[Law]] = {"bilinear": Law}

@@ -15,7 +15,7 @@ from fem_reference.assembled import BlockVector, owned
 from fem_reference.bond import Bond
 from fem_reference.dolfinx_api import add_block_matrix, compile_forms, create_block_matrix
 from fem_reference.forms import WeakForm, displacements, weak_form
-from fem_reference.law import Law
+from fem_reference.law import LAWS, Law
 from fem_reference.linear import Factorisation, outer, widened, without_zeros
 from fem_reference.mesh import TwoBodies, two_bodies
 from fem_reference.problem import Debonding
@@ -192,7 +192,7 @@ def _largest(matrix: PETSc.Mat, free_n: np.ndarray, comm: MPI.Intracomm) -> floa
 def law_of(problem: Debonding) -> Law:
     """The traction law of a problem."""
     p = problem
-    return Law(p.strength, p.toughness, p.ductility, p.penalty, p.contact, p.irreversible)
+    return LAWS[p.law_name](p.strength, p.toughness, p.ductility, p.penalty, p.contact, p.irreversible)
 
 
 def _vector(blocks: list, weak: WeakForm) -> BlockVector:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from iga.body import Body
-from iga.cohesive import BilinearLaw
+from iga.cohesive import TractionLaw
 from iga.interface import Interface, contact, pair
 from iga.lumped import lumped
 from iga.problem import Debonding
@@ -115,7 +115,7 @@ def between(
     slave: Surface,
     master: Surface | None,
     P_AI: np.ndarray,
-    law: BilinearLaw,
+    law: TractionLaw,
     places: tuple[np.ndarray, np.ndarray, np.ndarray],
     width: float = 1.0,
 ) -> Interface:

@@ -1,19 +1,27 @@
-"""The bilinear cohesive law with damage and contact, for all points of an interface at once."""
+"""Traction laws in mode I with damage and contact, for all points of an interface at once.
+
+A law is a class in `LAWS`, whose names are those of ``interface.law`` in a scene: the shape of its envelope. What all
+laws share, history, secant, contact and energies, is `TractionLaw`.
+"""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
 
 
 @dataclass(frozen=True)
-class BilinearLaw:
-    """Mode I bilinear law (Dimitri, De Lorenzis, Zavarise 2013, sec. 2).
+class TractionLaw(ABC):
+    """What holds of every law: linear up to the strength, then an envelope down to nothing, and damage on the way.
 
-    ``strength`` p_max [stress], ``toughness`` G_Ic [force/length], ``ductility`` g_u/g_max > 1, ``penalty``
-    [stress/length]. Without ``contact`` the secant stiffness of the opening side continues to negative gaps; without
-    ``irreversible`` the damage follows the present gap down as well as up, and nothing is dissipated.
+    ``strength`` p_max [stress], ``toughness`` G_Ic [force/length], ``ductility`` 2 G_Ic / (p_max g_max) > 1,
+    ``penalty`` [stress/length]. Without ``contact`` the secant stiffness of the opening side continues to negative
+    gaps; without ``irreversible`` the damage follows the present gap down as well as up, and nothing is dissipated.
+
+    A law is a frozen dataclass that says `g_u`, `envelope`, `softening` and `work`, and its `kinks` where it has more
+    than two; numbers of its own have defaults.
     """
 
     strength: float
@@ -24,29 +32,45 @@ class BilinearLaw:
     irreversible: bool = True
 
     @property
+    @abstractmethod
     def g_u(self) -> float:
-        """Opening at which the traction vanishes, 2 G_Ic / p_max."""
-        return 2.0 * self.toughness / self.strength
+        """Opening from which there is no traction, finite."""
+
+    @abstractmethod
+    def envelope(self, k: np.ndarray) -> np.ndarray:
+        """Traction on first loading to the opening k >= 0, `stiffness` times k up to g_max."""
+
+    @abstractmethod
+    def softening(self, k: np.ndarray) -> np.ndarray | float:
+        """Slope of the envelope at g_max <= k < g_u, at a kink of the branch that begins there; asked anywhere."""
+
+    @abstractmethod
+    def work(self, k: np.ndarray) -> np.ndarray:
+        """Integral of the envelope from 0 to k >= 0; G_Ic from g_u on."""
 
     @property
     def g_max(self) -> float:
-        """Opening at the strength, g_u / ductility."""
-        return self.g_u / self.ductility
+        """Opening at the strength, where damage begins."""
+        return 2.0 * self.toughness / self.strength / self.ductility
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Openings at which the slope of the envelope jumps, rising, from g_max to g_u, and these where it does not."""
+        return self.g_max, self.g_u
 
     @property
     def stiffness(self) -> float:
         """Initial slope p_max / g_max."""
         return self.strength / self.g_max
 
-    @property
-    def dissipation_rate(self) -> float:
-        """Energy dissipated per area and increase of the largest opening, (p - p' k) / 2, while softening."""
-        return 0.5 * self.strength * self.g_u / (self.g_u - self.g_max)
+    def jump(self, kink: float) -> float:
+        """Change of the slope of the envelope at one of its kinks."""
+        before = self.stiffness if kink <= self.g_max else self.softening(np.nextafter(kink, 0.0))
+        return float((self.softening(np.asarray(kink)) if kink < self.g_u else 0.0) - before)
 
-    def envelope(self, k: np.ndarray) -> np.ndarray:
-        """Traction on first loading to the opening k >= 0."""
-        softening = self.strength * (self.g_u - k) / (self.g_u - self.g_max)
-        return np.where(k <= self.g_max, self.stiffness * k, np.maximum(softening, 0.0))
+    def dissipation_rate(self, k: np.ndarray) -> np.ndarray:
+        """Energy dissipated per area and increase of the largest opening k, (p - p' k) / 2, while softening."""
+        return 0.5 * (self.envelope(k) - self.softening(k) * k)
 
     def secant(self, k: np.ndarray) -> np.ndarray:
         """Secant stiffness (1 - d) K0 after the largest opening k."""
@@ -76,7 +100,7 @@ class BilinearLaw:
         k_new = np.maximum(k, g) if self.irreversible else np.maximum(g, 0.0)
         secant = self.secant(k_new)
         softening = (g >= k_new) & (g > self.g_max) & (g < self.g_u)
-        slope = np.where(softening, -self.strength / (self.g_u - self.g_max), secant)
+        slope = np.where(softening, self.softening(g), secant)
         return np.where(closed, self.penalty, secant) * g, np.where(closed, self.penalty, slope), k_new
 
     def energies(self, g: np.ndarray, k: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -91,8 +115,31 @@ class BilinearLaw:
         closed = (g < 0.0) & self.contact
         return np.where(closed, 0.0, recoverable), np.where(closed, 0.5 * self.penalty * g**2, 0.0), dissipated
 
+
+@dataclass(frozen=True)
+class BilinearLaw(TractionLaw):
+    """Softening along a line (Dimitri, De Lorenzis, Zavarise 2013, sec. 2); ``ductility`` is g_u / g_max."""
+
+    @property
+    def g_u(self) -> float:
+        """Opening at which the traction vanishes, 2 G_Ic / p_max."""
+        return 2.0 * self.toughness / self.strength
+
+    def envelope(self, k: np.ndarray) -> np.ndarray:
+        """Traction on first loading to the opening k >= 0."""
+        softening = self.strength * (self.g_u - k) / (self.g_u - self.g_max)
+        return np.where(k <= self.g_max, self.stiffness * k, np.maximum(softening, 0.0))
+
+    def softening(self, k: np.ndarray) -> float:
+        """Slope of the line."""
+        return -self.strength / (self.g_u - self.g_max)
+
     def work(self, k: np.ndarray) -> np.ndarray:
         """Integral of the envelope from 0 to k >= 0; G_Ic from g_u on."""
         rising = 0.5 * self.stiffness * np.minimum(k, self.g_max) ** 2
         k = np.clip(k, self.g_max, self.g_u)
         return rising + 0.5 * (self.strength + self.envelope(k)) * (k - self.g_max)
+
+
+#: Name in a scene -> law.
+LAWS: dict[str, type[TractionLaw]] = {"bilinear": BilinearLaw}

@@ -57,8 +57,8 @@ def dissipation_control(system: System) -> Control:
         g_q, law = response.contact.g_q, interface.law
         dissipated = float(interface.dA_q @ law.energies(g_q, response.k_q)[2])
         growing_q = (g_q >= response.k_q) & (g_q > law.g_max) & (g_q < law.g_u) & holding(interface, response.contact)
-        rate_q = np.where(growing_q, 1.0, 0.0)
-        return dissipated, _weighted_gaps(system, response, rate_q * interface.law.dissipation_rate), 0.0
+        rate_q = np.where(growing_q, law.dissipation_rate(g_q), 0.0)
+        return dissipated, _weighted_gaps(system, response, rate_q), 0.0
 
     return control
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.cohesive import BilinearLaw
+from iga.cohesive import TractionLaw
 
-#: How far beyond a kink a step that ends at one goes, in parts of g_max or g_u - g_max, whichever is less.
+#: How far beyond a kink a step that ends at one goes, in parts of the shortest branch of the law.
 BEYOND = 1e-3
 
 
@@ -21,14 +21,16 @@ class Event:
     beyond: float
 
 
-def next_event(law: BilinearLaw, g_q: np.ndarray, k_q: np.ndarray, rate_q: np.ndarray) -> Event | None:
-    """The first kink on opening: at the strength, at the return to the envelope, at the end of softening."""
+def next_event(law: TractionLaw, g_q: np.ndarray, k_q: np.ndarray, rate_q: np.ndarray) -> Event | None:
+    """The first kink on opening: at the strength, at the return to the envelope, on it, at the end of softening."""
     soft_q = (k_q > law.g_max) & (g_q >= (1.0 - 1e-9) * k_q)
-    kink_q = np.where(soft_q, law.g_u, np.maximum(k_q, law.g_max))
+    kinks = np.array(law.kinks)
+    next_q = kinks[np.minimum(np.searchsorted(kinks, k_q, side="right"), kinks.size - 1)]
+    kink_q = np.where(soft_q, next_q, np.maximum(k_q, law.g_max))
     coming_q = (k_q < law.g_u) & (rate_q > 0.0)
     if not np.any(coming_q):
         return None
     away_q = np.where(coming_q, (kink_q - g_q) / np.where(coming_q, rate_q, 1.0), np.inf)
     q = int(np.argmin(away_q))
-    hair = BEYOND * min(law.g_max, law.g_u - law.g_max)
+    hair = BEYOND * float(np.min(np.diff(kinks, prepend=0.0)))
     return Event(q, float(away_q[q]), float(away_q[q] + hair / rate_q[q]))

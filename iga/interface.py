@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from iga.cohesive import BilinearLaw
+from iga.cohesive import TractionLaw
 from iga.projection import FREE, HELD, Pairing, closest_points, nearest_samples
 from iga.surface import Surface, normal
 
@@ -60,7 +60,7 @@ class Interface:
     dA_q: np.ndarray
     X_qi: np.ndarray
     P_AI: np.ndarray
-    law: BilinearLaw
+    law: TractionLaw
     master: Surface | None
     mirror_i: np.ndarray | None = None
     frozen: bool = False

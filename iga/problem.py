@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from iga.cohesive import BilinearLaw
+from iga.cohesive import LAWS, TractionLaw
 from iga.extraction import Mesh
 from iga.pose import Pose
 
@@ -14,7 +14,8 @@ class Debonding:
     """Common part of a problem in plain numbers, any consistent units.
 
     ``opening`` is the programme of the loaded faces' mean displacement. ``steps`` is the number of steps asked for over
-    the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed at.
+    the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed at. ``law_name`` is
+    one of `iga.cohesive.LAWS`.
     ``meshes`` are those of the bodies, upper first, in the specimen's own frame; made by the solver where left out.
 
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
@@ -29,6 +30,7 @@ class Debonding:
     toughness: float
     ductility: float
     penalty: float
+    law_name: str = "bilinear"
     opening: tuple[float, ...]
     width: float = 1.0
     plane: str = "stress"
@@ -52,8 +54,12 @@ class Debonding:
     shift: tuple[float, float] = (0.0, 0.0)
 
     @property
-    def law(self) -> BilinearLaw:
-        return BilinearLaw(self.strength, self.toughness, self.ductility, self.penalty, self.contact, self.irreversible)
+    def law(self) -> TractionLaw:
+        """The traction law. Raises ValueError where there is none of that name."""
+        if self.law_name not in LAWS:
+            raise ValueError(f"law_name: must be one of {', '.join(LAWS)}, got {self.law_name!r}")
+        shape = LAWS[self.law_name]
+        return shape(self.strength, self.toughness, self.ductility, self.penalty, self.contact, self.irreversible)
 
     @property
     def pose(self) -> Pose:

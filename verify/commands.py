@@ -246,9 +246,9 @@ def compare(options: argparse.Namespace) -> int:
 
 
 def export(options: argparse.Namespace) -> int:
-    from verify.complaints import one_of
     from verify.export.command import FORMATS, export
     from verify.scene import load_scene
+    from verify.section import one_of
 
     if options.format not in FORMATS:
         raise Refusal(f"--format: must be {one_of(FORMATS)}, got {options.format!r}")
@@ -287,7 +287,7 @@ def new(options: argparse.Namespace) -> int:
 
 
 def completion(options: argparse.Namespace) -> int:
-    from verify.complaints import one_of
+    from verify.section import one_of
     from verify.shell.completion import SHELLS, script
 
     if options.shell not in SHELLS:
@@ -324,8 +324,9 @@ def _alone(command: str) -> None:
 
 
 def _known_method(method: str, dofs: int | None) -> None:
-    from verify.complaints import one_of, suggestion
+    from verify.complaints import suggestion
     from verify.methods import WITH_DOFS, known_methods
+    from verify.section import one_of
 
     known = known_methods()
     if method not in known:

@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from verify.schema import Scene
-from verify.section import Section
+from verify.section import Section, one_of
 from verify.specimen import Dcb, Isotropic, Orthotropic, Peel
 
 _MATERIALS: Mapping[str, type[Section]] = {"isotropic": Isotropic, "orthotropic": Orthotropic}
@@ -36,12 +36,6 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     """``did you mean "x" or "y"?`` or nothing."""
     near = difflib.get_close_matches(word, list(known), n=3, cutoff=0.6)
     return f"did you mean {one_of(near)}?" if near else ""
-
-
-def one_of(options: Iterable[str]) -> str:
-    """Readable alternatives: ``"a"``, ``"a" or "b"``, ``"a", "b" or "c"``."""
-    *head, last = (f'"{option}"' for option in options)
-    return f"{', '.join(head)} or {last}" if head else last
 
 
 def _sentences(e: ErrorDetails, raw: Mapping[str, Any]) -> list[str]:

@@ -1,4 +1,8 @@
-"""The bilinear traction law, written once more on purpose: checks and the cohesive beam share no code with a solver."""
+"""The traction laws, written once more on purpose: checks and the cohesive beam share no code with a solver.
+
+A law of a solver that is not written down here is a plain `Law` to the checks: they hold a run against what is true of
+every law, and leave the rest out.
+"""
 
 from __future__ import annotations
 
@@ -9,18 +13,16 @@ from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True)
-class Bilinear:
-    """Mode I bilinear law with damage on opening and a penalty on closing.
+class Law:
+    """What every mode I law has: a line up to the strength, a toughness, and a penalty on closing.
 
     Parameters
     ----------
     strength : largest traction, p_max (stress)
     toughness : area under the envelope, G_Ic (energy per area)
-    ductility : g_u / g_max, > 1
+    ductility : 2 G_Ic / (p_max g_max), > 1
     penalty : stiffness against closing (stress per length)
     contact : where false, the secant of the opening side continues into closing
-
-    Source: Alfano and Crisfield (2001), Int. J. Numer. Methods Eng. 50, eqs. 1-5, in mode I.
     """
 
     strength: float
@@ -31,18 +33,33 @@ class Bilinear:
 
     @property
     def g_open(self) -> float:
-        """Opening g_u from which no traction is left."""
+        """The scale 2 G_Ic / p_max of openings; where a law is known, the opening from which no traction is left."""
         return 2.0 * self.toughness / self.strength
 
     @property
     def g_peak(self) -> float:
         """Opening g_max at which damage begins."""
-        return self.g_open / self.ductility
+        return 2.0 * self.toughness / self.strength / self.ductility
 
     @property
     def stiffness(self) -> float:
         """Initial slope K0."""
         return self.strength / self.g_peak
+
+    def area(self, gap: ArrayLike) -> np.ndarray:
+        """Integral of the envelope from 0 to ``gap``, NaN beyond g_max; for a closed gap the energy of the contact."""
+        gap = np.asarray(gap, dtype=float)
+        below_zero = self.penalty if self.contact else self.stiffness
+        elastic = 0.5 * np.where(gap < 0.0, below_zero, self.stiffness) * gap**2
+        return np.where(gap <= self.g_peak, elastic, np.nan)
+
+
+@dataclass(frozen=True)
+class Bilinear(Law):
+    """Mode I bilinear law with damage on opening and a penalty on closing; ``ductility`` is g_u / g_max.
+
+    Source: Alfano and Crisfield (2001), Int. J. Numer. Methods Eng. 50, eqs. 1-5, in mode I.
+    """
 
     @property
     def softening(self) -> float:
@@ -82,3 +99,7 @@ class Bilinear:
         """Energy per area that a point has lost: the area up to ``history`` minus what unloading gives back."""
         k = np.maximum(history, 0.0)
         return self.area(k) - 0.5 * self.secant(k) * k * k
+
+
+#: Name in a scene -> law; any other name stands for a plain `Law`.
+LAWS: dict[str, type[Law]] = {"bilinear": Bilinear}

@@ -15,7 +15,7 @@ from scipy.integrate import trapezoid
 
 from verify.checks import law_of
 from verify.effects import NEGLIGIBLE
-from verify.law import Bilinear
+from verify.law import Law
 from verify.result import Result, Snapshot
 from verify.schema import Scene
 
@@ -66,7 +66,7 @@ def of_run(scene: Scene, result: Result) -> LeftOut | None:
 
 
 def left_out(
-    snapshots: tuple[Snapshot, ...], law: Bilinear, loaded_at: float, width: float = 1.0, between: bool = False
+    snapshots: tuple[Snapshot, ...], law: Law, loaded_at: float, width: float = 1.0, between: bool = False
 ) -> LeftOut:
     """What the fields of a run with a matched interface say of it.
 
@@ -80,7 +80,7 @@ def left_out(
     return LeftOut(*(float(np.max(values)) for values in zip(*found, strict=True))) if found else LeftOut(0, 0, 0)
 
 
-def _of(snapshot: Snapshot, law: Bilinear, loaded_at: float, width: float, between: bool) -> tuple[float, float, float]:
+def _of(snapshot: Snapshot, law: Law, loaded_at: float, width: float, between: bool) -> tuple[float, float, float]:
     below_X, below_u, turn = _surface(snapshot, upper=False)
     above_X, above_u, above_turn = _surface(snapshot, upper=True)
     X_q = np.abs(loaded_at - snapshot.s_q)

@@ -10,6 +10,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from verify.effects import simulated
+from verify.laws import laws_of, refusal
 from verify.refusal import Refusal
 from verify.result import Result, Snapshot, steps_from_rows
 from verify.schema import Discretization, Pose, Scene
@@ -110,6 +111,9 @@ def require(scene: Scene, method: str) -> None:
 
         plugins.require(scene, method)
         return
+    other_law = refusal(scene.interface.law, method, laws_of(method), METHODS)
+    if other_law:
+        raise Unsuitable(other_law)
     if method == "dolfinx":
         _require_elements(scene)
     if method == "dolfinx" and not dolfinx_installed():
@@ -187,6 +191,7 @@ def _common_keys(scene: Scene, method: str) -> dict[str, Any]:
         "strength": interface.strength,
         "toughness": interface.toughness,
         "ductility": interface.ductility,
+        "law_name": interface.law,
         "penalty": interface.penalty,
         "contact": effects["contact"],
         "irreversible": effects["irreversible"],

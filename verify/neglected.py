@@ -16,7 +16,7 @@ from scipy.integrate import trapezoid
 from verify import matched
 from verify.checks import law_of
 from verify.effects import GROWING, NEGLIGIBLE, STANDING, simulated, stiffer
-from verify.law import Bilinear
+from verify.law import Law
 from verify.result import Result, Snapshot
 from verify.schema import Scene
 
@@ -136,7 +136,7 @@ def _overlap(scene: Scene, result: Result) -> Neglected | None:
     return Neglected("contact", change, change <= NEGLIGIBLE, seen)
 
 
-def _load_of(snapshot: Snapshot, result: Result, law: Bilinear, scene: Scene) -> float:
+def _load_of(snapshot: Snapshot, result: Result, law: Law, scene: Scene) -> float:
     """Change of the load by contact in one configuration, as part of it."""
     closed_q = snapshot.gap_q < 0.0
     at = int(np.argmax(result.opening >= snapshot.opening))

@@ -6,7 +6,8 @@ A solver is called with a scene and with a function to call after every converge
 
 Its rows and the ``steps`` of its result hold ``opening`` and ``load``, and whatever else it knows of
 ``verify.result``: each column brings its checks. Where it has a function ``unsuitable`` as an attribute, that says of a
-scene why the solver is not made for it, or nothing.
+scene why the solver is not made for it, or nothing. Its attribute ``laws`` names the traction laws that it has
+(``interface.law`` of a scene); left out: the bilinear one alone.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from verify.laws import PLAIN, refusal
 from verify.methods import METHODS, NotRun, OnStep, Unsuitable
 from verify.result import Result
 from verify.schema import Scene
@@ -82,11 +84,15 @@ def plugins() -> dict[str, Plugin]:
 def require(scene: Scene, method: str) -> None:
     """Raise ``NotRun`` where the plug-in of that name is broken, ``Unsuitable`` where it says so of the scene."""
     plugin = plugins()[method]
-    unsuitable = getattr(plugin.load(), "unsuitable", None)
+    solver = plugin.load()
+    unsuitable = getattr(solver, "unsuitable", None)
     try:
+        other_law = refusal(scene.interface.law, method, getattr(solver, "laws", (PLAIN,)), METHODS)
         why = unsuitable(scene) if unsuitable is not None else ""
     except Exception as error:
         raise NotRun(f"not run: plug-in {method} of {plugin.package}: {type(error).__name__}: {error}") from None
+    if other_law:
+        raise Unsuitable(other_law)
     if why:
         raise Unsuitable(f"{method}: {why}")
 

@@ -11,8 +11,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, ValidationInfo, ValidatorFunctionWrapHandler, field_validator
 from pydantic_core import PydanticCustomError
 
+from verify.laws import PLAIN, known
 from verify.published import Published
-from verify.section import Positive, Section, refuse
+from verify.section import Positive, Section, one_of, refuse
 from verify.specimen import MATERIALS, Material, Specimen, definite
 
 
@@ -22,16 +23,24 @@ def _hundred_initial_stiffnesses(data: dict[str, Any]) -> float:
 
 
 class Interface(Section):
-    law: Literal["bilinear"] = "bilinear"
-    """Traction over gap: up to the strength, then down to zero at g_u."""
+    law: str = PLAIN
+    """Traction over gap: up to the strength, then down to zero at g_u; the bilinear one along a line."""
     strength: Positive
     """Largest traction p_max [stress]."""
     toughness: Positive
     """Work of separation G_Ic [energy per area]."""
     ductility: float = Field(default=12.5, gt=1)
-    """g_u / g_max, gap at separation over gap at the strength; 1 is a vertical drop, which no Newton follows."""
+    """g_u / g_max, gap at separation over gap at the strength; 1 is a vertical drop, which no Newton follows. Of a law
+    that is not bilinear: 2 toughness / strength over the gap at the strength."""
     penalty: float = Field(default_factory=_hundred_initial_stiffnesses, gt=0)
     """Stiffness of the contact, on closing [stress per length]; left out: 100 times the stiffness of the bond."""
+
+    @field_validator("law", mode="before")
+    @classmethod
+    def _of_some_method(cls, law: object) -> object:
+        if law != PLAIN and law not in known():  # to know the others takes NumPy, and time
+            raise refuse(one_of(known()), ((), law))
+        return law
 
 
 def _as_programme(value: object) -> object:

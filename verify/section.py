@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -13,6 +14,12 @@ Positive: TypeAlias = Annotated[float, Field(gt=0)]
 def refuse(text: str, *found: tuple[tuple[str | int, ...], object]) -> PydanticCustomError:
     """A broken rule between keys: ``text`` completes "must be ...", ``found`` has rests of key paths and values."""
     return PydanticCustomError("rule", "{text}", {"text": text, "found": found})
+
+
+def one_of(options: Iterable[str]) -> str:
+    """Readable alternatives: ``"a"``, ``"a" or "b"``, ``"a", "b" or "c"``."""
+    *head, last = (f'"{option}"' for option in options)
+    return f"{', '.join(head)} or {last}" if head else last
 
 
 class Section(BaseModel):

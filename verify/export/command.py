@@ -7,12 +7,13 @@ from pathlib import Path
 from verify.export.abaqus import write_abaqus
 from verify.export.gmsh import write_gmsh
 from verify.export.mesh import SceneMesh, scene_mesh
-from verify.export.numbers import notes, numbers
+from verify.export.numbers import KINDS, notes, numbers
 from verify.export.tables import write_tables
 from verify.export.vtu import write_scene_vtu
 from verify.folder import write_json
 from verify.refusal import Refusal
 from verify.schema import Scene
+from verify.section import one_of
 
 ENDINGS = {"abaqus": "inp", "gmsh": "msh", "vtu": "vtu"}
 FORMATS = (*ENDINGS, "csv")
@@ -28,8 +29,10 @@ def export(scene: Scene, kind: str, folder: Path, layers: int | None = None) -> 
 
     Raises
     ------
-    Refusal : a degree above 2, too few elements, a folder that cannot be written to.
+    Refusal : a law that is not written down, a degree above 2, too few elements, a folder that cannot be written to.
     """
+    if scene.interface.law not in KINDS:
+        raise Refusal(f"interface.law: must be {one_of(KINDS)} for an export, got {scene.interface.law!r}")
     mesh = scene_mesh(scene, layers)
     try:
         folder.mkdir(parents=True, exist_ok=True)

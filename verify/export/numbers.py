@@ -14,6 +14,9 @@ from verify.methods import counted_steps, elastic_constants
 from verify.schema import Scene
 from verify.specimen import Material
 
+#: Laws that other codes are told, and what they are.
+KINDS: Mapping[str, str] = {"bilinear": "bilinear, mode I: the gap along the normal alone bears traction"}
+
 
 def materials(scene: Scene) -> tuple[Material, Material]:
     """Of the upper and of the lower body."""
@@ -43,7 +46,7 @@ def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
             for name, material in zip(mesh.names, materials(scene), strict=True)
         },
         "law": {
-            "kind": "bilinear, mode I: the gap along the normal alone bears traction",
+            "kind": KINDS[scene.interface.law],
             "strength": bond.strength,
             "toughness": bond.toughness,
             "stiffness": bond.stiffness,

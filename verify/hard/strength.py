@@ -10,6 +10,7 @@ from verify.checks import law_of
 from verify.curve import PROPAGATION, load_at, peak
 from verify.hard.case import FINE, Case, Finding, Number, Trial, Trials, Variant, variant
 from verify.hard.criteria import smooth
+from verify.law import Bilinear
 from verify.methods import solve
 from verify.process_zone import warnings
 from verify.verdict import Check
@@ -47,6 +48,7 @@ def broken_area(trial: Trial) -> tuple[float, float]:
     nodes, weights = np.polynomial.legendre.leggauss(mesh.interface_points)
     length_e = np.ptp(snapshot.s_q.reshape(-1, nodes.size), axis=1) * 2.0 / np.ptp(nodes)
     dA_q = np.outer(length_e, weights / 2.0).ravel() * trial.scene.specimen.width
+    assert isinstance(law, Bilinear), "the hard cases of strength are those of a bilinear law"
     # d = g_u (k - g_max) / (k (g_u - g_max)) between first damage and full opening
     k_q = law.g_open * law.g_peak / (law.g_open - snapshot.damage_q * (law.g_open - law.g_peak))
     return float(dA_q @ (snapshot.damage_q >= 1.0)), float(dA_q @ law.dissipated(k_q))

@@ -178,7 +178,7 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
     """Rows of the table of inputs: group, name, value."""
     units = Units.of(scene.units)
     specimen, law, mesh = scene.specimen, scene.interface, scene.discretization
-    g_u = 2 * law.toughness / law.strength
+    scale, bilinear = 2 * law.toughness / law.strength, law.law == "bilinear"
     rows = [
         *(
             ("specimen", name.replace("_", " "), quantity(value, units.length))
@@ -192,9 +192,9 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         ),
         ("interface", "strength p_max", quantity(law.strength, units.stress)),
         ("interface", "toughness G_Ic", quantity(law.toughness, units.toughness)),
-        ("interface", "full opening g_u = 2 G_Ic / p_max", quantity(g_u, units.length)),
-        ("interface", "opening at peak g_max", quantity(g_u / law.ductility, units.length)),
-        ("interface", "ductility g_u / g_max", number(law.ductility, 6)),
+        *[("interface", "full opening g_u = 2 G_Ic / p_max", quantity(scale, units.length))] * bilinear,
+        ("interface", "opening at peak g_max", quantity(scale / law.ductility, units.length)),
+        ("interface", f"ductility {'g_u' if bilinear else '2 G_Ic / p_max'} / g_max", number(law.ductility, 6)),
         ("interface", "contact penalty", quantity(law.penalty, units.stiffness)),
         ("isogeometric mesh", "degree", str(mesh.degree)),
         ("isogeometric mesh", "target unknowns", str(mesh.dofs)),
