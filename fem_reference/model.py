@@ -190,8 +190,10 @@ def _largest(matrix: PETSc.Mat, free_n: np.ndarray, comm: MPI.Intracomm) -> floa
 
 
 def law_of(problem: Debonding) -> Law:
-    """The traction law of a problem."""
+    """The traction law of a problem. Raises ValueError where there is none of that name."""
     p = problem
+    if p.law_name not in LAWS:
+        raise ValueError(f"law_name: must be one of {', '.join(LAWS)}, got {p.law_name}")
     return LAWS[p.law_name](p.strength, p.toughness, p.ductility, p.penalty, p.contact, p.irreversible)
 
 
