@@ -1,22 +1,28 @@
-"""The bilinear law: its shape, its history, its energies and its tangent."""
+"""The traction laws: their shape, their history, their energies and their tangent; what holds of every one of them."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from made_up_laws import MADE_UP, TrapezoidalLaw
 
-from iga.cohesive import BilinearLaw
+from iga.cohesive import LAWS, BilinearLaw, TractionLaw
 
 LAW = BilinearLaw(strength=4.0, toughness=0.1, ductility=12.5, penalty=1e5)
+EVERY = {**LAWS, **MADE_UP}
+
+#: Gauss points on a piece of a branch: exact for polynomials up to degree 39.
+POINTS = np.polynomial.legendre.leggauss(20)
 
 
 @st.composite
 def laws(draw, **fixed):
+    law = draw(st.sampled_from(list(EVERY.values())))
     size = {"strength": draw(st.floats(0.1, 100.0)), "toughness": draw(st.floats(1e-3, 10.0))}
-    return BilinearLaw(**size, ductility=draw(st.floats(1.01, 1e3)), penalty=draw(st.floats(1.0, 1e8)), **fixed)
+    return law(**size, ductility=draw(st.floats(1.01, 1e3)), penalty=draw(st.floats(1.0, 1e8)), **fixed)
 
 
-def walk(law: BilinearLaw, gaps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def walk(law: TractionLaw, gaps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Tractions along a path of gaps and the history after each, committed as it goes."""
     p, k = np.zeros_like(gaps), np.zeros_like(gaps)
     now = np.zeros(1)
@@ -26,28 +32,65 @@ def walk(law: BilinearLaw, gaps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return p, k
 
 
+def integral(function, start: float, end: float) -> float:
+    """Of a function of gaps (n,) over a piece without kinks."""
+    s, w = POINTS
+    return float(0.5 * (end - start) * (w @ function(0.5 * (start + end) + 0.5 * (end - start) * s)))
+
+
 @given(laws())
-def test_corner_points_and_area_of_the_envelope(law):
+def test_an_envelope_rises_along_a_line_to_the_strength_and_falls_to_nothing(law):
+    k = np.linspace(0.0, 1.5 * law.g_u, 301)
+    p = law.envelope(k)
+    assert np.all(p >= 0.0) and np.all(p <= law.strength * (1.0 + 1e-12))
+    assert np.allclose(p[k <= law.g_max], law.stiffness * k[k <= law.g_max], rtol=1e-12)
+    assert np.all(np.abs(p[k >= law.g_u]) < 1e-12 * law.strength)
     assert np.isclose(law.envelope(np.array(law.g_max)), law.strength, rtol=1e-12)
-    assert abs(law.envelope(np.array(law.g_u))) < 1e-12 * law.strength
-    assert np.isclose(law.work(np.array(3 * law.g_u)), law.toughness, rtol=1e-12)
-    corners = np.array([0.0, law.g_max, law.g_u])
-    assert np.isclose(np.trapezoid(law.envelope(corners), corners), law.toughness, rtol=1e-12)
+    assert np.isclose(law.g_max * law.ductility, 2.0 * law.toughness / law.strength, rtol=1e-12)
+
+
+@given(laws())
+def test_the_work_is_the_area_of_the_envelope_and_in_the_end_the_toughness(law):
+    spent, corners = 0.0, (0.0, *law.kinks, 1.5 * law.g_u)
+    for start, end in zip(corners[:-1], corners[1:], strict=True):
+        spent += integral(law.envelope, start, end)
+        assert np.isclose(law.work(np.array(end)), spent, rtol=1e-9)
+    assert np.isclose(law.work(np.array(3.0 * law.g_u)), law.toughness, rtol=1e-12)
+
+
+@given(laws(), st.floats(0.01, 0.99))
+def test_kinks_divide_the_envelope_into_smooth_branches(law, part):
+    kinks = law.kinks
+    assert kinks[0] == law.g_max and kinks[-1] == law.g_u and np.all(np.diff(kinks) > 0.0)
+    for start, end in zip(kinks[:-1], kinks[1:], strict=True):
+        k, h = np.array(start + part * (end - start)), 1e-3 * min(part, 1.0 - part) * (end - start)
+        difference = (law.envelope(k + h) - law.envelope(k - h)) / (2.0 * h)
+        assert np.isclose(law.softening(k), difference, rtol=1e-6, atol=1e-6 * law.strength / (law.g_u - law.g_max))
+    for kink in kinks:
+        h = 1e-6 * min(law.g_max, *np.diff(kinks))
+        below, at, above = (float(law.envelope(np.array(kink + s * h))) for s in (-1.0, 0.0, 1.0))
+        assert np.isclose(law.jump(kink), (above - 2.0 * at + below) / h, rtol=1e-4, atol=1e-4 * law.stiffness)
+
+
+@given(laws(), st.floats(0.01, 0.99))
+def test_the_rate_of_dissipation_is_that_of_the_energies(law, part):
+    for start, end in zip(law.kinks[:-1], law.kinks[1:], strict=True):
+        k, h = start + part * (end - start), 1e-3 * min(part, 1.0 - part) * (end - start)
+        after, before = (law.energies(np.array([g]), np.array([g]))[2] for g in (k + h, k - h))
+        rate = law.dissipation_rate(np.array([k]))
+        assert rate >= 0.0 and np.isclose(rate, (after - before) / (2.0 * h), rtol=1e-5, atol=1e-6 * law.strength)
 
 
 @given(laws(), st.lists(st.floats(-0.5, 1.5), min_size=1, max_size=12))
 def test_work_done_is_stored_or_dissipated(law, path):
     """Whatever the path of gaps: the integral of p dg is the energy kept plus the energy lost, which never falls."""
     stops = np.concatenate([[0.0], np.array(path) * law.g_u])
-    kinks = np.array([0.0, law.g_max, law.g_u])
     spent, lost_before, k = 0.0, 0.0, np.zeros(1)
     for start, end in zip(stops[:-1], stops[1:], strict=True):
-        inner = [c for c in (*kinks, k[0]) if min(start, end) < c < max(start, end)]
+        inner = [c for c in (0.0, *law.kinks, k[0]) if min(start, end) < c < max(start, end)]
         legs = np.array(sorted([start, *inner, end], reverse=bool(end < start)))
         for a, b in zip(legs[:-1], legs[1:], strict=True):
-            middle = np.array([0.5 * (a + b)])
-            p, _, k = law.traction(middle, k)
-            spent += float(p[0]) * (b - a)
+            spent += integral(lambda g, k=k: law.traction(g, np.broadcast_to(k, g.shape))[0], a, b)
             k = np.maximum(k, b)
     cohesive, contact, lost = (float(e[0]) for e in law.energies(stops[-1:], k))
     scale = law.toughness + 0.5 * law.penalty * np.max(stops**2)
@@ -63,16 +106,32 @@ def test_unloading_goes_along_the_secant_to_the_origin(law, reach, back):
     assert history[1] == history[0] == pytest.approx(k)
 
 
+@pytest.mark.parametrize("shape", EVERY)
 @pytest.mark.parametrize("irreversible", [True, False])
 @pytest.mark.parametrize("contact", [True, False])
 @pytest.mark.parametrize("k", [0.0, 0.5, 3.0, 20.0])
 @pytest.mark.parametrize("g", [-0.7, 0.3, 2.0, 2.9, 3.1, 5.0, 13.0])
-def test_tangent_is_the_derivative_of_the_traction(k, g, contact, irreversible):
-    law = BilinearLaw(4.0, 0.1, 12.5, 1e5, contact, irreversible)
+def test_tangent_is_the_derivative_of_the_traction(k, g, contact, irreversible, shape):
+    law = EVERY[shape](4.0, 0.1, 12.5, 1e5, contact, irreversible)
     g, k, h = np.array([g * law.g_max]), np.array([k * law.g_max]), 1e-6 * law.g_max
     _, slope, _ = law.traction(g, k)
     difference = (law.traction(g + h, k)[0] - law.traction(g - h, k)[0]) / (2 * h)
     assert np.allclose(slope, difference, rtol=1e-6, atol=1e-6 * law.stiffness)
+
+
+def test_corners_of_the_bilinear_envelope():
+    corners = np.array([0.0, LAW.g_max, LAW.g_u])
+    assert LAW.g_u == pytest.approx(0.05) and LAW.g_max == pytest.approx(0.004)
+    assert np.allclose(LAW.envelope(corners), [0.0, 4.0, 0.0], atol=1e-12)
+    assert np.isclose(np.trapezoid(LAW.envelope(corners), corners), LAW.toughness, rtol=1e-12)
+    assert LAW.jump(LAW.g_max) == pytest.approx(-4.0 / 0.046 - 1000.0) and LAW.jump(LAW.g_u) == pytest.approx(
+        4.0 / 0.046
+    )
+
+
+def test_a_kink_inside_has_a_jump_of_its_own():
+    law = TrapezoidalLaw(4.0, 0.1, 12.5, 1e5)
+    assert law.jump(law.g_max) == -law.stiffness and law.jump(law.g_2) == -law.jump(law.g_u) < 0.0
 
 
 def test_a_closed_gap_is_resisted_by_the_penalty_and_is_no_damage():
@@ -86,8 +145,9 @@ def test_without_contact_the_secant_continues_to_negative_gaps():
     assert p[1] == pytest.approx(-p[0])
 
 
-def test_a_reversible_law_dissipates_nothing():
-    law = BilinearLaw(4.0, 0.1, 12.5, 1e5, irreversible=False)
+@pytest.mark.parametrize("shape", EVERY)
+def test_a_reversible_law_dissipates_nothing(shape):
+    law = EVERY[shape](4.0, 0.1, 12.5, 1e5, irreversible=False)
     p, k = walk(law, np.array([2 * law.g_u, 0.5 * law.g_u]))
     assert p[0] == 0.0 and p[1] == pytest.approx(float(law.envelope(np.array(0.5 * law.g_u))))
     cohesive, contact, lost = law.energies(np.array([0.5 * law.g_u]), k[1:])

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.law import Bilinear
+from verify.law import Bilinear, Law
 
 positive = st.floats(0.01, 100.0)
 
@@ -57,3 +57,15 @@ def test_without_contact_the_secant_continues():
     assert law.traction(-1e-3) == pytest.approx(-1.0)
     assert law.traction(-1e-3, history=0.027) == pytest.approx(-1e-3 * float(law.secant(0.027)))
     assert law.area(-1e-3) == pytest.approx(0.5e-3)
+
+
+@given(laws(), st.floats(-0.5, 3.0))
+def test_of_any_law_the_part_below_the_strength_is_known_and_no_other(law, reach):
+    """What the plain law says is what the bilinear one says, or nothing."""
+    plain = Law(law.strength, law.toughness, law.ductility, law.penalty)
+    assert plain.g_peak == pytest.approx(law.g_peak) and plain.stiffness == pytest.approx(law.stiffness)
+    gap = reach * law.g_peak
+    if gap <= min(plain.g_peak, law.g_peak):
+        assert plain.area(gap) == pytest.approx(law.area(gap))
+    elif gap > plain.g_peak:
+        assert np.isnan(plain.area(gap))

@@ -194,7 +194,7 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         ("interface", "toughness G_Ic", quantity(law.toughness, units.toughness)),
         *[("interface", "full opening g_u = 2 G_Ic / p_max", quantity(scale, units.length))] * bilinear,
         ("interface", "opening at peak g_max", quantity(scale / law.ductility, units.length)),
-        ("interface", f"ductility {'g_u' if bilinear else '2 G_Ic / p_max'} / g_max", number(law.ductility, 6)),
+        ("interface", f"ductility {'g_u / g_max' if bilinear else '2 G_Ic / (p_max g_max)'}", number(law.ductility, 6)),
         ("interface", "contact penalty", quantity(law.penalty, units.stiffness)),
         ("isogeometric mesh", "degree", str(mesh.degree)),
         ("isogeometric mesh", "target unknowns", str(mesh.dofs)),

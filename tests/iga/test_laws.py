@@ -1,0 +1,77 @@
+"""A law in the table is all that the solver needs: a specimen solved with laws that the solver has never seen."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_up_laws import MADE_UP, TrapezoidalLaw
+from specimens import PAPER
+
+from iga.cohesive import LAWS
+from iga.dcb import solve
+from iga.events import BEYOND, next_event
+
+#: Unknowns by basis with which the J-integral is met within its tolerance.
+DOFS = {"tspline": 1200, "nurbs": 1200}
+
+
+@pytest.fixture
+def table(monkeypatch):
+    """The table with the laws of the tests in it."""
+    for name, law in MADE_UP.items():
+        monkeypatch.setitem(LAWS, name, law)
+
+
+@pytest.mark.parametrize("steps", [80, None])
+@pytest.mark.parametrize("basis", DOFS)
+@pytest.mark.parametrize("name", MADE_UP)
+def test_energies_and_j_integral_hold_of_a_law_from_elsewhere(table, name, basis, steps):
+    """Work is stored or dissipated; crack costs G_Ic for each new area of it, and J is G_Ic once the tip is open."""
+    problem = replace(PAPER, law_name=name, basis=basis, dofs=DOFS[basis], opening=(2.0,), steps=steps)
+    solution = solve(problem)
+    assert solution.status == "complete"
+    rows = {key: np.array([row[key] for row in solution.rows]) for key in solution.rows[0]}
+    gap = rows["external_work"] - rows["stored_energy"] - rows["dissipated_energy"]
+    worst = np.max(np.abs(gap)) / rows["external_work"].max()
+    grown = np.flatnonzero(rows["crack_length"] > problem.precrack)
+    crack, lost = (rows[key][grown[-1]] - rows[key][grown[0]] for key in ("crack_length", "dissipated_energy"))
+    J = rows["load"] * (rows["face_slope_bottom"] - rows["face_slope_top"]) - rows["face_energy"]
+    off = np.max(np.abs(J[grown] / problem.toughness - 1.0))
+    cost = lost / (problem.toughness * crack) - 1.0
+    print(f"{name} {basis} {steps}: ledger {worst:.1e}, cost of crack {cost:.1e} over {crack:.2f}, J {off:.1e}")
+    assert crack > 1.0 and worst < 1e-3 and abs(cost) < 0.02 and off < 0.005
+
+
+@pytest.mark.parametrize("name", MADE_UP)
+def test_a_law_from_elsewhere_unloads_along_its_secant(table, name):
+    """Back to zero after damage: what was dissipated stays, and the way up again is the way down."""
+    problem = replace(PAPER, law_name=name, opening=(0.8, 0.1, 0.79), dofs=600, steps=60)
+    solution = solve(problem)
+    assert solution.status == "complete"
+    rows = {key: np.array([row[key] for row in solution.rows]) for key in solution.rows[0]}
+    turn = int(np.argmax(rows["opening"]))
+    back = turn + int(np.argmin(rows["opening"][turn:]))
+    spent = rows["dissipated_energy"]
+    assert spent[turn] > 0.0 and np.ptp(spent[turn:]) < 1e-9 * spent[turn]
+    down = np.interp(
+        rows["opening"][back:], rows["opening"][turn : back + 1][::-1], rows["load"][turn : back + 1][::-1]
+    )
+    assert np.max(np.abs(rows["load"][back:] - down)) < 0.005 * rows["load"].max()
+
+
+def test_a_law_that_is_not_in_the_table_is_refused():
+    with pytest.raises(ValueError, match="law_name: must be one of bilinear.*, got 'no-such-law'"):
+        solve(replace(PAPER, law_name="no-such-law"))
+
+
+@pytest.mark.parametrize(
+    ("gap", "history", "kink"),
+    [(0.0, 0.0, 0), (0.01, 0.01, 1), (0.03, 0.03, 2), (0.01, 0.03, None)],
+    ids=["never loaded", "on the plateau", "on the line", "unloaded"],
+)
+def test_every_kink_on_the_way_is_an_event(gap, history, kink):
+    law = TrapezoidalLaw(4.0, 0.1, 12.5, 1e5)  # kinks at 0.004, 0.01933 and 0.03467
+    found = next_event(law, np.array([gap]), np.array([history]), np.array([2.0]))
+    next_kink = history if kink is None else law.kinks[kink]
+    assert found.away == pytest.approx((next_kink - gap) / 2.0)
+    assert found.beyond - found.away == pytest.approx(BEYOND * law.g_max / 2.0)

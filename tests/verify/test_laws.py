@@ -1,0 +1,171 @@
+"""A law that one solver has and others lack: who solves with it, who refuses it in which words, how it is judged."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from made_up_laws import MADE_UP, TrapezoidalLaw
+
+from iga.cohesive import LAWS
+from verify.checks import J_OF_ANY_LAW, J_OF_LAW, run_checks
+from verify.cli import main
+from verify.crosschecks import cross_checks
+from verify.laws import known, laws_of
+from verify.methods import METHODS, Unsuitable, iga_problem, require, solve
+from verify.report.text import inputs
+from verify.result import Result
+from verify.scene import Scene, SceneError, load_scene, parse_scene
+from verify.section import one_of
+from verify.verdict import Check
+
+NAME = "a-trapezoid"
+LACKING = ("dolfinx", "beam")
+
+
+@dataclass(frozen=True)
+class TooTough(TrapezoidalLaw):
+    """A law that takes 2 % more than the toughness that it is given, consistently."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "toughness", 1.02 * self.toughness)
+
+
+@pytest.fixture(autouse=True)
+def table(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The laws of the tests in the table of the isogeometric code, as a class that is written there."""
+    for name, law in MADE_UP.items():
+        monkeypatch.setitem(LAWS, name, law)
+
+
+def scene_with(law: str, *overrides: str) -> Scene:
+    sets = ("discretization.dofs=1200", "discretization.steps=80", "load.opening=2.0", f"interface.law={law}")
+    return load_scene("dcb-czm1", (*sets, *overrides))
+
+
+def judged(scene: Scene, result: Result) -> dict[str, Check]:
+    return {check.name: check for check in run_checks(scene, result)}
+
+
+def test_a_scene_takes_every_law_that_a_solver_has() -> None:
+    scene = scene_with(NAME)
+    assert scene.interface.law == NAME and parse_scene(scene.model_dump()) == scene
+    assert set(known()) >= {*LAWS}
+    with pytest.raises(SceneError) as caught:
+        scene_with("no-such-law")
+    assert all(f'"{name}"' in caught.value.sentences[0] for name in LAWS)
+    with pytest.raises(SceneError, match="interface.law: must be .*, got 3"):
+        load_scene("dcb-czm1", ["interface.law=3"])
+
+
+@pytest.mark.parametrize("specimen", ["dcb-czm1", "peel-120"])
+def test_the_isogeometric_problem_has_the_law_of_the_scene(specimen: str) -> None:
+    scene = load_scene(specimen, [f"interface.law={NAME}", "effects.contact=false"])
+    law = iga_problem(scene, "nurbs")[1].law
+    assert isinstance(law, TrapezoidalLaw) and law.penalty == scene.interface.penalty and not law.contact
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_method_has_a_law_or_refuses_it_with_who_has_it(method: str) -> None:
+    assert (NAME in laws_of(method)) == (method not in LACKING)
+    if method not in LACKING:
+        require(scene_with(NAME), method)
+        return
+    with pytest.raises(Unsuitable) as caught:
+        require(scene_with(NAME), method)
+    has, able = one_of(laws_of(method)), "tspline, nurbs, lagrange and lefm"
+    assert str(caught.value) == f"interface.law: must be {has} for {method}, got '{NAME}'; {able} have it"
+
+
+@pytest.mark.parametrize("method", LACKING)
+def test_the_command_line_says_so_and_exits_with_two(method: str, tmp_path: Path, capsys) -> None:
+    line = ["solve", "dcb-czm1", "--method", method, "--set", f"interface.law={NAME}", "--out", str(tmp_path / "run")]
+    assert main(line) == 2
+    assert f"interface.law: must be {one_of(laws_of(method))} for {method}, got" in capsys.readouterr().err
+    assert not (tmp_path / "run").exists()
+
+
+def test_other_codes_are_told_no_law_that_they_would_not_have(tmp_path: Path, capsys) -> None:
+    line = ["export", "dcb-czm1", "--format", "abaqus", "--set", f"interface.law={NAME}", "--out", str(tmp_path / "it")]
+    assert main(line) == 2
+    assert "interface.law: must be " in (said := capsys.readouterr().err) and "for an export" in said
+
+
+def test_a_plug_in_has_the_laws_that_it_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    place = tmp_path / "site"
+    (place / "fakelaws-0.1.dist-info").mkdir(parents=True)
+    (place / "fakelaws-0.1.dist-info" / "METADATA").write_text("Metadata-Version: 2.1\nName: fakelaws\nVersion: 0.1\n")
+    entries = "[debond.methods]\nplain = fakelaws:plain\nable = fakelaws:able\n"
+    (place / "fakelaws-0.1.dist-info" / "entry_points.txt").write_text(entries)
+    module = "def plain(scene, on_step): ...\ndef able(scene, on_step): ...\nable.laws = ('bilinear', 'a-trapezoid')\n"
+    (place / "fakelaws.py").write_text(module)
+    monkeypatch.syspath_prepend(str(place))
+    monkeypatch.delitem(sys.modules, "fakelaws", raising=False)
+    require(scene_with(NAME), "able")
+    require(scene_with("bilinear"), "plain")
+    with pytest.raises(Unsuitable, match='must be "bilinear" for plain'):
+        require(scene_with(NAME), "plain")
+    with pytest.raises(Unsuitable, match='must be "bilinear" or "a-trapezoid" for able'):
+        require(scene_with("a-parabola"), "able")
+
+
+@pytest.fixture(scope="module")
+def runs() -> dict[str, Result]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(LAWS, NAME, TrapezoidalLaw)
+        return {method: solve(scene_with(NAME), method) for method in ("tspline", "nurbs", "lefm")}
+
+
+@pytest.mark.parametrize("method", ["tspline", "nurbs"])
+def test_a_run_with_a_law_that_no_check_knows_is_judged_by_what_holds_of_any(
+    runs: dict[str, Result], method: str
+) -> None:
+    found = judged(scene_with(NAME), runs[method])
+    print({name: f"{check.value:.1e}" for name, check in found.items()})
+    assert {"completed", "j-integral", "energy-ledger", "interface-force", "dissipation"} <= set(found)
+    assert all(check.passed for check in found.values())
+    assert found["j-integral"].value > 1e-6, "nothing was held against it"
+    assert found["j-integral"].meaning == J_OF_ANY_LAW
+    assert judged(scene_with("bilinear"), runs[method])["j-integral"].meaning == J_OF_LAW
+
+
+def test_a_wrong_column_fails_its_check_as_ever(runs: dict[str, Result]) -> None:
+    run, scene = runs["nurbs"], scene_with(NAME)
+    for column, check in {
+        "load": "j-integral",
+        "stored_energy": "energy-ledger",
+        "dissipated_energy": "dissipation",
+    }.items():
+        steps = {**run.steps, column: 1.05 * run.steps[column]}
+        assert not judged(scene, replace(run, steps=steps))[check].passed, column
+
+
+def test_a_column_of_no_numbers_fails(runs: dict[str, Result]) -> None:
+    steps = {**runs["nurbs"].steps, "tip_opening": np.full_like(runs["nurbs"].load, np.nan)}
+    assert not judged(scene_with(NAME), replace(runs["nurbs"], steps=steps))["j-integral"].passed
+
+
+def test_judged_as_a_bilinear_law_it_would_fail(runs: dict[str, Result]) -> None:
+    """That the judge does not take one law for another is what makes its verdict one."""
+    assert not judged(scene_with("bilinear"), runs["tspline"])["j-integral"].passed
+
+
+def test_a_law_with_another_toughness_than_it_was_given_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(LAWS, NAME, TooTough)
+    scene = scene_with(NAME)
+    found = judged(scene, solve(scene, "tspline"))
+    assert found["energy-ledger"].passed
+    assert found["j-integral"].value == pytest.approx(0.02, abs=0.004) and not found["j-integral"].passed
+
+
+def test_codes_without_the_law_are_held_against_nothing(runs: dict[str, Result]) -> None:
+    assert cross_checks(scene_with(NAME), runs) == ()
+
+
+def test_the_inputs_tell_no_opening_that_only_the_bilinear_law_has() -> None:
+    plain, other = (" ".join(name for _, name, _ in inputs(scene_with(law))) for law in ("bilinear", NAME))
+    assert "ductility g_u / g_max" in plain and "full opening g_u" in plain
+    assert "ductility 2 G_Ic / (p_max g_max)" in other and "g_u" not in other
