@@ -8,8 +8,11 @@ from made_up_laws import MADE_UP, TrapezoidalLaw
 from specimens import PAPER
 
 from iga.cohesive import LAWS
-from iga.dcb import solve
+from iga.control import dissipation_control
+from iga.dcb import build, solve
 from iga.events import BEYOND, next_event
+from iga.path import follow
+from iga.system import respond
 
 #: Unknowns by basis with which the J-integral is met within its tolerance.
 DOFS = {"tspline": 1200, "nurbs": 1200}
@@ -62,6 +65,28 @@ def test_a_law_from_elsewhere_unloads_along_its_secant(table, name):
 def test_a_law_that_is_not_in_the_table_is_refused():
     with pytest.raises(ValueError, match="law_name: must be one of bilinear.*, got 'no-such-law'"):
         solve(replace(PAPER, law_name="no-such-law"))
+
+
+@pytest.mark.parametrize("name", MADE_UP)
+def test_the_gradient_of_the_dissipation_is_that_of_its_value(table, name, rng):
+    """Central differences along random directions, at a state where points are on every branch of the law."""
+    system = build(replace(PAPER, law_name=name)).system
+    law = system.interface.law
+    *_, before, point, _ = follow(system, (0.7,), 60)
+    k_q, g_q = before.state.k_q, point.response.contact.g_q
+    growing_q = (g_q > k_q) & (g_q > law.g_max) & (g_q < law.g_u)
+    branches = set(np.searchsorted(law.kinks, g_q[growing_q]))
+    assert len(branches) == len(law.kinks) - 1, "not on every branch"
+    asked, trial, s = dissipation_control(system), replace(point.state, k_q=k_q), 1e-6 * law.g_max
+
+    def value(s, v_d):
+        moved = replace(trial, u_d=trial.u_d + s * v_d)
+        return asked(moved, respond(system, moved, decide=False))[0]
+
+    a_d = asked(trial, respond(system, trial, decide=False))[1]
+    for v_d in rng.standard_normal((5, system.n_dof)):
+        difference = (value(s, v_d) - value(-s, v_d)) / (2.0 * s)
+        assert difference == pytest.approx(a_d @ v_d, abs=1e-6 * float(np.abs(a_d) @ np.abs(v_d)))
 
 
 @pytest.mark.parametrize(
