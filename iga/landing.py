@@ -56,7 +56,6 @@ def landing(system: System, old: State, touch: Contact, g_q: np.ndarray, follows
     g_q = np.where(holding(system.interface, touch), g_q, 0.0)
     broken = bool(np.any(g_q >= law.g_u))
     gap = law.g_u if broken else law.g_max
-    softening = -law.strength / (law.g_u - law.g_max)
     q = int(np.argmin(np.where(g_q > old.k_q, np.abs(g_q - gap), np.inf)))
     passed_q = (g_q >= g_q[q]) & (old.k_q < gap)
     ahead_q = g_q[g_q > g_q[q]]
@@ -64,7 +63,7 @@ def landing(system: System, old: State, touch: Contact, g_q: np.ndarray, follows
     target = gap + 0.5 * (np.min(ahead_q) - g_q[q]) if half else gap * (1.0 + BEYOND)
     if not np.any(g_q >= gap) or old.k_q[q] >= gap or g_q[q] == target:
         return None
-    return Landing(q, target, gap, None if half else Kink(q, -softening if broken else softening - law.stiffness))
+    return Landing(q, target, gap, None if half else Kink(q, law.jump(gap)))
 
 
 def travelled(interface: Interface, g_q: np.ndarray, q: int, target: float) -> np.ndarray | None:

@@ -122,7 +122,7 @@ def _sorted_out(
     interface, law = system.interface, system.interface.law
     touch = replace(response.contact, g_q=np.zeros(interface.points))
     held_q = np.where(holding(interface, touch), touch.share_q, 0.0)
-    secant_q, falling = held_q * law.secant(state.k_q), -law.strength / (law.g_u - law.g_max)
+    secant_q, falling = held_q * law.secant(state.k_q), law.softening(state.k_q)
     pressed_q = touch.share_q * law.penalty
 
     def growing(rate_q: np.ndarray) -> np.ndarray:

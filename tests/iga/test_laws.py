@@ -11,6 +11,7 @@ from iga.cohesive import LAWS
 from iga.control import dissipation_control
 from iga.dcb import build, solve
 from iga.events import BEYOND, next_event
+from iga.landing import landing
 from iga.path import follow
 from iga.system import respond
 
@@ -100,3 +101,13 @@ def test_every_kink_on_the_way_is_an_event(gap, history, kink):
     next_kink = history if kink is None else law.kinks[kink]
     assert found.away == pytest.approx((next_kink - gap) / 2.0)
     assert found.beyond - found.away == pytest.approx(BEYOND * law.g_max / 2.0)
+
+
+@pytest.mark.parametrize("name", MADE_UP)
+def test_a_step_that_lands_on_a_kink_knows_its_jump(table, name):
+    system = build(replace(PAPER, law_name=name)).system
+    law, start = system.interface.law, system.start()
+    touch = respond(system, start, decide=False).contact
+    for kink in (law.g_max, law.g_u):
+        g_q = np.linspace(0.0, 1.001 * kink, system.interface.points)
+        assert landing(system, start, touch, g_q).kink.jump == law.jump(kink)
