@@ -7,7 +7,7 @@ arrive on another branch. By the tractions ``w`` that leave their tangents there
 
 under the control, with ``g0`` the gaps after the plain step and ``C`` the compliance of the specimen for tractions at
 the points: a few equations, solved by Newton before the bulk is evaluated again. Only columns of such points are needed
-(Woodbury 1950), and as the law is piecewise linear it ends exactly, on the branches where all points belong.
+(Woodbury 1950), and where the law is piecewise linear it ends exactly, on the branches where all points belong.
 """
 
 from __future__ import annotations

@@ -178,7 +178,13 @@ class System:
     @cached_property
     def reference_dof_qd(self) -> np.ndarray:
         """Unknowns that each interface point touches before anything moves."""
-        return contact(self.interface, np.zeros(self.n_dof), pair(self.interface)).dof_qd
+        interface = self.interface
+        if interface.at_rest is not None:
+            return interface.at_rest.dof_qd
+        pairing = pair(interface)
+        if pairing is None:
+            return dofs(interface.known_conn_qa)
+        return dofs(np.concatenate([interface.conn_qa, interface.master.conn_ca[pairing.c_q]], axis=1))
 
     @cached_property
     def spring_entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
