@@ -25,6 +25,7 @@ from verify.crosschecks import (
 )
 from verify.curve_file import Reading, read_curve
 from verify.effects import simulated
+from verify.magnitudes import LEAST, MOST
 from verify.methods import METHODS, known_methods
 from verify.refusal import Refusal
 from verify.result import Result
@@ -63,7 +64,8 @@ def read_curves(words: Sequence[str], reading: Reading) -> tuple[Curve, ...]:
 
     Raises
     ------
-    Refusal : no curve in a file, a name that is no word, that of a method, or one for two curves.
+    Refusal : no curve in a file, or numbers beyond all units; a name that is no word, that of a method, or one for two
+        curves.
     """
     curves: list[Curve] = []
     taken = known_methods() if words else {}
@@ -75,6 +77,7 @@ def read_curves(words: Sequence[str], reading: Reading) -> tuple[Curve, ...]:
             whose = "another curve's" if name in [curve.name for curve in curves] else "a method's"
             raise Refusal(f"--with: a name must not be {whose}, got {name!r}; NAME={path} gives another")
         opening, load = read_curve(path, reading)
+        _of_some_size(path, opening, load)
         curves.append(Curve(name, path, reading, Result(name, {"opening": opening, "load": load})))
     return tuple(curves)
 
@@ -145,6 +148,16 @@ def _keep(curve: Curve, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     rows = np.stack([curve.result.opening, curve.result.load], axis=1)
     np.savetxt(folder / "curve.csv", rows, "%.17g", ",", header="opening,load", comments="")
+
+
+def _of_some_size(path: Path, opening: np.ndarray, load: np.ndarray) -> None:
+    """Like the numbers of a scene: squares of larger ones overflow, and a page cannot be drawn to their scale."""
+    largest = max(float(np.abs(opening).max()), float(np.abs(load).max()))
+    if not (largest <= MOST and opening.max() >= LEAST):
+        got = f"{largest:g}" if largest > MOST else f"openings up to {opening.max():g}"
+        raise Refusal(
+            f"{path}: must hold numbers of a size <= {MOST:g}, and openings up to {LEAST:g} or more, got {got}"
+        )
 
 
 def _named(word: str) -> tuple[str, Path]:

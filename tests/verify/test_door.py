@@ -1,4 +1,4 @@
-"""Whatever comes in at the door, as a scene, a curve or a command line: an exit code of 0, 1 or 2 and a sentence.
+"""Whatever comes in at the door, as a scene or a command line: an exit code of 0, 1 or 2 and a sentence.
 
 The solvers are replaced by nothing, so that thousands of inputs take seconds; a few real runs are tiny.
 """
@@ -6,144 +6,26 @@ The solvers are replaced by nothing, so that thousands of inputs take seconds; a
 from __future__ import annotations
 
 import ast
-import json
 import shutil
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, example, given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from iga_files import SMALL
+from odd_inputs import DCB, KEYS, LINES, MANY, METHODS, OVERRIDES, QUIET, SCENES, SOME, answered, as_toml
 
 from verify import run
-from verify.cli import main
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
 from verify.scene import SceneError, load_scene, packaged_scenes
 
 PROJECT = Path(__file__).resolve().parents[2]
 
-DCB = {
-    "name": "own",
-    "units": "N, mm, MPa",
-    "specimen": {"kind": "dcb", "length": 14.0, "arm_thickness": 0.2, "precrack": 4.0, "width": 1.0},
-    "material": {"young": 120e3, "poisson": 0.2},
-    "interface": {"strength": 4.0, "toughness": 0.1, "ductility": 12.5, "penalty": 1e5},
-    "load": {"opening": [3.0]},
-    "effects": {"kinematics": "finite", "contact": True, "irreversible": True, "symmetry": False},
-    "pose": {"angle": 0.0, "mirror": False, "shift": [0.0, 0.0]},
-    "discretization": {"degree": 3, "dofs": 280, "interface_rule": "gauss", "interface_points": 2, "steps": 5},
-    "dolfinx": {"degree": 2, "elements": 112},
-    "published": [{"quantity": "load_at", "opening": 1.0, "value": [4.3, 4.5], "tolerance": 0.05, "source": "there"}],
-}
-PEEL = {
-    **{key: DCB[key] for key in ("name", "units", "interface", "load", "discretization", "dolfinx")},
-    "specimen": {
-        "kind": "peel", "strip_length": 150.0, "strip_thickness": 2.0, "substrate_length": 120.0,
-        "substrate_thickness": 10.0, "bond_length": 60.0, "width": 1.0, "plane": "strain",
-    },
-    "strip": {"E1": 135e3, "E2": 9e3, "G12": 5e3, "nu12": 0.3},
-    "substrate": {"young": 70e3, "poisson": 0.3},
-}  # fmt: skip
-METHODS = ("tspline", "nurbs", "lagrange", "dolfinx", "beam", "lefm")
-
-
-#: What is given to hypothesis with how many cases: some in every run of the tests, many in the slow ones.
-QUIET = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large]
-SOME = settings(max_examples=200, suppress_health_check=QUIET)
-MANY = settings(max_examples=10_000, suppress_health_check=QUIET)
-
-ODD_NUMBERS = [
-    0, 1, -1, 0.5, 1e-30, 1e30, 1e31, 1e-31, 1e308, -1e308, 5e-324, 1.0000000000000002, 0.49999999999999994,
-    float("inf"), float("-inf"), float("nan"), 10**9, 10**40, 10**310, -(10**400), 3.999999999999999, 14, 2, 1e15,
-]  # fmt: skip
-TEXTS = st.text(st.characters(exclude_categories=("Cs",)), max_size=12) | st.sampled_from(
-    ["auto", "linear", "../up", "/etc/passwd", "a/b", "", "dcb", "peel", "stress", "nan", "{}", "__import__('os')"]
-)
-SCALARS = st.one_of(st.sampled_from(ODD_NUMBERS), st.floats(), st.integers(), st.booleans(), TEXTS)
-VALUES = st.recursive(
-    SCALARS, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(TEXTS, inner, max_size=3), max_leaves=6
-)
-
-
-def paths_of(table: dict, before: tuple = ()) -> list[tuple]:
-    return [
-        path
-        for key, value in table.items()
-        for path in [(*before, key), *(paths_of(value, (*before, key)) if isinstance(value, dict) else [])]
-    ]
-
-
-KEYS = sorted({".".join(path) for path in [*paths_of(DCB), *paths_of(PEEL)]})
-
-
-def as_toml(value: object) -> str:
-    """A TOML value, tables inline."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        short = {"\\": "\\\\", '"': '\\"'}
-        return '"' + "".join(short.get(c, c if c.isprintable() else f"\\U{ord(c):08x}") for c in value) + '"'
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{as_toml(key)} = {as_toml(inner)}" for key, inner in value.items()) + "}"
-    return "[" + ", ".join(map(as_toml, value)) + "]" if isinstance(value, list) else repr(value)
-
-
-@st.composite
-def scene_texts(draw: st.DrawFn) -> str:
-    """A scene of which some keys are something else, more, or gone."""
-    table = json.loads(json.dumps(draw(st.sampled_from([DCB, PEEL]))))
-    for _ in range(draw(st.integers(0, 3))):
-        *way, last = draw(st.sampled_from(paths_of(table) or [("x",)]))
-        inner = table
-        for key in way:
-            inner = inner[key]
-        match draw(st.integers(0, 4)):
-            case 0:
-                del inner[last]
-            case 1:
-                inner[draw(TEXTS)] = draw(VALUES)
-            case _:
-                inner[last] = draw(VALUES)
-    return "\n".join(f"{as_toml(key)} = {as_toml(value)}" for key, value in table.items())
-
-
-ANY_TEXT = st.binary(max_size=200) | st.text(max_size=200).map(lambda text: text.encode("utf-8", "surrogatepass"))
-SCENES = st.one_of(*3 * [scene_texts().map(str.encode)], ANY_TEXT)
-OVERRIDES = st.lists(
-    st.tuples(st.sampled_from(KEYS) | TEXTS, VALUES.map(as_toml) | TEXTS).map("=".join) | TEXTS, max_size=3
-)
-
-#: Words of command lines. What they name is there, or not.
-WORDS = st.one_of(
-    st.sampled_from("verify solve cost effects scaling hard export compare mesh scenes doctor nosuch".split()),
-    st.sampled_from("dcb-czm1 peel-60 own.toml broken.toml curve.csv other.csv body.iga /dev/null . missing".split()),
-    st.sampled_from(
-        "--out --method --dofs --set --jobs --full --dry-run --fields --frames --accuracy --end --begin --at "
-        "--tolerance --curve-tol --load-scale-a --opening-a --with --opening --format --json --elements --layers "
-        "--include --help --scheduler -- -x".split()
-    ),
-    st.sampled_from("nurbs dolfinx beam lefm 0 1 -1 1e-3 80 1e999 nan 0.3% 1,2 abaqus csv md here here/x".split()),
-    st.text(st.characters(exclude_characters="\0", exclude_categories=("Cs",)), max_size=8),
-)
-FIRST = st.sampled_from("verify solve cost effects scaling hard export compare mesh".split())
-LINES = st.lists(WORDS, max_size=6) | st.tuples(FIRST, st.lists(WORDS, max_size=6)).map(lambda x: [x[0], *x[1]])
-
-CELLS = st.one_of(
-    st.sampled_from([*map(repr, ODD_NUMBERS[:16]), "", "2,5", "x", '"', "opening", "load", "#", "1e", "--", "\ufeff"]),
-    st.floats().map(repr),
-    st.text(max_size=5),
-)
-TABLES = st.tuples(
-    st.lists(st.lists(CELLS, max_size=4), max_size=8), st.sampled_from([",", ";", "\t", " ", ", "]), st.booleans()
-).map(lambda x: "opening,load\n0,0\n" * x[2] + "\n".join(x[1].join(row) for row in x[0]))
-POINTS = st.lists(st.tuples(st.floats(-1, 10), st.floats()), max_size=8).map(
-    lambda points: "opening,load\n0,0\n" + "".join(f"{d!r},{P!r}\n" for d, P in points)
-)
-CURVES = (TABLES | POINTS).map(lambda text: text.encode("utf-8", "surrogatepass")) | ANY_TEXT
-
 
 @pytest.fixture
 def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder to stand in, with all that takes long replaced by nothing."""
+    import verify.cost.accuracy
     import verify.cost.study
     import verify.export.command
     import verify.hard.suite
@@ -158,6 +40,7 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(run, "run", nothing)
     monkeypatch.setattr(verify.verification, "verify", lambda *_: True)
     monkeypatch.setattr(verify.cost.study, "cost", lambda *_: None)
+    monkeypatch.setattr(verify.cost.accuracy, "run_seconds", lambda *_: 1.0)
     monkeypatch.setattr(verify.hard.suite, "hard", lambda *_: True)
     monkeypatch.setattr(verify.export.command, "export", lambda *_: [])
     for study, name in ((verify.switches.study, "effects"), (verify.scaling.study, "scaling")):
@@ -167,20 +50,11 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "curve.csv").write_text("opening,load\n0,0\n1,2\n3,1\n")
     (tmp_path / "other.csv").write_text("opening,force\n0,0\n1,2\n")
     (tmp_path / "body.iga").write_text("type plane\n")
+    (tmp_path / "two.csv").write_text("X;U2;RF2\n1;0;0\n2;-1,5;-2\n")
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "curve.csv").write_text("opening,load\n0,0\n1,2\n3,1\n")
+    (tmp_path / "plate.iga").write_text(SMALL)
     return tmp_path
-
-
-def answered(capsys: pytest.CaptureFixture, *words: str) -> tuple[int, str]:
-    """Exit code and complaint of a command line; an exception of any other kind is a traceback, and a failure."""
-    try:
-        code = main(list(words))
-    except SystemExit as end:  # argparse
-        code = int(end.code or 0)
-    said = capsys.readouterr()
-    assert code in (0, 1, 2), words
-    assert code != 2 or said.err.startswith(("debond: ", "usage: ")), words
-    assert "Traceback" not in said.err
-    return code, said.err
 
 
 def scene_is_answered(text: bytes, method: str, door: Path, capsys: pytest.CaptureFixture) -> None:
@@ -207,13 +81,6 @@ def line_is_answered(words: list[str], door: Path, capsys: pytest.CaptureFixture
     answered(capsys, *words)
 
 
-def curves_are_answered(a: bytes, b: bytes, door: Path, capsys: pytest.CaptureFixture) -> None:
-    (door / "a.csv").write_bytes(a)
-    (door / "b.csv").write_bytes(b)
-    code, said = answered(capsys, "compare", "a.csv", "b.csv", "--curve-tol", "0.1", "--peak-tol", "0.1")
-    assert code == 0 or ".csv" in said or "A " in said or "curve" in said or "peak" in said or "begin" in said, said
-
-
 @given(text=SCENES, method=st.sampled_from(METHODS))
 @SOME
 def test_scenes(text: bytes, method: str, door: Path, capsys: pytest.CaptureFixture) -> None:
@@ -231,13 +98,6 @@ def test_overrides(overrides: list[str], scene: str, door: Path, capsys: pytest.
 @SOME
 def test_command_lines(words: list[str], door: Path, capsys: pytest.CaptureFixture) -> None:
     line_is_answered(words, door, capsys)
-
-
-@given(a=CURVES, b=CURVES | st.just(b"opening,load\n0,0\n1,2\n3,1\n"))
-@SOME
-@pytest.mark.filterwarnings("error")
-def test_curves(a: bytes, b: bytes, door: Path, capsys: pytest.CaptureFixture) -> None:
-    curves_are_answered(a, b, door, capsys)
 
 
 @pytest.mark.slow
@@ -259,14 +119,6 @@ def test_many_overrides(overrides: list[str], scene: str, door: Path, capsys: py
 @MANY
 def test_many_command_lines(words: list[str], door: Path, capsys: pytest.CaptureFixture) -> None:
     line_is_answered(words, door, capsys)
-
-
-@pytest.mark.slow
-@given(a=CURVES, b=CURVES | st.just(b"opening,load\n0,0\n1,2\n3,1\n"))
-@MANY
-@pytest.mark.filterwarnings("error")
-def test_many_curves(a: bytes, b: bytes, door: Path, capsys: pytest.CaptureFixture) -> None:
-    curves_are_answered(a, b, door, capsys)
 
 
 #: Keys whose values have dimensions, for runs in which they are far from their usual size.

@@ -1,0 +1,112 @@
+"""Load-opening curves of anybody: whatever is in a file, `compare` and `verify --with` answer with a sentence."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from made_up_runs import ENVIRONMENT, curve, limit, scene_report
+from odd_inputs import CURVES, DRAWN, MANY, QUIET, SOME, answered
+
+from verify import plugins, verification
+from verify.curve_file import Reading
+from verify.foreign import joined, read_curves
+from verify.jobs import Job, Outcome
+from verify.refusal import Refusal
+from verify.result import Result
+
+PLAIN = b"opening,load\n0,0\n1,2\n3,1\n"
+SCENE = "dcb-czm1-linear"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder to stand in, in which runs are made up and no page is drawn."""
+    known = {"nurbs": Result("nurbs", curve(1e-3)), "beam": Result("beam", curve()), "lefm": limit()}
+
+    def runs(plan: list[Job], *_: object) -> list[Outcome]:
+        return [Outcome(job, known.get(job.method), "" if job.method in known else "not run") for job in plan]
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(verification, "run_all", runs)
+    monkeypatch.setattr(verification, "write_page", lambda *_: None)
+    monkeypatch.setattr(plugins, "entry_points", lambda group: [])  # which all packages are searched for
+    return tmp_path
+
+
+def compared(a: bytes, b: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    (folder / "a.csv").write_bytes(a)
+    (folder / "b.csv").write_bytes(b)
+    code, said = answered(capsys, "compare", "a.csv", "b.csv", "--curve-tol", "0.1", "--peak-tol", "0.1")
+    known = (".csv:", " A: ", " B: ", "A and B: ", "A ends at", "begin: ", "curve error ", "peak load differs")
+    assert code == 0 or any(words in said for words in known), said
+
+
+def judged(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    (folder / "a.csv").write_bytes(text)
+    (folder / "out" / "verdict.json").unlink(missing_ok=True)
+    code, said = answered(capsys, "verify", SCENE, "--with", "mine=a.csv", "--out", "out")
+    assert said.startswith("debond: a.csv") if code == 2 else (folder / "out" / "verdict.json").exists()
+
+
+@given(a=CURVES, b=CURVES | st.just(PLAIN))
+@SOME
+@pytest.mark.filterwarnings("error")
+def test_compare(a: bytes, b: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    compared(a, b, folder, capsys)
+
+
+@given(text=CURVES)
+@SOME
+@pytest.mark.filterwarnings("error")
+def test_verify_with(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    judged(text, folder, capsys)
+
+
+@pytest.mark.slow
+@given(a=CURVES, b=CURVES | st.just(PLAIN))
+@MANY
+@pytest.mark.filterwarnings("error")
+def test_compare_many(a: bytes, b: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    compared(a, b, folder, capsys)
+
+
+@pytest.mark.slow
+@given(text=CURVES)
+@MANY
+@pytest.mark.filterwarnings("error")
+def test_verify_with_many(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    judged(text, folder, capsys)
+
+
+@pytest.mark.slow
+@given(text=DRAWN)
+@settings(max_examples=100, suppress_health_check=QUIET)
+@pytest.mark.filterwarnings("error")
+def test_pages_of_odd_curves(text: bytes, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("jinja2")
+    from verify import report
+
+    (tmp_path / "a.csv").write_bytes(text)
+    try:
+        curves = read_curves([f"mine={tmp_path / 'a.csv'}"], Reading())
+    except Refusal:
+        return
+    given = scene_report()
+    bare = tuple(replace(run, result=replace(run.result, snapshots=())) for run in given.runs)
+    report.write((joined(replace(given, runs=bare), curves, tmp_path),), tmp_path / "report.html", ENVIRONMENT)
+
+
+@pytest.mark.parametrize("number", ["1e31", "-1e300", "1.7e308"])
+def test_numbers_beyond_all_units_are_no_curve(number: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    """They overflowed where the page was drawn, when all runs had been made."""
+    (folder / "a.csv").write_text(f"opening,load\n0,0\n1,{number}\n2,1\n")
+    code, said = answered(capsys, "verify", SCENE, "--with", "a.csv", "--out", "out")
+    assert code == 2 and "must hold numbers of a size <= 1e+30, and openings up to 1e-30 or more, got" in said
+    assert not (folder / "out").exists()
+    (folder / "a.csv").write_text("opening,load\n0,0\n1e-31,1\n2e-31,1\n")
+    assert "got openings up to 2e-31" in answered(capsys, "verify", SCENE, "--with", "a.csv", "--out", "out")[1]
