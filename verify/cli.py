@@ -132,7 +132,7 @@ def _verify_options(sub: Parser) -> None:
     _with_options(sub)
     beside = "md writes report.md beside report.html: its numbers, for a terminal or a forge"
     sub.add_argument("--format", choices=("html", "md"), default="html", help=beside)
-    shown = "show what debond cost, effects or hard wrote there; folders in --out are found without it"
+    shown = "show what debond cost, effects, scaling or hard wrote there; folders in --out are found without it"
     sub.add_argument("--include", type=Path, action="append", default=[], metavar="DIR", help=shown)
     _sweep_options(sub)
 

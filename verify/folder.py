@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from verify.plain import ANY, NUMBER, Damaged, number, read_json
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Result, Snapshot
 
 FILES = ("curve.csv", "evidence.csv", "result.json", "fields.npz", "error.log")
@@ -70,14 +71,6 @@ def write_csv(path: Path, kind: type, rows: Iterable[Any]) -> None:
         writer.writerows(asdict(row) for row in rows)
 
 
-def read_rows(path: Path, kind: type) -> list[Any]:
-    """The rows of ``write_csv``."""
-    read = {"float": float, "int": int, "str": str, "bool": lambda text: text == "True"}
-    types = {field.name: read[field.type] for field in fields(kind)}
-    with path.open(newline="") as stream:
-        return [kind(**{name: types[name](text) for name, text in line.items()}) for line in csv.DictReader(stream)]
-
-
 def write_fields(path: Path, snapshots: tuple[Snapshot, ...]) -> None:
     """All snapshots in one compressed file, keys ``0.gap_q``, ``0.s_q``, ... ``1.gap_q``, ..."""
     arrays = {f"{i}.{key}": value for i, snapshot in enumerate(snapshots) for key, value in asdict(snapshot).items()}
@@ -94,19 +87,47 @@ def read_columns(path: Path) -> dict[str, np.ndarray]:
     return {name: np.array([float(row[i]) for row in rows]) for i, name in enumerate(header)}
 
 
+#: What is read of result.json; the rest is for people and their scripts.
+_RESULT = {
+    "method": str,
+    "status": str,
+    "steps": int,
+    "dofs": float,
+    "elements": float,
+    "rejected_steps": float,
+    "peak_memory_mb": float,
+    "seconds": {ANY: float},
+    "ending?": str,
+    "condition?": NUMBER,
+    "nonzeros?": float,
+    "jit_seconds?": float,
+}
+
+
 def read_result(folder: Path) -> Result:
-    """The run in a folder. Without result.json it counts as stopped."""
-    steps = read_columns(folder / "evidence.csv")
+    """The run in a folder. Without result.json it counts as stopped.
+
+    Raises
+    ------
+    Damaged : a file is not as a run has written it.
+    """
+    evidence = folder / "evidence.csv"
+    try:
+        steps = read_columns(evidence) if evidence.exists() else {name: np.zeros(0) for name in CURVE_COLUMNS}
+    except (OSError, ValueError, csv.Error) as error:
+        raise Damaged(evidence, error) from None
+    if not {"opening", "load"} <= steps.keys():
+        raise Damaged(evidence, f"the columns {', '.join(steps)}"[:200])
     about = folder / "result.json"
     if not about.exists():
         return Result(method="", steps=steps, status="stopped: the run was killed")
-    known = json.loads(about.read_text())
+    known = read_json(about, _RESULT)
     return Result(
         method=known["method"],
         steps=steps,
         status=known["status"],
         ending=known.get("ending", ""),
-        condition=known.get("condition", 0.0),
+        condition=number(known.get("condition", 0.0)),
         dofs=known["dofs"],
         elements=known["elements"],
         rejected_steps=known["rejected_steps"],
@@ -122,27 +143,50 @@ def damage(folder: Path, proof: str) -> str:
     """What cannot be read of a result that was whole once, or nothing; ``proof`` is the file that was written last."""
     name = proof
     try:
+        if proof == "result.json":
+            read_result(folder)
         about = json.loads((folder / proof).read_bytes()) if proof.endswith(".json") else (folder / proof).read_bytes()
+        whole = proof == "result.json" and about["status"] == "complete"
         for name in ("curve.csv", "evidence.csv"):
-            if (folder / name).exists():
+            if whole or (folder / name).exists():
                 rows = min(map(len, read_columns(folder / name).values()))
-                if proof == "result.json" and rows != about["steps"] + 1 and about["status"] == "complete":
+                if whole and rows != about["steps"] + 1:
                     return name
-    except (OSError, ValueError, KeyError, TypeError):
+    except Damaged as error:
+        return error.path.name
+    except (OSError, ValueError, csv.Error):
         return name
     return ""
 
 
 def read_fields(path: Path) -> tuple[Snapshot, ...]:
-    """The snapshots of ``write_fields``; none where there is no file."""
+    """The snapshots of ``write_fields``; none where there is no file.
+
+    Raises
+    ------
+    Damaged : the file holds something else.
+    """
     if not path.exists():
         return ()
     names = [field.name for field in fields(Snapshot)]
-    with np.load(path) as arrays:
-        count = len({key.split(".")[0] for key in arrays})
-        tables = [{name: arrays[key] for name in names if (key := f"{i}.{name}") in arrays} for i in range(count)]
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            count = len({key.split(".")[0] for key in arrays})
+            tables = [{name: arrays[key] for name in names if (key := f"{i}.{name}") in arrays} for i in range(count)]
+        return tuple(_snapshot(table) for table in tables)
+    except Exception as error:  # of NumPy, zip and zlib, whatever is in the file
+        raise Damaged(path, error) from None
+
+
+def _snapshot(table: Mapping[str, np.ndarray]) -> Snapshot:
+    """Numbers of the sizes that belong together."""
     scalars = ("opening", "load")
-    return tuple(Snapshot(**{k: float(v) if k in scalars else v for k, v in table.items()}) for table in tables)
+    found = Snapshot(**{name: float(array) if name in scalars else array for name, array in table.items()})
+    sizes = {len(array) for array in (found.s_q, found.gap_q, found.traction_q, found.damage_q)}
+    grids = found.X_euvi.shape == found.u_euvi.shape and found.stress_euv.shape in (found.X_euvi.shape[:-1], (0,))
+    if not (grids and len(sizes) == 1 and all(array.dtype.kind in "fiu" for array in table.values())):
+        raise ValueError("arrays that do not belong together")
+    return found
 
 
 def _opened(path: Path, columns: tuple[str, ...]) -> FileIO:

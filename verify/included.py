@@ -2,38 +2,38 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from verify.fingerprint import source
+from verify.plain import ANY, NUMBER, Damaged, Shape, read_json, read_table
 from verify.refusal import Refusal
+from verify.say import say
 
 #: What a folder holds that a command has written; the hard cases leave a verdict a case and basis.
 MARKS: Mapping[str, tuple[str, ...]] = {
     "cost": ("cost.json", "cost.csv"),
     "effects": ("effects.json", "effects.csv"),
+    "scaling": ("scaling.json", "scaling.csv"),
     "hard": ("*/*/verdict.json",),
 }
 
 
 @dataclass(frozen=True)
 class Included:
-    """A folder with a study; ``command`` is what made it: cost, effects or hard."""
+    """A folder with a study, as it was read.
+
+    command : what made it, a key of `MARKS`
+    about : what the study says of itself; nothing where it does not
+    rows : its lines, of the ``Row`` of the command; of the hard cases their verdicts
+    """
 
     command: str
     folder: Path
-
-    @property
-    def about(self) -> Mapping[str, Any]:
-        """What the study says of itself; nothing where it does not."""
-        path = self.folder / f"{self.command}.json"
-        try:
-            return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-        except ValueError as error:
-            raise Refusal(f"{path}: must be as debond {self.command} has written it, got: {error}") from None
+    about: Mapping[str, Any]
+    rows: tuple[Any, ...]
 
     @property
     def outdated(self) -> bool:
@@ -42,9 +42,15 @@ class Included:
 
 
 def found_in(out: Path) -> list[Included]:
-    """The studies in folders directly under ``out``."""
-    folders = sorted(path for path in out.glob("*") if path.is_dir() and not path.is_symlink())
-    return [study for folder in folders for study in _studies(folder)]
+    """The studies in folders directly under ``out``; of one that is damaged there is a word and no more."""
+    studies = []
+    for folder in sorted(path for path in out.glob("*") if path.is_dir() and not path.is_symlink()):
+        for command in _commands(folder):
+            try:
+                studies.append(_study(command, folder))
+            except Damaged as error:
+                say(f"{error}; the study is left out of the report")
+    return studies
 
 
 def named(folders: Iterable[Path]) -> list[Included]:
@@ -52,16 +58,78 @@ def named(folders: Iterable[Path]) -> list[Included]:
 
     Raises
     ------
-    Refusal : one of them holds none.
+    Refusal : one of them holds none, or one that is damaged.
     """
     found = []
     for folder in folders:
-        if not (studies := _studies(folder)):
-            what = "must be a folder that debond cost, effects or hard has written, with all of its files"
+        if not (commands := _commands(folder)):
+            *first, last = MARKS
+            what = f"must be a folder that debond {', '.join(first)} or {last} has written, with all of its files"
             raise Refusal(f"--include: {what}, got {str(folder)!r}")
-        found += studies
+        try:
+            found += [_study(command, folder) for command in commands]
+        except Damaged as error:
+            raise Refusal(f"--include: {error}") from None
     return found
 
 
-def _studies(folder: Path) -> list[Included]:
-    return [Included(name, folder) for name, marks in MARKS.items() if all(next(folder.glob(m), None) for m in marks)]
+def _commands(folder: Path) -> list[str]:
+    return [name for name, marks in MARKS.items() if all(next(folder.glob(m), None) for m in marks)]
+
+
+def _study(command: str, folder: Path) -> Included:
+    about, rows = _READ[command](folder)
+    return Included(command, folder, about, tuple(rows))
+
+
+Content = tuple[Mapping[str, Any], Iterable[Any]]
+
+_HEAD: Shape = {"scene": {"name": str}, "left_out": [str], "source?": str}
+
+
+def _cost(folder: Path) -> Content:
+    from verify.cost.row import read_csv
+
+    reference = {
+        "label": str,
+        "dofs": int,
+        "uncertainty": {"curve": NUMBER},
+        "other_code": str,
+        "other_code_apart": NUMBER,
+    }
+    return read_json(folder / "cost.json", {**_HEAD, "reference": reference}), read_csv(folder / "cost.csv")
+
+
+def _effects(folder: Path) -> Content:
+    from verify.switches.row import Row
+
+    return read_json(folder / "effects.json", _HEAD), read_table(folder / "effects.csv", Row)
+
+
+def _scaling(folder: Path) -> Content:
+    from verify.scaling.row import Row
+
+    growth = {ANY: {ANY: {"exponent": NUMBER, "standard_error": NUMBER, "factor": NUMBER}}}
+    shared = {"dofs": int, "ranks": int, "speed_up": {ANY: NUMBER}, "serial": {ANY: NUMBER}, "efficiency": NUMBER}
+    shape = {**_HEAD, "growth": growth, "strong_scaling": [shared], "sentences": [str]}
+    return read_json(folder / "scaling.json", shape), read_table(folder / "scaling.csv", Row)
+
+
+def _hard(folder: Path) -> Content:
+    from verify.hard.cases import CASES
+    from verify.hard.one import read_verdict
+
+    paths = [path for path in sorted(folder.glob("*/*/verdict.json")) if path.parent.parent.name in CASES]
+    verdicts = [read_verdict(path.parent) for path in paths]
+    for path, found in zip(paths, verdicts, strict=True):
+        if (found.case, found.basis) != path.parts[-3:-1]:
+            raise Damaged(path, f"the verdict of {found.case} on {found.basis}")
+    return {}, verdicts
+
+
+_READ: Mapping[str, Callable[[Path], Content]] = {
+    "cost": _cost,
+    "effects": _effects,
+    "scaling": _scaling,
+    "hard": _hard,
+}

@@ -11,6 +11,7 @@ from verify.estimate import seconds
 from verify.fingerprint import fingerprint
 from verify.folder import read_result
 from verify.methods import NotRun, require
+from verify.plain import Damaged
 from verify.pools import pool
 from verify.refusal import Refusal
 from verify.result import Result
@@ -125,14 +126,20 @@ def left_out(job: Job) -> str:
 
 def outcome(job: Job, done: Done) -> Outcome:
     """What became of a job; one that failed with a result has that, and says itself why it stopped."""
-    if (done.folder / "result.json").exists():
+    if not (done.folder / "result.json").exists():
+        return Outcome(job, None, done.why, failed=True)
+    try:
         return Outcome(job, read_result(done.folder))
-    return Outcome(job, None, done.why, failed=True)
+    except Damaged as error:
+        return Outcome(job, None, f"failed: {error}", failed=True)
 
 
 def _in_short(done: Done) -> str:
     if not (done.folder / "result.json").exists():
         return done.why
-    result = read_result(done.folder)
+    try:
+        result = read_result(done.folder)
+    except Damaged as error:
+        return f"failed: {error}"
     taken = (result.seconds or {}).get("total", 0.0)
     return f"{result.status}, peak load {result.load.max(initial=0.0):.5g}, {taken:.1f} s"

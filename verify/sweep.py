@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TextIO
 
 from verify.folder import damage
+from verify.plain import Damaged
 from verify.pools import Pool
 from verify.progress import Progress, duration
 from verify.store import NAME, Store, link, opened
@@ -46,6 +47,7 @@ class Task:
     lane : tasks of one lane, unless it is empty, run one after the other
     seconds : about how long it takes
     timeout : after so many seconds it is given up
+    read : reads the result in a folder; what was damaged since it was written is done again
     """
 
     place: str
@@ -55,6 +57,7 @@ class Task:
     lane: str = ""
     seconds: float = 1.0
     timeout: float = 3600.0
+    read: Callable[[Path], object] | None = None
 
 
 @dataclass(frozen=True)
@@ -106,7 +109,13 @@ def sweep(tasks: Sequence[Task], out: Path, pool: Pool, title: str, say: Callabl
 
 
 def _damage(task: Task, store: Store) -> str:
-    return damage(store.folder(task.key), task.proof)
+    folder = store.folder(task.key)
+    try:
+        if task.read is not None:
+            task.read(folder)
+    except Damaged as error:
+        return error.path.name
+    return damage(folder, task.proof)
 
 
 def listed(tasks: Sequence[Task], out: Path, jobs: int) -> list[str]:

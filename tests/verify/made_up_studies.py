@@ -1,14 +1,17 @@
-"""Folders as ``debond cost``, ``effects`` and ``hard`` leave them, with made-up numbers."""
+"""Folders as ``debond cost``, ``effects``, ``scaling`` and ``hard`` leave them, with made-up numbers."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 
 from verify.cost.row import Row as CostRow
 from verify.folder import write_csv, write_json
 from verify.hard.one import Line, Verdict
+from verify.scaling.row import Row as ScalingRow
+from verify.scaling.study import Study
+from verify.scene import load_scene
 from verify.switches.row import Row as EffectRow
 from verify.verdict import Check
 
@@ -47,6 +50,19 @@ def effects(folder: Path, scene: str = "dcb-czm1") -> Path:
     return _written(folder, "effects", EffectRow, rows, {"scene": {"name": scene}, "left_out": [], "source": ""})
 
 
+def scaling(folder: Path, scene: str = "dcb-czm1") -> Path:
+    """Three sizes by NURBS, and two by DOLFINx on one rank and on two, which share the assembly alone."""
+    rows = [replace(_scaling("nurbs", 1, 0, 1e-3), bare=True)]  # what the program takes
+    rows += [_scaling("nurbs", 1, dofs, 1e-5 * dofs) for dofs in (2000, 10_000, 100_000)]
+    for dofs in (20_000, 100_000):
+        rows += [_scaling("dolfinx", 1, dofs, 2e-5 * dofs), _scaling("dolfinx", 2, dofs, 1.5e-5 * dofs)]
+    given = load_scene("dcb-czm1").model_copy(update={"name": scene})
+    about = Study(given, tuple(rows), ("4 ranks: left out: 2 cores here",), 8000).summary()
+    path = _written(folder, "scaling", ScalingRow, rows, {})
+    write_json(folder / "scaling.json", about | {"source": ""})
+    return path
+
+
 def hard(folder: Path) -> Path:
     """One case that holds on NURBS and not on T-splines."""
     for basis, ledger in (("nurbs", 1e-5), ("tspline", 0.5)):
@@ -64,6 +80,15 @@ def _cost(method: str, degree: int, dofs: int, error: float, seconds: float) -> 
     words = {"asked": "80", "run": f"cost/{method}-p{degree}-{dofs}", "status": "complete"}
     known = {"method": method, "degree": degree, "dofs": dofs, "seconds": seconds, "peak_memory_mb": 100.0}
     return CostRow(**numbers | counts | words | known)
+
+
+def _scaling(method: str, ranks: int, dofs: int, iteration: float) -> ScalingRow:
+    parts = {"assembly": 0.5 / ranks, "factor": 0.3, "solve": 0.1, "other": 0.1}
+    numbers = {name: part * iteration / sum(parts.values()) for name, part in parts.items()}
+    words = {"bare": False, "run": f"scaling/{method}-{dofs}", "status": "complete"}
+    counts = {"degree": 2, "elements": dofs // 12, "newton_iterations": 40, "nonzeros": 0, "times": 3}
+    head = {"method": method, "ranks": ranks, "dofs": dofs, "iteration": iteration}
+    return ScalingRow(**head, **numbers, **counts, **words, spread=1.05, set_up=1.0, peak_memory_mb=90 + 0.01 * dofs)
 
 
 def _written(folder: Path, name: str, kind: type, rows: list, about: dict) -> Path:

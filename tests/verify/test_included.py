@@ -27,6 +27,7 @@ def out(tmp_path: Path) -> Path:
     made_up_studies.cost(tmp_path / "cost", scene="</script><b>")
     made_up_studies.effects(tmp_path / "effects")
     made_up_studies.hard(tmp_path / "hard")
+    made_up_studies.scaling(tmp_path / "scaling")
     return tmp_path
 
 
@@ -38,14 +39,14 @@ def bare(given):
 
 def test_studies_are_found_by_what_they_left(out: Path) -> None:
     assert [(one.command, one.folder.name) for one in found_in(out)] == [
-        ("cost", "cost"), ("effects", "effects"), ("hard", "hard")
+        ("cost", "cost"), ("effects", "effects"), ("hard", "hard"), ("scaling", "scaling")
     ]  # fmt: skip
     (out / "cost" / "cost.csv").unlink()
-    assert [one.command for one in found_in(out)] == ["effects", "hard"]
+    assert [one.command for one in found_in(out)] == ["effects", "hard", "scaling"]
 
 
 def test_a_folder_without_a_study_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    with pytest.raises(Refusal, match="--include: must be a folder that debond cost, effects or hard has written"):
+    with pytest.raises(Refusal, match="--include: must be a folder that debond cost, effects, scaling or hard has"):
         named([tmp_path])
     assert main(["verify", "dcb-czm1", "--include", str(tmp_path / "none"), "--out", str(tmp_path / "out")]) == 2
     assert "--include: " in capsys.readouterr().err and not (tmp_path / "out").exists()
@@ -60,7 +61,19 @@ def test_page_has_chart_effects_and_matrix_and_no_text_becomes_markup(out: Path)
     assert '<a href="./cost/%3C/script%3E%3Cb%3E/cost/nurbs-p3-500/">NURBS, degree 3</a>' in page
     assert "1.25" in page and "with it: stopped" in page
     assert "0 of 1 hard cases hold" in page and "./hard/coarse-czm2/nurbs/base/curve.csv" in page
-    assert page.count("takes no part in the verdict") == 3
+    assert page.count("takes no part in the verdict") == 4
+
+
+def test_growth_and_ranks_are_on_the_page_and_in_its_text(out: Path) -> None:
+    report.write((), out / "report.html", ENVIRONMENT, included=found_in(out), text=True)
+    page, text = (out / "report.html").read_text(), (out / "report.md").read_text()
+    assert "How it scales: dcb-czm1" in page and "4 ranks: left out: 2 cores here" in page
+    grown = r'<th scope="row">NURBS</th><td>1.00 ± 0.00</td><td>0.\d\d ± 0.\d\d</td><td>1.00 ± 0.00</td>'
+    assert re.search(grown, page) and re.search(r"\| NURBS +\| 1.00 ± 0.00 +\|", text)
+    shared = r'<th scope="row">100000</th><td>2</td><td>1.3 ×</td><td>67 %</td><td>0.5</td><td>2 ×</td>'
+    assert re.search(shared, page), "an iteration, efficiency, not shared, assembly"
+    assert re.search(r"\| 100000 +\| 2 +\| 1.3 × +\| 67 % +\| 0.5 +\| 2 × +\|", text)
+    assert "dolfinx, 100000 unknowns on 2 ranks: 1.3 × as fast" in page
 
 
 def test_rows_of_the_chart_cannot_end_their_script(out: Path) -> None:

@@ -20,11 +20,13 @@ import numpy as np
 from verify.cost.ladder import FAMILIES, STEPS, Try, size_of_an_element
 from verify.estimate import steps
 from verify.fingerprint import source
-from verify.methods import NotRun, require, solve
+from verify.methods import NotRun, known_methods, require, solve
+from verify.plain import Damaged, read_json
 from verify.process_zone import expected
 from verify.progress import duration
 from verify.refusal import Refusal
 from verify.run import machine
+from verify.say import say
 from verify.scene import parse_scene
 from verify.schema import Scene
 
@@ -41,6 +43,22 @@ ITERATIONS_PER_STEP = 3.2
 
 #: A trial goes this part of the way in about so many steps.
 TRIAL, TRIAL_STEPS = 0.02, 10
+
+
+#: What is read of a study.
+_STUDY = {
+    "scene": dict,
+    "machine": dict,
+    "source": str,
+    "pareto": [
+        {
+            **dict.fromkeys(("method", "solver"), str),
+            **dict.fromkeys(("degree", "dofs"), int),
+            **dict.fromkeys(("curve_error", "seconds"), float),
+            "overrides": [str],
+        }
+    ],
+}
 
 
 @dataclass(frozen=True)
@@ -72,11 +90,11 @@ def choose(scene: Scene, accuracy: float, study: Path) -> Choice:
 def _from_study(scene: Scene, accuracy: float, path: Path) -> Choice | None:
     known = _same_study(scene, path)
     for run in known:
-        if run["curve_error"] > accuracy or run["solver"] == "beam":
+        if run["curve_error"] > accuracy or run["solver"] == "beam" or run["solver"] not in known_methods():
             continue
         try:
             require(parse_scene(scene.model_dump(), run["overrides"]), run["solver"])
-        except NotRun:
+        except (NotRun, Refusal):
             continue
         what = f"{run['method']} of degree {run['degree']} with {run['dofs']} unknowns"
         took = f"took {duration(run['seconds'])} in {path} and was within {run['curve_error']:.2g}"
@@ -85,10 +103,13 @@ def _from_study(scene: Scene, accuracy: float, path: Path) -> Choice | None:
 
 
 def _same_study(scene: Scene, path: Path) -> Sequence[Mapping[str, Any]]:
-    """Runs of a study of the same problem, machine and source, the quickest first."""
+    """Runs of a study of the same problem, machine and source, the quickest first; none of one that is damaged."""
+    if not path.exists():
+        return ()
     try:
-        found = json.loads(path.read_text())
-    except (OSError, ValueError):
+        found = read_json(path, _STUDY)
+    except Damaged as error:
+        say(f"{error}; it does not count")
         return ()
     meshes = {"discretization", "dolfinx", "published"}
     ours = json.loads(scene.model_dump_json(exclude=meshes))

@@ -12,8 +12,8 @@ import numpy as np
 from verify.cost.ladder import Try
 from verify.cost.reference import Reference, cubics, dissipated, distance, peak_load
 from verify.curve import oscillation
-from verify.folder import read_rows
 from verify.jobs import Outcome
+from verify.plain import read_table
 from verify.result import Result, Snapshot
 from verify.timing import PHASES
 
@@ -136,7 +136,7 @@ def traction_error(snapshots: Sequence[Snapshot], exact: Sequence[Snapshot]) -> 
 
 def read_csv(path: Path) -> list[Row]:
     """Rows that were written."""
-    return read_rows(path, Row)
+    return read_table(path, Row)
 
 
 def run_seconds(result: Result) -> float:

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import traceback
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from verify.folder import write_json
+from verify.folder import read_result, write_json
 from verify.hard.case import Case, Finding, Number, Trial, Trials
 from verify.hard.cases import CASES
 from verify.hard.criteria import common, ledger
 from verify.methods import Unsuitable, solve
+from verify.plain import read_json, shape_of
 from verify.result import Result, steps_from_rows
 from verify.run import Solver, run
 from verify.schema import Scene
@@ -87,14 +87,30 @@ def judged(case: Case, trials: Trials) -> Iterator[Finding]:
 
 
 def read_verdict(folder: Path) -> Verdict:
-    """The verdict in the folder of a case and basis."""
-    known = json.loads((folder / "verdict.json").read_text())
+    """The verdict in the folder of a case and basis.
 
-    def read(kind: type, key: str) -> tuple[Any, ...]:
-        records = ({name: np.nan if v is None else v for name, v in record.items()} for record in known[key])
-        return tuple(kind(**record) for record in records)
+    Raises
+    ------
+    Damaged : it is not as `run_case` has written it.
+    """
+    kinds = {"runs": Line, "checks": Check, "numbers": Number}
+    shape = {"case": str, "basis": str, **{key: [shape_of(kind)] for key, kind in kinds.items()}}
+    known = read_json(folder / "verdict.json", shape)
 
-    return Verdict(known["case"], known["basis"], read(Line, "runs"), read(Check, "checks"), read(Number, "numbers"))
+    def read(key: str, kind: type) -> tuple[Any, ...]:
+        names = [field.name for field in fields(kind)]
+        return tuple(kind(**{n: np.nan if record[n] is None else record[n] for n in names}) for record in known[key])
+
+    return Verdict(known["case"], known["basis"], *(read(key, kind) for key, kind in kinds.items()))
+
+
+def read_cell(folder: Path) -> Verdict:
+    """The verdict, where the runs that it is about can be read as well."""
+    verdict = read_verdict(folder)
+    for line in verdict.runs:
+        if line.steps > 0:
+            read_result(folder / line.name)
+    return verdict
 
 
 def _run(scene: Scene, basis: str, folder: Path, solver: Solver) -> Result:

@@ -11,7 +11,7 @@ import numpy as np
 from verify.estimate import seconds
 from verify.fingerprint import digest, fingerprint, source
 from verify.hard.case import Case
-from verify.hard.one import Verdict, read_verdict
+from verify.hard.one import Verdict, read_cell, read_verdict
 from verify.pools import pool
 from verify.say import write_page
 from verify.sweep import FOLDER, Done, Task, listed, sweep
@@ -71,6 +71,7 @@ def task(case: Case, basis: str) -> Task:
         ("verify.hard.one", case.name, basis, FOLDER),
         "verdict.json",
         seconds=sum(seconds(scene, basis) for _, scene in scenes),
+        read=read_cell,
     )
 
 

@@ -1,9 +1,9 @@
-"""What other commands have found, on the page of a verification: cost, effects, hard cases."""
+"""What other commands have found, on the page of a verification: cost, effects, scaling, hard cases."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,24 +11,58 @@ from urllib.parse import quote
 
 from verify.cost.findings import LEVELS, cheapest, of_equal_steps
 from verify.cost.page import Chart, Level, chart
-from verify.cost.row import read_csv
-from verify.folder import read_rows
 from verify.hard.case import BASES
 from verify.hard.cases import CASES
-from verify.hard.one import read_verdict
+from verify.hard.one import Verdict
 from verify.hard.page import Row as HardRow
 from verify.hard.suite import Cell
 from verify.included import Included
 from verify.report.style import METHOD_NAMES
+from verify.report.text import NO_VALUE, number
+from verify.scaling.page import readable
+from verify.scaling.row import PARTS
 from verify.switches.page import BARS
 from verify.switches.row import Row as EffectRow
 
-TITLES = {"cost": "What accuracy costs", "effects": "What each effect does", "hard": "Hard cases"}
+TITLES = {
+    "cost": "What accuracy costs",
+    "effects": "What each effect does",
+    "scaling": "How it scales",
+    "hard": "Hard cases",
+}
+
+#: Columns of the table of growth: what of ``scaling.json``, and its name.
+GROWTH = {"iteration": "time of an iteration", "peak_memory_mb": "peak memory", "model_memory_mb": "less the program's"}
+
+
+@dataclass(frozen=True)
+class SharedRow:
+    """A size on some ranks against the same on one, in words."""
+
+    dofs: int
+    ranks: int
+    faster: str
+    efficiency: str
+    not_shared: str
+    parts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """How a study found time and memory to grow, and what more ranks gain.
+
+    growth : method, and an exponent with its standard error for each of `GROWTH`
+    """
+
+    growth: tuple[tuple[str, tuple[str, ...]], ...]
+    shared: tuple[SharedRow, ...]
+    columns: tuple[str, ...] = tuple(GROWTH.values())
+    parts: tuple[str, ...] = PARTS
 
 
 @dataclass(frozen=True, eq=False)
 class IncludedSection:
-    """A study as the template prints it: of ``chart``, ``effects`` and ``hard`` what its command found.
+    """A study as the template prints it: of ``chart``, ``effects``, ``scaling`` and ``hard`` what its command found.
 
     prefix : leads from the page to the folder of the study
     runs : and to the runs of its scene
@@ -45,6 +79,7 @@ class IncludedSection:
     chart: Chart | None = None
     levels: tuple[Level, ...] = ()
     effects: tuple[EffectRow, ...] = ()
+    scaling: Scaling | None = None
     hard: tuple[HardRow, ...] = ()
 
     @property
@@ -58,9 +93,8 @@ class IncludedSection:
 
 
 def section(study: Included, out: Path, anchor: str) -> IncludedSection:
-    """Read one study."""
-    about = study.about
-    name = about.get("scene", {}).get("name", "")
+    """One study."""
+    name = study.about.get("scene", {}).get("name", "")
     prefix = quote(Path(os.path.relpath(study.folder, out)).as_posix())
     head = {
         "anchor": anchor,
@@ -71,46 +105,80 @@ def section(study: Included, out: Path, anchor: str) -> IncludedSection:
         "outdated": study.outdated,
         "has_page": (study.folder / "report.html").exists(),
     }
-    return {"cost": _cost, "effects": _effects, "hard": _hard}[study.command](study, about, head)
+    own = {"cost": _cost, "effects": _effects, "scaling": _scaling, "hard": _hard}[study.command]
+    return IncludedSection(**head, **own(study, anchor))
 
 
-def _cost(study: Included, about: dict[str, Any], head: dict[str, Any]) -> IncludedSection:
-    rows = tuple(read_csv(study.folder / "cost.csv"))
+def _cost(study: Included, anchor: str) -> dict[str, Any]:
+    rows, about = study.rows, study.about
     equal = of_equal_steps(rows)
     levels = tuple(Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS)
     lead = (*(level.sentence for level in levels), _reference(about["reference"]), *about["left_out"])
-    return IncludedSection(**head, lead=lead, chart=chart(rows, head["anchor"]), levels=levels)
+    return {"lead": lead, "chart": chart(rows, anchor), "levels": levels}
 
 
 def _reference(known: dict[str, Any]) -> str:
-    text = f"Reference: {known['label']}, {known['dofs']} unknowns, uncertainty {known['uncertainty']['curve']:.3%}"
+    uncertainty = f"{known['uncertainty']['curve']:.3%}" if known["uncertainty"]["curve"] is not None else "unknown"
+    text = f"Reference: {known['label']}, {known['dofs']} unknowns, uncertainty {uncertainty}"
     if known["other_code_apart"] is None:
         return f"{text}; no other code was at hand."
     return f"{text}; {known['other_code']} is {known['other_code_apart']:.3%} away."
 
 
-def _effects(study: Included, about: dict[str, Any], head: dict[str, Any]) -> IncludedSection:
-    rows = tuple(read_rows(study.folder / "effects.csv", EffectRow))
-    return IncludedSection(**head, lead=tuple(about["left_out"]), effects=rows)
+def _effects(study: Included, anchor: str) -> dict[str, Any]:
+    return {"lead": tuple(study.about["left_out"]), "effects": study.rows}
 
 
-def _hard(study: Included, about: dict[str, Any], head: dict[str, Any]) -> IncludedSection:
-    names = {path.parent.parent.name for path in study.folder.glob("*/*/verdict.json")}
-    rows = tuple(_row(name, study.folder) for name in CASES if name in names)
+def _scaling(study: Included, anchor: str) -> dict[str, Any]:
+    about = study.about
+    growth = tuple(
+        (METHOD_NAMES.get(method, method), tuple(_exponent(fits.get(what)) for what in GROWTH))
+        for method, fits in about["growth"].items()
+    )
+    shared = tuple(_shared(one) for one in about["strong_scaling"])
+    lead = (*map(readable, about["sentences"]), *about["left_out"])
+    return {"lead": lead, "scaling": Scaling(growth, shared)}
+
+
+def _exponent(fit: dict[str, float | None] | None) -> str:
+    """1.02 ± 0.01, where there is a fit."""
+    if fit is None or fit["exponent"] is None or fit["standard_error"] is None:
+        return NO_VALUE
+    return f"{fit['exponent']:.2f} ± {fit['standard_error']:.2f}".replace("-", "−")
+
+
+def _shared(one: dict[str, Any]) -> SharedRow:
+    faster = {name: one["speed_up"].get(name) for name in ("iteration", *PARTS)}
+    return SharedRow(
+        one["dofs"],
+        one["ranks"],
+        _times(faster["iteration"]),
+        NO_VALUE if one["efficiency"] is None else f"{number(100 * one['efficiency'], 2)} %",
+        NO_VALUE if one["serial"].get("iteration") is None else number(one["serial"]["iteration"], 2),
+        tuple(_times(faster[name]) for name in PARTS),
+    )
+
+
+def _times(faster: float | None) -> str:
+    return NO_VALUE if faster is None else f"{number(faster, 2)} ×"
+
+
+def _hard(study: Included, anchor: str) -> dict[str, Any]:
+    verdicts = {(verdict.case, verdict.basis): verdict for verdict in study.rows}
+    names = {case for case, _ in verdicts}
+    rows = tuple(_row(name, verdicts) for name in CASES if name in names)
     held = sum(row.passed for row in rows)
-    return IncludedSection(**head, lead=(f"{held} of {len(rows)} hard cases hold.",), hard=rows)
+    return {"lead": (f"{held} of {len(rows)} hard cases hold.",), "hard": rows}
 
 
-def _row(name: str, folder: Path) -> HardRow:
+def _row(name: str, verdicts: Mapping[tuple[str, str], Verdict]) -> HardRow:
     case = CASES[name]
-    return HardRow(case, tuple((_cell(name, basis, folder), None) for basis in case.bases))
-
-
-def _cell(name: str, basis: str, folder: Path) -> Cell:
-    there = folder / name / basis
-    if (there / "verdict.json").exists():
-        return Cell(CASES[name], basis, read_verdict(there))
-    return Cell(CASES[name], basis, None, "not run")
+    cells = (
+        Cell(case, basis, found, "" if found else "not run")
+        for basis in case.bases
+        for found in [verdicts.get((name, basis))]
+    )
+    return HardRow(case, tuple((cell, None) for cell in cells))
 
 
 def sections(studies: Sequence[Included], out: Path) -> tuple[IncludedSection, ...]:

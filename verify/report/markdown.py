@@ -11,7 +11,7 @@ from verify.report.text import number, seconds
 
 if TYPE_CHECKING:
     from verify.report.entry import Entry
-    from verify.report.included import HardRow, IncludedSection
+    from verify.report.included import HardRow, IncludedSection, Scaling
     from verify.report.plane import PlaneSection
     from verify.report.plane_rates import RatesSection
     from verify.report.section import Section
@@ -181,9 +181,26 @@ def _study(study: IncludedSection) -> Iterator[str]:
     yield from (f"- {plain(text)}" for text in study.lead)
     if study.effects:
         yield from (f"- {plain(row.sentence)}" for row in study.effects)
+    if study.scaling:
+        yield from _scaling(study.scaling)
     if study.hard:
         rows = [[plain(row.case.name), *(_held(row, basis) for basis in study.bases)] for row in study.hard]
         yield from ("", *table(["Case", *study.bases.values()], rows))
+
+
+def _scaling(found: Scaling) -> Iterator[str]:
+    if found.growth:
+        yield from (
+            "",
+            *table(["Method, growth with the unknowns", *found.columns], [[m, *q] for m, q in found.growth]),
+        )
+    if found.shared:
+        heads = ["Unknowns", "Ranks", "Iteration", "Efficiency", "Not shared", *found.parts]
+        rows = [
+            [str(row.dofs), str(row.ranks), row.faster, row.efficiency, row.not_shared, *row.parts]
+            for row in found.shared
+        ]
+        yield from ("", *table(heads, rows))
 
 
 def _held(row: HardRow, basis: str) -> str:
