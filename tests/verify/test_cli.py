@@ -16,6 +16,8 @@ import pytest
 
 from verify import lefm, methods
 from verify.cli import main, parser
+from verify.complaints import one_of
+from verify.plugins import plugins
 from verify.shell.completion import Command, commands
 from verify.shell.spelling import parsed
 
@@ -43,7 +45,7 @@ REFUSED = {
     "solve missing.toml": "is neither a packaged scene nor a file",
     "solve broken.toml": "broken.toml:1",
     "solve dcb-czm1 --method fem": (
-        '--method: must be "tspline", "nurbs", "lagrange", "dolfinx", "beam" or "lefm", got \'fem\''
+        f"--method: must be {one_of('tspline nurbs lagrange dolfinx beam lefm'.split() + list(plugins()))}, got 'fem'"
     ),
     "solve dcb-czm1 --method nubrs": 'did you mean "nurbs"?',
     "solve dcb-czm1 --method tsplines": 'did you mean "tspline"?',

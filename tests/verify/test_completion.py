@@ -12,6 +12,7 @@ import pytest
 from verify.cli import main, parser
 from verify.hard.cases import CASES
 from verify.methods import METHODS
+from verify.plugins import plugins
 from verify.scene import packaged_scenes
 from verify.shell.completion import SHELLS, commands, script
 from verify.shell.keys import dotted_keys
@@ -44,7 +45,7 @@ def test_bash_completes_commands_options_and_words(bash: Path) -> None:
     assert completed(bash, "") == ["--help", *(one.name for one in commands(parser()))]
     assert completed(bash, "so") == ["solve"]
     assert completed(bash, "solve", "--m") == ["--method"]
-    assert completed(bash, "solve", "dcb-czm1", "--method", "") == list(METHODS)
+    assert completed(bash, "solve", "dcb-czm1", "--method", "") == [*METHODS, *plugins()]
     assert completed(bash, "effects", "dcb-czm1", "--method", "nu") == ["nurbs"]
     assert completed(bash, "solve", "dcb-czm1", "--set", "interface.") == [
         f"interface.{key}=" for key in ("ductility", "law", "penalty", "strength", "toughness")

@@ -17,6 +17,7 @@ from verify import methods, sweep, verification
 from verify.cli import main
 from verify.crosschecks import cross_checks
 from verify.jobs import Job, Outcome
+from verify.plugins import plugins
 from verify.result import Result
 from verify.scene import Scene, load_scene
 from verify.verdict import Check, Run, SceneReport
@@ -44,10 +45,10 @@ def scene() -> Scene:
 
 def test_every_method_runs_on_every_scene(scene: Scene) -> None:
     assert [job.variant for job in planned(LINEAR, scene)] == [
-        "tspline", "nurbs", "lagrange", "dolfinx", "beam", "lefm"
+        "tspline", "nurbs", "lagrange", "dolfinx", "beam", "lefm", *plugins()
     ]  # fmt: skip
     full = [job.variant for job in planned(LINEAR, scene, full=True)]
-    assert full[6:] == ["dolfinx-p3", "tspline-adaptive", "nurbs-978", "nurbs-489"]
+    assert full[6 + len(plugins()) :] == ["dolfinx-p3", "tspline-adaptive", "nurbs-978", "nurbs-489"]
 
 
 def test_a_run_is_repeated_by_its_command(scene: Scene, tmp_path: Path) -> None:
