@@ -1,12 +1,7 @@
 """Frames of the DOLFINx model: Lagrange cells by their nodes, in the order and at the places that VTK knows."""
 
 import json
-import os
-import shutil
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +9,7 @@ import pytest
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 from dolfinx import geometry
+from ranks import on_ranks
 from vtu_files import arrays
 
 from fem_reference.dcb import Problem
@@ -121,40 +117,11 @@ def test_stress_is_that_of_the_law():
 
 @pytest.mark.parametrize("ranks", [2])
 def test_more_ranks_write_the_frames_of_one(ranks, tmp_path):
-    if (mpirun := shutil.which("mpirun")) is None:
-        pytest.skip("mpirun is not installed")
-    settings = {
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMPI_MCA_rmaps_base_oversubscribe": "1",
-        "OMPI_MCA_mpi_yield_when_idle": "1",
-        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
-        "OMP_NUM_THREADS": "1",
-    }
     sets = ("load.opening=0.5", "discretization.steps=4", "dolfinx.elements=28")
-    words = [
-        sys.executable,
-        "-m",
-        "verify.cli",
-        "solve",
-        "dcb-czm1",
-        "--method",
-        "dolfinx",
-        "--fields",
-        "--frames",
-        "2",
-    ]
+    words = ["-m", "verify.cli", "solve", "dcb-czm1", "--method", "dolfinx", "--fields", "--frames", "2"]
     words += [word for one in sets for word in ("--set", one)]
     for n in (1, ranks):
-        done = subprocess.run(
-            [mpirun, "-n", str(n), *words, "--out", str(tmp_path / str(n))],
-            capture_output=True,
-            text=True,
-            timeout=300,
-            env=os.environ | settings,
-            cwd=Path(__file__).parents[2],
-        )
-        assert done.returncode == 0, done.stderr[-2000:]
+        on_ranks(n, *words, "--out", str(tmp_path / str(n)))
         assert json.loads((tmp_path / str(n) / "result.json").read_text())["status"] == "complete"
     for name in ("fields_0002.vtu", "interface_0002.vtu"):
         one, more = (arrays(tmp_path / str(n) / "frames" / name)[0] for n in (1, ranks))

@@ -1,14 +1,10 @@
 """The same curve on one rank and on more."""
 
 import json
-import os
-import shutil
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from ranks import on_ranks
 
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
@@ -52,27 +48,7 @@ if MPI.COMM_WORLD.rank == 0:
 
 
 def curve(ranks, program=PROGRAM):
-    mpirun = shutil.which("mpirun")
-    if mpirun is None:
-        pytest.skip("mpirun is not installed")
-    settings = {
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMPI_MCA_rmaps_base_oversubscribe": "1",
-        "OMPI_MCA_mpi_yield_when_idle": "1",
-        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
-        "OMP_NUM_THREADS": "1",
-    }
-    done = subprocess.run(
-        [mpirun, "-n", str(ranks), sys.executable, "-c", program],
-        capture_output=True,
-        text=True,
-        timeout=600,
-        env=os.environ | settings,
-        cwd=Path(__file__).parents[2],
-    )
-    assert done.returncode == 0, done.stderr[-2000:]
-    return json.loads(done.stdout.split("RESULT")[1])
+    return json.loads(on_ranks(ranks, "-c", program).split("RESULT")[1])
 
 
 @pytest.mark.parametrize("ranks", [2, pytest.param(3, marks=pytest.mark.slow)])
