@@ -88,20 +88,36 @@ def _bash(found: tuple[Command, ...]) -> Iterator[str]:
         f'        COMPREPLY=($(compgen -W "{" ".join(["--help", *(one.name for one in found)])}" -- "$word"))',
         "        return",
         "    fi",
-        '    case "${COMP_WORDS[1]} $previous" in',
     )
+    yield from _cases(found, "${COMP_WORDS[1]}", "", _bash_words, 'COMPREPLY=($(compgen -W "{}" -- "$word"))')
+    yield from ("}", "complete -o filenames -F _debond debond ./debond")
+
+
+def _cases(
+    found: tuple[Command, ...], command: str, opening: str, answer: Callable[[tuple[str, ...]], str], options: str
+) -> Iterator[str]:
+    """What bash and zsh say alike: words behind an option, else options where a dash is begun, else arguments.
+
+    Parameters
+    ----------
+    command : what stands for the command on the line
+    opening : what a pattern may begin with
+    answer : a command that offers words
+    options : a command that offers those that stand for ``{}``
+    """
+    yield f'    case "{command} $previous" in'
     for one in found:
         for words, spellings in _grouped(one.values).items():
-            yield f"        {_either(one.name, spellings)})"
-            yield f"            {_bash_words(words)}"
+            yield f"        {opening}{_either(one.name, spellings)})"
+            yield f"            {answer(words)}"
             yield "            return ;;"
-    yield from ("    esac", '    case "${COMP_WORDS[1]}" in')
+    yield from ("    esac", f'    case "{command}" in')
     for one in found:
-        yield f"        {one.name})"
-        yield f'            if [[ $word == -* ]]; then COMPREPLY=($(compgen -W "{" ".join(one.options)}" -- "$word"))'
-        yield f"            else {_bash_words(one.places)}"
+        yield f"        {opening}{one.name})"
+        yield f"            if [[ $word == -* ]]; then {options.format(' '.join(one.options))}"
+        yield f"            else {answer(one.places)}"
         yield "            fi ;;"
-    yield from ("    esac", "}", "complete -o filenames -F _debond debond ./debond")
+    yield "    esac"
 
 
 def _either(name: str, spellings: list[str]) -> str:
@@ -130,20 +146,9 @@ def _zsh(found: tuple[Command, ...]) -> Iterator[str]:
         f"        compadd -- --help {' '.join(one.name for one in found)}",
         "        return",
         "    fi",
-        '    case "$words[2] $previous" in',
     )
-    for one in found:
-        for words, spellings in _grouped(one.values).items():
-            yield f"        ({_either(one.name, spellings)})"
-            yield f"            {_zsh_words(words)}"
-            yield "            return ;;"
-    yield from ("    esac", '    case "$words[2]" in')
-    for one in found:
-        yield f"        ({one.name})"
-        yield f"            if [[ $word == -* ]]; then compadd -- {' '.join(one.options)}"
-        yield f"            else {_zsh_words(one.places)}"
-        yield "            fi ;;"
-    yield from ("    esac", "}", "compdef _debond debond ./debond")
+    yield from _cases(found, "$words[2]", "(", _zsh_words, "compadd -- {}")
+    yield from ("}", "compdef _debond debond ./debond")
 
 
 def _zsh_words(words: tuple[str, ...]) -> str:
