@@ -113,8 +113,8 @@ def bezier_values(
 ) -> np.ndarray:
     """Bezier values (n_e, n_b, n_f) with the weights of the element that interpolate values at its n_b points."""
     B_qb = _bernstein(degrees, points_q)
-    W_eq = w_eb @ B_qb.T
-    return np.linalg.solve(B_qb, values_eqf * W_eq[..., None]) / w_eb[..., None]
+    w_eq = w_eb @ B_qb.T
+    return np.linalg.solve(B_qb, values_eqf * w_eq[..., None]) / w_eb[..., None]
 
 
 def nodal(cells: Cells) -> Cells:

@@ -9,8 +9,12 @@ from iga.extraction import Mesh
 from iga.iga_file import IgaFile, mesh, write_iga
 from iga.iga_read import read_iga
 from verify.mesh_facts import MeshFacts
+from verify.progress import telling
 from verify.refusal import Refusal
 from verify.say import say
+
+#: Of a file that is read, looked at and drawn: twelve megabytes, 5,000 cubic elements, took 3.4 s.
+BYTES_A_SECOND = 4e6
 
 #: Formats of pictures.
 PICTURES = (".svg", ".png", ".pdf")
@@ -31,10 +35,11 @@ def examine(path: Path, out: Path | None, as_json: bool, control: bool) -> bool:
     """
     if out is not None and out.suffix.lower() not in (".vtu", ".iga", *PICTURES):
         raise Refusal(f"--out: must end in .vtu, .iga, {', '.join(PICTURES[:-1])} or {PICTURES[-1]}, got {str(out)!r}")
-    file, body = _read(path)
-    facts = MeshFacts(body)
-    report = _report(path, file, facts)
-    written = _write(out, path, file, facts, control)
+    with telling(f"mesh {path.name}", _seconds(path)):
+        file, body = _read(path)
+        facts = MeshFacts(body)
+        report = _report(path, file, facts)
+        written = _write(out, path, file, facts, control)
     if as_json:
         print(json.dumps({**report, "written": written and str(written)}, indent=2))
     else:
@@ -44,6 +49,14 @@ def examine(path: Path, out: Path | None, as_json: bool, control: bool) -> bool:
     for sentence in facts.unsound:
         say(f"{path}: {sentence}")
     return not facts.unsound
+
+
+def _seconds(path: Path) -> float:
+    """About how long a file takes; one that cannot be read is refused later."""
+    try:
+        return 1.0 + path.stat().st_size / BYTES_A_SECOND
+    except OSError:
+        return 1.0
 
 
 def _read(path: Path) -> tuple[IgaFile, Mesh]:

@@ -2,6 +2,7 @@
 
 import json
 import sys
+import time
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 
@@ -19,7 +20,7 @@ from iga.nurbs import nurbs_rectangle
 from iga.polygon import polygon_mesh
 from iga.tmesh_lines import tensor_grid, with_lines
 from iga.tspline import tspline_rectangle
-from verify import mesh_facts
+from verify import mesh_command, mesh_facts, progress
 from verify.cli import main
 from verify.mesh_command import examine
 from verify.mesh_facts import MeshFacts, independent
@@ -238,3 +239,16 @@ def test_any_file_is_refused_or_examined(data, tmp_path_factory):
         assert str(path) in str(refusal) and "\n" not in str(refusal)
         return
     assert sound in (True, False) and mesh(read_iga(path)).elements >= 1
+
+
+def test_a_file_that_takes_long_says_that_it_is_at_work(tmp_path, capsys, monkeypatch):
+    def slow(*given):
+        time.sleep(1.3)
+        return whole(*given)
+
+    whole = mesh_command._report
+    monkeypatch.setattr(mesh_command, "_report", slow)
+    monkeypatch.setattr(progress, "LINES_EVERY_SECONDS", 0.5)
+    assert main(["mesh", str(small(tmp_path)), "--out", "small.vtu"]) == 0
+    said = capsys.readouterr()
+    assert said.err.startswith("mesh small.iga: at work") and "at work" not in said.out
