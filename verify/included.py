@@ -88,6 +88,7 @@ _HEAD: Shape = {"scene": {"name": str}, "left_out": [str], "source?": str}
 
 
 def _cost(folder: Path) -> Content:
+    from verify.cost.ladder import BEAM, FAMILIES
     from verify.cost.row import read_csv
 
     reference = {
@@ -97,7 +98,11 @@ def _cost(folder: Path) -> Content:
         "other_code": str,
         "other_code_apart": NUMBER,
     }
-    return read_json(folder / "cost.json", {**_HEAD, "reference": reference}), read_csv(folder / "cost.csv")
+    rows = read_csv(folder / "cost.csv")
+    known = {(family.method, family.degree) for family in (*FAMILIES, BEAM)}
+    if strange := [row for row in rows if (row.method, row.degree) not in known]:
+        raise Damaged(folder / "cost.csv", f"the method {strange[0].method[:30]!r} of degree {strange[0].degree}")
+    return read_json(folder / "cost.json", {**_HEAD, "reference": reference}), rows
 
 
 def _effects(folder: Path) -> Content:

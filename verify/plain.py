@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -32,6 +32,14 @@ _WORDS = {
 
 #: By the types of the fields of a dataclass.
 _OF_FIELDS: Mapping[str, Shape] = {"float": NUMBER, "int": int, "str": str, "bool": bool, "Kind": str}
+
+
+_FROM_TEXT: Mapping[str, Callable[[str], Any]] = {
+    "float": float,
+    "int": int,
+    "str": str,
+    "bool": {"True": True, "False": False}.__getitem__,
+}
 
 
 class Damaged(Refusal):
@@ -66,8 +74,7 @@ def read_table(path: Path, kind: type) -> list[Any]:
     ------
     Damaged : it cannot be read, has other columns, or a cell that is not of its field's type.
     """
-    read = {"float": float, "int": int, "str": str, "bool": {"True": True, "False": False}.__getitem__}
-    types = {field.name: read[field.type] for field in fields(kind)}
+    types = {field.name: _FROM_TEXT[str(field.type)] for field in fields(kind)}
     try:
         with path.open(newline="", encoding="utf-8") as stream:
             lines = csv.DictReader(stream)
@@ -80,7 +87,7 @@ def read_table(path: Path, kind: type) -> list[Any]:
 
 def shape_of(kind: type) -> Shape:
     """That of a dataclass of plain fields."""
-    return {field.name: _OF_FIELDS[field.type] for field in fields(kind)}
+    return {field.name: _OF_FIELDS[str(field.type)] for field in fields(kind)}
 
 
 def wrong(value: Any, shape: Shape, place: str = "") -> str:

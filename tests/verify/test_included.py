@@ -76,6 +76,14 @@ def test_growth_and_ranks_are_on_the_page_and_in_its_text(out: Path) -> None:
     assert "dolfinx, 100000 unknowns on 2 ranks: 1.3 × as fast" in page
 
 
+def test_a_cost_study_without_a_run_that_came_to_its_end_has_no_chart(out: Path) -> None:
+    header, *_, stopped = (out / "cost" / "cost.csv").read_text().splitlines()
+    (out / "cost" / "cost.csv").write_text(f"{header}\n{stopped}\n")
+    report.write((), out / "report.html", ENVIRONMENT, included=found_in(out))
+    page = (out / "report.html").read_text()
+    assert "Curve error 1%: no run is that accurate." in page and 'class="rows"' not in page
+
+
 def test_rows_of_the_chart_cannot_end_their_script(out: Path) -> None:
     rows = (out / "cost" / "cost.csv").read_text()
     (out / "cost" / "cost.csv").write_text(rows.replace("cost/nurbs-p3-500", "</script><script>alert(1)</script>"))

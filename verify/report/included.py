@@ -114,7 +114,8 @@ def _cost(study: Included, anchor: str) -> dict[str, Any]:
     equal = of_equal_steps(rows)
     levels = tuple(Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS)
     lead = (*(level.sentence for level in levels), _reference(about["reference"]), *about["left_out"])
-    return {"lead": lead, "chart": chart(rows, anchor), "levels": levels}
+    measured = any(row.measured for row in rows)
+    return {"lead": lead, "chart": chart(rows, anchor) if measured else None, "levels": levels}
 
 
 def _reference(known: dict[str, Any]) -> str:
