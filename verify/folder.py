@@ -1,4 +1,4 @@
-"""The folder of a run: curve.csv and evidence.csv as the run goes, result.json and fields.npz when it is over."""
+"""The folder of a run: curve.csv and evidence.csv as the run goes, result.json and fields when it is over."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import numpy as np
 from verify.plain import ANY, NUMBER, Damaged, number, read_json
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Result, Snapshot
 
-FILES = ("curve.csv", "evidence.csv", "result.json", "fields.npz", "error.log")
+FILES = ("curve.csv", "evidence.csv", "result.json", "fields.npz", "moments.npz", "error.log")
 
 #: Numbers of the errors of a disk that is full, over its quota or a limit, read-only or broken.
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
@@ -132,6 +132,7 @@ def read_result(folder: Path) -> Result:
         elements=known["elements"],
         rejected_steps=known["rejected_steps"],
         snapshots=read_fields(folder / "fields.npz"),
+        between=read_fields(folder / "moments.npz"),
         seconds=known["seconds"],
         peak_memory_mb=known["peak_memory_mb"],
         nonzeros=known.get("nonzeros", 0),

@@ -74,7 +74,8 @@ class Result:
     ``steps`` maps a column name to an array (n_steps,); it holds CURVE_COLUMNS and those EVIDENCE_COLUMNS that the
     method knows. ``status`` is ``complete`` or ``stopped: <cause and what to do>``. ``ending`` says what else is worth
     saying of it: "separated at opening 5.2". ``condition`` is the largest condition number (1-norm, estimated) of the
-    tangents that were looked at, 0 where none was. ``nonzeros`` counts the entries of a sparse tangent, 0 where the
+    tangents that were looked at, 0 where none was. ``between`` are more openings, coarsely sampled, for
+    drawings alone (`verify.moments`). ``nonzeros`` counts the entries of a sparse tangent, 0 where the
     method does not say; ``jit_seconds`` is the part of ``seconds["basis"]`` that compiling at run time took.
     """
 
@@ -87,6 +88,7 @@ class Result:
     elements: int = 0
     rejected_steps: int = 0
     snapshots: tuple[Snapshot, ...] = ()
+    between: tuple[Snapshot, ...] = ()
     seconds: Mapping[str, float] | None = None
     peak_memory_mb: float = 0.0
     nonzeros: int = 0

@@ -22,6 +22,7 @@ from verify.folder import NO_ROOM, CurveWriter, write_fields, write_json
 from verify.frames import Frames, cleared
 from verify.memory import keep_freed_memory
 from verify.methods import solve
+from verify.moments import LEAD, Moments
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
 from verify.say import say
 from verify.scene import Scene
@@ -62,6 +63,8 @@ def run(
     keep_freed_memory()
     if frames:
         solver = partial(_filmed, solver, Frames(folder, scene, method, frames, writes=mpi_rank() == 0))
+    elif keep_fields and method == LEAD and solver is solve:
+        solver = _with_moments
     if mpi_rank() > 0:  # the same numbers are on every rank: one of them writes
         return _silent(scene, method, solver), ()
     folder.mkdir(parents=True, exist_ok=True)
@@ -117,6 +120,12 @@ def _filmed(solver: Solver, frames: Frames, scene: Scene, method: str, on_step: 
     result = solver(scene, method, on_step, on_frame=frames)
     frames.finish()
     return result
+
+
+def _with_moments(scene: Scene, method: str, on_step: Callable | None) -> Result:
+    moments = Moments(scene)
+    result = solve(scene, method, on_step, on_frame=moments)
+    return replace(result, between=moments.snapshots())
 
 
 def _silent(scene: Scene, method: str, solver: Solver) -> Result:
@@ -190,6 +199,8 @@ def _finish(folder: Path, scene: Scene, result: Result, keep_fields: bool) -> tu
     checks = run_checks(scene, result)
     if keep_fields and result.snapshots:
         write_fields(folder / "fields.npz", result.snapshots)
+    if keep_fields and result.between:
+        write_fields(folder / "moments.npz", result.between)
     write_json(folder / "result.json", summary(scene, result, checks))
     return checks
 

@@ -25,6 +25,9 @@ from verify.result import Snapshot
 if TYPE_CHECKING:
     from verify.scene import Scene
 
+#: Pixels an inch of the stress, and between the openings that all runs keep.
+_FINE, _COARSE = 150, 75
+
 #: Inches: the tractions below the arms, between them, and at the foot.
 _TRACTION, _BETWEEN, _FOOT, _HEAD = 1.25, 0.3, 0.42, 0.24
 
@@ -49,9 +52,15 @@ class Scales:
 
 
 def frames(
-    scene: Scene, groups: Sequence[Sequence[tuple[Entry, Snapshot]]], drawn: Sequence[Entry], key: str
+    scene: Scene,
+    groups: Sequence[Sequence[tuple[Entry, Snapshot]]],
+    drawn: Sequence[Entry],
+    key: str,
+    between: bool = True,
 ) -> tuple[Frame, ...]:
     """Frames of the run that leads the page, the tractions of all; none where fewer than two openings were kept.
+
+    With ``between``, where it has more openings, it is drawn at these as well, alone and with fewer pixels.
 
     Parameters
     ----------
@@ -61,6 +70,10 @@ def frames(
     shown = [(group, lead) for group in groups if (lead := _lead(group)) is not None]
     if len(shown) < 2:
         return ()
+    leader, openings = shown[0][1][0], {snapshot.opening for _, (_, snapshot) in shown}
+    others = [other for other in leader.result.between if between and other.opening not in openings]
+    alone = [[(leader, snapshot)] for snapshot in others]
+    shown = sorted([*shown, *((group, group[0]) for group in alone)], key=lambda one: one[1][1].opening)
     limit = max(float(np.nanpercentile(np.abs(s.stress_euv), 99.7)) for _, (_, s) in shown) or 1.0
     frame = _frame(scene, [snapshot for _, (_, snapshot) in shown])
     strength = scene.interface.strength
@@ -84,6 +97,7 @@ def _one(
     key: str,
 ) -> Frame:
     (entry, snapshot), x, y, units = lead, scales.x, scales.y, Units.of(scene.units)
+    between = any(snapshot is other for other in entry.result.between)
     height = WHOLE * (y[1] - y[0]) / (x[1] - x[0])
     total = _HEAD + height + _BETWEEN + _TRACTION + _FOOT
     with drawing():
@@ -96,7 +110,8 @@ def _one(
         tractions = place(LEFT, _FOOT, WHOLE, _TRACTION)
         load = place(LEFT + WHOLE + GAP, _FOOT, CLOSE, total - _FOOT - _HEAD)
         x_euvi = np.asarray(snapshot.X_euvi) + np.asarray(snapshot.u_euvi)
-        paint(arms, x_euvi, np.asarray(snapshot.stress_euv), scales.stress, x, y)
+        dpi = _COARSE if between else _FINE
+        paint(arms, x_euvi, np.asarray(snapshot.stress_euv), scales.stress, x, y, dpi)
         arms.grid(False)
         arms.set_title(f"{entry.label}, stress along the specimen", color=colour(entry.line.colour))
         arms.tick_params(labelbottom=False)
@@ -104,9 +119,10 @@ def _one(
         _place(load, scene, [other for other in drawn if other.method != "lefm"], entry, snapshot)
         said = _said(scene, snapshot)
         svg = to_svg(figure, key, f"The crack of {scene.name}: {said}")
+    whose = entry.label if between else "all runs with fields"
     caption = (
         f"{said[:1].upper()}{said[1:]}. True scale, stress to ± {quantity(scales.stress, units.stress, 3)}; below, the "
-        "normal traction of all runs with fields along the same axis, and on the right the place on the curve."
+        f"normal traction of {whose} along the same axis, and on the right the place on the curve."
     )
     return Frame(quantity(snapshot.opening, units.length, 3), said, Panel(svg, caption, "wide"))
 

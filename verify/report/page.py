@@ -30,6 +30,9 @@ __all__ = ["write"]
 
 _HERE = Path(__file__).parent
 
+#: Up to so many scenes have more openings than those that all runs keep, of 200 to 320 kB a scene.
+FEW = 5
+
 _FILTERS = {
     "symbols": symbols,
     "percent": percent,
@@ -69,7 +72,8 @@ def write(
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    sections = tuple(section(report, f"scene-{i + 1}") for i, report in enumerate(reports))
+    few = len(reports) <= FEW
+    sections = tuple(section(report, f"scene-{i + 1}", between=few) for i, report in enumerate(reports))
     plane_sections = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(planes))
     rates_section = plane_rates.section(rates, "rates") if rates else None
     summary = summarise(sections, (*plane_sections, *filter(None, [rates_section])))

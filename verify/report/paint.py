@@ -21,7 +21,9 @@ _MANY_ELEMENTS = 900  # from here on outlines become pixels
 Limits = tuple[float, float]
 
 
-def paint(axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, x: Limits, y: Limits) -> None:
+def paint(
+    axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, x: Limits, y: Limits, dpi: int = _DPI
+) -> None:
     """Fill the axes with a field and its element outlines, and set their limits.
 
     Parameters
@@ -31,7 +33,7 @@ def paint(axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, x
     """
     box = axes.get_position()
     width, height = axes.figure.get_size_inches() * (box.width, box.height)
-    levels = _grey_levels(x_euvi, value_euv, limit, (x, y), (width, height))
+    levels = _grey_levels(x_euvi, value_euv, limit, (x, y), (width, height), dpi)
     pixels = STRESS_MAP(levels[..., 0] / 255.0)
     pixels[..., 3] *= levels[..., 3] > 0
     axes.imshow(pixels, extent=(*x, *y), aspect="auto", interpolation="none", zorder=1)
@@ -45,7 +47,12 @@ def paint(axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, x
 
 
 def _grey_levels(
-    x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, frame: tuple[Limits, Limits], size: tuple[float, float]
+    x_euvi: np.ndarray,
+    value_euv: np.ndarray,
+    limit: float,
+    frame: tuple[Limits, Limits],
+    size: tuple[float, float],
+    dpi: int,
 ) -> np.ndarray:
     """Image (rows, columns, 4): grey from 0 at -limit to 255 at limit, alpha 0 where there is no element."""
     steep_v = np.abs(np.diff(value_euv, axis=1)).sum() < np.abs(np.diff(value_euv, axis=2)).sum()
@@ -55,7 +62,7 @@ def _grey_levels(
     middle = (value[:, :-1, :-1] + value[:, 1:, :-1] + value[:, 1:, 1:] + value[:, :-1, 1:]) / 4
     corners, middle = corners.reshape(-1, 4, 2), middle.ravel()
     inside = seen(corners, frame)
-    figure = Figure(figsize=size, dpi=_DPI, facecolor="none")
+    figure = Figure(figsize=size, dpi=dpi, facecolor="none")
     axes = figure.add_axes((0, 0, 1, 1), xlim=frame[0], ylim=frame[1])
     axes.set_axis_off()
     fill = PolyCollection(corners[inside], array=middle[inside], cmap="gray", clim=(-limit, limit))

@@ -113,8 +113,8 @@ class Section:
         return sum(not check.passed for check in self.report.checks)
 
 
-def section(report: SceneReport, anchor: str) -> Section:
-    """Compute and draw one scene."""
+def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
+    """Compute and draw one scene; ``between``: with more openings than those that all runs keep."""
     found = entries(report)
     drawn = tuple(entry for entry in found if entry.agreement is not None)
     checks = report.checks
@@ -128,7 +128,7 @@ def section(report: SceneReport, anchor: str) -> Section:
         headline=headline(len(checks), sum(not check.passed for check in checks), 1).removesuffix(" on 1 scene"),
         inputs=tuple((k, tuple(row[1:] for row in g)) for k, g in groupby(inputs(report.scene), itemgetter(0))),
         specimen=draw_specimen(report.scene, f"{anchor}-specimen", _zone(groups)),
-        frames=opening.frames(report.scene, [g for g in groups if g], drawn, f"{anchor}-frame"),
+        frames=opening.frames(report.scene, [g for g in groups if g], drawn, f"{anchor}-frame", between),
         convergence=converged.tables(report, found),
         figures=_figures(report, drawn, groups, anchor),
         checks=tuple((tally(kind, checks), _check_groups(kind, report)) for kind in KINDS),
