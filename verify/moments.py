@@ -48,8 +48,8 @@ def snapshot(made: Mapping[str, Any]) -> Snapshot:
     """What is drawn of a frame as `iga.frames` tells it, in single precision."""
     parts = [_sampled(part) for part in made["cells"]]
     X, u, stress = (np.concatenate([part[i] for part in parts]).astype(np.float32) for i in range(3))
-    names = ("s_q", "gap_q", "traction_q", "damage_q")
-    return Snapshot(made["opening"], made["load"], *(made["bond"][name] for name in names), X, u, stress)
+    bond = {name: made["bond"][name] for name in ("s_q", "gap_q", "traction_q", "damage_q")}
+    return Snapshot(opening=made["opening"], load=made["load"], **bond, X_euvi=X, u_euvi=u, stress_euv=stress)
 
 
 def _sampled(part: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
