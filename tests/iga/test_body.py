@@ -1,0 +1,78 @@
+"""Points of the elements of a body: exact on elements that are only continuous, few where the basis is smooth."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from specimens import PAPER
+
+from iga.basis import block_basis
+from iga.body import Body
+from iga.bulk import gradient
+from iga.dcb import build
+from iga.extraction import Mesh
+from iga.kinematics import KINEMATICS
+from iga.quadrature import gauss, square
+
+LENGTH, THICKNESS = PAPER.length, PAPER.arm_thickness
+
+
+def coefficients(mesh: Mesh) -> np.ndarray:
+    """Control points' displacements of u_X = (X / L)^3 Y, u_Y = 0, which every cubic basis holds."""
+    rows, values = [], []
+    for block in mesh.blocks:
+        basis = block_basis(mesh, block, *square(gauss(6), gauss(6)))
+        X, Y = np.moveaxis(np.einsum("eqa,eaI->eqI", basis.N_eqa, mesh.P_AI[basis.conn_ea]), -1, 0)
+        row = np.zeros((X.size, len(mesh.P_AI)))
+        points = np.arange(X.size).reshape(X.shape)
+        np.add.at(row, (points[..., None], basis.conn_ea[:, None, :]), basis.N_eqa)
+        rows.append(row)
+        values.append(((X / LENGTH) ** 3 * Y).ravel())
+    u_A = np.linalg.lstsq(np.concatenate(rows), np.concatenate(values), rcond=None)[0]
+    return np.stack([u_A, 0.0 * u_A], axis=1)
+
+
+def stored(body: Body) -> float:
+    """Energy of the field above by the body's own points."""
+    u_Ai, law = coefficients(body.mesh), KINEMATICS["linear"]
+    whole = [law.stress(solid.D, gradient(solid.basis, u_Ai))[1] * solid.basis.dV_eq for solid in body.solids]
+    return float(sum(part.sum() for part in whole))
+
+
+def exact(D: np.ndarray) -> float:
+    """int (D_11 (3 X^2 Y / L^3)^2 + G (X / L)^6) / 2 over an arm of width 1 above Y = 0."""
+    strain = 9.0 / LENGTH * THICKNESS**3 / 15.0
+    return 0.5 * (D[0, 0] * strain + D[2, 2] * LENGTH * THICKNESS / 7.0)
+
+
+def upper(**changes: object) -> Body:
+    return build(replace(PAPER, **changes)).bodies[0]
+
+
+def along(body: Body) -> set[int]:
+    """Points an element along the specimen: all of them, less those through its thickness."""
+    through = [block.degrees[1] + 1 for block in body.mesh.blocks]
+    return {solid.basis.N_eqa.shape[1] // n for solid, n in zip(body.solids, through, strict=True)}
+
+
+@pytest.mark.parametrize("given", [False, True])
+def test_continuous_elements_have_the_energy_of_a_cubic_field_exactly(given: bool) -> None:
+    """Of a mesh that somebody gives nothing is known: it is taken for one that is only continuous."""
+    meshes = build(replace(PAPER, basis="nurbs", dofs=2000)).bodies if given else ()
+    arms = tuple(body.mesh for body in meshes)
+    body = upper(meshes=arms, basis="nurbs") if given else upper(basis="lagrange", dofs=2000)
+    assert along(body) == {4}
+    assert stored(body) == pytest.approx(exact(body.D), rel=1e-10)
+
+
+@pytest.mark.parametrize("basis", ["nurbs", "tspline"])
+def test_smooth_elements_need_a_point_less_along_the_specimen_and_keep_the_order(basis: str) -> None:
+    """The only term that three points do not hold is X^6: its error is of the sixth order in the elements' length."""
+    body = upper(basis=basis, dofs=2000)
+    assert along(body) == {3}
+    assert stored(body) == pytest.approx(exact(body.D), rel=1e-5)
+
+
+def test_smooth_linear_elements_keep_two_points() -> None:
+    assert along(upper(basis="nurbs", degree=1)) == {2} and along(upper(basis="nurbs", degree=2)) == {2}
+    assert along(upper(basis="lagrange", degree=1)) == {2} and along(upper(basis="lagrange", degree=2)) == {3}
