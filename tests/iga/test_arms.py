@@ -169,6 +169,42 @@ def test_the_path_ends_with_the_bond_and_begins_with_the_precrack():
     assert crack_path(replace(CZM1, opening=(1.0, 3.0, 0.5))) == crack_path(CZM1)
 
 
+def test_the_crack_at_the_end_of_the_path_releases_the_toughness():
+    """Energy release rate P^2 / 2 dC/da of two slender arms, the compliance by differences; no zone worth the name."""
+    opening, da = 3.0, 1e-5
+    problem = replace(CZM1, opening=(opening,), strength=1e9, contact=False)
+    a = np.sqrt(crack_path(problem) ** 2 - (0.5 * opening) ** 2)
+
+    def compliance(a: float) -> float:
+        return 2.0 * a**3 / (3.0 * E * problem.arm_thickness**3 / 12.0)
+
+    load = opening / compliance(a)
+    released = 0.5 * load**2 * (compliance(a + da) - compliance(a - da)) / (2.0 * da)
+    assert released == pytest.approx(problem.toughness, rel=1e-3)
+
+
+@pytest.mark.parametrize("penalty", [1.0, 10.0])
+def test_the_path_goes_on_as_far_as_soft_contact_gives_way(penalty):
+    """The decay of a beam on springs, EI d4w/dx4 + penalty w = 0, by the roots of its polynomial."""
+    soft = replace(CZM1, opening=(0.0,), penalty=penalty)
+    roots = np.roots([E * soft.arm_thickness**3 / 12.0, 0.0, 0.0, 0.0, penalty])
+    decay = 1.0 / np.abs(roots.real).min()
+    assert decay > zone_length(CZM1)
+    assert crack_path(soft) - soft.precrack == pytest.approx(decay, rel=1e-12)
+    assert crack_path(replace(soft, contact=False)) == crack_path(replace(CZM1, opening=(0.0,), contact=False))
+    assert crack_path(replace(soft, penalty=1e9)) == crack_path(replace(soft, contact=False))
+
+
+def test_the_process_zone_knows_no_units_and_goes_as_the_powers_of_the_theory():
+    zone = zone_length(PAPER)
+    in_metres = replace(PAPER, E1=1e6 * E, strength=4e6, toughness=1e3 * PAPER.toughness, arm_thickness=0.2e-3)
+    assert zone_length(in_metres) == pytest.approx(1e-3 * zone, rel=1e-12)
+    assert zone_length(replace(PAPER, strength=4.0 * PAPER.strength)) == pytest.approx(0.5 * zone)
+    assert zone_length(replace(PAPER, toughness=16.0 * PAPER.toughness)) == pytest.approx(2.0 * zone)
+    assert zone_length(replace(PAPER, arm_thickness=16.0 * 0.2)) == pytest.approx(8.0 * zone)
+    assert zone_length(replace(PAPER, E1=81.0 * E)) == pytest.approx(3.0 * zone)
+
+
 @pytest.mark.parametrize("interface_rule", ["gauss", "lumped"])
 def test_equal_elements_on_the_path_where_points_must_meet(interface_rule):
     """Lumping needs them; otherwise an arm may have one element more where that meets the unknowns better."""
