@@ -21,6 +21,8 @@ AT = 'quantity = "load_at", tolerance = 0.03, source = "them"'
 #: what stands in published -> the sentence that must come
 BROKEN = {
     f"[{{{PEAK}, value = -1.0}}]": "published[0].value: must be > 0, got -1",
+    f"[{{{PEAK}, value = 0.0}}]": "published[0].value: must be > 0, got 0",
+    f"[{{{PEAK}, value = [0.0, 1.0]}}]": "published[0].value[0]: must be > 0, got 0",
     f"[{{{PEAK}, value = [1.0, -2.0]}}]": "published[0].value[1]: must be > 0, got -2",
     f"[{{{PEAK}, value = [2.0, 1.0]}}]": "published[0].value: must be the lowest before the highest, got [2.0, 1.0]",
     f"[{{{PEAK}, value = [1.0]}}]": (
