@@ -77,3 +77,17 @@ def test_every_kind_of_import_is_seen(source: str) -> None:
 
 def test_an_import_of_the_own_package_is_no_arrow() -> None:
     assert imported("from . import result\nfrom .report import page") == set()
+
+
+@pytest.mark.parametrize("folder", ["iga", "verify", "fem_reference"])
+def test_values_are_frozen(folder: str) -> None:
+    """No data class of which an object could change after it was made."""
+    classes, mutable = 0, []
+    for file in sorted((PROJECT / folder).rglob("*.py")):
+        for node in ast.walk(ast.parse(file.read_text())):
+            for made in node.decorator_list if isinstance(node, ast.ClassDef) else []:
+                if called(made.func if isinstance(made, ast.Call) else made) == "dataclass":
+                    said = {word.arg: word.value for word in made.keywords} if isinstance(made, ast.Call) else {}
+                    frozen = isinstance(said.get("frozen"), ast.Constant) and said["frozen"].value is True
+                    classes, mutable = classes + 1, mutable if frozen else [*mutable, f"{file.name}: {node.name}"]
+    assert classes > 5 and mutable == []
