@@ -194,6 +194,55 @@ def test_units_change_the_numbers_and_nothing_else() -> None:
     assert back.interface.penalty == pytest.approx(scene.interface.penalty, rel=1e-14) and back.units == scene.units
 
 
+def runs_of(name: str, change=lambda name, columns: columns) -> Trials:
+    """One made-up curve for every variant of a case, in units of the variant's own, with changes."""
+    sizes = {"n-m": (1.0, 1e-3), "kn-in": (1e-3, 1 / 25.4)}
+    trials = {}
+    for v in CASES[name].variants():
+        force, length = sizes.get(v.name, (1.0, 1.0))
+        columns = steps_from_rows(fake_rows(3.0))
+        columns = {**columns, "opening": columns["opening"] * length, "load": columns["load"] * force}
+        columns["load_slope"] = columns["load_slope"] * force / length
+        trials[v.name] = Trial(v, Result("nurbs", change(v.name, columns)))
+    return trials
+
+
+@pytest.mark.parametrize("name", ["units", "pose", "noise"])
+def test_what_must_not_matter_is_judged_for_every_variant_and_to_rounding(name: str) -> None:
+    first, *others = (v.name for v in CASES[name].variants())
+    found = list(CASES[name].judge(runs_of(name)))
+    assert [check.subject for check in found] == others and all(check.kind == "exact" for check in found)
+    assert all(check.passed and check.tolerance <= 1e-8 for check in found)
+    for column in ("opening", "load"):
+        for wrong in others[:3]:
+
+            def off(name: str, columns: dict, wrong: str = wrong, column: str = column) -> dict:
+                return {**columns, column: columns[column] * (1.0 + 1e-7 * (name == wrong))}
+
+            assert [check.subject for check in CASES[name].judge(runs_of(name, off)) if not check.passed] == [wrong]
+
+
+@pytest.mark.parametrize("name", ["units", "pose"])
+def test_a_run_with_other_steps_is_judged_by_its_curve(name: str) -> None:
+    """One that stops early has not the same curve."""
+    *_, last = (v.name for v in CASES[name].variants())
+
+    def early(name: str, columns: dict) -> dict:
+        return {key: column[: 20 if name == last else None] for key, column in columns.items()}
+
+    assert [check.subject for check in CASES[name].judge(runs_of(name, early)) if not check.passed] == [last]
+
+
+def test_poses_are_turned_mirrored_and_moved() -> None:
+    poses = {v.name: v.scene.pose for v in CASES["pose"].variants()}
+    here = poses.pop("plain")
+    assert (here.angle, here.mirror, here.shift) == (0.0, False, (0.0, 0.0))
+    moved = {name: (pose.angle != 0.0, pose.mirror, pose.shift != (0.0, 0.0)) for name, pose in poses.items()}
+    expected = {"rotated": (True, False, False), "mirrored": (False, True, False), "moved": (False, False, True)}
+    assert moved == {**expected, "all": (True, True, True)}
+    assert poses["rotated"].angle % 90 != 0 and min(poses["moved"].shift) > 100 * 14.0
+
+
 @pytest.mark.parametrize("name", ["dcb-czm1", "peel-120"])
 def test_every_number_of_a_scene_is_reached(name: str) -> None:
     scene = load_scene(name)
