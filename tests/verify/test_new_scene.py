@@ -117,6 +117,42 @@ def test_lengths_are_drawn_to_scale(width: int) -> None:
     assert base / strip == pytest.approx(120 / 150, abs=0.06)
 
 
+@pytest.mark.parametrize("width", [40, 60, 100])
+@pytest.mark.parametrize("name", [name for name in packaged_scenes() if name.startswith("peel")])
+def test_a_strip_is_pulled_at_its_free_end_and_lies_flush_on_its_substrate(name: str, width: int) -> None:
+    """The arrow stands above the right corner of the strip, wherever its words have room."""
+    lines = sketch(load_scene(name), width)
+    (pull,) = [one for one in lines if "^" in one]
+    corners = [one for one in lines if one.strip().startswith("+-") and one.endswith("-+")]
+    assert len(corners) == 4 and corners[0] == corners[1] and corners[2] == corners[3]
+    words = pull.replace("^", "").strip()
+    strip = len(corners[0]) - 4
+    assert pull.index("^") == (len(corners[0]) - 1 if len(words) + 1 < strip else 2)
+    assert len({one.index("+") for one in corners}) == 1, "the ends are flush"
+    bond, clamp = (next(one for one in lines if sign in one) for sign in (":::", "///"))
+    assert bond.index(":") == clamp.index("/") == corners[0].index("+") + 1
+    assert bond.count(":") + 2 <= strip and clamp.count("/") == len(corners[2]) - 4
+
+
+@pytest.mark.parametrize("width", [40, 100])
+def test_measures_begin_and_end_below_what_they_measure(width: int) -> None:
+    lines = sketch(load_scene("dcb-czm1"), width)
+    crack, whole = lines[-2:]
+    (bond,) = [one for one in lines if ":" in one]
+    arms = [one for one in lines if "+" in one]
+    assert len(arms) == 4 and lines.index(bond) == lines.index(arms[1]) + 3
+    assert (whole.index("|"), whole.rindex("|")) == (arms[0].index("+"), arms[0].rindex("+")) and " 14 " in whole
+    assert (crack.index("|"), crack.rindex("|")) == (whole.index("|"), bond.index(":")) and " 4 " in crack
+    assert bond.rindex(":") + 1 == arms[0].rindex("+")
+    assert lines[0].split() == ["^", "opening", "3"] and lines[-3].split() == ["v"], "the arms are pulled apart"
+
+
+@pytest.mark.parametrize("width", [40, 100])
+def test_a_number_without_room_stands_behind_its_measure(width: int) -> None:
+    short = sketch(load_scene("dcb-czm1", ["specimen.precrack=0.25", "load.opening=1"]), width)[-2]
+    assert short.rstrip().endswith("| 0.25") and "<" not in short
+
+
 def test_scenes_are_listed_or_shown(capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "200")
     assert main(["scenes"]) == 0
