@@ -1,0 +1,65 @@
+"""Scenes in the terms of every solver, and what a solver without a mesh leaves blank."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from iga.material import orthotropic
+from verify.methods import (
+    METHODS,
+    SNAPSHOT_FRACTIONS,
+    axial_modulus,
+    counted_steps,
+    elastic_constants,
+    iga_problem,
+    least_dofs,
+    problem_keys,
+    solve,
+)
+from verify.scene import load_scene
+
+
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+@pytest.mark.parametrize("overrides", [[], ["material={E1=120e3, E2=9e3, G12=5e3, nu12=0.3}"]])
+def test_the_axial_modulus_is_that_of_a_layer_free_to_contract_across(plane: str, overrides: list[str]) -> None:
+    """Second route: one over the compliance of the plane problem that the elements have."""
+    material = load_scene("dcb-czm1", overrides).material
+    c = elastic_constants(material)
+    D = orthotropic(c["E1"], c["E2"], c["G12"], c["nu12"], plane)
+    assert axial_modulus(material, plane) == pytest.approx(1.0 / np.linalg.inv(D)[0, 0], rel=1e-12)
+
+
+@pytest.mark.parametrize("method", ["beam", "lefm"])
+def test_theories_have_no_mesh(method: str) -> None:
+    result = solve(load_scene("dcb-czm1-linear", ["discretization.steps=10"]), method)
+    assert (result.dofs, result.elements, result.nonzeros, result.condition) == (0, 0, 0, 0.0)
+    assert result.complete and result.rejected_steps == 0 and result.seconds["total"] >= 0.0
+
+
+def test_a_result_tells_how_large_its_system_was() -> None:
+    result = solve(
+        load_scene("dcb-czm1", ["discretization.dofs=280", "discretization.steps=5", "load.opening=0.5"]), "nurbs"
+    )
+    assert abs(result.dofs - 280) <= 6 and 0 < result.elements < result.dofs
+    assert result.condition > 1.0
+    assert len(result.snapshots) == len(SNAPSHOT_FRACTIONS)
+    assert [round(one.opening, 9) for one in result.snapshots] == [0.05, 0.1, 0.25, 0.5]
+
+
+def test_steps_where_the_path_does_not_choose_them() -> None:
+    assert counted_steps(load_scene("dcb-czm1", ["discretization.steps=37"])) == 37
+    assert counted_steps(load_scene("dcb-czm1", ["discretization.steps=auto"])) == 150
+
+
+@pytest.mark.parametrize("name", ["dcb-czm1", "peel-60"])
+def test_the_least_unknowns_are_none_for_theories(name: str) -> None:
+    assert all(least_dofs(method, 3) == 0 for method in METHODS if method in ("beam", "lefm", "dolfinx"))
+    assert all(0 < least_dofs(method, 1) for method in ("nurbs", "lagrange", "tspline"))
+    _, problem = iga_problem(load_scene(name), "nurbs")
+    assert problem.basis == "nurbs" and problem.meshes == () and problem.opening == load_scene(name).load.opening
+
+
+def test_snapshots_of_a_programme_that_only_closes_are_of_the_start() -> None:
+    scene = load_scene("dcb-czm1", ["load.opening=[-0.1]"])
+    assert problem_keys(scene, "nurbs")["snapshot_openings"] == (0.0,) * len(SNAPSHOT_FRACTIONS)
