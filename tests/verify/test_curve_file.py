@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from verify.curve_file import CurveError, Reading, read_curve
+from verify.curve_text import Dialect, read_table
 
 OPENING, LOAD = [0.0, 1.5, 3.0], [0.0, 2.5, 1.25]
 
@@ -141,6 +142,43 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
 def test_readings_that_make_no_sense(keys: dict) -> None:
     with pytest.raises(CurveError, match=next(iter(keys))):
         Reading(**keys)
+
+
+@pytest.mark.parametrize(
+    ("text", "separator"),
+    [("opening;load\n", ";"), ("opening\tload\n", "\t"), ("opening,load\n", ","), ("opening load\n", ""), ("", "")],
+)
+def test_without_numbers_the_header_tells_the_separator(text: str, separator: str) -> None:
+    table = read_table(text)
+    assert table.dialect == Dialect(separator, False) and table.body == []
+    assert [cells for _, cells in table.lead] == ([["opening", "load"]] if text else [])
+
+
+def test_most_rows_decide_wherever_they_stand() -> None:
+    """A header of many lines with numbers in another writing, before ten thousand rows."""
+    title = [f"{i}.5,{i}.25" for i in range(40)]
+    rows = [f"{i},5\t{i},25" for i in range(10_000)]
+    table = read_table("\n".join([*title, *rows]))
+    assert table.dialect == Dialect("\t", True) and table.body[-1] == (10_040, ["9999,5", "9999,25"])
+
+
+def test_where_a_comma_could_be_either_it_separates() -> None:
+    assert read_table("1,5\n2,6\n").dialect == Dialect(",", False)
+    assert read_table("1;5\n2;6\n").dialect == Dialect(";", False)
+
+
+def test_only_comments_above_the_first_row_are_remarks() -> None:
+    table = read_table("# opening, load\n//// second\n0,0\n# third\n1,1\n")
+    assert table.remarks == [(1, ["opening", "load"]), (2, ["second"])] and len(table.body) == 2
+
+
+@pytest.mark.parametrize(
+    ("cell", "value"),
+    [("1.5", 1.5), ("-1.5D-3", -1.5e-3), ("2d2", 200.0), ("inf", np.inf), ("1_0", None), ("", None), ("d", None)],
+)
+def test_numbers_of_a_cell(cell: str, value: float | None) -> None:
+    assert Dialect(",", False).value(cell) == value
+    assert Dialect(";", True).value(cell.replace(".", ",")) == value
 
 
 NUMBER = st.floats(-1e6, 1e6, allow_subnormal=False).map(lambda x: x + 0.0)
