@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.sparse import bmat, coo_matrix, csr_matrix
 from scipy.sparse.linalg import spsolve
+from vtu_files import arrays
 
 from verify.cli import main
 from verify.export.mesh import scene_mesh
@@ -278,6 +280,75 @@ def test_abaqus_takes_fibres_along_the_specimen(tmp_path: Path) -> None:
         blocks = abaqus_blocks((tmp_path / "fibres.inp").read_text())
         found = [rows for keyword, known, rows in blocks if keyword == "*ELASTIC" and known.get("TYPE") == kind]
         assert [[float(cell) for line in rows for cell in line] for rows in found] == [row, row]
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("scene", [DCB, PEEL])
+def test_a_vtu_file_holds_mesh_bond_and_sets(scene: str, degree: int, tmp_path: Path) -> None:
+    words = ["--set", f"dolfinx.degree={degree}"]
+    model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
+    found, _ = arrays(exported(scene, "vtu", tmp_path, *words) / f"{scene}.vtu")
+    values = {name: column.ravel() for name, column in found.items() if name != "Points"}
+    X_nI = found["Points"][:, :2]
+    assert found["Points"].shape == (len(model.X_nI), 3) and np.all(found["Points"][:, 2] == 0.0)
+    cells = np.split(values["connectivity"], values["offsets"][:-1])
+    body, types = values["body"], values["types"]
+    assert values["offsets"][-1] == len(values["connectivity"]) and len(cells) == len(body) == len(types)
+    assert set(types[body < 2]) == {9 if degree == 1 else 23} and set(types[body == 2]) == {9}
+    solid = np.array([nodes for nodes, b in zip(cells, body, strict=True) if b < 2])
+    assert solid.shape[1] == 4 * degree
+    check_areas(scene, list(model.names), X_nI, solid, [model.names[b] for b in body if b < 2])
+
+    pair = values["pair"]
+    bonded = np.flatnonzero(pair >= 0)
+    assert np.array_equal(pair[pair[bonded]], bonded) and np.array_equal(X_nI[pair[bonded]], X_nI[bonded])
+    assert len(bonded) == 2 * len(model.pair_kb) and not np.any(pair == np.arange(len(pair)))
+    bond = np.array([nodes for nodes, b in zip(cells, body, strict=True) if b == 2])
+    assert set(bond.ravel()) == set(bonded) and np.array_equal(pair[bond], bond[:, [3, 2, 1, 0]])
+    s = load_scene(scene).specimen
+    length = s.bond_length if scene == PEEL else s.length - s.precrack
+    assert values["pair_length"].sum() == pytest.approx(2.0 * length) and np.all(values["pair_length"][pair < 0] == 0)
+    assert np.array_equal(values["pair_length"][bonded], values["pair_length"][pair[bonded]])
+    for face in model.loaded:
+        assert values["load_weight"][face.node_n].sum() == pytest.approx(1.0)
+    loaded = np.concatenate([face.node_n for face in model.loaded])
+    assert set(np.flatnonzero(values["load_weight"])) == set(loaded)
+    for name, nodes in model.sets.items():
+        assert np.array_equal(np.flatnonzero(values[name] == 1), np.sort(nodes)) and set(values[name]) <= {0, 1}
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("scene", [DCB, PEEL])
+def test_a_gmsh_file_names_bodies_and_sets(scene: str, degree: int, tmp_path: Path) -> None:
+    """Read as the manual of format 2.2 says, by hand."""
+    model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
+    file = exported(scene, "gmsh", tmp_path, "--set", f"dolfinx.degree={degree}") / f"{scene}.msh"
+    parts = re.findall(r"^\$(\w+)\n(.*?)\n\$End\1$", file.read_text(), re.DOTALL | re.MULTILINE)
+    block = {name: [line.split() for line in lines.split("\n")] for name, lines in parts}
+    assert list(block) == ["MeshFormat", "PhysicalNames", "Nodes", "Elements"] and block["MeshFormat"] == [
+        ["2.2", "0", "8"]
+    ]
+    for name in ("PhysicalNames", "Nodes", "Elements"):
+        assert int(block[name][0][0]) == len(block[name]) - 1
+        if name != "PhysicalNames":
+            assert [int(row[0]) for row in block[name][1:]] == list(range(1, len(block[name])))
+    X_nI = np.array([row[1:3] for row in block["Nodes"][1:]], dtype=float)
+    names = {int(number): (int(dim), name.strip('"')) for dim, number, name in block["PhysicalNames"][1:]}
+    assert {name for _, name in names.values()} == {*model.names, *model.sets}
+    kinds = {2: {3: 4, 16: 8}, 1: {1: 2, 8: 3}, 0: {15: 1}}
+    groups: dict[str, list[np.ndarray]] = {}
+    for _, kind, tags, group, entity, *nodes in (map(int, row) for row in block["Elements"][1:]):
+        dim, name = names[group]
+        assert tags == 2 and entity == group and kinds[dim][kind] == len(nodes)
+        groups.setdefault(name, []).append(np.array(nodes) - 1)
+    for name, nodes in model.sets.items():
+        assert set(np.concatenate(groups[name])) == set(nodes)
+    solid = np.array([nodes for name in model.names for nodes in groups[name]])
+    check_areas(scene, list(model.names), X_nI, solid, [name for name in model.names for _ in groups[name]])
+    sides = np.array(groups[f"{model.names[0]}_bond"])
+    assert np.all(X_nI[sides[:, 1], 0] > X_nI[sides[:, 0], 0]) and sides.shape[1] == degree + 1
+    if degree == 2:
+        assert np.allclose(X_nI[sides[:, 2]], X_nI[sides[:, :2]].mean(axis=1))
 
 
 @pytest.mark.parametrize("degree", [1, 2])
