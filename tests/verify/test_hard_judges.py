@@ -1,0 +1,300 @@
+"""Judges of the hard cases: each lets a made-up world pass in which all is well, and names what is not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_hard import fake_rows
+
+from verify.checks import law_of
+from verify.curve import PROPAGATION
+from verify.hard import bodies, interfaces
+from verify.hard.case import Number, Trial, Trials
+from verify.hard.cases import CASES
+from verify.hard.interfaces import variation
+from verify.methods import solve
+from verify.result import Result, Snapshot, steps_from_rows
+from verify.scene import Scene
+from verify.verdict import Check
+
+Change = Callable[[str, Result], Result]
+
+
+def made_up(scene: Scene) -> Result:
+    """A curve that rises and falls, over the whole programme of a scene that only opens."""
+    return Result("nurbs", steps_from_rows(fake_rows(scene.load.opening[-1], 300)), condition=1e8)
+
+
+def world(name: str, change: Change = lambda name, result: result, make: Callable = made_up) -> Trials:
+    return {v.name: Trial(v, change(v.name, make(v.scene))) for v in CASES[name].variants()}
+
+
+def times(result: Result, factor: float, *names: str) -> Result:
+    return replace(result, steps={**result.steps, **{name: factor * result.steps[name] for name in names or ("load",)}})
+
+
+def only(wrong: str, factor: float, *names: str) -> Change:
+    """One run whose columns are off by a factor."""
+    return lambda name, result: times(result, factor, *(names or ("load", "load_slope"))) if name == wrong else result
+
+
+def judged(name: str, trials: Trials) -> Mapping[tuple[str, str], Check]:
+    return {(f.name, f.subject): f for f in CASES[name].judge(trials) if isinstance(f, Check)}
+
+
+def numbers(name: str, trials: Trials) -> Mapping[tuple[str, str], float]:
+    return {(f.name, f.subject): f.value for f in CASES[name].judge(trials) if isinstance(f, Number)}
+
+
+def failing(name: str, trials: Trials) -> set[tuple[str, str]]:
+    return {key for key, check in judged(name, trials).items() if not check.passed}
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong", "checked"),
+    [
+        ("big-steps", "steps-5", {"steps-5"}),
+        ("tiny-reversals", "reversals-tiny", {"tiny"}),
+        ("mismatch", "10-lower", {"1.37-upper", "1.37-lower", "10-upper", "10-lower"}),
+    ],
+)
+def test_a_curve_that_is_off_by_a_hundredth_is_named(name: str, wrong: str, checked: set[str]) -> None:
+    good = judged(name, world(name))
+    assert {subject for _, subject in good} == checked and all(check.value < 1e-12 for check in good.values())
+    (off,) = failing(name, world(name, only(wrong, 1.01)))
+    assert off[1] == wrong.removeprefix("reversals-")
+    assert judged(name, world(name, only(wrong, 1.01)))[off].value == pytest.approx(0.01)
+
+
+def test_contact_may_give_way_as_much_as_that_of_a_beam(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A world in which a penalty takes 3 / penalty off the load, of every code; and one that hides it."""
+
+    def softer(scene: Scene, method: str = "nurbs") -> Result:
+        return times(made_up(scene), 1.0 - 300.0 / scene.interface.penalty, "load", "load_slope")
+
+    monkeypatch.setattr(interfaces, "solve", softer)
+    trials = world("penalty-sweep", make=softer)
+    good = judged("penalty-sweep", trials)
+    assert {subject for _, subject in good} == {f"penalty-1e{n}" for n in range(4, 11)}
+    assert all(abs(check.value) < 1e-9 for check in good.values())
+    found = numbers("penalty-sweep", trials)
+    assert len(found) == 9 and found["distance", "penalty-1e4"] == pytest.approx(0.03, rel=1e-4)
+    rigid = world("penalty-sweep", make=made_up)
+    assert failing("penalty-sweep", rigid) == {("same-curve", "penalty-1e4"), ("same-curve", "penalty-1e5")}
+
+
+def snapshot(s_q: np.ndarray, traction_q: np.ndarray, damage_q: np.ndarray) -> Snapshot:
+    grids = {"X_euvi": np.zeros((0, 1, 1, 2)), "u_euvi": np.zeros((0, 1, 1, 2)), "stress_euv": np.zeros((0, 1, 1))}
+    return Snapshot(3.0, 0.2, s_q, np.zeros(s_q.size), traction_q, damage_q, **grids)
+
+
+def test_a_single_rise_and_fall_of_the_traction_is_no_wiggle() -> None:
+    s = np.linspace(0.0, 1.0, 101)
+    hill = np.minimum(s, 1.0 - s)
+    assert variation(Result("nurbs", {}, snapshots=(snapshot(s, hill, 0 * s),))) == pytest.approx(1.0)
+    saw = np.where(np.arange(101) % 2, 1.0, 0.0)
+    assert variation(Result("nurbs", {}, snapshots=(snapshot(s, saw, 0 * s),))) == pytest.approx(50.0)
+    assert variation(Result("nurbs", {}, snapshots=tuple(snapshot(s, p, 0 * s) for p in (saw, hill)))) == pytest.approx(
+        1.0
+    )
+    assert np.isnan(variation(Result("nurbs", {})))
+
+
+def off_the_limit(factors: Mapping[str, float]) -> Trials:
+    """Fracture mechanics itself, its load off by so much."""
+    variants = CASES["toward-lefm"].variants()
+    limit = solve(variants[0].scene, "lefm")
+    steps = {"opening": limit.opening, "load": limit.load}
+    return {v.name: Trial(v, Result("nurbs", {**steps, "load": (1 + factors[v.name]) * limit.load})) for v in variants}
+
+
+def test_every_strength_must_come_closer_to_fracture_mechanics() -> None:
+    names = [v.name for v in CASES["toward-lefm"].variants()]
+    nearer = dict(zip(names, (0.08, 0.04, 0.03, 0.01, -0.005), strict=True))
+    trials = off_the_limit(nearer)
+    (check,) = judged("toward-lefm", trials).values()
+    assert check.passed and check.value == pytest.approx(0.75) and check.kind == "analytical"
+    assert numbers("toward-lefm", trials) == pytest.approx({("distance", n): abs(a) for n, a in nearer.items()})
+    assert failing("toward-lefm", off_the_limit({**nearer, names[3]: 0.031})) == {("monotone", "all")}
+    at_rest = off_the_limit({**nearer, names[2]: 1e-3, names[3]: 1.9e-3, names[4]: 1e-3})
+    assert failing("toward-lefm", at_rest) == set(), "closer than 0.2 % is the same"
+    before = {}
+    for name, trial in off_the_limit(nearer).items():
+        d, P = trial.result.opening, trial.result.load
+        rising = d < PROPAGATION * d[np.argmax(P)] * 0.9
+        before[name] = replace(trial, result=Result("nurbs", {"opening": d, "load": np.where(rising, 0.5 * P, P)}))
+    assert judged("toward-lefm", before)["monotone", "all"].value == pytest.approx(0.75, rel=1e-3)
+
+
+def back_and_forth(scene: Scene) -> Result:
+    """Along a curve, back on the secant to the end of the second leg, and on; tips of beams on springs when closed."""
+    n, way = 60, [0.0, *scene.load.opening]
+    legs = [np.linspace(a, b, n) for a, b in zip(way, way[1:], strict=False)]
+    d = np.concatenate([legs[0], *(leg[1:] for leg in legs[1:])])
+    grown = np.maximum.accumulate(d)
+    load = 2.0 * np.exp(-grown) * np.where(d < grown, d, grown)
+    deepest = load[np.argmin(d)]
+    tip = np.where(d < 0, -pressed(scene, abs(deepest)), 0.01 * d)
+    return Result("nurbs", {"opening": d, "load": load, "tip_opening": tip})
+
+
+def pressed(scene: Scene, load: float) -> float:
+    """How far two arms go into each other: y = exp(-b x) (A cos b x + B sin b x) from moment and shear at the tip."""
+    body, k = scene.specimen, 2.0 * scene.specimen.width * scene.interface.penalty
+    EI = scene.material.young * body.width * body.arm_thickness**3 / 12.0
+    b = (k / (4.0 * EI)) ** 0.25
+    # EI y'' = -2 EI b^2 B is the moment P a that pushes, EI y''' = 2 EI b^3 (A + B) the force
+    B = -load * body.precrack / (2.0 * EI * b**2)
+    A = load / (2.0 * EI * b**3) - B
+    return 2.0 * A
+
+
+def test_a_programme_that_turns_is_judged_leg_by_leg() -> None:
+    good = judged("unload-reload", world("unload-reload", make=back_and_forth))
+    linear, finite = ({name for name, subject in good if subject == f"{way}-linear"} for way in ("to-zero", "closing"))
+    assert linear == {"secant", "return", "same-envelope"} and finite == {*linear, "contact"}
+    assert [key for key, check in good.items() if not check.passed] == []
+    assert abs(good["contact", "closing-linear"].value) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("change", "broken"),
+    [
+        (lambda d, P: np.where((d > 0.4) & (d < 0.6) & turned(d), 1.01 * P, P), {("secant", "to-zero-linear")}),
+        (lambda d, P: np.where(turned(d) & (np.arange(d.size) < 118), P + 0.01, P), {("secant", "to-zero-linear")}),
+        (lambda d, P: np.where((d == 1.5) & (np.arange(d.size) > 100), 1.001 * P, P), {("return", "to-zero-linear")}),
+        (lambda d, P: np.where(d > 1.5, 1.05 * P, P), {("same-envelope", "to-zero-linear")}),
+        (lambda d, P: P[:90], {("legs", "to-zero-linear")}),
+    ],
+    ids=["bent", "shifted", "not-back", "other-curve", "unfinished"],
+)
+def test_what_is_wrong_with_a_leg_is_named(change: Callable, broken: set[tuple[str, str]]) -> None:
+    def changed(name: str, result: Result) -> Result:
+        if name != "to-zero-linear":
+            return result
+        load = change(result.opening, result.load)
+        return replace(result, steps={key: c[: load.size] for key, c in result.steps.items()} | {"load": load})
+
+    assert failing("unload-reload", world("unload-reload", changed, back_and_forth)) == broken
+
+
+def turned(d: np.ndarray) -> np.ndarray:
+    """Steps on the leg that unloads."""
+    after = np.arange(d.size) > int(np.argmax(d >= 1.5))
+    return after & (np.arange(d.size) <= int(np.flatnonzero(d <= 0.0)[-1]))
+
+
+def test_arms_that_go_further_into_each_other_are_named() -> None:
+    deeper = world("unload-reload", only("closing-finite", 1.2, "tip_opening"), back_and_forth)
+    assert failing("unload-reload", deeper) == {("contact", "closing-finite")}
+    assert judged("unload-reload", deeper)["contact", "closing-finite"].value == pytest.approx(0.2)
+
+
+def separated(scene: Scene) -> Result:
+    body, result = scene.specimen, made_up(scene)
+    bond = body.bond_length if body.kind == "peel" else body.length - body.precrack
+    fades = result.load * (result.opening < 0.9 * result.opening[-1])
+    grows = scene.interface.toughness * body.width * bond * result.opening / result.opening[-1]
+    s_q = np.linspace(0.0, bond, 50)
+    steps = {**result.steps, "load": fades, "dissipated_energy": grows}
+    return replace(result, steps=steps, ending="separated at opening 8", snapshots=(snapshot(s_q, s_q, 0 * s_q),))
+
+
+def test_a_specimen_that_has_come_apart_carries_nothing_and_has_paid_for_its_bond() -> None:
+    good = judged("full-separation", world("full-separation", make=separated))
+    assert {key for key in good} == {
+        (n, s) for n in ("separated", "no-load", "all-dissipated") for s in ("dcb", "peel")
+    }
+    assert all(abs(check.value) < 1e-12 for check in good.values())
+    changes: dict[str, Change] = {
+        "separated": lambda name, r: replace(r, ending="") if name == "peel" else r,
+        "no-load": lambda name, r: replace(r, steps={**r.steps, "load": r.load + 0.02}) if name == "peel" else r,
+        "all-dissipated": only("peel", 0.95, "dissipated_energy"),
+    }
+    for name, change in changes.items():
+        assert failing("full-separation", world("full-separation", change, separated)) == {(name, "peel")}
+    stopped = world("full-separation", lambda name, r: replace(r, status="stopped: here"), separated)
+    assert {name for name, _ in failing("full-separation", stopped)} == {"separated"}
+    nothing = world(
+        "full-separation", lambda name, r: replace(r, steps={k: c[:1] for k, c in r.steps.items()}), separated
+    )
+    assert {name for name, _ in judged("full-separation", nothing)} == {"separated"}
+
+
+def test_initial_stiffness_of_bodies_that_lock(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bodies, "solve", lambda scene, method: replace(made_up(scene), method=method))
+    trials = world("slender")
+    assert abs(judged("slender", trials)["compliance", "1-1000"].value) < 1e-12
+    stiff = {n: replace(t, result=times(t.result, 1.01, "load_slope")) for n, t in trials.items()}
+    assert judged("slender", stiff)["compliance", "1-1000"].value == pytest.approx(0.01)
+    assert failing("slender", stiff) == {("compliance", "1-1000")}
+    assert failing("incompressible", world("incompressible")) == set()
+    locked = world("incompressible", only("coarse", 1.03, "load_slope"))
+    assert judged("incompressible", locked)["compliance", "coarse"].value == pytest.approx(0.03)
+    assert failing("incompressible", locked) == {("compliance", "coarse")}
+
+
+def test_a_vertical_strip_carries_its_toughness() -> None:
+    def upright(scene: Scene) -> Result:
+        griffith, sine = scene.interface.toughness * scene.specimen.width, np.linspace(0.1, 0.95, 30)
+        return Result("nurbs", {"opening": sine, "load": griffith / sine, "face_slope_top": -sine})
+
+    trials = world("large-rotation", make=upright)
+    assert abs(judged("large-rotation", trials)["end-load", "upright"].value) < 1e-12
+    assert numbers("large-rotation", trials)["slope", "upright"] == pytest.approx(0.95)
+    heavy = {n: replace(t, result=times(t.result, 1.02)) for n, t in trials.items()}
+    assert failing("large-rotation", heavy) == {("end-load", "upright")}
+
+
+def test_a_condition_number_must_be_told() -> None:
+    assert failing("stiffness-contrast", world("stiffness-contrast")) == set()
+    assert numbers("stiffness-contrast", world("stiffness-contrast")) == {("condition", "million"): 1e8}
+    silent = world("stiffness-contrast", lambda name, result: replace(result, condition=0.0))
+    assert failing("stiffness-contrast", silent) == {("condition-known", "million")}
+
+
+def test_an_under_resolved_zone_is_announced_and_every_point_paid_for() -> None:
+    def run(scene: Scene) -> Result:
+        """Some points broken, none on its way: what the load did is their area times the toughness."""
+        n = 40 * scene.discretization.interface_points
+        x, _ = np.polynomial.legendre.leggauss(scene.discretization.interface_points)
+        s_q = (np.arange(40)[:, None] * 0.25 + 0.125 * (1 + x)).ravel()
+        broken = np.arange(n) < n // 2
+        spent = scene.interface.toughness * scene.specimen.width * 20 * 0.25
+        result = made_up(scene)
+        steps = {**result.steps, "stored_energy": 0 * result.opening, "external_work": spent * result.opening / 3.0}
+        return replace(result, steps=steps, snapshots=(snapshot(s_q, 0 * s_q, broken.astype(float)),))
+
+    trials = world("under-resolved", make=run)
+    good = judged("under-resolved", trials)
+    assert {name for name, _ in good} == {"warned", "crack-cost"} and len(good) == 6
+    assert all(abs(check.value) < 1e-9 for check in good.values())
+    areas = numbers("under-resolved", trials)
+    assert list(areas.values()) == pytest.approx([20 * 0.25] * 3)
+    law = law_of(trials["strength-10"].scene)
+    assert law.dissipated(np.array([2 * law.g_open]))[0] == pytest.approx(0.1)
+    dear = world("under-resolved", only("strength-20", 1.05, "external_work"), run)
+    assert failing("under-resolved", dear) == {("crack-cost", "strength-20")}
+    fine = {n: replace(t, variant=replace(t.variant, scene=CASES["toward-lefm"].variants()[0].scene))
+            for n, t in trials.items()}  # fmt: skip
+    assert ("warned", "strength-10") in failing("under-resolved", fine)
+
+
+@pytest.mark.parametrize(
+    ("status", "steps", "passes"),
+    [
+        ("complete", 30, True),
+        ("stopped: process zone 0.1 < element 1", 30, True),
+        ("stopped: process zone 0.1 < element 1", 1, False),
+        ("stopped: no convergence", 30, False),
+    ],
+)
+def test_a_run_may_stop_where_it_says_why(status: str, steps: int, passes: bool) -> None:
+    def stop(name: str, result: Result) -> Result:
+        return replace(result, status=status, steps={key: c[:steps] for key, c in result.steps.items()})
+
+    found = judged("peel-as-printed", world("peel-as-printed", stop))
+    assert found["honest-end", "mpa"].passed == passes and found["warned", "mpa"].passed
