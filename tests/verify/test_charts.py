@@ -1,0 +1,214 @@
+"""Charts of studies, fields and plane problems: the points that are drawn are the numbers that were found."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("matplotlib")
+pytest.importorskip("jinja2")
+
+from figures import Drawn  # noqa: E402
+from made_up_runs import scene_report  # noqa: E402
+from test_cost import a_row  # noqa: E402
+
+from verify.cost import figures as charts  # noqa: E402
+from verify.report import fields, opening, paint  # noqa: E402
+from verify.report.entry import entries  # noqa: E402
+from verify.report.fields import process_zone, shared_snapshots, traction  # noqa: E402
+from verify.report.opening import frames  # noqa: E402
+from verify.report.style import PHASES, colour  # noqa: E402
+from verify.result import Snapshot  # noqa: E402
+
+#: Error, seconds and unknowns of a ladder of each of two methods, and one run off the ladders.
+ROWS = [
+    *(a_row("nurbs", 0.08 / 4**i, 0.5 * 2**i, 250 * 2**i) for i in range(4)),
+    *(a_row("dolfinx", 0.03 / 4**i, 2.0 * 3**i, 500 * 2**i, 2) for i in range(3)),
+    a_row("nurbs", 0.0004, 1.25, 1000, 3, "160"),
+]
+
+
+def points(axes, ink: str, marker: str | None = None) -> list[tuple[float, float]]:
+    """All points of the lines in one colour, of one marker where that is told."""
+    lines = [one for one in axes.lines if one.get_color() == colour(ink) and marker in (None, one.get_marker())]
+    return [tuple(map(float, point)) for one in lines for point in zip(*one.get_data(), strict=True)]
+
+
+def alike(found: list[tuple[float, float]], expected: list[tuple[float, float]]) -> bool:
+    return len(found) == len(expected) and np.allclose(found, expected, rtol=1e-9, atol=0.0)
+
+
+def test_every_run_is_a_point_of_error_and_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = Drawn(monkeypatch, charts)
+    charts.work_precision(ROWS, "key")
+    axes = drawn.axes("Curve error against time")
+    for method, ink, marker in (("nurbs", "nurbs", "o"), ("dolfinx", "dolfinx", "s")):
+        expected = [(row.seconds, 100 * row.curve_error) for row in ROWS if row.method == method]
+        assert alike(sorted(points(axes, ink, marker)), sorted(expected))
+    front = points(axes, "muted")
+    assert front == sorted(front) and [y for _, y in front] == sorted((y for _, y in front), reverse=True)
+    for x, y in front:
+        assert not any(row.seconds <= x and 100 * row.curve_error < y for row in ROWS)
+    levels = sorted(set(one.get_ydata()[0] for one in axes.lines if one.get_color() == colour("rule")))
+    assert levels == pytest.approx([0.1, 0.3, 1.0])
+    assert axes.get_xscale() == axes.get_yscale() == "log"
+
+
+def test_ladders_are_drawn_with_their_orders(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = Drawn(monkeypatch, charts)
+    charts.error_and_unknowns(ROWS, {"nurbs-p3": 2.0, "dolfinx-p2": np.nan}, "key")
+    axes = drawn.axes("Curve error against unknowns")
+    assert alike(points(axes, "nurbs"), [(250 * 2**i, 8.0 / 4**i) for i in range(4)])
+    assert alike(points(axes, "dolfinx"), [(500 * 2**i, 3.0 / 4**i) for i in range(3)])
+    assert [t.get_text() for t in axes.get_legend().get_texts()] == ["DOLFINx, degree 2", "NURBS, degree 3: 2.0"]
+
+
+def test_time_accuracy_and_size_are_what_they_say(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = Drawn(monkeypatch, charts)
+    charts.triple(ROWS, "key")
+    ladder = [(250 * 2**i, 0.5 * 2**i, 0.08 / 4**i) for i in range(4)]
+    size, rate, efficacy = (
+        drawn.axes(words) for words in ("digits of accuracy", "unknowns a second", "digits of efficacy")
+    )
+    assert alike(points(size, "nurbs"), [(n, -np.log10(e)) for n, _, e in ladder])
+    assert alike(points(rate, "nurbs"), [(t, n / t) for n, t, _ in ladder])
+    assert alike(points(efficacy, "nurbs"), [(t, -np.log10(e * t)) for _, t, e in ladder])
+    assert [axes.get_yscale() for axes in (size, rate, efficacy)] == ["linear", "log", "linear"]
+
+
+def test_bars_of_the_cheapest_are_their_phases(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = Drawn(monkeypatch, charts)
+    charts.phases(ROWS[:2], "key")
+    axes = drawn.axes("cheapest runs")
+    ends = np.zeros(2)
+    for container in axes.containers:
+        bars = [(bar.get_x(), bar.get_width(), bar.get_y() + bar.get_height() / 2) for bar in container]
+        assert [x for x, _, _ in bars] == pytest.approx(ends) and [y for _, _, y in bars] == [1.0, 0.0]
+        ends += [width for _, width, _ in bars]
+        assert [width for _, width, _ in bars] == pytest.approx(
+            [getattr(row, container.get_label()) for row in ROWS[:2]]
+        )
+    assert {container.get_label() for container in axes.containers} == set(PHASES)
+
+
+# --- fields
+
+
+@pytest.fixture(scope="module")
+def found() -> list:
+    return [entry for entry in entries(scene_report()) if entry.agreement is not None]
+
+
+def a_snapshot(opening: float, damage_q: np.ndarray, **more) -> Snapshot:
+    s_q = np.linspace(4.0, 14.0, damage_q.size)
+    grids = {"X_euvi": np.zeros((0, 1, 1, 2)), "u_euvi": np.zeros((0, 1, 1, 2)), "stress_euv": np.zeros((0, 1, 1))}
+    return Snapshot(opening, 0.2, s_q, 0 * s_q, **{"traction_q": 0 * s_q, "damage_q": damage_q, **grids, **more})
+
+
+def test_the_process_zone_is_what_is_damaged_and_not_broken() -> None:
+    assert process_zone(a_snapshot(1.0, np.array([1.0, 1.0, 0.5, 0.25, 0.0, 0.0]))) == (8.0, 10.0)
+    assert process_zone(a_snapshot(1.0, np.array([0.75, 0.0, 0.0]))) == (4.0, 4.0)
+    assert process_zone(a_snapshot(1.0, np.array([1.0, 1.0, 0.0]))) is None
+    assert process_zone(a_snapshot(1.0, np.zeros(3))) is None
+
+
+def with_openings(entry, *openings: float):
+    kept = tuple(a_snapshot(at, np.linspace(1.0, 0.0, 11)) for at in openings)
+    return replace(entry, run=replace(entry.run, result=replace(entry.result, snapshots=kept)))
+
+
+def test_snapshots_stand_together_where_their_openings_are_near(found: list) -> None:
+    dolfinx, nurbs, lagrange = (next(e for e in found if e.method == m) for m in ("dolfinx", "nurbs", "lagrange"))
+    runs = [with_openings(nurbs, 0.5, 1.0, 3.0), with_openings(lagrange, 0.55, 2.0), with_openings(dolfinx, 1.1, 2.9)]
+    groups = shared_snapshots(runs)
+    together = [{(entry.method, snapshot.opening) for entry, snapshot in group} for group in groups]
+    assert together == [
+        {("nurbs", 0.5), ("lagrange", 0.55)},
+        {("nurbs", 1.0), ("dolfinx", 1.1)},
+        {("nurbs", 3.0), ("dolfinx", 2.9)},
+    ]
+    assert shared_snapshots([with_openings(nurbs)]) == []
+    (alone,) = shared_snapshots([with_openings(nurbs, 1.0), with_openings(lagrange, 1.3)])
+    assert len(alone) == 1
+
+
+def test_tractions_are_drawn_around_the_zone(found: list, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, scene = Drawn(monkeypatch, fields), scene_report().scene
+    group = shared_snapshots(found)[1]
+    caption = traction(scene, group, "key", small=False).caption
+    axes = drawn.axes("Normal traction along the interface at opening 1")
+    for entry, snapshot in group:
+        options = entry.line.options()
+        (line,) = [
+            o for o in axes.lines if o.get_color() == options["color"] and len(o.get_xdata()) == snapshot.s_q.size
+        ]
+        assert np.array_equal(line.get_xdata(), snapshot.s_q) and np.array_equal(line.get_ydata(), snapshot.traction_q)
+    zones = [process_zone(snapshot) for _, snapshot in group]
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    assert (
+        all(left < start and end < right for start, end in zones)
+        and low < 0.0
+        and high > 1.1 * scene.interface.strength
+    )
+    (band,) = axes.patches
+    ends = band.get_window_extent().transformed(axes.transData.inverted())
+    assert (ends.x0, ends.x1) == pytest.approx(zones[0])
+    strength = [o for o in axes.lines if o.get_color() == colour("muted")]
+    assert [set(o.get_ydata()) for o in strength] == [{scene.interface.strength}]
+    assert f"{zones[0][1] - zones[0][0]:.3g}" in caption and "(at" not in caption
+    later = replace(group[1][1], opening=1.1 * group[1][1].opening)
+    assert caption.count("(at") + 1 == traction(scene, [group[0], (group[1][0], later)], "key", True).caption.count(
+        "(at"
+    )
+
+
+def test_an_intact_bond_is_shown_from_its_tip_on(found: list, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, scene = Drawn(monkeypatch, fields), scene_report().scene
+    intact = a_snapshot(0.125, np.zeros(41), traction_q=np.linspace(-1.0, 2.0, 41))
+    caption = traction(scene, [(found[0], intact)], "key", small=True).caption
+    axes = drawn.axes("at opening 0.125")
+    assert axes.get_xlim() == pytest.approx((4.0, 4.0 + 0.15 * 10.0)) and not axes.patches
+    assert caption.endswith("The interface is still intact everywhere.")
+
+
+def test_frames_have_one_scale_and_hold_all_that_moves(found: list, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, scene = Drawn(monkeypatch, opening), scene_report().scene
+    shown = frames(scene, shared_snapshots(found), found, "key")
+    nurbs = next(entry for entry in found if entry.method == "nurbs")
+    assert len(shown) == len(drawn) == 3
+    limits = {tuple((ax.get_xlim(), ax.get_ylim()) for ax in figure.axes) for _, figure in drawn}
+    assert len(limits) == 1
+    for (title, figure), frame, snapshot in zip(drawn, shown, nurbs.result.snapshots, strict=True):
+        arms, tractions, load = figure.axes
+        x_ni = (np.asarray(snapshot.X_euvi) + np.asarray(snapshot.u_euvi)).reshape(-1, 2)
+        low, high = np.transpose([arms.get_xlim(), arms.get_ylim()])
+        assert np.all(x_ni > low) and np.all(x_ni < high) and arms.get_ylim()[0] == -arms.get_ylim()[1]
+        assert arms.get_xlim() == tractions.get_xlim() and nurbs.label in arms.get_title(loc="left")
+        (dot,) = [one for one in load.lines if len(one.get_xdata()) == 1]
+        assert (dot.get_xdata()[0], dot.get_ydata()[0]) == (snapshot.opening, snapshot.load)
+        zone = process_zone(snapshot)
+        assert frame.opening == f"{snapshot.opening:.3g}\u00a0mm" and frame.said in title
+        assert f"process zone {zone[0]:.3g} to {zone[1]:.3g}" in frame.said
+        box = arms.get_window_extent()
+        assert box.width / box.height == pytest.approx(np.ptp(arms.get_xlim()) / np.ptp(arms.get_ylim()), rel=1e-6)
+    assert frames(scene, shared_snapshots(found)[:1], found, "key") == ()
+
+
+def test_the_outline_of_a_grid_goes_once_around_it() -> None:
+    u, v = np.meshgrid(np.linspace(0, 2, 4), np.linspace(0, 1, 4), indexing="ij")
+    (outline,) = paint.perimeter(np.stack([u, v], axis=-1)[None])
+    assert np.array_equal(outline[0], outline[-1]) and len(np.unique(outline[:-1], axis=0)) == 12
+    assert np.linalg.norm(np.diff(outline, axis=0), axis=1).sum() == pytest.approx(6.0)
+    x, y = outline[:-1].T
+    assert abs(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))) / 2 == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("box", "meets"),
+    [((0.5, 0.5), True), ((1.0, 0.5), True), ((1.5, 0.5), False), ((0.5, -1.5), False), ((-0.5, -0.5), True)],
+)
+def test_what_does_not_meet_the_frame_is_not_drawn(box: tuple[float, float], meets: bool) -> None:
+    line = np.array(box) + np.array([[[0.0, 0.0], [1.0, 1.0]]])
+    assert paint.seen(line, ((0.0, 1.0), (0.0, 1.0))).tolist() == [meets]
