@@ -1,0 +1,103 @@
+"""Meshes from files: the bodies of the scene, or a sentence that says where they are not."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from iga.arms import arm_meshes
+from iga.extraction import Mesh
+from iga.iga_file import from_mesh, write_iga
+from iga.peel_meshes import tmeshes as peel_tmeshes
+from iga.tspline import tspline_rectangle
+from verify.given_meshes import given_meshes
+from verify.methods import iga_problem, solve
+from verify.refusal import Refusal
+from verify.scene import Scene, load_scene
+
+DCB = ("discretization.dofs=400", "load.opening=0.5", "discretization.steps=4")
+
+
+@pytest.fixture(scope="module")
+def arms() -> tuple[Mesh, ...]:
+    return arm_meshes(iga_problem(load_scene("dcb-czm1", DCB), "tspline")[1])
+
+
+def written(folder: Path, *meshes: Mesh) -> list[str]:
+    files = [folder / f"body-{i}.iga" for i in range(len(meshes))]
+    for file, mesh in zip(files, meshes, strict=True):
+        write_iga(from_mesh(mesh), file)
+    return [str(file) for file in files]
+
+
+def scene_with(files: list[str], name: str = "dcb-czm1", *overrides: str) -> Scene:
+    return load_scene(name, [f"specimen.mesh={json.dumps(files)}", *overrides])
+
+
+def alike(found: Mesh, mesh: Mesh) -> bool:
+    """The same control points, in whatever order."""
+    points = [np.unique(np.round(one.P_AI, 7) + 0.0, axis=0) for one in (found, mesh)]
+    return points[0].shape == points[1].shape and np.allclose(*points, atol=1e-6)
+
+
+def test_two_files_are_both_arms_and_one_is_mirrored(arms: tuple[Mesh, ...], tmp_path: Path) -> None:
+    upper, lower = given_meshes(scene_with(written(tmp_path, *arms)))
+    assert alike(upper, arms[0]) and alike(lower, arms[1])
+    assert upper.P_AI[:, 1].min() == pytest.approx(0.0, abs=1e-9) and lower.P_AI[:, 1].max() == pytest.approx(
+        0.0, abs=1e-9
+    )
+    alone, image = given_meshes(scene_with(written(tmp_path, arms[0])))
+    assert alike(alone, arms[0])
+    assert alike(replace(image, P_AI=image.P_AI * [1.0, -1.0]), arms[0])
+    assert given_meshes(load_scene("dcb-czm1")) == ()
+
+
+def test_the_load_is_that_of_the_mesh_that_was_made(arms: tuple[Mesh, ...], tmp_path: Path) -> None:
+    """But for the points of its elements, of which a mesh that is given has more."""
+    given = solve(scene_with(written(tmp_path, *arms), "dcb-czm1", *DCB), "tspline")
+    made = solve(load_scene("dcb-czm1", DCB), "tspline")
+    assert given.dofs == made.dofs and given.complete
+    assert given.load == pytest.approx(made.load, rel=2e-3)
+
+
+def test_bodies_of_a_peel(tmp_path: Path) -> None:
+    problem = iga_problem(load_scene("peel-60", ["discretization.dofs=1200"]), "tspline")[1]
+    bodies = tuple(tspline_rectangle(mesh) for mesh in peel_tmeshes(problem))
+    found = given_meshes(scene_with(written(tmp_path, *bodies), "peel-60"))
+    assert all(alike(one, body) for one, body in zip(found, bodies, strict=True))
+    with pytest.raises(Refusal, match=r"its left side must lie on X = 0, got 10$"):
+        given_meshes(
+            scene_with(written(tmp_path, replace(bodies[0], P_AI=bodies[0].P_AI + [10.0, 0.0]), bodies[1]), "peel-60")
+        )
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda P: P + [0.5, 0.0], "its left side must lie on X = 0, got 0.5"),
+        (lambda P: P * [1.5, 1.0], "its right side must lie on X = 14, got 21"),
+        (lambda P: P + [0.0, 0.25], "its bottom side must lie on Y = 0, got 0.25"),
+        (
+            lambda P: np.stack([P[:, 0] + 0.01 * P[:, 0] * (14.0 - P[:, 0]), P[:, 1]], axis=1),
+            "an element boundary on its bottom side must lie at the end of the bond, X = 4, got",
+        ),
+    ],
+    ids=["moved", "long", "high", "elsewhere"],
+)
+def test_a_mesh_of_another_specimen_is_refused(change, words: str, arms: tuple[Mesh, ...], tmp_path: Path) -> None:
+    other = replace(arms[0], P_AI=change(arms[0].P_AI))
+    with pytest.raises(Refusal, match=f"specimen.mesh: .*body-0.iga: {words}"):
+        given_meshes(scene_with(written(tmp_path, other, arms[1])))
+
+
+def test_what_is_no_mesh_is_refused(tmp_path: Path) -> None:
+    absent = tmp_path / "absent.iga"
+    with pytest.raises(Refusal, match=r"specimen.mesh: cannot read .*absent.iga: No such file"):
+        given_meshes(scene_with([str(absent)]))
+    absent.write_text("type plane\nnodeN three\n")
+    with pytest.raises(Refusal, match=r"specimen.mesh: .*absent.iga"):
+        given_meshes(scene_with([str(absent)]))
