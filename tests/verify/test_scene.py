@@ -77,6 +77,12 @@ BROKEN = {
     "discretization.degree=6": "discretization.degree: must be >= 1 and <= 5, got 6",
     "discretization.degree=3.0": "discretization.degree: must be an integer >= 1 and <= 5, got 3.0",
     "discretization.interface_points=13": "discretization.interface_points: must be >= 1 and <= 12, got 13",
+    'discretization={interface_rule="lobatto", interface_points=1}': (
+        "discretization.interface_points: must be an integer from 2 to 12 for the lobatto rule, got 1"
+    ),
+    "discretization={adaptive=true, mismatch=1.5}": (
+        "discretization.mismatch: must be 1 with discretization.adaptive, whose arms are alike, got 1.5"
+    ),
     "discretization.interface_rule=simpson": (
         'discretization.interface_rule: must be "gauss", "lobatto" or "lumped", got \'simpson\''
     ),
@@ -118,6 +124,9 @@ BROKEN_PEEL = {
     ),
     "strip.young=-1": "strip.young: must be > 0, got -1",
     "substrate.poison=0.2": 'substrate.poison: is not a key of a scene, got 0.2; did you mean "poisson"?',
+    'specimen.mesh="strip.iga"': "specimen.mesh: must be two files, of strip and substrate, got ['strip.iga']",
+    "discretization.adaptive=true": "discretization.adaptive: must be false for a peel, got true",
+    "effects.search=false": "effects.search: must be true for a peel: strip and substrate turn, got false",
     "effects.symmetry=true": "effects.symmetry: must be false for a peel: strip and substrate differ, got true",
     "load.opening=301": "load.opening: must be >= -4 (-2 strip_thickness) and <= 300 (2 strip_length), got 301",
 }
@@ -187,6 +196,12 @@ def test_each_kind_of_specimen_has_its_own_materials(tmp_path: Path) -> None:
 def test_mismatched_meshes_need_two_arms() -> None:
     assert sentences("dcb-czm1", "effects.symmetry=true", "discretization.mismatch=1.37") == (
         "discretization.mismatch: must be 1 with effects.symmetry, which models the upper arm alone, got 1.37",
+    )
+
+
+def test_given_meshes_are_taken_as_they_are() -> None:
+    assert sentences("dcb-czm1", 'specimen.mesh="arm.iga"', "discretization.adaptive=true") == (
+        "discretization.adaptive: must be false with specimen.mesh, which is taken as it is, got true",
     )
 
 
