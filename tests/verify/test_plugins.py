@@ -17,6 +17,7 @@ from verify.fingerprint import fingerprint
 from verify.folder import read_columns, read_result
 from verify.jobs import left_out
 from verify.methods import known_methods, solve
+from verify.result import Result
 from verify.scene import load_scene
 from verify.verification import planned, verify
 
@@ -221,3 +222,61 @@ def test_nothing_is_imported_to_list_methods(package: Path) -> None:
     program = "import sys; from verify.methods import known_methods; assert 'good' in known_methods(); "
     program += "sys.exit('fakecode' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", program], env=os.environ | {}).returncode == 0
+
+
+class Given:
+    """A plug-in whose solver is at hand."""
+
+    package, entries = "fakecode 1.0", ()
+
+    def __init__(self, solver) -> None:
+        self.solver = solver
+
+    def load(self):
+        return self.solver
+
+
+@pytest.mark.parametrize(
+    ("steps", "why"),
+    [
+        ({"opening": [0.0, 1.0]}, "ValueError: the steps must have load, got opening"),
+        ({}, "ValueError: the steps must have load and opening, got none"),
+        ({"opening": [0.0, 1.0], "load": [0.0]}, "ValueError: the steps must be columns of one length, got"),
+        ({"opening": [[0.0, 1.0]], "load": [[0.0, 1.0]]}, "ValueError: the steps must be columns of one length, got"),
+        ({"opening": [0.0, np.nan], "load": [0.0, 1.0]}, "ValueError: opening and load must be finite"),
+        ({"opening": [0.0, 1.0], "load": [0.0, np.inf]}, "ValueError: opening and load must be finite"),
+    ],
+)
+def test_a_result_that_is_no_curve_is_a_fault(steps: dict, why: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    solver = Given(lambda scene, on_step: Result("mine", steps))
+    monkeypatch.setattr(plugins, "plugins", lambda: {"mine": solver})
+    with pytest.raises(plugins.PluginFault) as fault:
+        plugins.solve(load_scene(LINEAR), "mine", lambda row: None)
+    assert str(fault.value).startswith(f"plug-in mine of fakecode 1.0: {why}")
+
+
+def test_a_path_that_is_told_begins_at_zero(monkeypatch: pytest.MonkeyPatch) -> None:
+    def solver(scene, on_step) -> Result:
+        on_step({"opening": 0.5, "load": 2})
+        on_step({"opening": 1.0, "load": 1})
+        return Result("mine", {"opening": [0.5, 1.0], "load": [2, 1]})
+
+    rows = []
+    monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given(solver)})
+    found = plugins.solve(load_scene(LINEAR), "mine", lambda row: rows.append(dict(row)))
+    assert rows == [{"opening": d, "load": P} for d, P in ((0.0, 0.0), (0.5, 2.0), (1.0, 1.0))]
+    assert found.opening.tolist() == [0.0, 0.5, 1.0] and found.load.tolist() == [0.0, 2.0, 1.0]
+    assert found.method == "mine" and found.peak_memory_mb > 0.0 and found.seconds["total"] >= 0.0
+
+
+def test_a_row_without_a_load_is_a_fault_and_so_is_a_judge_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    def solver(scene, on_step) -> Result:
+        on_step({"opening": 0.5})
+        return Result("mine", {"opening": [0.5], "load": [2]})
+
+    solver.unsuitable = lambda scene: 1 / 0
+    monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given(solver)})
+    with pytest.raises(plugins.PluginFault, match="a row must have load, got opening"):
+        plugins.solve(load_scene(LINEAR), "mine", lambda row: None)
+    with pytest.raises(methods.NotRun, match="not run: plug-in mine of fakecode 1.0: ZeroDivisionError"):
+        plugins.require(load_scene(LINEAR), "mine")
