@@ -12,6 +12,7 @@ pytest.importorskip("jinja2")
 
 from figures import Drawn  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
 from test_cost import a_row  # noqa: E402
 
 from verify.cost import figures as charts  # noqa: E402
@@ -19,7 +20,7 @@ from verify.report import fields, opening, paint  # noqa: E402
 from verify.report.entry import entries  # noqa: E402
 from verify.report.fields import process_zone, shared_snapshots, traction  # noqa: E402
 from verify.report.opening import frames  # noqa: E402
-from verify.report.style import PHASES, colour  # noqa: E402
+from verify.report.style import PHASES, STRESS_MAP, colour  # noqa: E402
 from verify.result import Snapshot  # noqa: E402
 
 #: Error, seconds and unknowns of a ladder of each of two methods, and one run off the ladders.
@@ -212,3 +213,31 @@ def test_the_outline_of_a_grid_goes_once_around_it() -> None:
 def test_what_does_not_meet_the_frame_is_not_drawn(box: tuple[float, float], meets: bool) -> None:
     line = np.array(box) + np.array([[[0.0, 0.0], [1.0, 1.0]]])
     assert paint.seen(line, ((0.0, 1.0), (0.0, 1.0))).tolist() == [meets]
+
+
+@pytest.mark.parametrize("value", [-1.0, -0.5, 0.25, 1.0])
+def test_a_field_has_the_colour_of_its_value_and_nothing_is_painted_beside_it(value: float) -> None:
+    """One element over the left half of the frame."""
+    figure = Figure(figsize=(2.0, 2.0))
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    u, v = np.meshgrid(np.linspace(0.0, 0.5, 4), np.linspace(0.0, 1.0, 4), indexing="ij")
+    paint.paint(axes, np.stack([u, v], axis=-1)[None], np.full((1, 4, 4), 2.0 * value), 2.0, (0.0, 1.0), (0.0, 1.0))
+    (image,) = axes.images
+    pixels = np.asarray(image.get_array())
+    rows, columns = pixels.shape[:2]
+    inside, outside = pixels[rows // 2, columns // 4], pixels[rows // 2, 3 * columns // 4]
+    assert inside == pytest.approx(STRESS_MAP(0.5 + 0.5 * value), abs=0.02) and outside[3] == 0.0
+    assert image.get_extent() == [0.0, 1.0, 0.0, 1.0] and (axes.get_xlim(), axes.get_ylim()) == ((0.0, 1.0), (0.0, 1.0))
+    (outline,) = axes.lines
+    assert np.nanmax(outline.get_xdata()) == 0.5 and np.nanmin(outline.get_ydata()) == 0.0
+
+
+def test_a_field_varies_over_its_element_as_its_samples_do() -> None:
+    figure = Figure(figsize=(2.0, 2.0))
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    u, v = np.meshgrid(np.linspace(0.0, 1.0, 4), np.linspace(0.0, 1.0, 4), indexing="ij")
+    paint.paint(axes, np.stack([u, v], axis=-1)[None], (2.0 * u - 1.0)[None], 1.0, (0.0, 1.0), (0.0, 1.0))
+    pixels = np.asarray(axes.images[0].get_array())
+    for share in (0.1, 0.5, 0.9):
+        found = pixels[pixels.shape[0] // 2, int(share * pixels.shape[1])]
+        assert found == pytest.approx(STRESS_MAP(share), abs=0.06), share
