@@ -57,7 +57,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _how_to_go_on(options: argparse.Namespace | None) -> str:
     """What an interrupt has left, and what the same command does with it."""
-    if options is None or not options.keeps or getattr(options, "dry_run", False):
+    if options is None or not options.keeps or options.out is None or getattr(options, "dry_run", False):
         return "; the same command again starts over"
     kept, then = options.keeps
     return f"; {kept} in {options.out}, and the same command again {then}"

@@ -1,0 +1,197 @@
+"""Commands and their exit codes: how studies end, where they are not begun, what is said when they cannot go on."""
+
+from __future__ import annotations
+
+import errno
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from verify import commands, compare_command
+from verify.cli import FAILED, INTERRUPTED, REFUSED, main
+from verify.compare_command import Source
+from verify.cost import accuracy
+from verify.cost import study as cost_study
+from verify.curve_file import Reading
+from verify.hard import suite
+from verify.methods import DOLFINX_MISSING, Unsuitable
+from verify.result import Result
+from verify.scaling import study as scaling_study
+from verify.scene import load_scene
+from verify.switches import study as effects_study
+
+COMMANDS = ("cost", "effects", "scaling", "hard")
+
+
+@pytest.fixture
+def studied(monkeypatch: pytest.MonkeyPatch):
+    """Studies that end at once, well or not; what they were asked for."""
+    asked: list[tuple] = []
+
+    def end(well: bool) -> list[tuple]:
+        def study(found: object):
+            return lambda *what: asked.append(what) or found
+
+        monkeypatch.setattr(cost_study, "cost", study(SimpleNamespace() if well else None))
+        monkeypatch.setattr(effects_study, "effects", study(SimpleNamespace(complete=well)))
+        monkeypatch.setattr(scaling_study, "scaling", study(SimpleNamespace(complete=well)))
+        monkeypatch.setattr(suite, "hard", study(well))
+        return asked
+
+    return end
+
+
+@pytest.mark.parametrize("well", [True, False])
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_study_ends_with_what_it_found(name: str, well: bool, studied, tmp_path: Path) -> None:
+    asked, out = studied(well), tmp_path / "there" / "out"
+    what = "slender" if name == "hard" else "dcb-czm1"
+    assert main([name, what, "--out", str(out)]) == (0 if well else FAILED)
+    assert len(asked) == 1 and out in asked[0] and out.is_dir()
+
+
+@pytest.mark.parametrize("name", COMMANDS[:3])
+def test_overrides_reach_the_study_and_its_scene(name: str, studied, tmp_path: Path) -> None:
+    asked = studied(True)
+    assert main([name, "dcb-czm1", "--set", "interface.strength=5.0", "--out", str(tmp_path)]) == 0
+    source, scene, *rest = asked[0]
+    assert source == "dcb-czm1" and scene.interface.strength == 5.0 and ["interface.strength=5.0"] in rest
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_dry_run_does_nothing(name: str, studied, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    asked, out = studied(True), tmp_path / "out"
+    what = "slender" if name == "hard" else "dcb-czm1"
+    assert main([name, what, "--dry-run", "--out", str(out)]) == 0
+    assert asked == [] and not out.exists() and "about " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("dry", [[], ["--dry-run"]])
+def test_effects_of_what_cannot_be_solved_are_not_begun(
+    dry: list[str], studied, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    asked, out = studied(True), tmp_path / "out"
+    turning = ["effects", "dcb-czm1", "--method", "beam", "--set", "load.opening=[1.0, 0.5]", "--out", str(out), *dry]
+    assert main(turning) == REFUSED and "must only increase" in capsys.readouterr().err
+    monkeypatch.setattr("verify.methods.dolfinx_installed", lambda: False)
+    assert main(["effects", "dcb-czm1", "--method", "dolfinx", "--out", str(out), *dry]) == FAILED
+    assert DOLFINX_MISSING.split(": ")[1] in capsys.readouterr().err
+    assert asked == [] and not out.exists()
+
+
+def test_an_unsuitable_scene_is_a_refusal() -> None:
+    with pytest.raises(Unsuitable, match="must only increase"):
+        effects_study.would_run("dcb-czm1", load_scene("dcb-czm1", ["load.opening=[1.0, 0.5]"]), "beam", [], Path("x"))
+
+
+@pytest.mark.parametrize("name", ["cost", "effects", "scaling"])
+def test_a_study_is_begun_by_one_process(
+    name: str, studied, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    asked = studied(True)
+    monkeypatch.setattr("verify.run.mpi_size", lambda: 2)
+    assert main([name, "dcb-czm1", "--out", str(tmp_path)]) == REFUSED
+    assert asked == [] and "mpirun" in capsys.readouterr().err
+
+
+def test_an_accuracy_becomes_a_method_and_a_mesh(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    choice = SimpleNamespace(why="NURBS, 300 unknowns", method="lagrange", overrides=("discretization.dofs=300",))
+    asked: list[tuple] = []
+    monkeypatch.setattr(accuracy, "choose", lambda *what: asked.append(what) or choice)
+    words = ["solve", "dcb-czm1", "--accuracy", "0.3%", "--set", "load.opening=0.1"]
+    assert main([*words, "--out", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr()
+    assert "NURBS, 300 unknowns" in said.err and "peak load" in said.out
+    scene, wanted, where = asked[0]
+    assert scene.load.opening == (0.1,) and wanted == pytest.approx(0.003) and where.name == "cost.json"
+    assert '"lagrange"' in (tmp_path / "out" / "result.json").read_text()
+    monkeypatch.setattr("verify.run.mpi_size", lambda: 4)
+    assert main([*words, "--out", str(tmp_path / "other")]) == REFUSED
+    assert "--accuracy: must be asked for in 1 process, without mpirun, got 4" in capsys.readouterr().err
+    assert len(asked) == 1
+
+
+@pytest.mark.parametrize("name", ["solve", "cost"])
+@pytest.mark.parametrize(
+    ("number", "code"), [(errno.ENOSPC, FAILED), (errno.EACCES, FAILED), (errno.EDQUOT, FAILED), (errno.EBADF, None)]
+)
+def test_a_disk_that_takes_no_more_is_a_sentence_and_anything_else_an_error(
+    name: str, number: int, code: int | None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    def full(options) -> int:
+        raise OSError(number, "it is so", "curve.csv")
+
+    monkeypatch.setattr(commands, name, full)
+    full.__name__ = name
+    if code is None:
+        with pytest.raises(OSError, match="it is so"):
+            main([name, "dcb-czm1"])
+        return
+    assert main([name, "dcb-czm1", "--out", "there"]) == code
+    said = capsys.readouterr().err
+    assert "curve.csv: cannot be written: it is so; " in said and "the same command again" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "end"),
+    [
+        (["solve", "dcb-czm1", "--out", "there"], "in there, and the same command again starts over"),
+        (["solve", "dcb-czm1"], "interrupted; the same command again starts over"),
+        (["doctor"], "interrupted; the same command again starts over"),
+        (["cost", "dcb-czm1", "--dry-run"], "interrupted; the same command again starts over"),
+    ],
+)
+def test_an_interrupt_tells_how_to_go_on(
+    words: list[str], end: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    def interrupted(options) -> int:
+        raise KeyboardInterrupt
+
+    interrupted.__name__ = words[0]
+    monkeypatch.setattr(commands, words[0], interrupted)
+    assert main(words) == INTERRUPTED
+    assert capsys.readouterr().err.rstrip().endswith(end)
+
+
+def test_a_result_in_words(capsys: pytest.CaptureFixture) -> None:
+    steps = {"opening": np.array([0.0, 0.5, 1.0]), "load": np.array([0.0, 2.5, 1.25])}
+    result = Result("nurbs", steps, status="stopped: here", ending="", seconds={"mesh": 0.5, "total": 1.25})
+    commands._print_result(result, (), Path("there"))
+    said = capsys.readouterr()
+    assert "peak load 2.5 at opening 0.5, 2 steps" in said.out and "seconds: mesh 0.50, total 1.25" in said.out
+    assert said.out.rstrip().endswith("stopped: here: there") and "nurbs stopped: here" in said.err
+    commands._print_result(Result("nurbs", {"opening": np.zeros(0), "load": np.zeros(0)}), (), Path("there"))
+    assert "peak" not in capsys.readouterr().out
+
+
+def test_the_way_of_a_programme_adds_up_back_and_forth() -> None:
+    way = commands._Travelled()
+    assert [way({"opening": d}) for d in (0.0, 1.0, 0.5, -0.5, 2.0)] == [0.0, 1.0, 1.5, 2.5, 5.0]
+
+
+@pytest.mark.parametrize(
+    ("path", "label"),
+    [("a/b/curve.csv", "b/curve.csv"), ("curve.csv", "curve.csv"), ("/curve.csv", "//curve.csv"), (".", ".")],
+)
+def test_a_curve_is_called_by_its_name_and_that_of_its_folder(path: str, label: str) -> None:
+    assert Source(Path(path), Reading()).label == label
+
+
+def test_numbers_of_a_comparison_name_both_sides(tmp_path: Path) -> None:
+    for name, factor in (("a", 1.01), ("b", 1.0)):
+        rows = "\n".join(f"{d},{factor * d * (2 - d)}" for d in np.linspace(0, 1.5, 40))
+        (tmp_path / f"{name}.csv").write_text(f"opening,load\n{rows}\n")
+    sources = tuple(Source(tmp_path / f"{name}.csv", Reading()) for name in "ab")
+    comparison, loads = compare_command.held_against(*sources, None, [0.75])
+    found = compare_command.numbers(sources, comparison, loads, [])
+    assert found["a"]["file"].endswith("a.csv") and found["b"]["file"].endswith("b.csv") and found["passed"]
+    assert found["a"]["peak_load"] == pytest.approx(1.01, rel=1e-3) and found["b"]["peak_load"] == pytest.approx(
+        1.0, rel=1e-3
+    )
+    assert found["curve_error"] == pytest.approx(0.01) and found["peak_difference"] == pytest.approx(0.01)
+    assert found["loads"][0]["load_a"] == pytest.approx(1.01 * found["loads"][0]["load_b"])
+    assert (found["begin"], found["end"], found["asked_end"]) == (0.0, 1.5, 1.5) and found["a"]["points"] == 40
