@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields as dataclass_fields
 from dataclasses import replace
 
 import numpy as np
@@ -15,13 +16,18 @@ from made_up_runs import scene_report  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from test_cost import a_row  # noqa: E402
 
+from verify.compare import compare  # noqa: E402
 from verify.cost import figures as charts  # noqa: E402
-from verify.report import fields, opening, paint  # noqa: E402
+from verify.curve import envelope  # noqa: E402
+from verify.report import comparison, fields, opening, paint, undeformed  # noqa: E402
 from verify.report.entry import entries  # noqa: E402
 from verify.report.fields import process_zone, shared_snapshots, traction  # noqa: E402
 from verify.report.opening import frames  # noqa: E402
 from verify.report.style import PHASES, STRESS_MAP, colour  # noqa: E402
 from verify.result import Snapshot  # noqa: E402
+from verify.scaling import page as scaling  # noqa: E402
+from verify.scaling.row import Row as ScalingRow  # noqa: E402
+from verify.scaling.study import Study  # noqa: E402
 
 #: Error, seconds and unknowns of a ladder of each of two methods, and one run off the ladders.
 ROWS = [
@@ -241,3 +247,95 @@ def test_a_field_varies_over_its_element_as_its_samples_do() -> None:
     for share in (0.1, 0.5, 0.9):
         found = pixels[pixels.shape[0] // 2, int(share * pixels.shape[1])]
         assert found == pytest.approx(STRESS_MAP(share), abs=0.06), share
+
+
+# --- two curves
+
+
+def test_two_curves_and_their_difference(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = Drawn(monkeypatch, comparison)
+    d = np.linspace(0.0, 2.0, 81)
+    load = d * (3.0 - d) + 0.0
+    found = compare((d, load * (1.0 + 0.04 * (d > 1.0))), (d, load))
+    comparison.page(found, ("mine.csv", "theirs.csv"), (), (), ())
+    axes = drawn.axes("Load against opening of mine.csv and theirs.csv")
+    for part, ink in ((found.a, "lagrange"), (found.b, "dolfinx")):
+        path, under_control, top = [o for o in axes.lines if o.get_color() == colour(ink)]
+        assert np.array_equal(path.get_xdata(), part.opening) and np.array_equal(path.get_ydata(), part.load)
+        assert np.array_equal(
+            np.column_stack(under_control.get_data()), np.column_stack(envelope(part.opening, part.load))
+        )
+        assert (top.get_xdata()[0], top.get_ydata()[0]) == (part.peak_opening, part.peak_load)
+    assert [t.get_text() for t in axes.get_legend().get_texts()] == ["B: theirs.csv", "A: mine.csv"]
+    off = drawn.axes("Difference of the loads")
+    gap = 100 * (found.load_a_n - found.load_b_n) / found.b.peak_load
+    lines = [o for o in off.lines if len(o.get_xdata()) == gap.size]
+    assert len(lines) == 1 and lines[0].get_ydata() == pytest.approx(gap)
+    (ring,) = [o for o in off.lines if o.get_color() == colour("bad")]
+    at = int(np.argmax(np.abs(gap)))
+    assert (ring.get_xdata()[0], ring.get_ydata()[0]) == pytest.approx((found.opening_n[at], gap[at]))
+    assert ring.get_ydata()[0] == pytest.approx(4.0, rel=0.05)
+
+
+# --- meshes
+
+
+def boxes(x: np.ndarray, low: float, high: float) -> np.ndarray:
+    """Sampling grids (n, 2, 2, 2) of elements side by side."""
+    corners = [[[a, low], [a, high]] for a in x]
+    return np.array([[left, right] for left, right in zip(corners, corners[1:], strict=False)])
+
+
+def test_the_longest_side_on_the_bond_in_the_zone_counts() -> None:
+    """Short elements from 4 to 8 on the upper arm, long ones elsewhere; those of the lower arm are of length 2."""
+    upper = boxes(np.array([0.0, 4.0, 4.5, 5.0, 6.0, 8.0, 14.0]), 0.0, 0.2)
+    lower = boxes(np.linspace(0.0, 14.0, 8), -0.2, 0.0)
+    one = replace(a_snapshot(1.0, np.zeros(5)), X_euvi=upper)
+    both = replace(one, X_euvi=np.concatenate([upper, lower]))
+    assert undeformed.bond_element(one, (4.1, 4.9)) == pytest.approx(0.5)
+    assert undeformed.bond_element(one, (4.1, 5.5)) == pytest.approx(1.0)
+    assert undeformed.bond_element(one, (4.5, 5.0)) == pytest.approx(0.5), (
+        "sides that only touch the zone are not in it"
+    )
+    assert undeformed.bond_element(both, (4.1, 4.9)) == pytest.approx(2.0)
+    apart = replace(one, X_euvi=boxes(np.linspace(0.0, 14.0, 8), 0.1, 0.2))
+    assert np.isnan(undeformed.bond_element(apart, (4.1, 4.9)))
+
+
+# --- growth
+
+
+def a_study(power: float) -> Study:
+    """A ladder of four sizes on one rank, one on two, and one with next to no mesh, whose program takes 90 MB."""
+    numbers = {field.name: 0.0 for field in dataclass_fields(ScalingRow) if field.type == "float"}
+    counts = {field.name: 1 for field in dataclass_fields(ScalingRow) if field.type == "int"}
+    rest = {"method": "dolfinx", "status": "complete"}
+    words = {f.name: rest.get(f.name, "") for f in dataclass_fields(ScalingRow) if f.type == "str"}
+    flags = {field.name: False for field in dataclass_fields(ScalingRow) if field.type == "bool"}
+    plain = ScalingRow(**numbers | counts | words | flags)
+    sizes = (1000, 2000, 4000, 8000)
+    times = {"iteration": 1e-5, "assembly": 5e-6, "factor": 3e-6}
+    rows = [
+        replace(plain, dofs=n, peak_memory_mb=90.0 + 0.01 * n, **{k: v * n**power for k, v in times.items()})
+        for n in sizes
+    ]
+    bare = replace(plain, dofs=100, bare=True, peak_memory_mb=90.0)
+    return Study(scene_report().scene, (bare, *rows), (), 10)
+
+
+def test_time_and_memory_grow_as_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, study = Drawn(monkeypatch, scaling), a_study(1.25)
+    scaling.time_of_an_iteration(study, "time")
+    scaling.memory(study, "memory")
+    time, memory = drawn.axes("Time of a Newton iteration"), drawn.axes("Peak memory")
+    ladder = study.ladder("dolfinx")
+    n = [row.dofs for row in ladder]
+    assert n == [1000, 2000, 4000, 8000]
+    measured, law, assembly, factor = [np.column_stack(o.get_data()) for o in time.lines]
+    for points, name in ((measured, "iteration"), (law, "iteration"), (assembly, "assembly"), (factor, "factor")):
+        assert np.allclose(points, [(row.dofs, getattr(row, name)) for row in ladder], rtol=1e-9), name
+    assert "DOLFINx: 1.25" in [t.get_text() for t in time.get_legend().get_texts()]
+    added, law, whole = [np.column_stack(o.get_data()) for o in memory.lines]
+    assert np.allclose(added, [(m, 0.01 * m) for m in n]) and np.allclose(law, added)
+    assert np.allclose(whole, [(m, 90.0 + 0.01 * m) for m in n])
+    assert {axes.get_xscale() for axes in (time, memory)} == {"log"} == {axes.get_yscale() for axes in (time, memory)}
