@@ -63,3 +63,25 @@ def test_the_least_unknowns_are_none_for_theories(name: str) -> None:
 def test_snapshots_of_a_programme_that_only_closes_are_of_the_start() -> None:
     scene = load_scene("dcb-czm1", ["load.opening=[-0.1]"])
     assert problem_keys(scene, "nurbs")["snapshot_openings"] == (0.0,) * len(SNAPSHOT_FRACTIONS)
+
+
+def opened(*overrides: str) -> np.ndarray:
+    return solve(load_scene("dcb-czm1", ["load.opening=0.2", *overrides]), "nurbs").opening
+
+
+def test_the_path_chooses_its_steps_where_the_mesh_resolves_the_zone() -> None:
+    """Elsewhere there are as many as are asked for by default."""
+    strong = ("interface.strength=20.0", "discretization.dofs=280", "load.opening=1.0")
+    coarse = opened(*strong, "discretization.steps=auto")
+    assert np.array_equal(coarse, opened(*strong, "discretization.steps=150"))
+    fine = opened("discretization.dofs=2000", "discretization.interface_points=4", "discretization.steps=auto")
+    assert len(fine) < 75 < len(coarse) and (fine[-1], coarse[-1]) == (0.2, 1.0)
+
+
+@pytest.mark.parametrize("name", ["dcb-czm1", "peel-60"])
+def test_fracture_mechanics_goes_beyond_its_factors_by_the_elastica(name: str) -> None:
+    """Opened by more than the length, the arms are no longer what the factors for large displacements were made for."""
+    scene = load_scene(name)
+    far = 1.2 * scene.specimen.extent
+    result = solve(load_scene(name, [f"load.opening={far}", "discretization.steps=20"]), "lefm")
+    assert result.opening[-1] <= far and np.all(np.isfinite(result.load)) and result.load.max() > 0.0
