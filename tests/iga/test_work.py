@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from test_peel import PEEL, column, isotropic
 
+from iga.cohesive import BilinearLaw
 from iga.peel import solve
 from iga.system import Energies
-from iga.work import leaks
+from iga.work import leaks, slid_off
 
 #: So soft that the bond hardly gives: strip and substrate stretch, slide on each other and tilt.
 SOFT = replace(PEEL, strip=isotropic(250.0, 0.2), substrate=isotropic(5.0, 0.2), dofs=900)
@@ -71,3 +72,41 @@ def test_what_a_step_may_leak(before, after, leak, left_over, refused):
             external_work=1.0, energies=off, state=end.state, response=response, residuals=(1.0, 0.1 * left_over)
         )
         assert leaks(system, start, after_it, 0.0) == (refused if not reversible else leak > 1e-3)
+
+
+LAW = BilinearLaw(4.0, 0.1, 12.5, 1e3, True, True)
+
+
+def sliding(gaps: list[float], histories: list[float], before: list[float], after: list[float]) -> float:
+    """Energy that goes with points whose share falls while they keep their gap and their damage."""
+    shares = [np.array(share) for share in (before, after)]
+    g_q, k_q = np.array(gaps), np.array(histories)
+    start, end = (
+        SimpleNamespace(
+            response=SimpleNamespace(contact=SimpleNamespace(share_q=share, g_q=g_q, m_q=None)),
+            tangent=SimpleNamespace(rate_q=0.0 * g_q, du_d=np.zeros(2)),
+            state=SimpleNamespace(k_q=k_q),
+        )
+        for share in shares
+    )
+    interface = SimpleNamespace(law=LAW, bonded_q=None, dA_q=np.array([0.5, 0.25])[: g_q.size])
+    return slid_off(SimpleNamespace(interface=interface), start, end, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(("gap", "history"), [(0.5 * LAW.g_max, 0.0), (2.0 * LAW.g_max, 4.0 * LAW.g_max), (-1e-3, 0.0)])
+def test_a_point_that_slides_off_takes_what_it_had_stored(gap, history):
+    """Whole or in part; below first damage, damaged and partly closed again, and pressed on the other face."""
+    cohesive, touching, _ = (float(part) for part in LAW.energies(np.array(gap), np.array(max(gap, history))))
+    stored = 0.5 * (cohesive + touching)  # of an area of 0.5
+    assert stored > 0.0
+    assert sliding([gap], [history], [1.0], [0.0]) == pytest.approx(stored, rel=1e-12)
+    assert sliding([gap], [history], [0.75], [0.25]) == pytest.approx(0.5 * stored, rel=1e-12)
+    assert sliding([gap], [history], [0.25], [0.75]) == pytest.approx(-0.5 * stored, rel=1e-12)
+
+
+def test_points_slide_off_one_by_one_and_those_that_stay_take_nothing():
+    gaps, histories = [0.5 * LAW.g_max, 2.0 * LAW.g_max], [0.0, 3.0 * LAW.g_max]
+    both = sliding(gaps, histories, [1.0, 1.0], [0.25, 0.5])
+    alone = [sliding(gaps, histories, [1.0, 1.0], share) for share in ([0.25, 1.0], [1.0, 0.5])]
+    assert both == pytest.approx(sum(alone), rel=1e-12) and min(alone) > 0.0
+    assert sliding(gaps, histories, [1.0, 1.0], [1.0, 1.0]) == 0.0
