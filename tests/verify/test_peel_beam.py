@@ -89,6 +89,17 @@ def test_layers_that_hardly_contract_stay_stable(nu):
         assert k > 0.0 and g > 0.0
 
 
+@pytest.mark.parametrize("nu", [0.2, 0.45, 0.4999])
+@pytest.mark.parametrize("length", [1e-3, 25.4])
+def test_parameters_of_a_layer_know_no_units(nu, length):
+    """Where the tangent is taken and where the least coupling is."""
+    elastic = {"E1": 5e3, "E2": 5e3, "G12": 2.5e3 / (1 + nu), "nu12": nu, "plane": "strain"}
+    here, there = Layer.of(120.0, 10.0, **elastic), Layer.of(120.0 * length, 10.0 * length, **elastic)
+    for q in np.geomspace(1e-3, 10.0, 9):
+        (k, g), (k_there, g_there) = here.parameters(q), there.parameters(q / length)
+        assert k_there == pytest.approx(k / length, rel=1e-9) and g_there == pytest.approx(g * length, rel=1e-9)
+
+
 @pytest.mark.parametrize("finite", [False, True])
 def test_derivative_of_the_rates(finite):
     strip, rng = Strip(Arm(0.24, 1 / 12, finite), 0.7, 1.3), np.random.default_rng(1)

@@ -16,13 +16,15 @@ pytest.importorskip("jinja2")
 from made_up_runs import ENVIRONMENT, made_up, scene_report  # noqa: E402
 
 from verify import report  # noqa: E402
+from verify.checks import law_of  # noqa: E402
 from verify.curve import curve_error  # noqa: E402
 from verify.methods import DOLFINX_MISSING, DOLFINX_WAYS  # noqa: E402
 from verify.report.agreement import path  # noqa: E402
 from verify.report.style import STRESS_MAP, _short_numbers, to_svg  # noqa: E402
 from verify.report.summary import KINDS  # noqa: E402
-from verify.report.text import number, percent, quantity, seconds  # noqa: E402
+from verify.report.text import inputs, number, percent, quantity, seconds  # noqa: E402
 from verify.result import CURVE_COLUMNS, Result  # noqa: E402
+from verify.scene import load_scene  # noqa: E402
 from verify.verdict import Check, SceneReport  # noqa: E402
 
 
@@ -289,3 +291,33 @@ def test_figures_say_a_style_once_and_their_images_keep_every_pixel() -> None:
     seen = expected[..., 3] > 0
     assert found.shape == expected.shape and not found[~seen][:, 3].any()
     assert np.abs(found.astype(int) - expected)[seen].max() <= 1
+
+
+@pytest.mark.parametrize("name", ["dcb-czm1", "peel-60", "alfano-crisfield-weak"])
+def test_inputs_are_those_of_the_scene(name: str) -> None:
+    """Openings of the law from where its traction is the strength and where it is gone."""
+    scene = load_scene(name)
+    law, given = law_of(scene), scene.interface
+    rows = {(group, label): value.replace("\u00a0", " ") for group, label, value in inputs(scene)}
+    assert len(rows) == len(inputs(scene))
+
+    def told(group: str, label: str) -> float:
+        text = rows[group, label].replace("\u202f", "").replace("−", "-")
+        mantissa, _, rest = text.partition(" × 10")
+        power = rest.split(" ")[0].translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-"))
+        return float(mantissa.split(" ")[0]) * 10.0 ** (int(power) if power else 0)
+
+    assert told("interface", "strength p_max") == pytest.approx(given.strength, rel=1e-5)
+    assert told("interface", "toughness G_Ic") == pytest.approx(given.toughness, rel=1e-5)
+    g_u, g_max = told("interface", "full opening g_u = 2 G_Ic / p_max"), told("interface", "opening at peak g_max")
+    assert (g_u, g_max) == pytest.approx((law.g_open, law.g_peak), rel=1e-5)
+    assert told("interface", "ductility g_u / g_max") == pytest.approx(g_u / g_max, rel=1e-4)
+    assert told("interface", "contact penalty") == pytest.approx(given.penalty, rel=1e-5)
+    for label, value in scene.specimen:
+        if isinstance(value, float):
+            assert told("specimen", label.replace("_", " ")) == pytest.approx(value, rel=1e-5)
+    bodies = ("strip", "substrate") if scene.specimen.kind == "peel" else ("material",)
+    constants = [value for body in bodies for _, value in getattr(scene, body)]
+    assert [told(*key) for key in rows if key[0] in bodies] == pytest.approx(constants, rel=1e-5)
+    assert rows["isogeometric mesh", "target unknowns"] == str(scene.discretization.dofs)
+    assert rows["DOLFINx mesh", "elements along"] == str(scene.dolfinx.elements)
