@@ -339,3 +339,25 @@ def test_time_and_memory_grow_as_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.allclose(added, [(m, 0.01 * m) for m in n]) and np.allclose(law, added)
     assert np.allclose(whole, [(m, 90.0 + 0.01 * m) for m in n])
     assert {axes.get_xscale() for axes in (time, memory)} == {"log"} == {axes.get_yscale() for axes in (time, memory)}
+
+
+def test_every_axis_says_what_is_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bars have names in place of a label."""
+    drawn, study = Drawn(monkeypatch, charts, scaling), a_study(1.0)
+    charts.work_precision(ROWS, "key")
+    charts.error_and_unknowns(ROWS, {}, "key")
+    charts.triple(ROWS, "key")
+    scaling.time_of_an_iteration(study, "time")
+    scaling.memory(study, "memory")
+    lines = {title: (f.axes[0].get_xlabel(), f.axes[0].get_ylabel()) for title, f in drawn}
+    assert lines["Curve error against time"] == ("seconds", "curve error (%)")
+    assert lines["Curve error against unknowns"] == ("unknowns", "curve error (%)")
+    assert lines["Time of a Newton iteration against unknowns"] == ("unknowns", "seconds")
+    assert lines["Peak memory against unknowns"] == ("unknowns", "MB") and len(lines) == 7
+    assert all(x and y and f"{y} against {x}" == title for title, (x, y) in lines.items() if "digits" in title)
+    charts.phases(ROWS[:2], "key")
+    scaling.strong(study.ladder("dolfinx"), "key")
+    for title, figure in drawn[-2:]:
+        axes = figure.axes[0]
+        names = [text.get_text() for text in axes.get_yticklabels()]
+        assert axes.get_xlabel() == "seconds" and len(names) == len(set(names)) >= 2 and all(names), title

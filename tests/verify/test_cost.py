@@ -15,7 +15,7 @@ from verify.cli import main
 from verify.cost import ladder as ladder_of
 from verify.cost import reference as reference_of
 from verify.cost import study as study_of
-from verify.cost.findings import cheapest, growth, of_equal_steps, orders, pareto, table
+from verify.cost.findings import LEVELS, cheapest, growth, of_equal_steps, orders, pareto, table
 from verify.cost.ladder import BEAM, FAMILIES, RATIO, Family, Try, ladder, ladders
 from verify.cost.nonzeros import nonzeros
 from verify.cost.reference import Reference, distance, reference
@@ -260,6 +260,22 @@ def test_a_degree_that_another_beats_by_far_goes_no_further() -> None:
     assert study_of._high_enough(last, [last, a_row("dolfinx", 0.004, 3.9, degree=2)])
     assert not study_of._high_enough(last, [last, a_row("dolfinx", 0.004, 4.1, degree=2)])
     assert not study_of._high_enough(last, [last, a_row("nurbs", 0.004, 1.0)]), "methods do not end each other"
+
+
+def test_a_ladder_has_patience_with_the_quickest_accurate_run() -> None:
+    """Of any method, but with a mesh; and no longer than the longest that a run may take."""
+    finest, patience = min(LEVELS.values()), study_of.PATIENCE
+    accurate, quick = a_row("nurbs", 0.9 * finest, 3.0), a_row("lagrange", 2.0 * finest, 0.01)
+    theory = a_row("beam", 0.1 * finest, 0.001, dofs=0)
+    for part, ends in ((0.99, False), (1.01, True)):
+        last = a_row("dolfinx", 0.02, part * patience * 3.0)
+        assert study_of._high_enough(last, [last, accurate, quick, theory]) == ends
+        assert not study_of._high_enough(last, [last, quick, theory])
+        slow = a_row("dolfinx", 0.02, part * study_of.LONGEST)
+        assert study_of._high_enough(slow, [slow]) == ends
+    done = a_row("dolfinx", 0.99 * study_of.ENOUGH * finest, 1.0)
+    assert study_of._high_enough(done, [done])
+    assert not study_of._high_enough(replace(done, curve_error=1.01 * study_of.ENOUGH * finest), [done])
 
 
 def test_more_is_tried_where_it_may_pay() -> None:
