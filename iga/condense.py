@@ -29,8 +29,8 @@ from iga.system import System
 STRAIGHT = 1e-12
 #: Part of a rigid motion below which a spring does not feel it.
 RESISTED = 1e-9
-#: Solutions of the saddle point problem, each for what the last one has left.
-REFINEMENTS = 2
+#: Further solutions of the saddle point problem, each for what the last one has left.
+REFINEMENTS = 1
 #: Work of a dense LU over that of a banded one, for matrices of equal size: n^3 2/3 against 4 n k^2.
 DENSE, BANDED = 2.0 / 3.0, 4.0
 
@@ -86,7 +86,9 @@ def condensed(system: System) -> Condensed | None:
         lu = splu(saddle, permc_spec="MMD_ATA")
     except RuntimeError:  # rows that say the same twice
         return None
-    U_dr, S_rr, unit_rr = np.zeros((system.n_dof, n_r)), np.zeros((n_r, n_r)), np.eye(n_r)
+    U_dr, unit_rr = np.zeros((system.n_dof, n_r)), np.eye(n_r)
+    first = lu.solve(np.concatenate([np.zeros((free.size, n_r)), unit_rr]))
+    U_dr[free], S_rr = first[: free.size], -first[free.size :]
     for _ in range(REFINEMENTS):
         held_dr = _bulk_forces(system, U_dr)
         left_dr = held_dr + springs.T @ ((springs @ U_dr) * system.spring_r[:, None]) - B_rd.T @ S_rr

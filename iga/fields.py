@@ -20,14 +20,13 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
     """
     system, state, response = specimen.system, point.state, point.response
     interface = system.interface
-    s_q = specimen.distance(interface.X_qi)
-    order, bonded_q = np.argsort(s_q), True if interface.bonded_q is None else interface.bonded_q
+    (s, order), bonded_q = specimen.ordered, True if interface.bonded_q is None else interface.bonded_q
     grids = [_grids(specimen, number, state.u_d) for number in range(len(specimen.bodies))]
     X, u, stress = (np.concatenate([grid[i] for grid in grids]) for i in range(3))
     return {
         "opening": point.opening,
         "load": state.load,
-        "s_q": s_q[order],
+        "s_q": s,
         "gap_q": response.contact.g_q[order],
         "traction_q": response.p_q[order],
         "damage_q": np.where(bonded_q, interface.law.damage(state.k_q), 1.0)[order],

@@ -58,7 +58,7 @@ def _cells(specimen: Specimen, number: int, u_d: np.ndarray) -> Iterator[dict[st
 
 def _bond(specimen: Specimen, point: Point) -> dict[str, np.ndarray]:
     interface, state, response = specimen.system.interface, point.state, point.response
-    s_q = specimen.distance(interface.X_qi)
+    s_q, order = specimen.distance(interface.X_qi), specimen.ordered[1]
     bonded_q = np.ones(len(s_q), dtype=bool) if interface.bonded_q is None else interface.bonded_q
     values = {
         "X_qi": interface.X_qi,
@@ -70,5 +70,4 @@ def _bond(specimen: Specimen, point: Point) -> dict[str, np.ndarray]:
         "history_q": state.k_q,
         "bonded_q": bonded_q,
     }
-    order = np.argsort(s_q)
     return {name: value[order] for name, value in values.items()}

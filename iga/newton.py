@@ -103,10 +103,12 @@ def _iterate(
     trial, response, norm = _evaluate(system, trial, True, phase)
     residuals, tangent, inner = [norm], None, advance is _full
     while True:
+        met = _met(control(trial, response)[0], target, change)
+        if met and norm <= newton.tolerance:
+            return (trial, response), tuple(residuals)
         floor = _floor(system, trial, response, newton) if norm < newton.rough else newton.tolerance
         stays = len(residuals) > 1 and norm > 0.25 * residuals[-2]
-        met = _met(control(trial, response)[0], target, change)
-        if met and norm <= (floor if stays else newton.tolerance):
+        if met and stays and norm <= floor:
             return (trial, response), tuple(residuals)
         if _hopeless(residuals, newton):
             return None, tuple(residuals)

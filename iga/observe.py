@@ -54,9 +54,8 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
 
 def reach(specimen: Specimen, k_q: np.ndarray, limit: float) -> float:
     """Distance from the loaded end to the foremost point opened to ``limit``, linear between quadrature points."""
-    s_q = specimen.distance(specimen.system.interface.X_qi)
-    order = np.argsort(s_q)
-    s, k = s_q[order], k_q[order]
+    s, order = specimen.ordered
+    k = k_q[order]
     beyond = np.flatnonzero(k >= limit)
     if beyond.size == 0:
         return specimen.free_length

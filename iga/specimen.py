@@ -70,6 +70,13 @@ class Specimen:
         X_qi = self.system.interface.X_qi
         return np.array([np.argmin(np.linalg.norm(X_qi - X_i, axis=1)) for X_i in self.probe.X_qi])
 
+    @cached_property
+    def ordered(self) -> tuple[np.ndarray, np.ndarray]:
+        """Distances (n_q,) of the interface's points, rising, and the points in this order."""
+        s_q = self.distance(self.system.interface.X_qi)
+        order = np.argsort(s_q)
+        return s_q[order], order
+
     def distance(self, X: np.ndarray) -> np.ndarray:
         """Distance (...,) of places (..., 2) from the loaded end, along the specimen."""
         return np.abs(self.pose.own(X)[..., 0] - self.loaded_at)

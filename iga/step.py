@@ -17,6 +17,8 @@ from iga.work import slid_off, step_work, straight_work
 
 #: An opening that is this part of the one before is none.
 HOME = 1e-9
+#: The front leaps where it opens by more than this part of g_u: gaps then travel rather than grow along the tangent.
+LEAP = 0.5
 
 
 @dataclass(frozen=True)
@@ -45,9 +47,10 @@ def foresee(
     target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
     follows_on, guess_q, place = point.before is not None, None, None
     with phase("solve"):
-        if np.any(path.growing_q):
-            q = point.front
-            guess_q = travelled(system.interface, touch.g_q, q, touch.g_q[q] + asked.away * path.rate_q[q])
+        q = point.front
+        opens = asked.away * path.rate_q[q] if path.growing_q[q] else 0.0
+        if opens > LEAP * system.interface.law.g_u:
+            guess_q = travelled(system.interface, touch.g_q, q, touch.g_q[q] + opens)
         if by_kinks and guess_q is not None:
             place = landing(system, old, touch, guess_q, follows_on)
         if place is not None:
