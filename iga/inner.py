@@ -96,7 +96,10 @@ def settled_step(
         C_mm = touch.rates(steps_dm[:-1], points)
         slope, w = (dp_q - dp0_q)[points], w_q[points]
         matrix, right = np.eye(points.size) + C_mm * slope, g0_q[points] - C_mm @ (w - slope * g_q[points])
-        w_m = w + slope * (np.linalg.solve(matrix, right) - g_q[points])
+        try:
+            w_m = w + slope * (np.linalg.solve(matrix, right) - g_q[points])
+        except np.linalg.LinAlgError:  # just as soft as the specimen is stiff
+            return None
         g_q = g0_q - touch.rates(steps_dm[:-1] @ w_m)
     return None
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from iga import inner
 from iga.control import gap_control, opening_control
 from iga.dcb import build
 from iga.inner import bordered
+from iga.interface import Contact
 from iga.newton import correction, residual_norm
 from iga.path import Point, follow
 from iga.system import System, factorise, respond, untimed
@@ -78,6 +80,20 @@ def test_too_many_points_are_left_to_a_new_tangent(monkeypatch):
     monkeypatch.setattr(inner, "MOST", 2)
     moved, response, settled = leap(system, points[40], opening_control(system), 0.3)
     assert not settled and residual_norm(system, moved.load, response) > 1e-6, "the plain step is no equilibrium"
+
+
+@pytest.mark.parametrize(("softening", "gap"), [(-1.0, None), (-0.5, 2.0)])
+def test_a_point_as_soft_as_the_specimen_is_stiff_has_no_gap(softening, gap):
+    """One point on a spring of stiffness 1: ``g = 1 - softening g``."""
+    touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), np.array([[0]]), np.ones((1, 1, 1)))
+    spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm]))
+
+    def law(g_q):
+        return softening * g_q, np.full(1, softening)
+
+    flat = np.zeros(1), np.zeros(1)
+    found = inner.settled_step(SimpleNamespace(dA_q=np.ones(1)), touch, law, flat, np.array([1.0, 0.0]), spring)
+    assert found is None if gap is None else found[0] == pytest.approx(gap)
 
 
 @pytest.mark.parametrize("chosen", ["opening", "load and opening"])
