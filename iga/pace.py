@@ -126,10 +126,12 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
     """
     law, path = system.interface.law, point.tangent
     left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
-    touch = point.response.contact
-    g_q, k_q = touch.g_q, np.where(holding(system.interface, touch), point.state.k_q, law.g_u)  # no kink for the others
-    event = next_event(law, g_q, k_q, path.rate_q) if direction > 0.0 else None
-    if not np.any(path.growing_q):
+    grows, event = bool(np.any(path.growing_q)), None
+    if direction > 0.0 and (pace.careful or not grows):
+        touch = point.response.contact
+        k_q = np.where(holding(system.interface, touch), point.state.k_q, law.g_u)  # no kink for the others
+        event = next_event(law, touch.g_q, k_q, path.rate_q)
+    if not grows:
         exact = abs(left) < 1.001 * pace.length
         away = (left if exact else np.copysign(pace.length, left)) / opening_rate
         if event is not None and event.away < away:
@@ -139,7 +141,7 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
         return Step(opening_control(system), left / opening_rate, exact=True)
     q = point.front
     away = min(pace.front * law.g_u / abs(path.rate_q[q]), pace.length / abs(opening_rate))
-    if pace.careful and event is not None and event.away < away:
+    if event is not None and event.away < away:
         q, away = event.q, event.beyond
     controls = {
         "front": gap_control(system, q),

@@ -226,7 +226,7 @@ def test_deviations_are_from_the_reference_and_in_per_cent(report: SceneReport, 
             continue
         assert len(found) == 1, entry.label
         ((x, off),) = [points.T for points in found]
-        ours, theirs = (np.interp(x, one.result.opening, one.result.load) for one in (entry, reference))
+        ours, theirs = (np.interp(x, *path(one.result)) for one in (entry, reference))
         assert off == pytest.approx(100 * (ours / theirs - 1), abs=0.1), entry.label
         assert x[-1] == entry.result.opening[-1] and x[0] > peak((reference.result.opening, reference.result.load))[0]
 

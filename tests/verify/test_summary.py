@@ -202,7 +202,7 @@ def test_markdown_lines_repeat_every_run(scenes: tuple[Section, ...], summary: S
 def included(**changes: object) -> SimpleNamespace:
     plain = {
         "title": "Cost", "command": "cost", "has_page": False, "outdated": False, "prefix": "cost", "lead": ("It is.",),
-        "effects": (), "hard": (), "bases": {},
+        "effects": (), "hard": (), "bases": {}, "scaling": None,
     }  # fmt: skip
     return SimpleNamespace(**plain | changes)
 
