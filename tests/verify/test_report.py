@@ -20,7 +20,6 @@ from verify.checks import law_of  # noqa: E402
 from verify.curve import curve_error  # noqa: E402
 from verify.methods import DOLFINX_MISSING, DOLFINX_WAYS  # noqa: E402
 from verify.report.agreement import path  # noqa: E402
-from verify.report.style import STRESS_MAP, _short_numbers, to_svg  # noqa: E402
 from verify.report.summary import KINDS  # noqa: E402
 from verify.report.text import inputs, number, percent, quantity, seconds  # noqa: E402
 from verify.result import CURVE_COLUMNS, Result  # noqa: E402
@@ -249,48 +248,6 @@ def test_drawn_path_is_the_cubic_through_values_and_slopes() -> None:
     assert len(path(replace(result, method="lefm"))[0]) == len(x)  # a kink has no slope
     steep = replace(result, steps=result.steps | {"load_slope": 3 * x**2 - 1 + 40 * (x == 1)})
     assert np.abs(path(steep)[1] - load).max() < 0.01 * 6  # no arc where it would be an invention
-
-
-def test_steps_of_a_drawn_line_add_up_to_its_points() -> None:
-    """Path data of a figure, by the steps between points, are where matplotlib had put them, to a tenth of a point."""
-    at = np.column_stack([np.linspace(20, 300, 400), 80 + 60 * np.sin(np.linspace(0, 9, 400))])
-    data = "M " + " L ".join(f"{x:.6f} {y:.6f}" for x, y in at)
-    text = _short_numbers(re.match(r' d="[^"]*"', f' d="{data}"'))
-    start, _, steps = text.removeprefix(' d="M').removesuffix('"').partition("l")
-    moved = np.cumsum(np.array([start.split(), *np.reshape(steps.split(), (-1, 2))], float), axis=0)
-    assert np.abs(moved - at).max() < 0.061 and len(text) < 0.6 * len(data)
-    marker = ' d="M -1.5 1.25 L 1.5 1.25 L 0.25 -1.5 z"'
-    assert _short_numbers(re.match(r' d="[^"]*"', marker)) == marker
-
-
-def test_figures_say_a_style_once_and_their_images_keep_every_pixel() -> None:
-    """Groups that say nothing, styles that come again, rotations by nothing: gone. Images lose bytes and no colour."""
-    import base64
-    import io
-
-    from matplotlib.figure import Figure
-    from PIL import Image
-
-    values = np.random.default_rng(1).integers(0, 200, (60, 200)) / 199.0
-    pixels = STRESS_MAP(values)
-    pixels[:9, :, 3] = 0.0
-    figure = Figure(figsize=(4.0, 2.0))
-    axes = figure.add_axes((0.1, 0.2, 0.8, 0.7))
-    axes.imshow(pixels, aspect="auto", interpolation="none")
-    svg = to_svg(figure, "key", "title")
-    assert "<g>" not in svg and "rotate(-0" not in svg
-    styles = re.findall(r'style="([^"]*)"', svg)
-    assert len(styles) == len(set(styles))
-    classes = set(re.findall(r'class="(s[0-9a-f]+)"', svg))
-    assert classes and classes == set(re.findall(r"[.]plot [.](s[0-9a-f]+)[{]", svg))
-    (data,) = re.findall(r"data:image/png;base64,([^\"]*)", svg)
-    with Image.open(io.BytesIO(base64.b64decode(data))) as image:
-        assert image.mode == "P"
-        found = np.asarray(image.convert("RGBA"))
-    expected = np.round(255 * pixels).astype(int)
-    seen = expected[..., 3] > 0
-    assert found.shape == expected.shape and not found[~seen][:, 3].any()
-    assert np.abs(found.astype(int) - expected)[seen].max() <= 1
 
 
 @pytest.mark.parametrize("name", ["dcb-czm1", "peel-60", "alfano-crisfield-weak"])

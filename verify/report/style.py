@@ -6,23 +6,18 @@ the light page, the dark page and the print. The pairs in ``PALETTE`` are the on
 
 from __future__ import annotations
 
-import base64
 import io
-import re
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from html import escape
 from typing import Any
-from zlib import crc32
 
 import matplotlib
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
-from PIL import Image
+
+from verify.report.svg import adapted
 
 #: name: (light, dark). The methods follow Okabe and Ito 2008, whose colours stay apart in all common colour blindness;
 #: two of them are darker here, so that text in them has a contrast of 4.5 with the page.
@@ -197,105 +192,7 @@ def to_svg(figure: Figure, key: str, title: str, dpi: float = 180.0) -> str:
     """
     buffer = io.StringIO()
     figure.savefig(buffer, format="svg", dpi=dpi, transparent=True, metadata={"Date": None, "Creator": None})
-    return _adapt(buffer.getvalue(), key, title)
-
-
-def _adapt(svg: str, key: str, title: str) -> str:
-    svg = svg[svg.index("<svg") :]
-    svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)
+    svg = buffer.getvalue()
     for name, stand_in in _STAND_IN.items():
         svg = svg.replace(stand_in, f"var(--{name})")
-    svg = re.sub(r"font-family: [^;\"]*", "font-family: inherit", svg)
-    svg = re.sub(r"font: ((?:[a-z0-9.]+ )*?)([\d.]+)px [^;\"]*", r"font-size: \2px", svg)
-    svg = svg.replace("*{stroke-linejoin: round; stroke-linecap: butt}", "")
-    svg = re.sub(r' d="[^"]*"|<use [^>]*>', _short_numbers, svg)
-    svg = re.sub(r">\s+<", "><", svg)
-    svg = re.sub(r' transform="rotate\(-?0 [-\d. ]+\)"', "", svg)
-    svg = re.sub(r'<use [^>]*style="([^"]*)"/>(?:<use [^>]*style="\1"/>)+', _shared_style, svg)
-    svg = re.sub(r"(?<=data:image/png;base64,)[^\"]*", _few_colours, svg)
-    svg = _private_ids(svg, key)
-    svg = _classes(_without_empty_groups(svg))
-    width, height = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', svg).groups()
-    head = (
-        f'<svg class="plot" role="img" aria-labelledby="{key}-t" viewBox="0 0 {width} {height}" '
-        f'preserveAspectRatio="xMidYMid meet"><title id="{key}-t">{escape(title)}</title>'
-    )
-    return head + svg[svg.index(">") + 1 :]
-
-
-def _short_numbers(match: re.Match[str]) -> str:
-    """Coordinates to a hundredth of a point: a quarter of the page would be digits that nobody sees."""
-    text = re.sub(r"\s+", " ", re.sub(r"(\.\d\d)\d+", r"\1", match[0]))
-    return re.sub(r"M [-\d.]+ [-\d.]+(?: L [-\d.]+ [-\d.]+)+", _steps, text)
-
-
-def _steps(match: re.Match[str]) -> str:
-    """Straight pieces by the steps from point to point, to a tenth of a point; rounding does not add up."""
-    at = [round(10 * float(value)) for value in re.findall(r"-?[\d.]+", match[0])]
-    if max(map(abs, at)) < 100:  # a marker: its shape would suffer
-        return match[0]
-    steps = [value - before for before, value in zip(at, at[2:], strict=False)]
-    return f"M{at[0] / 10:g} {at[1] / 10:g}l" + " ".join(f"{step / 10:g}" for step in steps)
-
-
-def _shared_style(match: re.Match[str]) -> str:
-    """Markers of one curve: their style once for all of them."""
-    style = f' style="{match[1]}"'
-    return f"<g{style}>{match[0].replace(style, '')}</g>"
-
-
-def _without_empty_groups(svg: str) -> str:
-    """Groups that say nothing, of which every tick is in three, are left out with what closes them."""
-    says: list[bool] = []
-
-    def kept(match: re.Match[str]) -> str:
-        if match[0] != "</g>":
-            says.append(match[0] != "<g>")
-        keep = says.pop() if match[0] == "</g>" else says[-1]
-        return match[0] if keep else ""
-
-    return re.sub(r"<g>|<g [^>]*[^/]>|</g>", kept, svg.replace("<g/>", ""))
-
-
-def _classes(svg: str) -> str:
-    """Styles that come more than once as classes, named by what they say: the same in all figures of a page.
-
-    Two names in front of a rule let it win over that of the page for all paths, as a style would.
-    """
-    often = [style for style, count in Counter(re.findall(r' style="([^"]*)"', svg)).items() if count > 1]
-    names = {style: f"s{crc32(style.encode()):x}" for style in often}
-    rules = "".join(f".plot .{name}{{{style}}}" for style, name in names.items())
-
-    def named(match: re.Match[str]) -> str:
-        return f' class="{names[match[1]]}"' if match[1] in names else match[0]
-
-    svg = re.sub(r' style="([^"]*)"', named, svg)
-    return svg.replace('<style type="text/css"></style>', f"<style>{rules}</style>", 1)
-
-
-def _few_colours(match: re.Match[str]) -> str:
-    """An image whose colours fit into a palette with that palette: the same pixels in half the bytes."""
-    with Image.open(io.BytesIO(base64.b64decode(match[0]))) as image:
-        pixels = np.asarray(image.convert("RGBA"))
-    pixels = np.where(pixels[..., 3:] > 0, pixels, 0)  # what is not seen has one colour
-    colours, number = np.unique(pixels.reshape(-1, 4), axis=0, return_inverse=True)
-    if len(colours) > 256:
-        return match[0]
-    small, buffer = Image.fromarray(number.reshape(pixels.shape[:2]).astype(np.uint8), "P"), io.BytesIO()
-    small.putpalette(colours[:, :3].tobytes())
-    small.save(buffer, "PNG", optimize=True, transparency=colours[:, 3].tobytes())
-    text = base64.b64encode(buffer.getvalue()).decode()
-    return min(text, match[0], key=len)
-
-
-def _private_ids(svg: str, key: str) -> str:
-    """Drop the ids that nothing refers to, and make the others unique in the page."""
-    used = dict.fromkeys(re.findall(r'(?:url\(#|href="#)([^)"]+)', svg))
-    short = {name: f"p{crc32(key.encode()):x}-{i}" for i, name in enumerate(used)}  # hundreds of markers repeat them
-
-    def rename(match: re.Match[str]) -> str:
-        return f' id="{short[match[1]]}"' if match[1] in used else ""
-
-    svg = re.sub(r' id="([^"]*)"', rename, svg)
-    svg = re.sub(r"url\(#([^)]+)\)", lambda match: f"url(#{short[match[1]]})", svg)
-    return re.sub(r'(?:xlink:)?href="#([^"]+)"', lambda match: f'href="#{short[match[1]]}"', svg)
+    return adapted(svg, key, title)
