@@ -203,15 +203,6 @@ def test_frames_have_one_scale_and_hold_all_that_moves(found: list, monkeypatch:
     assert frames(scene, shared_snapshots(found)[:1], found, "key") == ()
 
 
-def test_the_outline_of_a_grid_goes_once_around_it() -> None:
-    u, v = np.meshgrid(np.linspace(0, 2, 4), np.linspace(0, 1, 4), indexing="ij")
-    (outline,) = paint.perimeter(np.stack([u, v], axis=-1)[None])
-    assert np.array_equal(outline[0], outline[-1]) and len(np.unique(outline[:-1], axis=0)) == 12
-    assert np.linalg.norm(np.diff(outline, axis=0), axis=1).sum() == pytest.approx(6.0)
-    x, y = outline[:-1].T
-    assert abs(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))) / 2 == pytest.approx(2.0)
-
-
 @pytest.mark.parametrize(
     ("box", "meets"),
     [((0.5, 0.5), True), ((1.0, 0.5), True), ((1.5, 0.5), False), ((0.5, -1.5), False), ((-0.5, -0.5), True)],

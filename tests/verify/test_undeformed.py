@@ -70,11 +70,11 @@ def test_only_what_the_frame_shows_is_drawn():
     assert np.nanmin(parts["elements"][:, 0]) == pytest.approx(8.5)  # the element that ends at 9.0
 
 
-def test_elements_are_closed_outlines_and_the_zone_is_where_the_damage_is():
-    given = snapshot()
-    _, parts = drawn(given)
-    corners = parts["elements"].reshape(len(given.X_euvi), -1, 2)
-    assert np.isnan(corners[:, -1]).all() and np.array_equal(corners[:, 0], corners[:, -2])
+def test_sides_of_elements_are_drawn_once_and_the_zone_is_where_the_damage_is():
+    _, parts = drawn(snapshot())
+    steps = np.diff(parts["elements"], axis=0)
+    inked = np.nansum(np.abs(steps), axis=0)
+    assert inked == pytest.approx([4 * LENGTH, 2 * 29 * ARM])  # two faces and 29 lines across each arm
     assert parts["zone"][:, 0] == pytest.approx([9.0, 10.0]) and "T-junctions" not in parts and "T-mesh" not in parts
 
 

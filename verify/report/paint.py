@@ -12,6 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
+from verify.report.strokes import sides, strokes
 from verify.report.style import STRESS_MAP, colour
 
 _DPI = 150
@@ -39,10 +40,9 @@ def paint(
     axes.imshow(pixels, extent=(*x, *y), aspect="auto", interpolation="none", zorder=1)
     many = len(x_euvi) > _MANY_ELEMENTS
     ink = "#808a96" if many else colour("ink")  # pixels cannot follow the page
-    outlines_eki = perimeter(x_euvi)
-    outlines_eki = outlines_eki[seen(outlines_eki, (x, y))]
-    gaps = np.pad(outlines_eki, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan)  # one path: a path each would be long
-    axes.plot(*gaps.reshape(-1, 2).T, color=ink, linewidth=0.25, alpha=0.7, zorder=2, rasterized=many)
+    sides_nki = sides(x_euvi)
+    lines_pi = strokes(sides_nki[seen(sides_nki, (x, y))])  # one path: a path each would be long
+    axes.plot(*lines_pi.T, color=ink, linewidth=0.25, alpha=0.7, zorder=2, rasterized=many)
     axes.set(xlim=x, ylim=y)
 
 
@@ -90,9 +90,3 @@ def seen(lines_nki: np.ndarray, frame: tuple[Limits, Limits]) -> np.ndarray:
     low, high = lines_nki.min(axis=1), lines_nki.max(axis=1)
     least, most = np.transpose(frame)
     return np.all((high >= least) & (low <= most), axis=1)
-
-
-def perimeter(x_euvi: np.ndarray) -> np.ndarray:
-    """Closed outlines of the elements (n_e, 4 (m - 1) + 1, 2)."""
-    sides = (x_euvi[:, :-1, 0], x_euvi[:, -1, :-1], x_euvi[:, :0:-1, -1], x_euvi[:, 0, ::-1])
-    return np.concatenate(sides, axis=1)

@@ -17,7 +17,8 @@ from matplotlib.lines import Line2D
 from verify.report.entry import Entry
 from verify.report.fields import process_zone
 from verify.report.layout import HIGHEST, LEFT, WHOLE, mark, rows, zoom
-from verify.report.paint import Limits, perimeter, seen
+from verify.report.paint import Limits, seen
+from verify.report.strokes import sides, strokes
 from verify.report.style import WIDE, Panel, colour, drawing, to_svg
 from verify.report.text import Units, axis, number, quantity
 from verify.report.tmesh_drawing import JUNCTIONS, LINES
@@ -83,11 +84,11 @@ def draw(axes: Axes, snapshot: Snapshot, ink: str, frame: tuple[Limits, Limits],
     height = axes.get_position().height * axes.figure.get_size_inches()[1]
     apart = 0.5 * _APART / (height - _APART) * (y[1] - y[0])
     frame = x, (y[0] - apart, y[1] + apart)
-    outlines_eki = perimeter(np.asarray(snapshot.X_euvi))
-    side_e = np.sign(outlines_eki[..., 1].mean(axis=1))
+    X_euvi = np.asarray(snapshot.X_euvi)
+    side_e = np.sign(X_euvi[..., 1].mean(axis=(1, 2)))
     for side in np.unique(side_e):
         shift = np.array([0.0, side * apart])
-        _plot(axes, outlines_eki[side_e == side] + shift, frame, "elements", {**_ELEMENTS, "color": ink})
+        _plot(axes, sides(X_euvi[side_e == side]) + shift, frame, "elements", {**_ELEMENTS, "color": ink})
         _plot(axes, _of_arm(snapshot.line_nki, side) + shift, frame, "T-mesh", LINES)
         points_nki = _of_arm(snapshot.junction_ni[:, None], side) + shift
         points_ni = points_nki[seen(points_nki, frame), 0]
@@ -193,8 +194,7 @@ def _plot(axes: Axes, lines_nki: np.ndarray, frame: tuple[Limits, Limits], label
     """Lines that are seen, as one path."""
     lines_nki = lines_nki[seen(lines_nki, frame)]
     if len(lines_nki):
-        gaps = np.pad(lines_nki, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan)
-        axes.plot(*gaps.reshape(-1, 2).T, label=label, **style)
+        axes.plot(*strokes(lines_nki).T, label=label, **style)
 
 
 def _of_arm(lines_nki: np.ndarray, side: float) -> np.ndarray:
