@@ -8,10 +8,11 @@ from __future__ import annotations
 import base64
 import io
 import re
+import struct
 from collections import Counter
 from collections.abc import Iterable
 from html import escape
-from zlib import crc32
+from zlib import compress, crc32
 
 import numpy as np
 from PIL import Image
@@ -203,18 +204,38 @@ def _classes(svg: str) -> str:
 
 
 def _few_colours(match: re.Match[str]) -> str:
-    """An image whose colours fit into a palette with that palette: the same pixels in half the bytes."""
+    """An image whose colours fit into a palette with that palette: the same pixels in a third of the bytes."""
     with Image.open(io.BytesIO(base64.b64decode(match[0]))) as image:
         pixels = np.asarray(image.convert("RGBA"))
-    pixels = np.where(pixels[..., 3:] > 0, pixels, 0)  # what is not seen has one colour
-    colours, number = np.unique(pixels.reshape(-1, 4), axis=0, return_inverse=True)
+    pixels = np.ascontiguousarray(np.where(pixels[..., 3:] > 0, pixels, 0))  # what is not seen has one colour
+    colours, number = np.unique(pixels.view(np.uint32), return_inverse=True)
     if len(colours) > 256:
         return match[0]
-    small, buffer = Image.fromarray(number.reshape(pixels.shape[:2]).astype(np.uint8), "P"), io.BytesIO()
-    small.putpalette(colours[:, :3].tobytes())
-    small.save(buffer, "PNG", optimize=True, transparency=colours[:, 3].tobytes())
-    text = base64.b64encode(buffer.getvalue()).decode()
+    palette = colours.view(np.uint8).reshape(-1, 4)
+    order = np.argsort(palette[:, 0].astype(int) - palette[:, 2], kind="stable")  # as a map goes from blue to red
+    text = base64.b64encode(_png(np.argsort(order)[number].reshape(pixels.shape[:2]), palette[order])).decode()
     return min(text, match[0], key=len)
+
+
+def _png(colour_yx: np.ndarray, palette: np.ndarray) -> bytes:
+    """An image (PNG, ISO/IEC 15948) by what changes from pixel to pixel, its filter 1, which Pillow has for no palette.
+
+    Parameters
+    ----------
+    colour_yx : rows of the palette (n <= 256, 4), red, green, blue, alpha
+    """
+    changes = np.diff(colour_yx.astype(np.uint8), axis=1, prepend=np.uint8(0))  # modulo 256
+    rows = np.pad(changes, ((0, 0), (1, 0)), constant_values=1)
+    height, width = colour_yx.shape
+    chunks = {
+        b"IHDR": struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0),
+        b"PLTE": palette[:, :3].tobytes(),
+        b"tRNS": palette[:, 3].tobytes(),
+        b"IDAT": compress(rows.tobytes(), 9),
+        b"IEND": b"",
+    }
+    made = (struct.pack(">I", len(d)) + name + d + struct.pack(">I", crc32(name + d)) for name, d in chunks.items())
+    return b"\x89PNG\r\n\x1a\n" + b"".join(made)
 
 
 def _private_ids(svg: str, key: str) -> str:
