@@ -13,7 +13,10 @@ from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
 from verify.report.style import STRESS_MAP, to_svg  # noqa: E402
-from verify.report.svg import short_numbers  # noqa: E402
+from verify.report.svg import short_numbers, with_classes  # noqa: E402
+
+#: Colours and limits of figures, of which one colour comes once.
+LOOKS = (("#123456", (0.0, 1.0)), ("#123456", (0.0, 1.1)), ("#abcdef", (0.0, 1.2)))
 
 NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)")
 
@@ -61,7 +64,8 @@ def test_steps_of_a_drawn_line_add_up_to_its_points() -> None:
     assert len(found) > 390 and np.abs(found[[0, -1]] - at[[0, -1]]).max() < 0.051
     assert np.abs(np.interp(at[:, 0], *found.T) - at[:, 1]).max() < 0.2 and len(text) < 0.4 * len(data)
     marker = ' d="M -1.5 1.25 L 1.5 1.25 L 0.25 -1.5 z"'
-    assert short_numbers(re.match(r' d="[^"]*"', marker)) == marker
+    for kept in (marker, ' d=""'):
+        assert short_numbers(re.match(r' d="[^"]*"', kept)) == kept
 
 
 def test_closed_and_straight_parts_of_a_path_stay_where_they_are() -> None:
@@ -104,14 +108,23 @@ def test_markers_with_edges_of_another_colour_stay_apart() -> None:
     assert svg.count("<use") == 30 and svg.count("<defs><path") == 1
 
 
+def test_an_area_between_curves_stays_what_it_is() -> None:
+    figure = Figure(figsize=(4.0, 2.0))
+    axes = figure.add_axes((0.1, 0.2, 0.8, 0.7))
+    axes.set_axis_off()
+    axes.fill_between([0.0, 0.5, 1.0], [0.2, 0.1, 0.0], [0.3, 0.9, 1.0], color="#123456", linewidth=0)
+    svg = to_svg(figure, "key", "title")
+    assert len(re.findall(r'<path id="[^"]*" d="m', svg)) == svg.count("<use") == 1
+
+
 def test_markers_that_are_out_of_sight_are_left_out() -> None:
     svg, _ = drawn({"marker": ".", "color": "#123456"}, limits=(0.0, 0.2))
     (dots,) = paths(svg)
     assert 4 <= len(dots) < 15
 
 
-def test_figures_say_a_style_once_and_their_images_keep_every_pixel() -> None:
-    """Groups that say nothing, styles that come again, rotations by nothing: gone. Images lose bytes and no colour."""
+def test_figures_say_nothing_in_vain_and_their_images_keep_every_pixel() -> None:
+    """Groups that say nothing, rotations by nothing: gone. Images lose bytes and no colour."""
     import base64
     import io
 
@@ -126,10 +139,7 @@ def test_figures_say_a_style_once_and_their_images_keep_every_pixel() -> None:
     axes.imshow(pixels, aspect="auto", interpolation="none")
     svg = to_svg(figure, "key", "title")
     assert "<g>" not in svg and "rotate(-0" not in svg
-    styles = re.findall(r'style="([^"]*)"', svg)
-    assert len(styles) == len(set(styles))
-    classes = set(re.findall(r'class="(s[0-9a-f]+)"', svg))
-    assert classes and classes == set(re.findall(r"[.]plot [.](s[0-9a-f]+)[{]", svg))
+    assert 'fill: none"/>' not in svg and "<style" not in svg
     (data,) = re.findall(r"data:image/png;base64,([^\"]*)", svg)
     with Image.open(io.BytesIO(base64.b64decode(data))) as image:
         assert image.mode == "P"
@@ -138,3 +148,18 @@ def test_figures_say_a_style_once_and_their_images_keep_every_pixel() -> None:
     seen = expected[..., 3] > 0
     assert found.shape == expected.shape and not found[~seen][:, 3].any()
     assert np.abs(found.astype(int) - expected)[seen].max() <= 1
+
+
+def test_a_page_says_a_style_once() -> None:
+    """As a class, whose rule is that style; what is no figure keeps its own."""
+    figures = [drawn({"marker": "s", "color": colour}, limits=limits)[0].rstrip() for colour, limits in LOOKS]
+    bar = '<b style="width: 3%"></b>'
+    page = with_classes(f"{bar}{bar}<p>{'</p><p>'.join(figures)}</p>")
+    assert page.count(bar) == 2 and page.count("<style>") == 1
+    plots = re.findall(r'<svg class="plot".*?</svg>', page, re.DOTALL)
+    rules = dict(re.findall(r"[.]plot [.](s\d+)[{]([^}]*)[}]", plots[0]))
+    again = [re.sub(r' class="(s\d+)"', lambda m: f' style="{rules[m[1]]}"', plot) for plot in plots]
+    assert [re.sub("<style>.*?</style>", "", plot) for plot in again] == figures
+    styles = re.findall(r' style="([^"]*)"', "".join(plots))
+    assert len(styles) == len(set(styles)) == 1 and "#abcdef" in styles[0] and rules
+    assert with_classes(bar + bar) == bar + bar

@@ -28,8 +28,9 @@ def strokes(lines_nki: np.ndarray) -> np.ndarray:
     """Points (n_p, 2) of one path over all lines (n, k, 2), with NaN where the pen is lifted."""
     if not len(lines_nki):
         return np.zeros((0, 2))
-    onward, used, parts = _onward(lines_nki), np.zeros(len(lines_nki), bool), []
-    ends = np.arange(2 * len(lines_nki))
+    onward, ends = _onward(lines_nki), np.arange(2 * len(lines_nki))
+    used: np.ndarray = np.zeros(len(lines_nki), bool)
+    parts: list[np.ndarray] = []
     for start in [*ends[onward < 0], *ends]:  # closed ones come last: they begin anywhere
         end = start
         while end >= 0 and not used[end // 2]:
@@ -49,7 +50,7 @@ def _onward(lines_nki: np.ndarray) -> np.ndarray:
     away = np.stack([lines_nki[:, 1] - lines_nki[:, 0], lines_nki[:, -2] - lines_nki[:, -1]], axis=1).reshape(-1, 2)
     away = away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), np.finfo(float).tiny)
     order = np.argsort(points, kind="stable")
-    rank = np.empty(len(points), int)
+    rank = np.zeros_like(points)
     rank[order] = np.arange(len(points)) - np.searchsorted(points[order], points[order])
     ends = np.full((points.max() + 1, rank.max() + 1), -1)
     ends[points, rank] = np.arange(len(points))
@@ -65,4 +66,5 @@ def _onward(lines_nki: np.ndarray) -> np.ndarray:
 
 def _names(x: np.ndarray) -> np.ndarray:
     """Whole numbers that are the same for points which are."""
-    return np.rint(x / (_SAME * max(float(np.abs(x).max(initial=0.0)), np.finfo(float).tiny))).astype(np.int64)
+    largest = float(np.abs(x).max(initial=0.0)) or 1.0
+    return np.rint(x / (_SAME * largest)).astype(np.int64)

@@ -1,6 +1,7 @@
 """SVG of matplotlib as a part of the page: nothing in it that is not seen, and what is seen in few bytes.
 
-Numbers are rounded to what can be seen, lines go by steps, the markers of a series are one path, a style is said once.
+Numbers are rounded to what can be seen, lines go by steps, the markers of a series are one path, a page says a style
+once.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ _USES = re.compile(
     r'<use xlink:href="#([^"]*)" x="[^"]*" y="[^"]*"( style="[^"]*")/>(?:<use xlink:href="#\1"[^>]*\2/>)*'
 )
 
+_VIEW = re.compile(r'viewBox="0 0 ([\d.]+) ([\d.]+)"')
+_STYLE = re.compile(r' style="([^"]*)"')
 _LARGEST = 20.0  # half a marker, in points
 
 
@@ -31,7 +34,7 @@ def adapted(svg: str, key: str, title: str) -> str:
     svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)
     svg = re.sub(r"font-family: [^;\"]*", "font-family: inherit", svg)
     svg = re.sub(r"font: ((?:[a-z0-9.]+ )*?)([\d.]+)px [^;\"]*", r"font-size: \2px", svg)
-    svg = svg.replace("*{stroke-linejoin: round; stroke-linecap: butt}", "")
+    svg = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", svg, flags=re.DOTALL)  # as the page says of all paths
     svg = re.sub(r' d="[^"]*"|<(?:use|text) [^>]*>', short_numbers, svg)
     svg = re.sub(r">\s+<", "><", svg)
     svg = re.sub(r' transform="rotate\(-?0 [-\d. ]+\)"', "", svg)
@@ -39,8 +42,8 @@ def adapted(svg: str, key: str, title: str) -> str:
     svg = _with_joined_markers(svg)
     svg = re.sub(r"(?<=data:image/png;base64,)[^\"]*", _few_colours, svg)
     svg = _private_ids(svg, key)
-    svg = _classes(_without_empty_groups(svg))
-    width, height = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', svg).groups()
+    svg = _without_empty_groups(svg)
+    width, height = _VIEW.findall(svg)[0]
     head = (
         f'<svg class="plot" role="img" aria-labelledby="{key}-t" viewBox="0 0 {width} {height}" '
         f'preserveAspectRatio="xMidYMid meet"><title id="{key}-t">{escape(title)}</title>'
@@ -52,7 +55,7 @@ def short_numbers(match: re.Match[str]) -> str:
     """Coordinates to a hundredth of a point, and lines to a tenth, by steps: the rest are digits that nobody sees."""
     text = re.sub(r"\s+", " ", re.sub(r"(\.\d\d)\d+", r"\1", match[0]))
     data = text.removeprefix(' d="').removesuffix('"').strip()
-    if text == data or _TRIPLE.sub("", data).strip():  # no path data, or curves
+    if not data or text == data or _TRIPLE.sub("", data).strip():  # no path data, or curves
         return text
     if max(abs(float(number)) for number in re.findall(r"-?[\d.]+", data)) < 10:  # a marker: its shape would suffer
         return text
@@ -104,7 +107,7 @@ def _with_joined_markers(svg: str) -> str:
     """The markers of one series as one path, where they are of one colour; what defined them goes with the last."""
     shapes = {name: rest for name, *rest in re.findall(r'<path id="([^"]*)" d="([^"]*)"(?: style="([^"]*)")?/>', svg)}
 
-    most = np.array(re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', svg).groups(), float)
+    most = np.array(_VIEW.findall(svg)[0], float)
 
     def joined(match: re.Match[str]) -> str:
         at = np.array(re.findall(r' x="([^"]*)" y="([^"]*)"', match[0]), float)
@@ -162,11 +165,13 @@ def _repeated(outline: list[tuple[str, int, int]], at: list[tuple[int, int]]) ->
 
 def _radius(shape: str) -> float:
     """Of a disc about the origin that is drawn by curves; 0 where the shape is none."""
-    numbers = [float(value) for value in re.findall(r"-?\d[\d.]*", shape)]
-    if len(numbers) % 6 != 2 or set(re.findall("[A-Za-z]", shape)) != {"M", "C", "z"}:
+    if set(re.findall("[A-Za-z]", shape)) != {"M", "C", "z"}:
         return 0.0
-    points = np.reshape([*numbers[:2], *np.reshape(numbers[2:], (-1, 6))[:, 4:].ravel()], (-1, 2))
-    radii = np.hypot(*points.T)
+    numbers = [float(value) for value in re.findall(r"-?\d[\d.]*", shape)]
+    if len(numbers) % 6 != 2:
+        return 0.0
+    curves = np.array(numbers[2:]).reshape(-1, 6)
+    radii = np.hypot(np.append(curves[:, 4], numbers[0]), np.append(curves[:, 5], numbers[1]))
     return float(radii.mean()) if np.ptp(radii) < 0.03 + 0.02 * radii.max() else 0.0
 
 
@@ -187,20 +192,25 @@ def _without_empty_groups(svg: str) -> str:
     return re.sub(r"<g>|<g [^>]*[^/]>|</g>", kept, svg.replace("<g/>", ""))
 
 
-def _classes(svg: str) -> str:
-    """Styles that come more than once as classes, named by what they say: the same in all figures of a page.
+def with_classes(page: str) -> str:
+    """Styles that come more than once in the figures of a page as classes, whose rules stand in the first figure.
 
     Two names in front of a rule let it win over that of the page for all paths, as a style would.
     """
-    often = [style for style, count in Counter(re.findall(r' style="([^"]*)"', svg)).items() if count > 1]
-    names = {style: f"s{crc32(style.encode()):x}" for style in often}
+    figures = r'<svg class="plot".*?</svg>'
+    styles = Counter(style for one in re.findall(figures, page, re.DOTALL) for style in _STYLE.findall(one))
+    often = [style for style, count in styles.most_common() if count > 1]
+    if not often:
+        return page
+    names = {style: f"s{i}" for i, style in enumerate(often)}
     rules = "".join(f".plot .{name}{{{style}}}" for style, name in names.items())
 
     def named(match: re.Match[str]) -> str:
         return f' class="{names[match[1]]}"' if match[1] in names else match[0]
 
-    svg = re.sub(r' style="([^"]*)"', named, svg)
-    return svg.replace('<style type="text/css"></style>', f"<style>{rules}</style>", 1)
+    page = re.sub(figures, lambda figure: _STYLE.sub(named, figure[0]), page, flags=re.DOTALL)
+    first = r'<svg class="plot"[^>]*><title[^>]*>[^<]*</title>'
+    return re.sub(first, lambda head: f"{head[0]}<style>{rules}</style>", page, count=1)
 
 
 def _few_colours(match: re.Match[str]) -> str:

@@ -9,6 +9,7 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from verify.report.style import custom_properties
+from verify.report.svg import with_classes
 from verify.report.text import number
 
 _CSS = Path(__file__).with_name("page.css")
@@ -31,9 +32,10 @@ def rendered(package: str, template: str, filters: Mapping[str, Callable], /, **
     )
     # drawings are made by this package, which has escaped their texts
     jinja.filters |= {"svg": Markup, "number": number, **filters}
-    return jinja.get_template(template).render(
+    page = jinja.get_template(template).render(
         light=Markup(custom_properties(dark=False)),
         dark=Markup(custom_properties(dark=True)),
         css=Markup(_CSS.read_text(encoding="utf-8")),
         **content,
     )
+    return with_classes(page)
