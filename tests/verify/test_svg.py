@@ -121,6 +121,18 @@ def test_markers_that_are_out_of_sight_are_left_out() -> None:
     svg, _ = drawn({"marker": ".", "color": "#123456"}, limits=(0.0, 0.2))
     (dots,) = paths(svg)
     assert 4 <= len(dots) < 15
+    assert paths(drawn({"marker": ".", "color": "#123456"}, limits=(-9.0, -8.0))[0]) == []
+
+
+def test_scattered_points_have_their_own_colours() -> None:
+    figure = Figure(figsize=(4.0, 2.0))
+    axes = figure.add_axes((0.1, 0.2, 0.8, 0.7))
+    axes.set_axis_off()
+    at, inks = np.linspace(0.0, 1.0, 30), 10 * ["#123456", "#abcdef", "#654321"]
+    axes.scatter(at, at, s=9.0, color=inks)
+    svg = to_svg(figure, "key", "title")
+    assert re.findall("stroke: (#[0-9a-f]{6})", svg) == inks and "<use" not in svg
+    assert [len(dots) for dots in paths(svg)] == 30 * [1]
 
 
 def test_figures_say_nothing_in_vain_and_their_images_keep_every_pixel() -> None:

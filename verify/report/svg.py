@@ -22,7 +22,6 @@ _TRIPLE = re.compile(r"([ML]) (\S+) (\S+)|z")
 _USES = re.compile(
     r'<use xlink:href="#([^"]*)" x="[^"]*" y="[^"]*"( style="[^"]*")/>(?:<use xlink:href="#\1"[^>]*\2/>)*'
 )
-
 _VIEW = re.compile(r'viewBox="0 0 ([\d.]+) ([\d.]+)"')
 _STYLE = re.compile(r' style="([^"]*)"')
 _LARGEST = 20.0  # half a marker, in points
@@ -106,13 +105,14 @@ def _written(steps: Iterable[tuple[str, int, int]], unit: int) -> str:
 def _with_joined_markers(svg: str) -> str:
     """The markers of one series as one path, where they are of one colour; what defined them goes with the last."""
     shapes = {name: rest for name, *rest in re.findall(r'<path id="([^"]*)" d="([^"]*)"(?: style="([^"]*)")?/>', svg)}
-
     most = np.array(_VIEW.findall(svg)[0], float)
 
     def joined(match: re.Match[str]) -> str:
         at = np.array(re.findall(r' x="([^"]*)" y="([^"]*)"', match[0]), float)
         seen = np.all((at > -_LARGEST) & (at < most + _LARGEST), axis=1)
-        shape, own = shapes.get(match[1], ("", ""))
+        if match[1] not in shapes or not seen.any():
+            return match[0] if seen.any() else ""
+        shape, own = shapes[match[1]]
         style = _declared(match[2].removeprefix(' style="').removesuffix('"')) | _declared(own)
         return _series(shape, style, [(x, y) for x, y in np.rint(10 * at[seen]).astype(int).tolist()]) or match[0]
 
