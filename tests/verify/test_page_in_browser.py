@@ -181,4 +181,4 @@ def test_nothing_is_cut_in_print(browser: Browser) -> None:
 
 
 def test_is_small(page: Path) -> None:
-    assert page.stat().st_size < 8e6 / 5  # of the five scenes that are verified by default
+    assert page.stat().st_size < 8e6 / 8  # of the eight scenes of a full verification

@@ -30,7 +30,7 @@ __all__ = ["write"]
 
 _HERE = Path(__file__).parent
 
-#: Up to so many scenes have more openings than those that all runs keep, of 200 to 320 kB a scene.
+#: Up to so many scenes have more openings than those that all runs keep, of about 120 kB a scene.
 FEW = 5
 
 _FILTERS = {
