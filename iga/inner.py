@@ -23,8 +23,9 @@ from iga.inverse import Inverse
 
 #: Corrections of the gaps, and how far tractions may be from the law, in parts of the largest.
 CORRECTIONS, AGREED = 20, 1e-12
-#: Solutions that this may take: two tangents or so, each of which is worth 25 to 40 of them.
-MOST = 64
+#: Solutions that this may take, two tangents or so, each of which is worth 25 to 40 of them; numbers in all of these,
+#: which are more work to move about than a tangent where there are more; and points that share a solution.
+MOST, ENTRIES, SHARING = 64, 200_000, 4
 #: Fewer points than these are solved for one by one; part of the largest below which what they add is rounding.
 FEW, NOTHING = 6, 1e-14
 
@@ -75,6 +76,7 @@ def settled_step(
     (p0_q, dp0_q), g0_q = tangents, touch.g_q + touch.rates(plain_d[:-1])
     points, w_m, steps_dm, solutions = np.zeros(0, dtype=int), np.zeros(0), np.zeros((plain_d.size, 0)), 0
     g_q, guessed = (g0_q, False) if guess_q is None else (guess_q, True)
+    most = min(MOST, ENTRIES // plain_d.size)
     for _ in range(CORRECTIONS):
         p_q, dp_q = law(g_q)
         w_q = p_q - p0_q - dp0_q * (g_q - touch.g_q)
@@ -86,10 +88,12 @@ def settled_step(
         guessed = False
         leaving_q[points] = False
         new = np.flatnonzero(leaving_q)
+        if points.size + new.size > SHARING * most:
+            return None
         if new.size:
             pulls_dr, parts_rm = _spanned(touch.rows(new, plain_d.size - 1) * interface.dA_q[new])
             solutions += pulls_dr.shape[1]
-            if solutions > MOST:
+            if solutions > most:
                 return None
             more_dm = system.solve(pulls_dr) @ parts_rm
             points, steps_dm = np.append(points, new), np.concatenate([steps_dm, more_dm], axis=1)
