@@ -24,8 +24,9 @@ from iga.inverse import Inverse
 #: Corrections of the gaps, and how far tractions may be from the law, in parts of the largest.
 CORRECTIONS, AGREED = 20, 1e-12
 #: Solutions that this may take, two tangents or so, each of which is worth 25 to 40 of them; numbers in all of these,
-#: which are more work to move about than a tangent where there are more; and points that share a solution.
-MOST, ENTRIES, SHARING = 64, 200_000, 4
+#: which are more work to move about than a tangent where there are more; points that share a solution; and unknowns
+#: that are so few that a solution for each of them is no work.
+MOST, ENTRIES, SHARING, FULL = 64, 200_000, 4, 256
 #: Fewer points than these are solved for one by one; part of the largest below which what they add is rounding.
 FEW, NOTHING = 6, 1e-14
 
@@ -74,9 +75,10 @@ def settled_step(
     guess_q : gaps (n_q,) to begin with, those of the plain step if left out.
     """
     (p0_q, dp0_q), g0_q = tangents, touch.g_q + touch.rates(plain_d[:-1])
-    points, w_m, steps_dm, solutions = np.zeros(0, dtype=int), np.zeros(0), np.zeros((plain_d.size, 0)), 0
+    points, w_m = np.zeros(0, dtype=int), np.zeros(0)
+    parts_rm, steps_dr, z_r = np.zeros((0, 0)), np.zeros((plain_d.size, 0)), np.zeros(0)
     g_q, guessed = (g0_q, False) if guess_q is None else (guess_q, True)
-    most = min(MOST, ENTRIES // plain_d.size)
+    most = ENTRIES // plain_d.size if plain_d.size <= FULL else min(MOST, ENTRIES // plain_d.size)
     for _ in range(CORRECTIONS):
         p_q, dp_q = law(g_q)
         w_q = p_q - p0_q - dp0_q * (g_q - touch.g_q)
@@ -84,27 +86,27 @@ def settled_step(
         left_q[points] -= w_m
         leaving_q = np.abs(left_q) > AGREED * np.abs(p_q).max()
         if not (guessed or leaving_q.any()):
-            return plain_d - steps_dm @ w_m
+            return plain_d - steps_dr @ z_r
         guessed = False
         leaving_q[points] = False
         new = np.flatnonzero(leaving_q)
         if points.size + new.size > SHARING * most:
             return None
         if new.size:
-            pulls_dr, parts_rm = _spanned(touch.rows(new, plain_d.size - 1) * interface.dA_q[new])
-            solutions += pulls_dr.shape[1]
-            if solutions > most:
+            pulls_dr, more_rm = _spanned(touch.rows(new, plain_d.size - 1) * interface.dA_q[new])
+            if parts_rm.shape[0] + pulls_dr.shape[1] > most:
                 return None
-            more_dm = system.solve(pulls_dr) @ parts_rm
-            points, steps_dm = np.append(points, new), np.concatenate([steps_dm, more_dm], axis=1)
-        C_mm = touch.rates(steps_dm[:-1], points)
+            points, parts_rm = np.append(points, new), _beside(parts_rm, more_rm)
+            steps_dr = np.concatenate([steps_dr, system.solve(pulls_dr)], axis=1)
+        # of the tractions only what the pulls feel is unknown: z = P w
         slope, w = (dp_q - dp0_q)[points], w_q[points]
-        matrix, right = np.eye(points.size) + C_mm * slope, g0_q[points] - C_mm @ (w - slope * g_q[points])
+        matrix = np.eye(parts_rm.shape[0]) + (parts_rm * slope) @ touch.rates(steps_dr[:-1], points)
         try:
-            w_m = w + slope * (np.linalg.solve(matrix, right) - g_q[points])
+            z_r = np.linalg.solve(matrix, parts_rm @ (w + slope * (g0_q - g_q)[points]))
         except np.linalg.LinAlgError:  # just as soft as the specimen is stiff
             return None
-        g_q = g0_q - touch.rates(steps_dm[:-1] @ w_m)
+        next_q = g0_q - touch.rates(steps_dr[:-1] @ z_r)
+        w_m, g_q = w + slope * (next_q - g_q)[points], next_q
     return None
 
 
@@ -117,9 +119,21 @@ def _spanned(rows_dm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if n_m < FEW:
         return rows_dm, np.eye(n_m)
     used = np.flatnonzero(rows_dm.any(axis=1))
-    Q, R, order = qr(rows_dm[used], mode="economic", pivoting=True, check_finite=False)
-    size_r = np.abs(np.diagonal(R))
-    rank = int(np.count_nonzero(size_r > NOTHING * size_r[0]))
-    vectors_dr, parts_rm = np.zeros((len(rows_dm), rank), order="F"), np.empty((rank, n_m))
-    vectors_dr[used], parts_rm[:, order] = Q[:, :rank], R[:rank]
+    if used.size <= n_m:  # one unknown for each function, as of a condensed bulk
+        Q, parts_rm = np.eye(used.size), rows_dm[used]
+    else:
+        Q, R, order = qr(rows_dm[used], mode="economic", pivoting=True, check_finite=False)
+        size_r = np.abs(np.diagonal(R))
+        rank = int(np.count_nonzero(size_r > NOTHING * size_r[0]))
+        Q, parts_rm = Q[:, :rank], np.empty((rank, n_m))
+        parts_rm[:, order] = R[:rank]
+    vectors_dr = np.zeros((len(rows_dm), len(parts_rm)), order="F")
+    vectors_dr[used] = Q
     return vectors_dr, parts_rm
+
+
+def _beside(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Both as blocks on the diagonal; SciPy's of that name takes as long as the solution with them."""
+    both = np.zeros((a.shape[0] + b.shape[0], a.shape[1] + b.shape[1]))
+    both[: a.shape[0], : a.shape[1]], both[a.shape[0] :, a.shape[1] :] = a, b
+    return both
