@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -54,16 +54,8 @@ def block_basis(
     ------
     ValueError : an element whose Jacobian determinant is not positive somewhere.
     """
-    N, dN_param = _rational(mesh, block.C_eab, block.conn_ea, block.degrees, points_q)
-    P_eaI = mesh.P_AI[block.conn_ea]
-    J_eqIs = np.einsum("eaI,eqas->eqIs", P_eaI, dN_param)
-    det = J_eqIs[..., 0, 0] * J_eqIs[..., 1, 1] - J_eqIs[..., 0, 1] * J_eqIs[..., 1, 0]
-    if not np.all(det > 0):
-        raise ValueError(
-            f"element {int(np.argmin(det.min(1)))} is turned inside out: its smallest Jacobian is {det.min():.3g}"
-        )
-    dN = np.einsum("eqas,eqsI->eqaI", dN_param, np.linalg.inv(J_eqIs))
-    return BlockBasis(block.conn_ea, N, dN, det * (weights_q * width), np.einsum("eqa,eaI->eqI", N, P_eaI))
+    basis, _ = _mapped(mesh, block, points_q)
+    return replace(basis, dV_eq=basis.dV_eq * (weights_q * width))
 
 
 def chain_basis(mesh: Mesh, chain: Chain, points_q: np.ndarray, weights_q: np.ndarray) -> tuple[BlockBasis, ...]:
@@ -76,24 +68,42 @@ def chain_basis(mesh: Mesh, chain: Chain, points_q: np.ndarray, weights_q: np.nd
         (direction, value), block, e = SIDES[side], mesh.blocks[number], chain.element_c[here]
         square_q = np.insert(points_q[:, None], direction, value, axis=1)
         part = ElementBlock(block.degrees, block.C_eab[e], block.conn_ea[e])
-        basis = block_basis(mesh, part, square_q, np.ones(len(points_q)))
-        _, dN_param = _rational(mesh, part.C_eab, part.conn_ea, part.degrees, square_q)
-        tangent = np.einsum("eaI,eqa->eqI", mesh.P_AI[part.conn_ea], dN_param[..., 1 - direction])
-        length = np.linalg.norm(tangent, axis=-1) * weights_q
-        bases.append(BlockBasis(basis.conn_ea, basis.N_eqa, basis.dN_eqaI, length, basis.X_eqI))
+        basis, J_eqIs = _mapped(mesh, part, square_q)
+        bases.append(replace(basis, dV_eq=np.linalg.norm(J_eqIs[..., 1 - direction], axis=-1) * weights_q))
     return tuple(bases)
 
 
+def _mapped(mesh: Mesh, block: ElementBlock, points_q: np.ndarray) -> tuple[BlockBasis, np.ndarray]:
+    """Basis at the points, with Jacobian determinants for ``dV``, and the Jacobians (n_e, n_q, 2, 2) dX_I/ds_s."""
+    N_eqa, dN_seqa = _rational(mesh, block, points_q)
+    P_eaI = mesh.P_AI[block.conn_ea]
+    (J00, J10), (J01, J11) = (np.moveaxis(dN @ P_eaI, -1, 0) for dN in dN_seqa)
+    det = J00 * J11 - J01 * J10
+    if not np.all(det > 0):
+        raise ValueError(
+            f"element {int(np.argmin(det.min(1)))} is turned inside out: its smallest Jacobian is {det.min():.3g}"
+        )
+    dN_eqaI, (dN_s, dN_t) = np.empty((*N_eqa.shape, 2)), dN_seqa
+    dN_eqaI[..., 0] = (J11 / det)[..., None] * dN_s - (J10 / det)[..., None] * dN_t
+    dN_eqaI[..., 1] = (J00 / det)[..., None] * dN_t - (J01 / det)[..., None] * dN_s
+    J_eqIs = np.stack([np.stack([J00, J01], -1), np.stack([J10, J11], -1)], -2)
+    return BlockBasis(block.conn_ea, N_eqa, dN_eqaI, det, N_eqa @ P_eaI), J_eqIs
+
+
 def _rational(
-    mesh: Mesh, C_eab: np.ndarray, conn_ea: np.ndarray, degrees: tuple[int, int], points_q: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """R_a = w_a N_a / W and its parametric gradient (quotient rule): (n_e, n_q, n_a) and (n_e, n_q, n_a, 2)."""
-    (p, q), s, t = degrees, points_q[:, 0], points_q[:, 1]
-    B = tensor(bernstein(p, s), bernstein(q, t))
-    dB_s = tensor(bernstein_derivative(p, s), bernstein(q, t))
-    dB_t = tensor(bernstein(p, s), bernstein_derivative(q, t))
-    w_ea = mesh.w_A[conn_ea]
-    wN, wdN_s, wdN_t = ((C_eab @ b.T).transpose(0, 2, 1) * w_ea[:, None, :] for b in (B, dB_s, dB_t))
+    mesh: Mesh, block: ElementBlock, points_q: np.ndarray
+) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
+    """R_a = w_a N_a / W (n_e, n_q, n_a) and its two parametric derivatives (quotient rule) of that shape."""
+    (p, q), s, t = block.degrees, points_q[:, 0], points_q[:, 1]
+    B_s, B_t = bernstein(p, s), bernstein(q, t)
+    dB_s, dB_t = bernstein_derivative(p, s), bernstein_derivative(q, t)
+    B_kqb = np.concatenate([tensor(B_s, B_t), tensor(dB_s, B_t), tensor(B_s, dB_t)])
+    w_ea = mesh.w_A[block.conn_ea]
+    wN_ekqa = (B_kqb @ block.C_eab.swapaxes(1, 2)).reshape(len(w_ea), 3, len(points_q), -1)
+    N, dN_s, dN_t = np.moveaxis(wN_ekqa, 1, 0)
+    if np.all(w_ea == 1.0):  # where the sum of all functions is one there is nothing to divide by
+        return N, (dN_s, dN_t)
+    wN, wdN_s, wdN_t = (v * w_ea[:, None, :] for v in (N, dN_s, dN_t))
     W, W_s, W_t = (v.sum(-1, keepdims=True) for v in (wN, wdN_s, wdN_t))
     N = wN / W
-    return N, np.stack([(wdN_s - N * W_s) / W, (wdN_t - N * W_t) / W], -1)
+    return N, ((wdN_s - N * W_s) / W, (wdN_t - N * W_t) / W)

@@ -61,8 +61,8 @@ def finite_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
 
 def small_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Linear kinematics: the same with E replaced by the symmetric gradient and no geometric stiffness."""
-    P = np.tensordot(elasticity_tensor(D), H, axes=2)
-    return P, 0.5 * np.sum(P * H, axis=(0, 1))
+    P = (elasticity_tensor(D).reshape(4, 4) @ H.reshape(4, -1)).reshape(H.shape)
+    return P, 0.5 * (P * H).sum((0, 1))
 
 
 def small_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
