@@ -45,7 +45,11 @@ class Body:
         return tuple(block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)
 
     def surface(self, name: str) -> Surface:
-        return surface(self.mesh, self.mesh.chains[name], self.first)
+        """The surface of one of the mesh's chains, made when it is first asked for."""
+        made = self.__dict__.setdefault("_surfaces", {})
+        if name not in made:
+            made[name] = surface(self.mesh, self.mesh.chains[name], self.first)
+        return made[name]
 
 
 def bodies(

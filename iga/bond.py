@@ -9,7 +9,7 @@ import numpy as np
 
 from iga.body import Body
 from iga.cohesive import TractionLaw
-from iga.interface import Interface, contact, pair
+from iga.interface import Interface, contact
 from iga.lumped import lumped
 from iga.problem import Debonding
 from iga.quadrature import gauss, lobatto
@@ -64,36 +64,47 @@ def closes(programme: Sequence[float]) -> bool:
 
 def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float]) -> Interface:
     """Points at the two ends of the bond, in the order of ``extent``."""
-    c_q, xi_q, w_q = _everywhere(problem, bodies, extent, lobatto(2))
-    X_q = problem.pose.own(_interface(problem, bodies, c_q, xi_q, w_q).X_qi)[:, 0]
-    ends = [int(np.argmin(np.abs(X_q - X))) for X in extent]
-    found = _interface(problem, bodies, c_q[ends], xi_q[ends], w_q[ends])
+    c = _bonded_sides(problem, bodies, extent)
+    X_ck = _ends(problem, bodies)[c]
+    at = np.array([np.argmin(np.abs(X_ck - X)) for X in extent])
+    found = _interface(problem, bodies, c[at // 2], at % 2.0, np.full(2, 0.5))
     return settled(found) if found.frozen else found
 
 
 def settled(interface: Interface) -> Interface:
     """The same where partners and normals stay what they are: gaps then change in proportion."""
-    return replace(interface, at_rest=contact(interface, np.zeros(interface.P_AI.size), pair(interface)))
+    return replace(interface, at_rest=contact(interface, np.zeros(interface.P_AI.size), interface.pairing))
 
 
 def _everywhere(
     problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float], rule: tuple[np.ndarray, np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sides c_q, parameters xi_q and weights w_q (n_q,) of a rule on every bonded side of the slave."""
+    return everywhere(_bonded_sides(problem, bodies, extent), rule)
+
+
+def _bonded_sides(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float]) -> np.ndarray:
+    """Sides of the slave whose middle lies on the bond."""
     face, P_AI = _slave(problem, bodies), control_points(bodies)
     (middle,) = face.coefficients(np.arange(face.sides), np.full(face.sides, 0.5), 0)
     X_c = problem.pose.own(np.einsum("cb,cbi->ci", middle, face.bezier_points(P_AI)))[:, 0]
-    bonded = np.flatnonzero((X_c > min(extent)) & (X_c < max(extent)))
-    return everywhere(bonded, rule)
+    return np.flatnonzero((X_c > min(extent)) & (X_c < max(extent)))
+
+
+def _ends(problem: Debonding, bodies: tuple[Body, ...]) -> np.ndarray:
+    """Where along the specimen the sides of the slave begin and end (n_c, 2)."""
+    face = _slave(problem, bodies)
+    return problem.pose.own(face.bezier_points(control_points(bodies))[:, [0, -1]] / face.w_cb[:, [0, -1], None])[
+        ..., 0
+    ]
 
 
 def _between(
     problem: Debonding, bodies: tuple[Body, ...], part: tuple[float, float], rule: tuple[np.ndarray, np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The same on what lies of each side in a ``part`` of the specimen, as if its parameter ran evenly."""
-    face, P_AI = _slave(problem, bodies), control_points(bodies)
-    X_cI = problem.pose.own(face.bezier_points(P_AI)[:, [0, -1]] / face.w_cb[:, [0, -1], None])[..., 0]
-    at_ck = np.clip((np.array(part) - X_cI[:, :1]) / (X_cI[:, 1:] - X_cI[:, :1]), 0.0, 1.0)
+    X_ck = _ends(problem, bodies)
+    at_ck = np.clip((np.array(part) - X_ck[:, :1]) / (X_ck[:, 1:] - X_ck[:, :1]), 0.0, 1.0)
     start, length = at_ck.min(1), np.ptp(at_ck, axis=1)
     c_q, xi_q, w_q = everywhere(np.flatnonzero(length > SLIVER), rule)
     return c_q, start[c_q] + length[c_q] * xi_q, length[c_q] * w_q

@@ -83,10 +83,19 @@ class Interface:
         return self.P_AI - self.P_AI[0]
 
     @cached_property
+    def pairing(self) -> Pairing | None:
+        """Where its points meet the master in the reference configuration; None where nothing is searched."""
+        if self.master is None:
+            return None
+        X_qi = self.at_slave(self.local_AI)
+        start = nearest_samples(self.master, X_qi, self.local_AI)
+        return closest_points(self.master, X_qi, self.local_AI, start)
+
+    @cached_property
     def home(self) -> Home:
         """Reference places on the master; only where there is one."""
         X_qi = self.at_slave(self.local_AI)
-        there = partner(self.master, pair(self), X_qi, self.local_AI)
+        there = partner(self.master, self.pairing, X_qi, self.local_AI)
         Y_qi = (there.M_qb[:, None] @ self.local_AI[self.master.conn_ca[there.c_q]])[:, 0]
         apart_qi = X_qi - Y_qi
         touching = np.linalg.norm(apart_qi, axis=1) < TOUCHING * np.ptp(self.local_AI, axis=0).max()
@@ -156,15 +165,6 @@ class Contact:
         return self.rows(np.array([q]), n_dof)[:, 0]
 
 
-def pair(interface: Interface) -> Pairing | None:
-    """Pairing in the reference configuration."""
-    if interface.master is None:
-        return None
-    X_qi = interface.at_slave(interface.local_AI)
-    start = nearest_samples(interface.master, X_qi, interface.local_AI)
-    return closest_points(interface.master, X_qi, interface.local_AI, start)
-
-
 def partner(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarray) -> Partner:
     """Where the points x_qi (n_q, 2) meet the master with the control points y_AI (n_A, 2).
 
@@ -217,15 +217,17 @@ def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Con
 
 
 def traction(
-    interface: Interface, contact: Contact, k_q: np.ndarray, closed_q: np.ndarray
+    interface: Interface, contact: Contact, k_q: np.ndarray, closed_q: np.ndarray, g_q: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Traction, tangent and new history at all points; a point that has left the master is free.
 
-    Traction and tangent are those of the share of each point that faces the master, over its whole area.
+    Traction and tangent are those of the share of each point that faces the master, over its whole area. ``g_q`` are
+    gaps to be tried in place of those of the contact.
     """
-    p, dp, k_new = interface.law.traction(contact.g_q, k_q, closed_q)
-    carries_q = np.where(holding(interface, contact) | (closed_q & interface.law.contact), contact.share_q, 0.0)
-    return carries_q * p, carries_q * dp, np.where(holding(interface, contact), k_new, k_q)
+    p, dp, k_new = interface.law.traction(contact.g_q if g_q is None else g_q, k_q, closed_q)
+    holds_q = holding(interface, contact)
+    carries_q = np.where(holds_q | (closed_q & interface.law.contact), contact.share_q, 0.0)
+    return carries_q * p, carries_q * dp, np.where(holds_q, k_new, k_q)
 
 
 def holding(interface: Interface, contact: Contact) -> np.ndarray:

@@ -204,7 +204,7 @@ def correction(
     interface, touch = system.interface, response.contact
 
     def law(g_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return traction(interface, replace(touch, g_q=g_q), trial.k_q, g_q < 0.0)[:2]
+        return traction(interface, touch, trial.k_q, g_q < 0.0, g_q)[:2]
 
     found = settled_step(interface, touch, law, (response.p_q, response.dp_q), plain_d, tied, guess_q)
     return (plain_d, False) if found is None else (found, True)

@@ -9,9 +9,8 @@ import numpy as np
 
 from iga.body import Body, mean_row, slope_row
 from iga.extraction import Mesh
-from iga.interface import Interface, pair
+from iga.interface import Interface
 from iga.pose import Pose
-from iga.projection import Pairing
 from iga.system import System
 from iga.tmesh import TMesh
 
@@ -58,11 +57,6 @@ class Specimen:
     def face_row(self) -> np.ndarray:
         """Row (n_dof,) of the mean displacement of the upper body's loaded face along the specimen."""
         return mean_row(self.bodies[0].faces[self.loaded[0]], self.pose.axes_kI[0], self.system.n_dof)
-
-    @cached_property
-    def probe_at_rest(self) -> Pairing | None:
-        """Where the points of the probe meet the master before anything moves."""
-        return pair(self.probe)
 
     @cached_property
     def beside_probe(self) -> np.ndarray:

@@ -21,7 +21,7 @@ from iga.bulk import (
     relative,
 )
 from iga.dense import Dense
-from iga.interface import Contact, Interface, contact, dofs, forces, holding, pair, stiffness, traction
+from iga.interface import Contact, Interface, contact, dofs, forces, holding, stiffness, traction
 from iga.interface import rounding as interface_rounding
 from iga.inverse import Inverse, held_inverse, inverse
 from iga.kinematics import KINEMATICS
@@ -159,7 +159,7 @@ class System:
     def start(self) -> State:
         """The unloaded state."""
         n_q = self.interface.points
-        return State(np.zeros(self.n_dof), 0.0, np.zeros(n_q), np.zeros(n_q, dtype=bool), pair(self.interface))
+        return State(np.zeros(self.n_dof), 0.0, np.zeros(n_q), np.zeros(n_q, dtype=bool), self.interface.pairing)
 
     @cached_property
     def band(self) -> Band | Dense:
@@ -181,7 +181,7 @@ class System:
         interface = self.interface
         if interface.at_rest is not None:
             return interface.at_rest.dof_qd
-        pairing = pair(interface)
+        pairing = interface.pairing
         if pairing is None:
             return dofs(interface.known_conn_qa)
         return dofs(np.concatenate([interface.conn_qa, interface.master.conn_ca[pairing.c_q]], axis=1))

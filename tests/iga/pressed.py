@@ -10,7 +10,7 @@ from scipy.sparse.linalg import splu
 from iga.bond import between, everywhere
 from iga.cohesive import BilinearLaw
 from iga.extraction import Mesh
-from iga.interface import Contact, Interface, contact, forces, pair, stiffness, traction
+from iga.interface import Contact, Interface, contact, forces, stiffness, traction
 from iga.plane import Fixed
 from iga.plane import stiffness as bulk_stiffness
 from iga.quadrature import gauss
@@ -55,7 +55,7 @@ def press(
     K = block_diag([bulk_stiffness(mesh, D_) for mesh, D_ in zip(meshes, D, strict=True)]).tocsc()
     u_d = np.zeros(f_d.size) if start_d is None else start_d.copy()
     u_d[fixed.dof_d] = fixed.value_d
-    k_q, pairing = np.zeros(interface.points), pair(interface)
+    k_q, pairing = np.zeros(interface.points), interface.pairing
     is_free = np.ones(f_d.size, dtype=bool)
     is_free[fixed.dof_d] = False
     free = np.flatnonzero(is_free)

@@ -14,7 +14,7 @@ from iga.bspline import open_knots
 from iga.cohesive import BilinearLaw
 from iga.extraction import Mesh
 from iga.iga_file import from_mesh, write_iga
-from iga.interface import Interface, contact, forces, pair, stiffness, traction
+from iga.interface import Interface, contact, forces, stiffness, traction
 from iga.lagrange import lagrange_rectangle
 from iga.nurbs import nurbs_rectangle
 from iga.projection import FREE, HELD
@@ -108,7 +108,7 @@ def tangent_error(
 
     Only where no point changes its side or its branch of the law within the difference.
     """
-    start = contact(interface, u_d, pair(interface)).pairing
+    start = contact(interface, u_d, interface.pairing).pairing
     touch, v = contact(interface, u_d, start), rng.standard_normal(u_d.size)
     closed_q = touch.g_q < 0.0
     for sign in (-1.0, 1.0):
@@ -204,7 +204,7 @@ def test_forces_do_not_jump_where_a_point_slides_off_the_end(gap, slave, rng):
     interface, changes = one.interface, {}
     k_q, seed = np.zeros(interface.points), rng.integers(2**31)
     for steps in (40, 200):
-        pairing, before, change = pair(interface), None, 0.0
+        pairing, before, change = interface.pairing, None, 0.0
         for slide in np.linspace(0.0, 1.0, steps):
             u_d = bent(
                 one, gap * LAW.g_max, slide if slave == "upper" else -slide, 0.2, 30.0, np.random.default_rng(seed)
@@ -226,7 +226,7 @@ def test_forces_and_moments_are_in_balance_past_the_end(slave, rng):
     for over in (0.02, 0.1, 0.15):
         slide = end + over
         u_d = bent(one, 0.6 * LAW.g_max, slide if slave == "upper" else -slide, 0.25, 70.0, rng)
-        touch = contact(one.interface, u_d, pair(one.interface))
+        touch = contact(one.interface, u_d, one.interface.pairing)
         assert np.any(~touch.pairing.on_q & touch.on_q), "a point is held beyond the end"
         p_q = traction(one.interface, touch, np.zeros(one.interface.points), touch.g_q < 0.0)[0]
         R, x = forces(one.interface, touch, p_q, u_d.size).reshape(-1, 2), one.interface.P_AI + u_d.reshape(-1, 2)
@@ -239,5 +239,5 @@ def test_flush_ends_keep_their_points_whatever_rounding_does(rng):
     one = rig(nurbs(9, 3, UPPER), nurbs(9, 3, LOWER), "upper", points=8)
     for slide in (-1e-3, 1e-15, 1e-3, HELD * 6.0 / 9.0):
         u_d = bent(one, 0.5 * LAW.g_max, slide, 0.0, 37.0, np.random.default_rng(1))
-        touch = contact(one.interface, u_d, pair(one.interface))
+        touch = contact(one.interface, u_d, one.interface.pairing)
         assert np.all(touch.share_q == 1.0)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from iga.dcb import Problem, build
 from iga.extraction import Mesh
-from iga.interface import contact, forces, pair, rounding, stiffness, traction
+from iga.interface import contact, forces, rounding, stiffness, traction
 from iga.lagrange import lagrange_rectangle
 from iga.projection import FREE, closest_points, nearest_samples
 from iga.surface import surface
@@ -154,7 +154,7 @@ def test_gaps_are_rounded_as_displacements_are_wherever_the_specimen_lies(kinema
     interface = build(replace(PROBLEM, kinematics=kinematics)).system.interface
     Q = np.array([[0.8, -0.6], [0.6, 0.8]])
     moved = replace(interface, P_AI=interface.P_AI @ Q.T + [1e4, -2e4], X_qi=interface.X_qi @ Q.T + [1e4, -2e4])
-    start, u_Ai = pair(moved), np.zeros_like(moved.P_AI)
+    start, u_Ai = moved.pairing, np.zeros_like(moved.P_AI)
     assert np.max(np.abs(contact(moved, u_Ai.ravel(), start).g_q)) < 1e-25
     u_Ai[: len(u_Ai) // 2] = 1e-9 * Q[:, 1]
     touch = contact(moved, u_Ai.ravel(), start)

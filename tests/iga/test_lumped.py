@@ -7,7 +7,7 @@ import pytest
 
 from iga.arms import arm_meshes
 from iga.dcb import Problem, build, solve
-from iga.interface import Interface, contact, forces, pair, stiffness, traction
+from iga.interface import Interface, contact, forces, stiffness, traction
 from iga.lagrange import lagrange_rectangle
 from iga.lumped import lumped
 from iga.surface import surface
@@ -72,7 +72,7 @@ def test_a_uniform_gap_gives_the_forces_of_gauss_point_for_point(basis, degree, 
     law, R = by_nodes.law, []
     u = lifted(by_nodes, np.broadcast_to([0.0, 0.7 * law.g_max], by_nodes.P_AI.shape), symmetry)
     for interface in (by_points, by_nodes):
-        touch = contact(interface, u, pair(interface))
+        touch = contact(interface, u, interface.pairing)
         p, _, _ = traction(interface, touch, np.zeros(interface.points), touch.g_q < 0)
         assert np.allclose(touch.g_q, 0.7 * law.g_max, rtol=1e-12)
         R.append(forces(interface, touch, p, u.size))

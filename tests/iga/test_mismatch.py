@@ -7,7 +7,6 @@ import pytest
 
 from iga.arms import arm_meshes, crack_path
 from iga.dcb import build, solve
-from iga.interface import pair
 from iga.sizes import element_length
 from tests.iga.test_dcb import CZM1
 
@@ -77,6 +76,6 @@ def test_length_ratio_and_size_of_the_mesh(mismatch, basis):
 
 def test_points_meet_elements_of_another_length():
     interface = build(replace(PROBLEM, mismatch=1.37, dofs=400)).system.interface
-    met = pair(interface)
+    met = interface.pairing
     assert np.all(met.on_q) and np.ptp(met.xi_q) > 0.9
     assert len(np.unique(np.round(met.xi_q, 6))) > 4, "on matching meshes every point meets the same places"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from iga.bond import between, everywhere
-from iga.interface import contact, pair
+from iga.interface import contact
 from iga.path import Point, follow
 from iga.peel import build, solve
 from iga.quadrature import gauss
@@ -29,7 +29,7 @@ def gaps_everywhere(specimen, point) -> tuple[np.ndarray, np.ndarray]:
     P_AI, law = specimen.system.interface.P_AI, specimen.system.interface.law
     interface = between(strip, substrate, P_AI, law, everywhere(np.arange(strip.sides), gauss(10)))
     over = interface.X_qi[:, 0] < PEEL.substrate_length
-    return interface.X_qi[over, 0], contact(interface, point.state.u_d, pair(interface)).g_q[over]
+    return interface.X_qi[over, 0], contact(interface, point.state.u_d, interface.pairing).g_q[over]
 
 
 @pytest.mark.parametrize("kinematics", ["finite", "linear"])

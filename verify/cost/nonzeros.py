@@ -24,9 +24,7 @@ def nonzeros(scene: Scene, method: str) -> int:
 
 def _touching(interface: Any) -> np.ndarray:
     """Control points (n_q, n_a) of both surfaces that each interface point touches."""
-    from iga.interface import pair
-
-    pairing = pair(interface)
+    pairing = interface.pairing
     if pairing is None:
         return interface.known_conn_qa
     return np.concatenate([interface.conn_qa, interface.master.conn_ca[pairing.c_q]], axis=1)
