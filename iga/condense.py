@@ -16,17 +16,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import null_space
-from scipy.sparse import block_array, coo_array, csc_array, csr_array
+from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 
-from iga.bulk import all_values, stiffness_entries
-from iga.interface import Contact, contact, forces, pair
+from iga.interface import Contact, Interface, contact, forces
 from iga.point import Point
 from iga.system import System
 
 #: Normals that differ by less than this are one.
 STRAIGHT = 1e-12
+#: Part of the largest function by which those of two control points that face each other may differ, by rounding.
+ALIKE = 1e-12
 #: Part of a rigid motion below which a spring does not feel it.
 RESISTED = 1e-9
 #: Further solutions of the saddle point problem, each for what the last one has left.
@@ -71,19 +72,15 @@ def condensed(system: System) -> Condensed | None:
     interface = system.interface
     if system.kinematics != "linear":
         return None
-    rest = contact(interface, np.zeros(system.n_dof), pair(interface))
+    rest = contact(interface, np.zeros(system.n_dof), interface.pairing)
     B_rd, kept_qd, weight_qd = _rows(system, rest)
     n_r = B_rd.shape[0]
-    if DENSE * n_r**3 > BANDED * system.band.n * system.band.k**2:
+    if not _pays(system, n_r):
         return None
     free = np.flatnonzero(system.free_d)
-    K_dd = _bulk(system)
-    springs = csr_array(system.springs_rd)
-    tied_dd = K_dd + springs.T @ (springs * system.spring_r[:, None])
-    saddle = block_array([[tied_dd[free][:, free], B_rd[:, free].T], [B_rd[:, free], None]], format="csc")
     try:
         # of SuperLU's orderings the one that fills in least here, and hundreds of solutions follow
-        lu = splu(saddle, permc_spec="MMD_ATA")
+        lu = splu(_saddle(system, B_rd, free), permc_spec="MMD_ATA")
     except RuntimeError:  # rows that say the same twice
         return None
     U_dr, unit_rr = np.zeros((system.n_dof, n_r)), np.eye(n_r)
@@ -91,12 +88,14 @@ def condensed(system: System) -> Condensed | None:
     U_dr[free], S_rr = first[: free.size], -first[free.size :]
     for _ in range(REFINEMENTS):
         held_dr = _bulk_forces(system, U_dr)
-        left_dr = held_dr + springs.T @ ((springs @ U_dr) * system.spring_r[:, None]) - B_rd.T @ S_rr
+        left_dr = (
+            held_dr - B_rd.T @ S_rr + system.springs_rd.T @ (system.spring_r[:, None] * (system.springs_rd @ U_dr))
+        )
         change = lu.solve(np.concatenate([-left_dr[free], unit_rr - B_rd @ U_dr]))
         U_dr[free] += change[: free.size]
         S_rr -= change[free.size :]
     # rigid motions ask for no force: said once more, rounding of the solution does not come into the balance of forces
-    rigid_dm = _mechanisms(system, K_dd)
+    rigid_dm = _mechanisms(system)
     y_rm, triangle = np.linalg.qr(B_rd @ rigid_dm)
     U_dr += (np.linalg.solve(triangle.T, rigid_dm.T).T - U_dr @ y_rm) @ y_rm.T
     S_rr -= y_rm @ (y_rm.T @ S_rr)
@@ -118,6 +117,16 @@ def condensed(system: System) -> Condensed | None:
     return Condensed(small, system, U_dr, held_fr, fixed, rest)
 
 
+def _pays(system: System, n_r: int) -> bool:
+    """Whether n_r dense equations are less work than a band, of which a look at one element may tell enough."""
+
+    def less(n: int, k: int) -> bool:
+        return DENSE * n_r**3 <= BANDED * n * k**2
+
+    least = max(d.shape[1] for d in system.element_dofs) - 1
+    return less(int(system.free_d.sum()), least) or less(system.band.n, system.band.k)
+
+
 def _rows(system: System, rest: Contact) -> tuple[csr_array, np.ndarray, np.ndarray]:
     """Displacements that are kept, as rows B (n_r, n_dof), the opening last, and the gaps in them.
 
@@ -131,19 +140,38 @@ def _rows(system: System, rest: Contact) -> tuple[csr_array, np.ndarray, np.ndar
         entries = [(np.arange(kept.size), kept, np.ones(kept.size))]
         weight_qd = V_qd
     else:
-        facing = interface.master is None and interface.twin_qa is not None
-        A, kept_qd = _numbered(interface.conn_qa if facing else rest.dof_qd[:, ::2] // 2)
+        A_qd, weight_qd = rest.dof_qd[:, ::2] // 2, V_qd[:, ::2] * n_i[0] + V_qd[:, 1::2] * n_i[1]
+        facing = _facing(interface, A_qd, weight_qd)
+        A, kept_qd = _numbered(A_qd if facing is None else facing[0])
         entries = _along(A, n_i)
-        weight_qd = interface.N_qa if facing else V_qd[:, ::2] * n_i[0] + V_qd[:, 1::2] * n_i[1]
-        if facing:
+        if facing is not None:
+            weight_qd = weight_qd[:, : kept_qd.shape[1]]
             twin = np.empty(A.size, dtype=int)
-            twin[kept_qd] = interface.twin_qa
+            twin[kept_qd] = facing[1]
             entries += _along(twin, -n_i)
     n_r = kept_qd.max() + 2
     opening = np.flatnonzero(system.load_d)
     entries.append((np.full(opening.size, n_r - 1), opening, system.load_d[opening]))
     row, column, value = (np.concatenate([entry[i] for entry in entries]) for i in range(3))
     return csr_array((value, (row, column)), shape=(n_r, system.n_dof)), kept_qd, weight_qd
+
+
+def _facing(interface: Interface, A_qd: np.ndarray, weight_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Control points (n_q, n_a) of the slave at each point and those of the master that take the same functions there.
+
+    None where the meshes do not match: then more counts than the differences of both.
+    """
+    n_a = interface.conn_qa.shape[1]
+    if A_qd.shape[1] != 2 * n_a:
+        return None
+    slave_qa, twin = A_qd[:, :n_a], np.empty(A_qd.max() + 1, dtype=int)
+    for way in (1, -1):
+        twin_qa = A_qd[:, n_a:][:, ::way]
+        twin[slave_qa] = twin_qa
+        sum_qa = weight_qd[:, :n_a] + weight_qd[:, n_a:][:, ::way]
+        if np.array_equal(twin[slave_qa], twin_qa) and np.abs(sum_qa).max() <= ALIKE * np.abs(weight_qd).max():
+            return slave_qa, twin_qa
+    return None
 
 
 def _numbered(name_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -157,9 +185,9 @@ def _along(A: np.ndarray, n_i: np.ndarray) -> list[tuple[np.ndarray, np.ndarray,
     return [(row, 2 * A + i, np.full(A.size, n_i[i])) for i in range(2)]
 
 
-def _mechanisms(system: System, K_dd: csc_array) -> np.ndarray:
+def _mechanisms(system: System) -> np.ndarray:
     """Motions (n_dof, n_m) that neither bulk nor springs resist: rigid ones of the bodies that no support holds."""
-    bodies, body_d = connected_components(K_dd, directed=False)
+    bodies, body_d = _bodies(system)
     x_Ai = system.interface.local_AI - system.interface.local_AI.mean(0)
     turn_d = np.stack([-x_Ai[:, 1], x_Ai[:, 0]], -1).ravel() / np.ptp(x_Ai, axis=0).max()
     rigid_dm = np.stack([np.tile([1.0, 0.0], len(x_Ai)), np.tile([0.0, 1.0], len(x_Ai)), turn_d], -1)
@@ -179,10 +207,28 @@ def _bulk_forces(system: System, U_dr: np.ndarray) -> np.ndarray:
     return f_dr
 
 
-def _bulk(system: System) -> csc_array:
-    """Stiffness of the bulk (n_dof, n_dof)."""
-    entries = [stiffness_entries(solid.basis.conn_ea) for solid in system.solids]
-    entries = [(row.ravel(), column.ravel()) for row, column in entries]
-    row, column = (np.concatenate([entry[i] for entry in entries]) for i in range(2))
-    values = all_values(system.unloaded_stiffness)
-    return coo_array((values, (row, column)), shape=(system.n_dof, system.n_dof)).tocsc()
+def _bodies(system: System) -> tuple[int, np.ndarray]:
+    """How many bodies there are, each of elements that share control points, and the one of each unknown (n_dof,)."""
+    near, far = (
+        np.concatenate([d.ravel() for d in parts])
+        for parts in zip(*(np.broadcast_arrays(d[:, :1], d) for d in system.element_dofs), strict=True)
+    )
+    return connected_components(coo_array((np.ones(far.size), (near, far)), shape=(system.n_dof,) * 2), directed=False)
+
+
+def _saddle(system: System, B_rd: csr_array, free: np.ndarray) -> csc_array:
+    """``[K B'; B 0]`` over the free unknowns and the multipliers, K with its springs."""
+    n, springs_rd, B = system.n_dof, system.springs_rd, B_rd.tocoo()
+    held = np.flatnonzero(springs_rd.any(axis=0))
+    blocks = [*zip(system.element_dofs, system.linear_matrices, strict=True)]
+    blocks.append((held[None], (springs_rd[:, held].T @ (system.spring_r[:, None] * springs_rd[:, held]))[None]))
+    row, column = B.coords
+    entries = [(n + row, column, B.data), (column, n + row, B.data)]
+    for d, K in blocks:
+        entries.append((*(np.broadcast_to(v, K.shape).ravel() for v in (d[:, :, None], d[:, None, :])), K.ravel()))
+    i, j, values = (np.concatenate(parts) for parts in zip(*entries, strict=True))
+    place = np.full(n + B.shape[0], -1)
+    place[np.append(free, n + np.arange(B.shape[0]))] = np.arange(free.size + B.shape[0])
+    there = (place[i] >= 0) & (place[j] >= 0)
+    shape = (free.size + B.shape[0],) * 2
+    return coo_array((values[there], (place[i[there]], place[j[there]])), shape=shape).tocsc()
