@@ -59,7 +59,13 @@ def foresee(
     if found is None or not found[1]:
         return Foreseen(old.moved(along_d))
     if by_kinks and place is None:
-        place = landing(system, old, touch, touch.g_q + touch.rates(found[0][:-1]), follows_on)
+        guess_q = touch.g_q + touch.rates(found[0][:-1])
+        place = landing(system, old, touch, guess_q, follows_on)
+        if place is not None and system.kinematics == "linear":  # this is exact then; else Newton is needed anyway
+            control = gap_control(system, place.q)
+            with phase("solve"):
+                onto = correction(system, old, response, known.inverse, control, place.target, True, guess_q)
+            found = onto if onto is not None and onto[1] else found
     return Foreseen(old.moved(found[0]), True, place)
 
 
