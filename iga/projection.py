@@ -91,7 +91,7 @@ def closest_points(
 
 
 def _stroll(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing, tolerance: float) -> Pairing:
-    """Plain Newton for the points that stay on their side, by far the most: ``on_q`` tells which have arrived."""
+    """Plain Newton for the points that stay near, on their side or the next ones: ``on_q`` tells which have arrived."""
     c_q, xi_q = guess.c_q.copy(), guess.xi_q.copy()
     Q_qbi, on_q = surface.bezier_points(y_AI, c_q), (xi_q > 0.0) & (xi_q < 1.0)
     for _ in range(STROLL):
@@ -101,13 +101,22 @@ def _stroll(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing
         a_q = m_q - (d_qi * jet_qki[:, 2]).sum(-1)
         step_q = pull_q / np.where(a_q > 0.1 * m_q, a_q, m_q)
         goal_q = xi_q + step_q
-        on_q &= (a_q > 0.1 * m_q) & (goal_q > 0.0) & (goal_q < 1.0)
-        xi_q = np.where(on_q, goal_q, xi_q)
-        arrived_q = np.abs(step_q) <= tolerance
-        if np.all(arrived_q | ~on_q):
+        on_q &= (a_q > 0.1 * m_q) & (goal_q > -1.0) & (goal_q < 2.0)
+        inside_q = (goal_q > 0.0) & (goal_q < 1.0)
+        xi_q = np.where(on_q & inside_q, goal_q, xi_q)
+        crossing = np.flatnonzero(on_q & ~inside_q)
+        if crossing.size:
+            way = np.where(goal_q[crossing] > 0.5, 1, -1)
+            c = surface.following(c_q[crossing], way)
+            on_q[crossing] = c != c_q[crossing]
+            c_q[crossing], xi_q[crossing] = c, goal_q[crossing] - way
+            Q_qbi[crossing] = surface.bezier_points(y_AI, c)
+        arrived_q = inside_q & (np.abs(step_q) <= tolerance)
+        if (arrived_q | ~on_q).all():
             break
     depth_q = surface.outward * (t_qi[:, 1] * d_qi[:, 0] - t_qi[:, 0] * d_qi[:, 1])
-    return Pairing(c_q, np.where(on_q, xi_q, guess.xi_q), on_q & arrived_q & (depth_q >= -m_q))
+    on_q &= arrived_q & (depth_q >= -m_q)
+    return Pairing(np.where(on_q, c_q, guess.c_q), np.where(on_q, xi_q, guess.xi_q), on_q)
 
 
 def _walk(
