@@ -78,12 +78,6 @@ def half_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return tuple(np.reshape(v[:, :, :3], (n_e, -1))[:, half(n_a)] for v in stiffness_entries(conn_ea))
 
 
-def half_values(K_eapb: np.ndarray) -> np.ndarray:
-    """Their values (n_e, n_h)."""
-    n_e, n_a, _, _ = K_eapb.shape
-    return K_eapb.reshape(n_e, -1)[:, half(n_a)]
-
-
 def full_matrices(K_eapb: np.ndarray) -> np.ndarray:
     """Element matrices (n_e, 2 n_a, 2 n_a) over degrees of freedom 2a + i."""
     n_e, n_a, _, _ = K_eapb.shape

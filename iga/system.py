@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
+from scipy.sparse import coo_array, csr_array
 
 from iga.banded import Band, Skew, number
 from iga.bulk import (
@@ -16,8 +17,8 @@ from iga.bulk import (
     energy,
     full_matrices,
     gradient,
+    half,
     half_entries,
-    half_values,
     relative,
 )
 from iga.dense import Dense
@@ -115,14 +116,15 @@ class Response:
 
 @dataclass(frozen=True)
 class Pattern:
-    """The lower half of the tangent, and the place in it (n_values,) of every entry of bulk, interface and springs.
+    """The lower half of the tangent, and where in it all entries go.
 
-    Linear kinematics leaves out the bulk, which is in place already. ``held`` are the places of the spring across the
-    opening.
+    ``bulk`` (band.size, n_values) adds up what the elements say; linear kinematics has it in place already. Of
+    interface and springs ``positions`` (n_values,) are the places, of the spring across the opening ``held``.
     """
 
     dof_qd: np.ndarray
     band: Band | Dense
+    bulk: csr_array | None
     positions: np.ndarray
     held: np.ndarray
 
@@ -214,11 +216,6 @@ class System:
         compliance = 0.0 if found is None else abs(float(self.load_d @ found.under_load_d))
         return HOLD / compliance if compliance > 0.0 else 0.0
 
-    @property
-    def bulk_entries(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Rows and columns of the element matrices, of each symmetric pair one."""
-        return [half_entries(solid.basis.conn_ea) for solid in self.solids]
-
     @cached_property
     def element_dofs(self) -> tuple[np.ndarray, ...]:
         """Degrees of freedom (n_e, 2 n_a) of the elements of each block."""
@@ -240,8 +237,7 @@ class System:
         """The stiffness of a linear bulk, lower half."""
         if self.bulk_dd is not None:
             return self.bulk_dd.ravel()
-        values = np.concatenate([half_values(K).ravel() for K in self.unloaded_stiffness])
-        return np.bincount(_positions(self.band, self.bulk_entries), values, self.band.size)
+        return _scatter(self.solids, self.band) @ _all_values(self.unloaded_stiffness)
 
     @cached_property
     def stiffest(self) -> tuple[np.ndarray, ...]:
@@ -257,8 +253,10 @@ class System:
         if kept is None or not np.array_equal(kept.dof_qd, dof_qd):
             touching = [_lower(dof_qd), self.spring_entries[:2]]
             band = self.band.reaching(*touching[0])
-            bulk = [] if self.kinematics == "linear" else self.bulk_entries
-            kept = Pattern(dof_qd, band, _positions(band, [*bulk, *touching]), _positions(band, [_pairs(self.loaded)]))
+            bulk = None
+            if self.kinematics != "linear":
+                bulk = kept.bulk if kept is not None and kept.band.k == band.k else _scatter(self.solids, band)
+            kept = Pattern(dof_qd, band, bulk, _positions(band, touching), _positions(band, [_pairs(self.loaded)]))
             self.__dict__["_pattern"] = kept
         return kept
 
@@ -286,11 +284,12 @@ def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np
     pattern, touch = _pattern(system, response), response.contact
     K_qdd = stiffness(system.interface, touch, response.p_q, response.dp_q)
     i, j = _tril(K_qdd.shape[1])
-    bulk = [half_values(K) for K in _bulk_stiffness(system, response.gradients)]
-    values = np.concatenate([v.ravel() for v in (*bulk, K_qdd[:, i, j], system.spring_entries[2])])
+    values = np.concatenate([K_qdd[:, i, j].ravel(), system.spring_entries[2]])
     half = np.bincount(pattern.positions, values, pattern.band.size)
-    if system.kinematics == "linear":
+    if pattern.bulk is None:
         half += system.linear_band
+    else:
+        half += pattern.bulk @ _all_values(_bulk_stiffness(system, response.gradients))
     return pattern.band, half, _skew(touch, response.p_q, K_qdd)
 
 
@@ -416,6 +415,23 @@ def _pairs(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Rows and columns of the lower half of a matrix over some degrees of freedom."""
     i, j = _tril(d.size)
     return d[i], d[j]
+
+
+def _all_values(parts: Sequence[np.ndarray]) -> np.ndarray:
+    """Entries (n_values,) of the element stiffness of all blocks."""
+    return parts[0].ravel() if len(parts) == 1 else np.concatenate([K.ravel() for K in parts])
+
+
+def _scatter(solids: Sequence[Solid], band: Band) -> csr_array:
+    """Sums (band.size, n_values) of the entries of the element stiffness, of each symmetric pair one."""
+    places, columns, first = [], [], 0
+    for solid in solids:
+        n_e, n_a = solid.basis.conn_ea.shape
+        places.append(_positions(band, [half_entries(solid.basis.conn_ea)]))
+        columns.append((first + np.arange(n_e)[:, None] * 3 * n_a**2 + half(n_a)).ravel())
+        first += 3 * n_e * n_a**2
+    place, column = (np.concatenate(parts).astype(np.int32) for parts in (places, columns))
+    return coo_array((np.ones(place.size), (place, column)), shape=(band.size, first)).tocsr()
 
 
 def _positions(band: Band, entries: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
