@@ -94,14 +94,16 @@ def _balance(specimen: Specimen, point: Point, support_Ai: np.ndarray) -> dict[s
     system, state, touch, pose = specimen.system, point.state, point.response.contact, specimen.pose
     interface, upper = system.interface, specimen.bodies[0]
     moved = 0.0 if system.kinematics == "linear" else 1.0
-    u_Ai = moved * pose.components(state.u_d.reshape(-1, 2))
+    x_qi, held_Ai = specimen.places  # where tractions and supports act: with linear kinematics where nothing has moved
+    if moved:
+        u_Ai = pose.components(state.u_d.reshape(-1, 2))
+        x_qi, held_Ai = x_qi + interface.at_slave(u_Ai), held_Ai + u_Ai[upper.points]
     n_qi = pose.components(touch.n_qi)
-    x_qi = pose.own(interface.X_qi) + interface.at_slave(u_Ai)
     pull_qi = (point.response.p_q * interface.dA_q)[:, None] * n_qi  # on the master
     if not specimen.upper_is_slave:
         x_qi, pull_qi = x_qi - moved * touch.g_q[:, None] * n_qi, -pull_qi
     x_face = specimen.loaded_at + moved * float(specimen.face_row @ state.u_d)
-    held_Ai, R_Ai = (pose.own(interface.P_AI) + u_Ai)[upper.points], pose.components(support_Ai)[upper.points]
+    R_Ai = pose.components(support_Ai[upper.points])
     return {
         "interface_force": float(pull_qi[:, 1].sum()),
         "load_moment": x_face * state.load + float(np.sum(held_Ai[:, 0] * R_Ai[:, 1] - held_Ai[:, 1] * R_Ai[:, 0])),

@@ -71,6 +71,12 @@ class Specimen:
         order = np.argsort(s_q)
         return s_q[order], order
 
+    @cached_property
+    def places(self) -> tuple[np.ndarray, np.ndarray]:
+        """The interface's points (n_q, 2) and the upper body's control points (n_A, 2), in the specimen's own frame."""
+        interface = self.system.interface
+        return self.pose.own(interface.X_qi), self.pose.own(interface.P_AI[self.bodies[0].points])
+
     def distance(self, X: np.ndarray) -> np.ndarray:
         """Distance (...,) of places (..., 2) from the loaded end, along the specimen."""
         return np.abs(self.pose.own(X)[..., 0] - self.loaded_at)

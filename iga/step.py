@@ -129,8 +129,9 @@ def advance(
     else:
         work = step_work(system, point, reached, away, back)
     slid = slid_off(system, point, reached, away, back)
-    spent = replace(reached.energies, dissipated=reached.energies.dissipated + slid)
-    reached = replace(reached, state=replace(state, slid=old.slid + slid), energies=spent)
+    if slid:
+        spent = replace(reached.energies, dissipated=reached.energies.dissipated + slid)
+        reached = replace(reached, state=replace(state, slid=old.slid + slid), energies=spent)
     return replace(reached, external_work=point.external_work + work), known
 
 

@@ -18,6 +18,20 @@ SLIDING = 16
 LEAK, LEAK_OF_DISSIPATED, LEAK_OF_ELASTIC = 1e-3, 1e-3, 1e-7
 
 
+def _cubics(s: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Of cubic Hermite curves the functions (2, n_s) of both ends' values and slopes, and their derivatives."""
+    return (
+        np.stack([(1 + 2 * s) * (1 - s) ** 2, s * s * (3 - 2 * s)]),
+        np.stack([s * (1 - s) ** 2, s * s * (s - 1)]),
+        np.stack([6 * s * (s - 1), 6 * s * (1 - s)]),
+        np.stack([(1 - s) * (1 - 3 * s), s * (3 * s - 2)]),
+    )
+
+
+_PLACES, WEIGHTS = gauss(3)
+VALUES, SLOPES, D_VALUES, D_SLOPES = _cubics(_PLACES)
+
+
 def step_work(system: System, start: Point, end: Point, away: float, back: float) -> float:
     """Integral of the load over the opening along one step, both cubic Hermite curves over the controlled quantity.
 
@@ -25,16 +39,11 @@ def step_work(system: System, start: Point, end: Point, away: float, back: float
     rule over the opening it holds where the path turns back. Its error is of fourth order; three Gauss points
     integrate it exactly.
     """
-    s, w = gauss(3)
-    values = np.stack([(1 + 2 * s) * (1 - s) ** 2, s * s * (3 - 2 * s)])
-    slopes = np.stack([s * (1 - s) ** 2, s * s * (s - 1)])
-    d_values = np.stack([6 * s * (s - 1), 6 * s * (1 - s)])
-    d_slopes = np.stack([(1 - s) * (1 - 3 * s), s * (3 * s - 2)])
     loads = np.array([away * start.tangent.d_load, back * end.tangent.d_load])
     openings = np.array([away * (system.load_d @ start.tangent.du_d), back * (system.load_d @ end.tangent.du_d)])
-    load = np.array([start.state.load, end.state.load]) @ values + loads @ slopes
-    d_opening = np.array([start.opening, end.opening]) @ d_values + openings @ d_slopes
-    return float(np.sum(w * load * d_opening))
+    load = np.array([start.state.load, end.state.load]) @ VALUES + loads @ SLOPES
+    d_opening = np.array([start.opening, end.opening]) @ D_VALUES + openings @ D_SLOPES
+    return float(WEIGHTS @ (load * d_opening))
 
 
 def straight_work(start: Point, end: Point) -> float:
@@ -83,10 +92,10 @@ def _left_rate(point: Point, q: np.ndarray, left_q: np.ndarray) -> np.ndarray:
 
 def _hermite(ends: Sequence[np.ndarray], rates: Sequence[np.ndarray], lengths: Sequence[float]) -> np.ndarray:
     """Cubics (n_s, n_q) between both ends, within them."""
-    s = np.linspace(0.0, 1.0, SLIDING + 1)[:, None]
+    values, slopes, _, _ = _cubics(np.linspace(0.0, 1.0, SLIDING + 1))
     v0, v1 = ends
-    r0, r1 = (length * rate for rate, length in zip(rates, lengths, strict=True))
-    v = (1 + 2 * s) * (1 - s) ** 2 * v0 + s * s * (3 - 2 * s) * v1 + s * (1 - s) ** 2 * r0 + s * s * (s - 1) * r1
+    rates = [length * rate for rate, length in zip(rates, lengths, strict=True)]
+    v = values.T @ np.stack(ends) + slopes.T @ np.stack(rates)
     return np.clip(v, np.minimum(v0, v1), np.maximum(v0, v1))
 
 
