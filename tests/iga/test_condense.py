@@ -83,3 +83,22 @@ def test_the_whole_is_in_equilibrium_where_the_condensed_system_is(name):
 def test_a_bulk_that_moves_far_or_has_too_many_partners_is_not_condensed():
     assert condensed(dcb.build(replace(BEAM, kinematics="finite")).system) is None
     assert condensed(dcb.build(replace(BEAM, dofs=40_000)).system) is None
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_of_meshes_that_match_only_differences_are_left(name):
+    """One unknown for each control point of the slave, or for every one of both sides, and the opening."""
+    system = solver(CASES[name]).build(CASES[name]).system
+    interface = system.interface
+    slave = np.unique(interface.conn_qa).size
+    both = slave if interface.master is None else np.unique(system.reference_dof_qd // 2).size
+    alike = CASES[name].mismatch == 1.0 and not name.startswith("peel")
+    assert condensed(system).system.n_dof == 1 + (slave if alike else both)
+
+
+def test_a_step_to_a_kink_takes_one_look_at_the_forces():
+    """With a linear bulk the law is settled on the way to where a step is to end: nothing is left to Newton."""
+    problem = replace(BEAM, steps=None, interface_points=4)
+    points = [*follow(condensed(dcb.build(problem).system).system, problem.opening, None, bend=0.05)]
+    looks = [point.iterations for point in points[1:] if not isinstance(point, End)]
+    assert len(looks) > 10 and max(looks) == 1, looks

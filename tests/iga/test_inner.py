@@ -110,6 +110,14 @@ def test_a_bordered_step_meets_both_equations(chosen, rng):
     assert bordered(known, np.zeros(system.n_dof), 0.0) is None, "nothing feels the load"
 
 
+def test_more_points_than_unknowns_that_they_touch_are_told_by_these(rng):
+    rows_dm = np.zeros((300, 40))
+    rows_dm[50:62] = rng.standard_normal((12, 40))
+    vectors_dr, parts_rm = inner._spanned(rows_dm)
+    assert vectors_dr.shape[1] == 12 and np.count_nonzero(vectors_dr) == 12
+    assert np.array_equal(vectors_dr @ parts_rm, rows_dm)
+
+
 def test_points_of_one_element_span_no_more_than_its_functions(rng):
     functions_rd, parts_mr = rng.standard_normal((5, 300)), rng.standard_normal((40, 5))
     rows_dm = (parts_mr @ functions_rd).T

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from iga import projection
 from iga.bond import between, everywhere
 from iga.boundary import boundary_chains
 from iga.bspline import open_knots
@@ -65,6 +66,20 @@ def test_a_point_leaves_its_side_from_next_to_an_end_as_from_the_end(xi, x):
     c = 2 if xi > 0.5 else 3
     found, fresh = (closest_points(top, point, y, start) for start in (at(c, xi, 1), at(int(x), 0.5, 1)))
     assert position(top, found, y) == pytest.approx(position(top, fresh, y), abs=1e-12)
+
+
+def test_points_that_cross_to_the_next_side_are_followed_with_all_others(monkeypatch):
+    """By plain Newton, on either hand, to where the careful search finds them."""
+    top, y = wavy(12)
+    here = np.arange(0.6, 11.0, 0.25)
+    points = [np.stack([here + slid, np.full(here.size, 0.9)], -1) for slid in (0.0, 0.3, -0.3)]
+    start = closest_points(top, points[0], y, nearest_samples(top, points[0], y))
+    wanted = [closest_points(top, x, y, nearest_samples(top, x, y)) for x in points[1:]]
+    monkeypatch.setattr(projection, "_walk", None)
+    for x, far in zip(points[1:], wanted, strict=True):
+        near = closest_points(top, x, y, start)
+        assert np.count_nonzero(near.c_q != start.c_q) > 8
+        assert np.array_equal(near.c_q, far.c_q) and near.xi_q == pytest.approx(far.xi_q, abs=1e-9)
 
 
 def test_a_point_comes_back_to_a_straight_surface_after_any_way(rng):
