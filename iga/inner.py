@@ -23,10 +23,10 @@ from iga.inverse import Inverse
 
 #: Corrections of the gaps, and how far tractions may be from the law, in parts of the largest.
 CORRECTIONS, AGREED = 20, 1e-12
-#: Solutions that this may take, two tangents or so, each of which is worth 25 to 40 of them; numbers in all of these,
-#: which are more work to move about than a tangent where there are more; points that share a solution; and unknowns
-#: that are so few that a solution for each of them is no work.
-MOST, ENTRIES, SHARING, FULL = 64, 200_000, 4, 256
+#: Solutions that this may take, two tangents or so, each of which is worth 25 to 40 of them; unknowns up to which
+#: tangents are so little work that any number may be taken; numbers in all solutions, which are more work to move about
+#: than a tangent where there are more; and points that share a solution.
+MOST, SMALL, ENTRIES, SHARING = 64, 256, 200_000, 4
 #: Fewer points than these are solved for one by one; part of the largest below which what they add is rounding.
 FEW, NOTHING = 6, 1e-14
 
@@ -75,10 +75,13 @@ def settled_step(
     guess_q : gaps (n_q,) to begin with, those of the plain step if left out.
     """
     (p0_q, dp0_q), g0_q = tangents, touch.g_q + touch.rates(plain_d[:-1])
-    points, w_m = np.zeros(0, dtype=int), np.zeros(0)
-    parts_rm, steps_dr, z_r = np.zeros((0, 0)), np.zeros((plain_d.size, 0)), np.zeros(0)
+    n_dof, most = plain_d.size - 1, ENTRIES // plain_d.size
+    most, few = most if n_dof <= SMALL else min(MOST, most), n_dof <= MOST  # few: for all of them, from the start
+    points = np.arange(g0_q.size if few else 0)
+    parts_rm = touch.rows(points, n_dof) * interface.dA_q[points] if few else np.zeros((0, 0))
+    steps_dr = system.solve(np.eye(n_dof)) if few else np.zeros((plain_d.size, 0))
+    felt_mr, w_m, z_r = touch.rates(steps_dr[:-1], points), np.zeros(points.size), np.zeros(len(parts_rm))
     g_q, guessed = (g0_q, False) if guess_q is None else (guess_q, True)
-    most = ENTRIES // plain_d.size if plain_d.size <= FULL else min(MOST, ENTRIES // plain_d.size)
     for _ in range(CORRECTIONS):
         p_q, dp_q = law(g_q)
         w_q = p_q - p0_q - dp0_q * (g_q - touch.g_q)
@@ -90,17 +93,18 @@ def settled_step(
         guessed = False
         leaving_q[points] = False
         new = np.flatnonzero(leaving_q)
-        if points.size + new.size > SHARING * most:
-            return None
         if new.size:
-            pulls_dr, more_rm = _spanned(touch.rows(new, plain_d.size - 1) * interface.dA_q[new])
+            if points.size + new.size > SHARING * most:
+                return None
+            pulls_dr, more_rm = _spanned(touch.rows(new, n_dof) * interface.dA_q[new])
             if parts_rm.shape[0] + pulls_dr.shape[1] > most:
                 return None
             points, parts_rm = np.append(points, new), _beside(parts_rm, more_rm)
             steps_dr = np.concatenate([steps_dr, system.solve(pulls_dr)], axis=1)
+            felt_mr = touch.rates(steps_dr[:-1], points)
         # of the tractions only what the pulls feel is unknown: z = P w
         slope, w = (dp_q - dp0_q)[points], w_q[points]
-        matrix = np.eye(parts_rm.shape[0]) + (parts_rm * slope) @ touch.rates(steps_dr[:-1], points)
+        matrix = np.eye(parts_rm.shape[0]) + (parts_rm * slope) @ felt_mr
         try:
             z_r = np.linalg.solve(matrix, parts_rm @ (w + slope * (g0_q - g_q)[points]))
         except np.linalg.LinAlgError:  # just as soft as the specimen is stiff
@@ -119,7 +123,7 @@ def _spanned(rows_dm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if n_m < FEW:
         return rows_dm, np.eye(n_m)
     used = np.flatnonzero(rows_dm.any(axis=1))
-    if used.size <= n_m:  # one unknown for each function, as of a condensed bulk
+    if used.size <= n_m:  # there are no more unknowns that feel them: these are vectors enough
         Q, parts_rm = np.eye(used.size), rows_dm[used]
     else:
         Q, R, order = qr(rows_dm[used], mode="economic", pivoting=True, check_finite=False)
