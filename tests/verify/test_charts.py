@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import fields as dataclass_fields
 from dataclasses import replace
+from html import unescape
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -14,6 +17,7 @@ pytest.importorskip("jinja2")
 from figures import Drawn  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.textpath import TextPath  # noqa: E402
 from test_cost import a_row  # noqa: E402
 
 from verify.compare import compare  # noqa: E402
@@ -24,6 +28,7 @@ from verify.report.entry import entries  # noqa: E402
 from verify.report.fields import process_zone, shared_snapshots, traction  # noqa: E402
 from verify.report.opening import frames  # noqa: E402
 from verify.report.style import PHASES, STRESS_MAP, colour  # noqa: E402
+from verify.report.text import Units  # noqa: E402
 from verify.result import Snapshot  # noqa: E402
 from verify.scaling import page as scaling  # noqa: E402
 from verify.scaling.row import Row as ScalingRow  # noqa: E402
@@ -201,6 +206,65 @@ def test_frames_have_one_scale_and_hold_all_that_moves(found: list, monkeypatch:
         box = arms.get_window_extent()
         assert box.width / box.height == pytest.approx(np.ptp(arms.get_xlim()) / np.ptp(arms.get_ylim()), rel=1e-6)
     assert frames(scene, shared_snapshots(found)[:1], found, "key") == ()
+
+
+def written(svg: str) -> tuple[np.ndarray, list[tuple[str, np.ndarray]]]:
+    """Width and height of a drawing, and each of its texts with its box (least, most), in points of the drawing.
+
+    From the shapes of the letters and where the drawing puts them, whatever the layout of the figure took them for.
+    """
+    size = np.array(re.search(r'viewBox="0 0 (\S+) (\S+)"', svg).groups(), float)
+    texts = []
+    for head, words in re.findall(r"<text ([^>]*)>([^<]*)</text>", svg):
+        said = dict(re.findall(r'([\w-]+)(?:="|: )([^;"]*)', head.replace('style="', "")))
+        outline = TextPath((0, 0), unescape(words), size=float(said["font-size"].removesuffix("px"))).get_extents()
+        corners = outline.corners() * (1.0, -1.0)  # down is positive
+        corners[:, 0] -= {"middle": 0.5, "end": 1.0}.get(said.get("text-anchor", ""), 0.0) * outline.x1
+        at = (said["x"], said["y"]) if "x" in said else re.search(r"translate\((\S+) (\S+)\)", head).groups()
+        if "rotate(-90" in head:
+            corners = corners[:, ::-1] * (1.0, -1.0)
+        corners += np.array(at, float)
+        texts.append((unescape(words), np.array([corners.min(axis=0), corners.max(axis=0)])))
+    return size, texts
+
+
+#: Labels, and how many times larger loads and tractions are in them than in the first.
+UNITS = {
+    "N, mm, MPa": 1.0,
+    "lbf, in, psi": 2500.0,
+    "kilonewton, millimetre, kilonewton per square millimetre": 1e-3,
+    "f, l, NEWTONPERSQUAREMILLIMETREOFTHEINTERFACE": 1.0,
+}
+
+
+@pytest.mark.parametrize("units", UNITS)
+def test_no_word_of_a_frame_is_cut_or_written_over_another_whatever_the_units(found: list, units: str) -> None:
+    """Larger numbers take more room, and so do longer units; all frames stay alike, so that nothing jumps."""
+    factor, scene = UNITS[units], scene_report().scene
+    interface = scene.interface.model_copy(update={"strength": factor * scene.interface.strength})
+    scene = scene.model_copy(update={"units": units, "interface": interface})
+
+    def scaled(one: Snapshot) -> Snapshot:
+        return replace(one, load=factor * one.load, traction_q=factor * one.traction_q)
+
+    runs = []
+    for entry in found:
+        result = entry.result
+        steps = {n: factor * c if n in ("load", "load_slope") else c for n, c in result.steps.items()}
+        result = replace(result, steps=steps, snapshots=tuple(map(scaled, result.snapshots)))
+        runs.append(replace(entry, run=replace(entry.run, result=result)))
+    shown = frames(scene, shared_snapshots(runs)[:2], runs, "key")
+    sizes = set()
+    for frame in shown:
+        size, texts = written(frame.panel.svg)
+        sizes.add(tuple(size))
+        for words, (least, most) in texts:
+            assert np.all(least >= 0.0) and np.all(most <= size), words
+        for (one, a), (other, b) in combinations(texts, 2):
+            assert np.any(a[1] < b[0]) or np.any(b[1] < a[0]), (one, other)
+        label = f"traction ({Units.of(units).stress})".replace(" ", "")
+        assert label in "".join(words for words, _ in texts).replace(" ", "")
+    assert len(shown) == 2 and len(sizes) == 1
 
 
 @pytest.mark.parametrize(

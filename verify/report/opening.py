@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 from verify.report.agreement import path
 from verify.report.entry import Entry
 from verify.report.fields import process_zone
 from verify.report.layout import CLOSE, GAP, HIGHEST, LEFT, LOWEST, WHOLE
 from verify.report.paint import Limits, paint
-from verify.report.style import WIDE, Panel, colour, drawing, to_svg
+from verify.report.style import WIDE, Panel, colour, drawing, sheet_of, to_svg
 from verify.report.text import Units, axis, number, quantity
 from verify.result import Snapshot
 
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
 #: Pixels an inch of the stress, and between the openings that all runs keep.
 _FINE, _COARSE = 150, 75
 
-#: Inches: the tractions below the arms, between them, and at the foot.
-_TRACTION, _BETWEEN, _FOOT, _HEAD = 1.25, 0.3, 0.42, 0.24
+#: Inches: the tractions below the arms, between them, at the foot and at the head, and before what is beside.
+_TRACTION, _BETWEEN, _FOOT, _HEAD, _CLEAR = 1.25, 0.3, 0.42, 0.24, 0.05
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,13 @@ def frames(
     strength = scene.interface.strength
     least = min(float(np.nanmin(snapshot.traction_q, initial=0.0)) for group, _ in shown for _, snapshot in group)
     scales = Scales(limit, *frame, (1.1 * max(least, -3.0 * strength) - 0.1 * strength, 1.2 * strength))
-    return tuple(_one(scene, group, lead, drawn, scales, f"{key}-{i}") for i, (group, lead) in enumerate(shown))
+    with drawing():
+        pictures = [_picture(scene, group, lead, drawn, scales) for group, lead in shown]
+        sheet = Bbox.union([sheet_of(picture) for picture in pictures])
+        return tuple(
+            _one(scene, lead, scales, picture, sheet, f"{key}-{i}")
+            for i, (picture, (_, lead)) in enumerate(zip(pictures, shown, strict=True))
+        )
 
 
 def _lead(group: Sequence[tuple[Entry, Snapshot]]) -> tuple[Entry, Snapshot] | None:
@@ -88,43 +95,60 @@ def _lead(group: Sequence[tuple[Entry, Snapshot]]) -> tuple[Entry, Snapshot] | N
     return min(able, key=lambda pair: pair[0].method != "nurbs", default=None)
 
 
-def _one(
+def _one(scene: Scene, lead: tuple[Entry, Snapshot], scales: Scales, picture: Figure, sheet: Bbox, key: str) -> Frame:
+    """A picture with what is said of it."""
+    (entry, snapshot), units, said = lead, Units.of(scene.units), _said(scene, lead[1])
+    whose = entry.label if _between(entry, snapshot) else "all runs with fields"
+    caption = (
+        f"{said[:1].upper()}{said[1:]}. True scale, stress to ± {quantity(scales.stress, units.stress, 3)}; below, the "
+        f"normal traction of {whose} along the same axis, and on the right the place on the curve."
+    )
+    svg = to_svg(picture, key, f"The crack of {scene.name}: {said}", sheet=sheet)
+    return Frame(quantity(snapshot.opening, units.length, 3), said, Panel(svg, caption, "wide"))
+
+
+def _between(entry: Entry, snapshot: Snapshot) -> bool:
+    """Whether this opening is one that only the run itself has kept."""
+    return any(snapshot is other for other in entry.result.between)
+
+
+def _picture(
     scene: Scene,
     group: Sequence[tuple[Entry, Snapshot]],
     lead: tuple[Entry, Snapshot],
     drawn: Sequence[Entry],
     scales: Scales,
-    key: str,
-) -> Frame:
-    (entry, snapshot), x, y, units = lead, scales.x, scales.y, Units.of(scene.units)
-    between = any(snapshot is other for other in entry.result.between)
+) -> Figure:
+    """The arms, the tractions below them, and beside both the curve."""
+    (entry, snapshot), x, y = lead, scales.x, scales.y
     height = WHOLE * (y[1] - y[0]) / (x[1] - x[0])
     total = _HEAD + height + _BETWEEN + _TRACTION + _FOOT
-    with drawing():
-        figure = Figure(figsize=(WIDE, total))
+    figure = Figure(figsize=(WIDE, total))
 
-        def place(left: float, bottom: float, width: float, high: float) -> Axes:
-            return figure.add_axes((left / WIDE, bottom / total, width / WIDE, high / total))
+    def place(left: float, bottom: float, width: float, high: float) -> Axes:
+        return figure.add_axes((left / WIDE, bottom / total, width / WIDE, high / total))
 
-        arms = place(LEFT, _FOOT + _TRACTION + _BETWEEN, WHOLE, height)
-        tractions = place(LEFT, _FOOT, WHOLE, _TRACTION)
-        load = place(LEFT + WHOLE + GAP, _FOOT, CLOSE, total - _FOOT - _HEAD)
-        x_euvi = np.asarray(snapshot.X_euvi) + np.asarray(snapshot.u_euvi)
-        dpi = _COARSE if between else _FINE
-        paint(arms, x_euvi, np.asarray(snapshot.stress_euv), scales.stress, x, y, dpi)
-        arms.grid(False)
-        arms.set_title(f"{entry.label}, stress along the specimen", color=colour(entry.line.colour))
-        arms.tick_params(labelbottom=False)
-        _tractions(tractions, scene, group, scales)
-        _place(load, scene, [other for other in drawn if other.method != "lefm"], entry, snapshot)
-        said = _said(scene, snapshot)
-        svg = to_svg(figure, key, f"The crack of {scene.name}: {said}")
-    whose = entry.label if between else "all runs with fields"
-    caption = (
-        f"{said[:1].upper()}{said[1:]}. True scale, stress to ± {quantity(scales.stress, units.stress, 3)}; below, the "
-        f"normal traction of {whose} along the same axis, and on the right the place on the curve."
-    )
-    return Frame(quantity(snapshot.opening, units.length, 3), said, Panel(svg, caption, "wide"))
+    arms = place(LEFT, _FOOT + _TRACTION + _BETWEEN, WHOLE, height)
+    tractions = place(LEFT, _FOOT, WHOLE, _TRACTION)
+    load = place(LEFT + WHOLE + GAP, _FOOT, CLOSE, total - _FOOT - _HEAD)
+    x_euvi = np.asarray(snapshot.X_euvi) + np.asarray(snapshot.u_euvi)
+    dpi = _COARSE if _between(entry, snapshot) else _FINE
+    paint(arms, x_euvi, np.asarray(snapshot.stress_euv), scales.stress, x, y, dpi)
+    arms.grid(False)
+    arms.set_title(f"{entry.label}, stress along the specimen", color=colour(entry.line.colour))
+    arms.tick_params(labelbottom=False)
+    _tractions(tractions, scene, group, scales)
+    _place(load, scene, [other for other in drawn if other.method != "lefm"], entry, snapshot)
+    _apart(tractions, load)
+    return figure
+
+
+def _apart(left: Axes, right: Axes) -> None:
+    """Move what is on the right so far that its numbers and its label do not reach into what is on the left."""
+    figure = right.figure
+    reach = left.get_tightbbox().x1 - right.yaxis.get_tightbbox().x0 + _CLEAR * figure.dpi
+    if reach > 0:
+        right.set_position(right.get_position().translated(reach / figure.bbox.width, 0.0))
 
 
 def _tractions(axes: Axes, scene: Scene, group: Sequence[tuple[Entry, Snapshot]], scales: Scales) -> None:

@@ -10,12 +10,16 @@ import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from textwrap import fill
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 
 from verify.report.svg import adapted
 
@@ -60,6 +64,9 @@ PHASES = ("mesh", "basis", "assembly", "factor", "solve", "other")
 
 #: Width of a figure in inches; every figure is drawn at the size that makes 8 pt text readable where it is shown.
 THIRD, HALF, WIDE = 3.3, 4.6, 9.4
+
+#: Inches: what may stick out of a sheet unseen, and the margin beyond what does not.
+_SLIGHT, _SPARE = 0.02, 0.06
 
 # A stress near zero is transparent: it takes the page's own colour, light or dark.
 STRESS_MAP = LinearSegmentedColormap.from_list(
@@ -182,16 +189,50 @@ def panel(width: float, height: float, left: float = 0.57, top: float = 0.17) ->
     return figure, figure.add_axes(place)
 
 
-def to_svg(figure: Figure, key: str, title: str, dpi: float = 180.0) -> str:
+def sheet_of(figure: Figure) -> Bbox:
+    """The sheet in inches: the figure's own, and more where numbers or labels of axes would stick out of it.
+
+    Units are the user's own words, and numbers are as long as these units make them: no margin is wide enough for all.
+    A label that is longer than its axis is broken into lines first.
+    """
+    for axes in figure.axes:
+        size = axes.get_window_extent()
+        _broken(axes.xaxis.label, size.width)
+        _broken(axes.yaxis.label, size.height)
+    own = figure.bbox_inches
+    needed = Bbox.union([own, figure.get_tightbbox()])
+    more = np.abs(needed.extents - own.extents) > _SLIGHT
+    return Bbox.from_extents(*np.where(more, needed.extents + _SPARE * np.array([-1, -1, 1, 1]), own.extents))
+
+
+def _broken(label: Text, room: float) -> None:
+    """Break a label into lines of ``room`` in pixels at most, within words where it must be."""
+    text, columns = label.get_text(), len(label.get_text())
+    while not label.get_parse_math() and columns > 1 and _length(label) > room:
+        columns -= 1
+        label.set_text(fill(text, columns))
+
+
+def _length(label: Text) -> float:
+    """Along its writing, which goes along its axis."""
+    extent = label.get_window_extent()
+    return max(extent.width, extent.height)
+
+
+def to_svg(figure: Figure, key: str, title: str, dpi: float = 180.0, sheet: Bbox | None = None) -> str:
     """The figure as an inline SVG element that follows the colours and the font of the page.
 
     Parameters
     ----------
     key : unique in the page; ids inside the SVG carry it, as all figures share one document.
     title : read out by screen readers in place of the drawing.
+    sheet : what of it is shown, in inches; where it is not told, all that is drawn (``sheet_of``).
     """
     buffer = io.StringIO()
-    figure.savefig(buffer, format="svg", dpi=dpi, transparent=True, metadata={"Date": None, "Creator": None})
+    sheet = sheet_of(figure) if sheet is None else sheet
+    shown = None if np.array_equal(sheet.extents, figure.bbox_inches.extents) else sheet
+    none = {"Date": None, "Creator": None}
+    figure.savefig(buffer, format="svg", dpi=dpi, transparent=True, metadata=none, bbox_inches=shown)
     svg = buffer.getvalue()
     for name, stand_in in _STAND_IN.items():
         svg = svg.replace(stand_in, f"var(--{name})")
