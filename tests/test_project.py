@@ -1,5 +1,6 @@
 """What the project says about itself: types, citation, and the hooks that run before a commit."""
 
+import ast
 import re
 import subprocess
 import sys
@@ -9,8 +10,48 @@ from pathlib import Path
 import pytest
 
 import verify
+from verify import doctor
 
 PROJECT = Path(__file__).resolve().parent.parent
+
+#: Packages whose modules have another name, come with another package, or are not on PyPI.
+DISTRIBUTIONS = {"PIL": "pillow", "pydantic_core": "pydantic"}
+DOLFINX = {"dolfinx", "ufl", "basix", "petsc4py", "mpi4py"}
+
+
+def declared() -> dict[str, list[str]]:
+    """Names of the distributions in pyproject.toml by extra; without one, those that are always needed."""
+    project = tomllib.loads((PROJECT / "pyproject.toml").read_text())["project"]
+    wishes = {"": project["dependencies"], **project["optional-dependencies"]}
+    return {extra: [re.split(r"[^\w-]", wish)[0] for wish in words] for extra, words in wishes.items()}
+
+
+def imported(source: str) -> set[str]:
+    """Top-level names of the modules that are imported anywhere in ``source``."""
+    nodes = list(ast.walk(ast.parse(source)))
+    plain = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    return {name.partition(".")[0] for name in plain | {n.module for n in nodes if isinstance(n, ast.ImportFrom)}}
+
+
+def test_every_library_that_is_imported_is_declared() -> None:
+    """One that comes with another library today may stay away tomorrow."""
+    names: set[str] = set()
+    for folder in ("iga", "verify", "fem_reference"):
+        names = names.union(*(imported(file.read_text()) for file in (PROJECT / folder).rglob("*.py")))
+    others = names - sys.stdlib_module_names - {"iga", "verify", "fem_reference", *DOLFINX}
+    wishes = declared()
+    known = {name for extra in ("", "report", "distributed", "fields", "docs", "dev") for name in wishes[extra]}
+    assert {DISTRIBUTIONS.get(name, name) for name in others} - known == set() and {"numpy", "PIL"} <= others
+
+
+def test_doctor_and_conda_know_what_is_declared() -> None:
+    wishes = declared()
+    for package in doctor.PACKAGES:
+        assert package.distribution in wishes[""] + wishes[package.extra], package
+    lines = re.findall(r"^  - ([\w-]+)>=(.*)$", (PROJECT / "environment.yml").read_text(), re.MULTILINE)
+    text = (PROJECT / "pyproject.toml").read_text()
+    for name in wishes[""] + wishes["report"]:
+        assert f'"{name}>={dict(lines)[name]}"' in text
 
 
 @pytest.mark.slow
