@@ -15,7 +15,8 @@ from iga.control import dissipation_control, load_control, opening_control
 from iga.newton import DEFAULT, equilibrium
 from iga.system import energies, respond, untimed
 from verify.curve import envelope
-from verify.methods import iga_problem, solve
+from verify.methods import solve
+from verify.problems import iga_problem
 from verify.scene import load_scene
 
 # %% [markdown]

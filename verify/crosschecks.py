@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 from verify.curve import curve_error, dense, load_at, peak
 from verify.effects import simulated
-from verify.methods import elastic_constants
+from verify.problems import elastic_constants
 from verify.published import Published
 from verify.result import Result
 from verify.schema import Scene

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from verify.effects import crack_at_the_end, simulated
-from verify.methods import WITH_DOFS, counted_steps
+from verify.methods import WITH_DOFS
+from verify.problems import counted_steps
 from verify.process_zone import bulk_length, slender_length
 from verify.schema import Scene
 

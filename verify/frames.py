@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from iga.bernstein import bernstein, tensor
-from verify.methods import elastic_constants
+from verify.problems import elastic_constants
 from verify.scene import Scene
 from verify.vtk_xml import Grid, write_collection, write_grid
 from verify.vtu import Cells, grid

@@ -1,24 +1,19 @@
-"""From a scene to every solver's own input, and back to one kind of result."""
+"""The solvers by name: whether one is made for a scene, its run, and one kind of result from each."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from importlib.util import find_spec
-from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from verify.effects import simulated
 from verify.laws import laws_of, refusal
+from verify.problems import STEPS, beam_problem, dolfinx_problem, iga_problem, lefm_problem
 from verify.refusal import Refusal
 from verify.result import Result, Snapshot, steps_from_rows
-from verify.schema import Discretization, Pose, Scene
-from verify.specimen import Isotropic, Material
+from verify.schema import Scene
 from verify.timing import Stopwatch, peak_memory_mb
-
-if TYPE_CHECKING:
-    from verify.lefm import LefmProblem
 
 #: name -> what it is, in the words of the report
 METHODS: Mapping[str, str] = {
@@ -38,12 +33,9 @@ DOLFINX_WAYS = (
     "Debian 13 or Ubuntu: apt install python3-dolfinx-real; as any user, ./debond builds itself a private Debian",
 )
 
-#: Steps where the path does not choose them, and the interface points in the process zone from which on it does: with
-#: fewer the load goes up and down with each of them, and every wave would need steps of its own.
-STEPS, SMOOTH = 150, 8
-
-#: Fractions of the largest opening at which the fields are kept: before and near the peak, under way, at the end.
-SNAPSHOT_FRACTIONS = (0.1, 0.2, 0.5, 1.0)
+#: Interface points in the process zone from which on the path chooses its steps: with fewer the load goes up and down
+#: with each of them, and every wave would need steps of its own.
+SMOOTH = 8
 
 #: Below so many times the least unknowns a specimen with a long precrack or a small opening may have no mesh.
 SMALL = 10
@@ -122,7 +114,9 @@ def require(scene: Scene, method: str) -> None:
     if method == "tspline" and mesh.degree != 3:
         raise Unsuitable(f"discretization.degree: must be 3 for tspline, got {mesh.degree}")
     if method == "tspline" and scene.specimen.mesh:
-        _given(scene, method)
+        from verify.given_meshes import given_meshes
+
+        given_meshes(scene)
     least = least_dofs(method, mesh.degree)
     if mesh.dofs < least:
         text = f"must be >= {least} for {method} of degree {mesh.degree}, got {mesh.dofs}"
@@ -162,102 +156,6 @@ def least_dofs(method: str, degree: int) -> int:
     return 4 * (degree + 1) * along + 4 * (method == "tspline")
 
 
-def problem_keys(scene: Scene, method: str) -> dict[str, Any]:
-    """What every solver's own ``Problem`` of a dcb calls by the same names: geometry, material, law, load, effects."""
-    specimen = scene.specimen
-    return {
-        "length": specimen.length,
-        "arm_thickness": specimen.arm_thickness,
-        "precrack": specimen.precrack,
-        **elastic_constants(scene.material),
-        **_common_keys(scene, method),
-        "symmetry": simulated(scene, method)["symmetry"],
-        "steps": counted_steps(scene),
-    }
-
-
-def counted_steps(scene: Scene) -> int:
-    """Steps for the methods that do not choose their own."""
-    steps = scene.discretization.steps
-    return STEPS if steps == "auto" else steps
-
-
-def _common_keys(scene: Scene, method: str) -> dict[str, Any]:
-    """What does not depend on the kind of the specimen."""
-    specimen, interface, effects = scene.specimen, scene.interface, simulated(scene, method)
-    return {
-        "width": specimen.width,
-        "plane": specimen.plane,
-        "strength": interface.strength,
-        "toughness": interface.toughness,
-        "ductility": interface.ductility,
-        "law_name": interface.law,
-        "penalty": interface.penalty,
-        "contact": effects["contact"],
-        "irreversible": effects["irreversible"],
-        "opening": scene.load.opening,
-        "kinematics": effects["kinematics"],
-        "snapshot_openings": tuple(f * max(0.0, *scene.load.opening) for f in SNAPSHOT_FRACTIONS),
-    }
-
-
-def elastic_constants(material: Material) -> dict[str, float]:
-    """E1, E2, G12 and nu12, of an isotropic material as well."""
-    if isinstance(material, Isotropic):
-        young, poisson = material.young, material.poisson
-        return {"E1": young, "E2": young, "G12": young / (2 * (1 + poisson)), "nu12": poisson}
-    return material.model_dump()
-
-
-def _peel_keys(scene: Scene, moduli: type) -> dict[str, Any]:
-    """Geometry and materials of a peel, as both field solvers call them; ``moduli`` is the solver's own type."""
-    materials = {name: moduli(**elastic_constants(getattr(scene, name))) for name in ("strip", "substrate")}
-    return scene.specimen.model_dump(exclude={"kind", "width", "plane", "mesh"}) | materials
-
-
-def _iga_keys(scene: Scene, method: str) -> dict[str, Any]:
-    """Mesh, interface rule, steps and pose, as both specimens of ``iga`` call them."""
-    mesh, pose = scene.discretization, scene.pose
-    return {
-        "basis": method,
-        "meshes": _given(scene, method),
-        "degree": mesh.degree,
-        "dofs": mesh.dofs,
-        "interface_rule": mesh.interface_rule,
-        "interface_points": mesh.interface_points,
-        "adaptive": mesh.adaptive,
-        "mismatch": mesh.mismatch,
-        "slave": mesh.slave,
-        "search": simulated(scene, method)["search"],
-        "bend": mesh.bend,
-        "steps": None if mesh.steps == "auto" else mesh.steps,
-        "angle": pose.angle,
-        "mirror": pose.mirror,
-        "shift": pose.shift,
-    }
-
-
-def _given(scene: Scene, method: str) -> tuple:
-    """The meshes of the files that a scene names, for T-splines alone: they are what such files hold."""
-    if method != "tspline" or not scene.specimen.mesh:
-        return ()
-    from verify.given_meshes import given_meshes
-
-    return given_meshes(scene)
-
-
-def iga_problem(scene: Scene, method: str) -> tuple[ModuleType, Any]:
-    """The module of ``iga`` that solves a scene, and the problem that it is given."""
-    if scene.specimen.kind == "peel":
-        from iga import peel
-
-        keys = _peel_keys(scene, peel.Moduli) | _common_keys(scene, method) | _iga_keys(scene, method)
-        return peel, peel.Problem(**_taken(peel.Problem, keys))
-    from iga import dcb
-
-    return dcb, dcb.Problem(**_taken(dcb.Problem, problem_keys(scene, method) | _iga_keys(scene, method)))
-
-
 def _iga(scene: Scene, method: str, on_step: OnStep, on_frame: OnFrame | None) -> Result:
     solver, problem = iga_problem(scene, method)
     if problem.steps is None and not _smooth(scene, method):
@@ -272,25 +170,6 @@ def _smooth(scene: Scene, method: str) -> bool:
 
     mesh = scene.discretization
     return not mesh.adaptive and mesh.interface_points * expected(scene, method).elements >= SMOOTH
-
-
-def _taken(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:
-    """``keys`` less those that are the scene's defaults and that this solver does not have."""
-    plain = {**Discretization().model_dump(), **Pose().model_dump()}
-    known = {field.name for field in fields(problem)}
-    return {key: value for key, value in keys.items() if key in known or value != plain.get(key)}
-
-
-def dolfinx_problem(scene: Scene) -> Any:
-    """The problem that `fem_reference` is given; DOLFINx itself is not asked for. ValueError where it refuses it."""
-    from fem_reference import dcb, peel
-    from fem_reference.material import Moduli
-
-    mesh = scene.dolfinx.model_dump()
-    if scene.specimen.kind == "peel":
-        keys = {**_peel_keys(scene, Moduli), **_common_keys(scene, "dolfinx"), "steps": counted_steps(scene)}
-        return peel.Problem(**keys, **mesh)
-    return dcb.Problem(**problem_keys(scene, "dolfinx"), **mesh)
 
 
 def _dolfinx(scene: Scene, method: str, on_step: OnStep, on_frame: OnFrame | None) -> Result:
@@ -318,50 +197,13 @@ def _whose_dolfinx(error: Exception) -> str:
 
 
 def _beam(scene: Scene, method: str, on_step: OnStep) -> Result:
-    from verify.beam import BeamProblem
     from verify.beam import solve as solve_beam
 
     watch = Stopwatch()
-    problem = BeamProblem(**_known(BeamProblem, _analytical_keys(scene, method)))
+    problem = beam_problem(scene)
     with watch.phase("solve"):
         solution = solve_beam(problem, on_step)
     return _result(method, solution, watch)
-
-
-def lefm_problem(scene: Scene) -> LefmProblem:
-    """What ``verify.lefm`` solves of a scene."""
-    from verify.lefm import LefmProblem
-
-    return LefmProblem(**_known(LefmProblem, _analytical_keys(scene, "lefm")))
-
-
-def _analytical_keys(scene: Scene, method: str) -> dict[str, Any]:
-    """What beam and LEFM call by the same names; a strip is an arm, whose precrack is the length that is not bonded."""
-    specimen, own = scene.specimen, {}
-    if specimen.kind == "peel":
-        from verify.layer import Layer
-
-        base = elastic_constants(scene.substrate)
-        layer = Layer.of(specimen.substrate_length, specimen.substrate_thickness, plane=specimen.plane, **base)
-        own = {"substrate": layer, "arms": 1}
-    material = scene.strip if own else scene.material
-    constants = elastic_constants(material)
-    return {
-        **_common_keys(scene, method),
-        "length": specimen.extent,
-        "arm_thickness": specimen.loaded_thickness,
-        "precrack": specimen.free_length,
-        "young": axial_modulus(material, specimen.plane),
-        "transverse": constants["E2"],
-        "shear": constants["G12"],
-        "points": counted_steps(scene),
-        **own,
-    }
-
-
-def _known(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:
-    """Those of ``keys`` that a problem has."""
-    return {field.name: keys[field.name] for field in fields(problem) if field.name in keys}
 
 
 def _lefm(scene: Scene, method: str, on_step: OnStep) -> Result:
@@ -381,12 +223,6 @@ def _lefm(scene: Scene, method: str, on_step: OnStep) -> Result:
         seconds=watch.seconds(),
         peak_memory_mb=peak_memory_mb(),
     )
-
-
-def axial_modulus(material: Material, plane: str) -> float:
-    """Stiffness against stretching along the arm; in plane strain E1 / (1 - nu13 nu31), E3 = E2 and nu13 = nu12."""
-    c = elastic_constants(material)
-    return c["E1"] if plane == "stress" else c["E1"] / (1 - c["nu12"] ** 2 * c["E2"] / c["E1"])
 
 
 def _result(method: str, solution: Any, watch: Stopwatch) -> Result:

@@ -19,7 +19,8 @@ import numpy as np
 from numpy import cos, cosh, sin, sinh
 from scipy.optimize import brentq
 
-from verify.methods import WITH_DOFS, dolfinx_problem, elastic_constants, iga_problem
+from verify.methods import WITH_DOFS
+from verify.problems import dolfinx_problem, elastic_constants, iga_problem
 from verify.result import Result
 from verify.scene import Scene
 from verify.specimen import Material

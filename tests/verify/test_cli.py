@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify import lefm, methods
+from verify import lefm, methods, problems
 from verify.cli import main, parser
 from verify.complaints import one_of
 from verify.plugins import plugins
@@ -130,7 +130,7 @@ def test_the_smallest_mesh_is_the_one_that_the_solver_takes() -> None:
 
     for method in methods.WITH_DOFS:
         for degree in (3,) if method == "tspline" else (1, 2, 3, 4, 5):
-            keys = methods.problem_keys(load_scene("dcb-czm1"), method)
+            keys = problems.problem_keys(load_scene("dcb-czm1"), method)
             least = methods.least_dofs(method, degree)
             arm_meshes(Problem(basis=method, degree=degree, dofs=least, **keys))
             with pytest.raises(ValueError, match="unknowns"):

@@ -336,7 +336,7 @@ def test_a_scene_that_is_none_is_refused_and_a_dry_run_leaves_nothing(tmp_path: 
 def test_entries_of_the_tangent_are_those_that_forces_depend_on(name: str, dofs: int) -> None:
     """Counted against differences of the residual at a state without symmetry, column after column."""
     from iga.system import respond
-    from verify.methods import iga_problem
+    from verify.problems import iga_problem
 
     scene = load_scene(name, [f"discretization.dofs={dofs}"])
     solver, problem = iga_problem(scene, "nurbs")

@@ -215,7 +215,7 @@ def test_what_is_said_of_the_turn_is_what_finite_kinematics_changes(opening: flo
 def test_two_meshes_that_differ_are_no_symmetry(tmp_path: Path) -> None:
     from iga.arms import arm_meshes
     from iga.iga_file import from_mesh, write_iga
-    from verify.methods import iga_problem
+    from verify.problems import iga_problem
 
     _, problem = iga_problem(load_scene("dcb-czm1", ["discretization.dofs=400"]), "nurbs")
     _, finer = iga_problem(load_scene("dcb-czm1", ["discretization.dofs=500"]), "nurbs")

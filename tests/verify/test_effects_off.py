@@ -27,7 +27,7 @@ from iga.point import End, Point
 from iga.solve import Solution, run
 from iga.specimen import Specimen
 from iga.system import untimed
-from verify.methods import iga_problem
+from verify.problems import iga_problem
 from verify.scene import load_scene
 
 #: How much longer a step with the effect off may take than one without its code, and runs to tell.

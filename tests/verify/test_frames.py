@@ -19,7 +19,7 @@ from iga.surface import surface
 from verify.cli import main, parser
 from verify.frames import Frames, bezier_values, cleared, solid_cells, through_thickness
 from verify.jobs import Job
-from verify.methods import iga_problem
+from verify.problems import iga_problem
 from verify.result import Result, steps_from_rows
 from verify.run import run
 from verify.scene import Scene, load_scene, parse_scene

@@ -18,7 +18,7 @@ from iga.extraction import Mesh
 from iga.nurbs import nurbs_mesh
 from iga.quadrature import gauss, square
 from verify.frames import Frames
-from verify.methods import iga_problem
+from verify.problems import iga_problem
 from verify.scene import Scene, load_scene
 from verify.vtu import write_vtu
 

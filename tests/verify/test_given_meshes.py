@@ -15,7 +15,8 @@ from iga.iga_file import from_mesh, write_iga
 from iga.peel_meshes import tmeshes as peel_tmeshes
 from iga.tspline import tspline_rectangle
 from verify.given_meshes import given_meshes
-from verify.methods import iga_problem, solve
+from verify.methods import solve
+from verify.problems import iga_problem
 from verify.refusal import Refusal
 from verify.scene import Scene, load_scene
 

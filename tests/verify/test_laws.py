@@ -15,7 +15,8 @@ from verify.checks import J_OF_ANY_LAW, J_OF_LAW, run_checks
 from verify.cli import main
 from verify.crosschecks import cross_checks
 from verify.laws import known, laws_of
-from verify.methods import METHODS, Unsuitable, iga_problem, require, solve
+from verify.methods import METHODS, Unsuitable, require, solve
+from verify.problems import iga_problem
 from verify.report.text import inputs
 from verify.result import Result
 from verify.scene import Scene, SceneError, load_scene, parse_scene

@@ -6,16 +6,14 @@ import numpy as np
 import pytest
 
 from iga.material import orthotropic
-from verify.methods import (
-    METHODS,
+from verify.methods import METHODS, least_dofs, solve
+from verify.problems import (
     SNAPSHOT_FRACTIONS,
     axial_modulus,
     counted_steps,
     elastic_constants,
     iga_problem,
-    least_dofs,
     problem_keys,
-    solve,
 )
 from verify.scene import load_scene
 

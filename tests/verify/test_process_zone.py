@@ -6,7 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from verify.methods import WITH_DOFS, iga_problem, solve
+from verify.methods import WITH_DOFS, solve
+from verify.problems import iga_problem
 from verify.process_zone import (
     CANTILEVER,
     Zone,

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from verify.methods import WITH_DOFS, iga_problem
+from verify.methods import WITH_DOFS
+from verify.problems import iga_problem
 from verify.schema import Scene
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.export.mesh import SceneMesh
 from verify.export.numbers import effects, header, law, materials
-from verify.methods import counted_steps, elastic_constants
+from verify.problems import counted_steps, elastic_constants
 from verify.schema import Scene
 from verify.specimen import Isotropic, Material
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem_reference.specimen import Body, Place, Specimen
-from verify.methods import dolfinx_problem
+from verify.problems import dolfinx_problem
 from verify.refusal import Refusal
 from verify.schema import Scene
 

@@ -10,7 +10,7 @@ import numpy as np
 from verify.effects import simulated
 from verify.export.mesh import SceneMesh
 from verify.law import Bilinear
-from verify.methods import counted_steps, elastic_constants
+from verify.problems import counted_steps, elastic_constants
 from verify.schema import Scene
 from verify.specimen import Material
 

@@ -13,8 +13,8 @@ import numpy as np
 from verify import lefm
 from verify.curve import Curve, curve_error, oscillation, peak
 from verify.jobs import Job, Outcome
-from verify.methods import lefm_problem
 from verify.paper.plan import LAWS, Plan
+from verify.problems import lefm_problem
 from verify.process_zone import expected
 from verify.result import Result
 from verify.scene import load_scene

@@ -12,7 +12,7 @@ import numpy as np
 from verify.effects import simulated
 from verify.fingerprint import digest
 from verify.jobs import Job, left_out
-from verify.methods import dolfinx_problem
+from verify.problems import dolfinx_problem
 from verify.scaling.ranks import MPIRUN_MISSING, cores
 from verify.scene import parse_scene
 from verify.schema import Dolfinx, Scene
