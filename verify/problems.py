@@ -62,12 +62,9 @@ def lefm_problem(scene: Scene) -> LefmProblem:
 
 def problem_keys(scene: Scene, method: str) -> dict[str, Any]:
     """What every solver's own ``Problem`` of a dcb calls by the same names: geometry, material, law, load, effects."""
-    specimen = scene.specimen
     return {
-        "length": specimen.length,
-        "arm_thickness": specimen.arm_thickness,
-        "precrack": specimen.precrack,
-        **elastic_constants(scene.material),
+        **_lengths(scene),
+        **elastic_constants(scene.materials[0]),
         **_common_keys(scene, method),
         "symmetry": simulated(scene, method)["symmetry"],
         "steps": counted_steps(scene),
@@ -95,8 +92,13 @@ def _common_keys(scene: Scene, method: str) -> dict[str, Any]:
 
 def _peel_keys(scene: Scene, moduli: type) -> dict[str, Any]:
     """Geometry and materials of a peel, as both field solvers call them; ``moduli`` is the solver's own type."""
-    materials = {name: moduli(**elastic_constants(getattr(scene, name))) for name in ("strip", "substrate")}
-    return scene.specimen.model_dump(exclude={"kind", "width", "plane", "mesh"}) | materials
+    strip, substrate = (moduli(**elastic_constants(material)) for material in scene.materials)
+    return {**_lengths(scene), "strip": strip, "substrate": substrate}
+
+
+def _lengths(scene: Scene) -> dict[str, float]:
+    """Geometry in the plane, which every solver calls as the scene does."""
+    return scene.specimen.model_dump(exclude={"kind", "width", "plane", "mesh"})
 
 
 def _iga_keys(scene: Scene, method: str) -> dict[str, Any]:
@@ -132,14 +134,13 @@ def _given(scene: Scene, method: str) -> tuple:
 
 def _analytical_keys(scene: Scene, method: str) -> dict[str, Any]:
     """What beam and LEFM call by the same names; a strip is an arm, whose precrack is the length that is not bonded."""
-    specimen, own = scene.specimen, {}
+    specimen, own, (material, other) = scene.specimen, {}, scene.materials
     if specimen.kind == "peel":
         from verify.layer import Layer
 
-        base = elastic_constants(scene.substrate)
+        base = elastic_constants(other)
         layer = Layer.of(specimen.substrate_length, specimen.substrate_thickness, plane=specimen.plane, **base)
         own = {"substrate": layer, "arms": 1}
-    material = scene.strip if own else scene.material
     constants = elastic_constants(material)
     return {
         **_common_keys(scene, method),

@@ -178,6 +178,12 @@ class Scene(Section):
     dolfinx: Dolfinx = Dolfinx()
     published: Annotated[tuple[Published, ...], BeforeValidator(_as_tables)] = ()
 
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """Of the two bodies: of both arms the same, or of strip and substrate. A scene has no others."""
+        given = (self.material, self.material, self.strip, self.substrate)
+        return tuple(material for material in given if material is not None)
+
     @field_validator("material", "strip", "substrate", mode="wrap")
     @classmethod
     def _of_this_specimen(cls, value: object, validate: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:

@@ -145,8 +145,10 @@ def _picture(
 
 def _apart(left: Axes, right: Axes) -> None:
     """Move what is on the right so far that its numbers and its label do not reach into what is on the left."""
-    figure = right.figure
-    reach = left.get_tightbbox().x1 - right.yaxis.get_tightbbox().x0 + _CLEAR * figure.dpi
+    figure, ends, begins = right.figure, left.get_tightbbox(), right.yaxis.get_tightbbox()
+    if ends is None or begins is None:
+        return
+    reach = ends.x1 - begins.x0 + _CLEAR * figure.dpi
     if reach > 0:
         right.set_position(right.get_position().translated(reach / figure.bbox.width, 0.0))
 

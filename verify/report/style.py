@@ -201,7 +201,7 @@ def sheet_of(figure: Figure) -> Bbox:
         _broken(axes.yaxis.label, size.height)
     own = figure.bbox_inches
     needed = Bbox.union([own, figure.get_tightbbox()])
-    more = np.abs(needed.extents - own.extents) > _SLIGHT
+    more = np.abs(np.subtract(needed.extents, own.extents)) > _SLIGHT
     return Bbox.from_extents(*np.where(more, needed.extents + _SPARE * np.array([-1, -1, 1, 1]), own.extents))
 
 
