@@ -35,15 +35,15 @@ def two_bodies(specimen: Specimen, comm: MPI.Intracomm) -> TwoBodies:
     tdim, near = 2, specimen.near
     for pair in ((1, tdim), (tdim, 1)):
         parent.topology.create_connectivity(*pair)
-    cells = [entities_on(parent, tdim, _extent(body), near) for body in specimen.bodies]
-    bonded = entities_on(parent, 1, (tuple(sorted(specimen.bond)), (0.0, 0.0)), near)
-    belongs = [_marked(parent, tdim, cells_of_body) for cells_of_body in cells]
+    upper, lower = (entities_on(parent, tdim, _extent(body), near) for body in specimen.bodies)
+    bonded = entities_on(parent, 1, ((min(specimen.bond), max(specimen.bond)), (0.0, 0.0)), near)
+    belongs = [_marked(parent, tdim, cells) for cells in (upper, lower)]
     faces = (_owned(parent, 1, entities_on(parent, 1, _side(specimen, face), near)) for face in specimen.faces)
     return TwoBodies(
         parent=parent,
-        pair=tuple(create_submesh(parent, tdim, cells_of_body) for cells_of_body in cells),
+        pair=(create_submesh(parent, tdim, upper), create_submesh(parent, tdim, lower)),
         bond=create_submesh(parent, 1, bonded),
-        cells=tuple(_owned(parent, tdim, cells_of_body) for cells_of_body in cells),
+        cells=(_owned(parent, tdim, upper), _owned(parent, tdim, lower)),
         faces=tuple(
             _seen_from(parent, facets, belongs[face.body]) for facets, face in zip(faces, specimen.faces, strict=True)
         ),

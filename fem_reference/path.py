@@ -58,9 +58,10 @@ def path(model: Model) -> Iterator[State | Failure | Separation]:
         state = departing(model, state, lines[-1])
         if first:
             yield state
-        state = yield from reach(model, state, lines)
-        if state is None:
+        end = yield from reach(model, state, lines)
+        if end is None:
             return
+        state = end
 
 
 def reach(model: Model, state: State, lines: np.ndarray) -> Generator[State | Failure | Separation, None, State | None]:

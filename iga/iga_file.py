@@ -14,7 +14,7 @@ import numpy as np
 
 from iga.bezier import homogeneous, jacobian
 from iga.extraction import ElementBlock, Mesh
-from iga.neighbours import chains_of, element_sides
+from iga.neighbours import Chain, chains_of, element_sides
 from iga.pose import SEEN_FROM_BEHIND, block_from_behind
 from iga.quadrature import gauss, square
 
@@ -84,7 +84,8 @@ def mesh(file: IgaFile) -> Mesh:
     sets = {part.name: part for part in file.sets if part.kind == "side"}
     if not sets:
         return body
-    all_sides, chains = element_sides(body), {}
+    all_sides = element_sides(body)
+    chains: dict[str, Chain] = {}
     for name, part in sets.items():
         block_c, element_c = file.block_e[part.ids], file.place_e[part.ids]
         behind_c = np.array([turned[b][e] for b, e in zip(block_c, element_c, strict=True)], dtype=bool)

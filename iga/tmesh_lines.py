@@ -63,8 +63,8 @@ def with_line(
     low, high = (along[0], along[-1]) if between is None else between
     span = np.array([[at, low, high]])
     none = np.empty((0, 3))
-    spans = (span, none) if direction == "vertical" else (none, span)
-    return with_lines(mesh, *spans, times=times)
+    vertical, horizontal = (span, none) if direction == "vertical" else (none, span)
+    return with_lines(mesh, vertical, horizontal, times=times)
 
 
 def with_lines(mesh: TMesh, vertical_nk: np.ndarray, horizontal_nk: np.ndarray, times: int = 1) -> TMesh:

@@ -45,7 +45,7 @@ def solve(options: argparse.Namespace) -> int:
     _folder(options.out)
     if not quiet:
         for remark in (*decided(scene, options.method), *warnings(scene, options.method)):
-            say(remark)
+            say(str(remark))
         if options.fields and options.frames and options.method in ("beam", "lefm"):
             say(f"--fields: the method {options.method} has no bodies to draw: no frames for ParaView")
     result, checks = _watched(run, scene, options, quiet)

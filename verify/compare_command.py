@@ -55,11 +55,11 @@ def write(
     try:
         from verify.report.comparison import page
     except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in ("matplotlib", "jinja2", "markupsafe"):
+        if (error.name or "").partition(".")[0] not in ("matplotlib", "PIL", "jinja2", "markupsafe"):
             raise
         say("no page without matplotlib and jinja2: pip install 'debond[report]'")
         return
-    labels = tuple(source.label for source in sources)
+    labels = sources[0].label, sources[1].label
     cells = rows(comparison, loads)
     (folder / PAGE).write_text(page(comparison, labels, cells, found, remarks(comparison)), encoding="utf-8")
 

@@ -17,7 +17,7 @@ def table(comparison: Comparison, loads: Loads, found: Sequence[Check]) -> list[
     limits = {check.name: f"<= {_percent(check.tolerance)}, " for check in found if check.name != "end"}
     verdicts = {check.name: limits.get(check.name, "") + _verdict(check) for check in found}
     lines = [("", a, b, "difference", "")]
-    lines += [(name, *cells, verdicts.get(key, "")) for name, key, *cells in rows(comparison, loads)]
+    lines += [(name, of_a, of_b, off, verdicts.get(key, "")) for name, key, of_a, of_b, off in rows(comparison, loads)]
     widths = [max(len(line[i]) for line in lines) for i in range(4)]
     return [
         "  ".join((line[0].ljust(widths[0]), *(line[i].rjust(widths[i]) for i in (1, 2, 3)), line[4])).rstrip()
@@ -28,9 +28,9 @@ def table(comparison: Comparison, loads: Loads, found: Sequence[Check]) -> list[
 def rows(comparison: Comparison, loads: Loads) -> list[tuple[str, str, str, str, str]]:
     """Name, name of its check, value of A, of B, and relative difference."""
     a, b = comparison.a, comparison.b
-    at, *worst = comparison.worst
+    at, worst_a, worst_b = comparison.worst
     pairs = [(f"load at {at:.6g}", P_a, P_b) for at, P_a, P_b in loads]
-    pairs.append((f"largest deviation, at {at:.6g}", *worst))
+    pairs.append((f"largest deviation, at {at:.6g}", worst_a, worst_b))
     return [
         ("curve error", "curve-error", "", "", _percent(comparison.curve_error)),
         ("peak load", "peak-load", *_both(a.peak_load, b.peak_load), _change(comparison.peak_difference)),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from scipy.optimize import brentq
@@ -13,6 +14,9 @@ SAFETY = 1.25
 
 #: Successive triples whose orders differ by more than this part are not in the asymptotic range.
 STEADY = 0.1
+
+#: Of some meshes, finest first.
+Values: TypeAlias = Sequence[float] | np.ndarray
 
 
 @dataclass(frozen=True)
@@ -35,7 +39,7 @@ class Convergence:
     verdict: str
 
 
-def observed_order(size: Sequence[float], value: Sequence[float]) -> float:
+def observed_order(size: Values, value: Values) -> float:
     """Order p of three meshes, finest first, whatever their ratios.
 
     Celik, Ghia, Roache, Freitas (2008), J. Fluids Eng. 130, 078001, eqs. 5a-5c, in the fixed-point form
@@ -73,18 +77,18 @@ def _fixed_point(step: Callable[[float], float], p: float) -> float:
     return float(brentq(lambda x: step(x) - x, grid[change[0]], grid[change[0] + 1], xtol=1e-14))
 
 
-def richardson(size: Sequence[float], value: Sequence[float], order: float) -> float:
+def richardson(size: Values, value: Values, order: float) -> float:
     """Limit from the two finest meshes and an order: (r^p f1 - f2) / (r^p - 1) (Celik et al. 2008, eq. 6)."""
     factor = (size[1] / size[0]) ** order
     return float((factor * value[0] - value[1]) / (factor - 1.0))
 
 
-def grid_convergence_index(size: Sequence[float], value: Sequence[float], order: float) -> float:
+def grid_convergence_index(size: Values, value: Values, order: float) -> float:
     """SAFETY |(f1 - f2) / f1| / (r^p - 1), relative (Celik et al. 2008, eq. 7)."""
     return float(SAFETY * abs((value[0] - value[1]) / value[0]) / ((size[1] / size[0]) ** order - 1.0))
 
 
-def assess(size: Sequence[float], value: Sequence[float], expected: float | None = None) -> Convergence:
+def assess(size: Values, value: Values, expected: float | None = None) -> Convergence:
     """Judge a sequence of meshes.
 
     Parameters

@@ -68,7 +68,7 @@ def squeeze(scene: Scene) -> float:
     """
     if scene.specimen.kind == "peel":
         return 0.0
-    law, E2 = scene.interface, elastic_constants(scene.material)["E2"]
+    law, E2 = scene.interface, elastic_constants(scene.materials[0])["E2"]
     return scene.specimen.arm_thickness * law.strength**2 / (2.0 * E2 * law.toughness)
 
 
@@ -101,7 +101,7 @@ def published_names(scene: Scene) -> tuple[str, ...]:
 
 def published_load(known: Published, result: Result) -> float:
     """What a run has for a published value; NaN where it did not come so far."""
-    if known.quantity == "peak":
+    if known.quantity == "peak" or known.opening is None:
         return peak_load(result)
     curve, steps = (result.opening, result.load), result.steps
     if {"load_slope", "heading"} <= set(steps):

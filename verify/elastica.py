@@ -53,7 +53,7 @@ def fixed_crack(EI: float, crack: float, opening: np.ndarray, arms: int) -> Arms
     bent = opening > 0.0
     S, P = np.zeros_like(opening), np.zeros_like(opening)
     slope = np.full_like(opening, 3.0 * EI / (arms * crack**3))
-    t = _root(lambda t: _fixed(EI, crack, t, arms)[1] - opening[bent], np.count_nonzero(bent))
+    t = _root(lambda t: _fixed(EI, crack, t, arms)[1] - opening[bent], int(np.count_nonzero(bent)))
     S[bent], P[bent] = sine(t)[0], _fixed(EI, crack, t, arms)[0]
     slope[bent] = _slope(lambda t: _fixed(EI, crack, t, arms), t)
     return Arms(P, np.full_like(opening, crack), S, slope)

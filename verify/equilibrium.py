@@ -124,11 +124,12 @@ def intact(m: Model) -> State:
     elastic, penalty = m.base.k[[ELASTIC, CONTACT]]
     n = max(0, int(np.ceil(np.log10(penalty / elastic)))) if penalty > elastic else 0
     field = Field.zero(np.array([0.0, m.ends.length]), m.arm.states)
-    precrack, zones, state = m.ends.precrack, m.ends.untouched(), None
+    precrack, zones = m.ends.precrack, m.ends.untouched()
     for stiffness in np.geomspace(elastic, penalty, n + 1) if n else [penalty]:
         part = replace(m, arm=m.arm.linear(), base=m.base.closing(stiffness))
-        state = settle(part, field, zones, Control(precrack, m.base.v_peak, precrack))
-        if state is None:
+        found = settle(part, field, zones, Control(precrack, m.base.v_peak, precrack))
+        if found is None:
             raise ArithmeticError("the zones of contact of the undamaged arm were not found")
+        state = found
         field, zones = state.field, find(part.arm, part.base, state.field, state.kind, m.ends, precrack)
     return state

@@ -150,8 +150,7 @@ def through_thickness(scene: Scene) -> np.ndarray:
     """
     if scene.specimen.plane == "stress":
         return np.zeros((2, 2))
-    materials = (scene.strip, scene.substrate) if scene.specimen.kind == "peel" else (scene.material,) * 2
-    constants = [elastic_constants(material) for material in materials]
+    constants = [elastic_constants(material) for material in scene.materials]
     return np.array([[c["nu12"] * c["E2"] / c["E1"], c["nu12"]] for c in constants])
 
 

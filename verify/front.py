@@ -90,11 +90,12 @@ def _undamaged(m: Model, elastic: State, pace: Pace) -> Iterator[State]:
     for share in np.linspace(0.0, 1.0, n + 1)[1:]:
         scale = share / (share - 1.0 / n) if share > 1.5 / n else share
         guess = Field(state.field.x, scale * state.field.node, scale * state.field.stage)
-        state = resettle(m, state, guess, Control(m.ends.precrack, share * m.base.v_peak, m.ends.precrack))
-        if state is not None and state.field.node[0, V] > pace.end:
-            state = resettle(m, state, state.field, Control(0.0, pace.end, m.ends.precrack))
-        if state is None:
+        found = resettle(m, state, guess, Control(m.ends.precrack, share * m.base.v_peak, m.ends.precrack))
+        if found is not None and found.field.node[0, V] > pace.end:
+            found = resettle(m, found, found.field, Control(0.0, pace.end, m.ends.precrack))
+        if found is None:
             raise ArithmeticError("the undamaged arm was not solved")
+        state = found
         yield state
         if _reached(state, pace):
             return

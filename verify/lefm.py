@@ -117,8 +117,9 @@ def solve(problem: LefmProblem, on_step: Callable[[Mapping[str, float]], None] |
     loading, growth = solvers.get(theory, _beam)(problem, end)
     beyond = growth.crack > problem.length
     rows = _rows(problem, loading, Branch(*(getattr(growth, name)[~beyond] for name in _names(growth))))
-    for row in rows if on_step else ():
-        on_step(row)
+    if on_step is not None:
+        for row in rows:
+            on_step(row)
     return Solution(rows, ending=f"separated at opening {rows[-1]['opening']:.6g}" if beyond.any() else "")
 
 

@@ -91,11 +91,11 @@ def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts, contro
     except OSError as error:
         raise Refusal(f"--out: must be a place that can be written to, got {str(target)!r}: {error.strerror}") from None
     except ModuleNotFoundError as error:
-        if error.name != "matplotlib":
+        if error.name not in ("matplotlib", "PIL"):
             raise
         if out is not None:
-            raise Refusal("--out: a picture needs matplotlib: pip install 'debond[report]'") from None
-        say("no picture without matplotlib: pip install 'debond[report]'")
+            raise Refusal(f"--out: a picture needs {error.name}: pip install 'debond[report]'") from None
+        say(f"no picture without {error.name}: pip install 'debond[report]'")
         return None
     return target
 

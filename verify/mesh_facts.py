@@ -42,9 +42,10 @@ class MeshFacts:
     @cached_property
     def kinds(self) -> list[tuple[tuple[int, int], int, int]]:
         """Degrees, number of functions and how many elements are so."""
-        count: Counter[tuple[tuple[int, ...], int]] = Counter()
+        count: Counter[tuple[tuple[int, int], int]] = Counter()
         for block in self.mesh.blocks:
-            count[tuple(map(int, block.degrees)), block.conn_ea.shape[1]] += len(block.conn_ea)
+            p, q = map(int, block.degrees)
+            count[(p, q), block.conn_ea.shape[1]] += len(block.conn_ea)
         return [(*kind, number) for kind, number in sorted(count.items())]
 
     @cached_property

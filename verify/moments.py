@@ -33,15 +33,15 @@ class Moments:
     def __init__(self, scene: Scene) -> None:
         here = scene.pose == Pose()
         self._wanted = [part * max(0.0, *scene.load.opening) for part in FRACTIONS] if here else []
-        self._makes: list[Callable[[], Mapping[str, Any]]] = []
+        self._makes: list[Callable[[], Mapping[str, Any] | None]] = []
 
-    def __call__(self, opening: float, make: Callable[[], Mapping[str, Any]]) -> None:
+    def __call__(self, opening: float, make: Callable[[], Mapping[str, Any] | None]) -> None:
         if self._wanted and opening >= self._wanted[0]:
             self._wanted = [wanted for wanted in self._wanted if wanted > opening]
             self._makes.append(make)
 
     def snapshots(self) -> tuple[Snapshot, ...]:
-        return tuple(snapshot(make()) for make in self._makes)
+        return tuple(snapshot(made) for make in self._makes if (made := make()) is not None)
 
 
 def snapshot(made: Mapping[str, Any]) -> Snapshot:

@@ -8,9 +8,12 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from verify.refusal import Refusal
+
+if TYPE_CHECKING:
+    from distributed import Client
 
 #: Seconds within which a scheduler has to answer.
 ANSWER_SECONDS = 10
@@ -53,7 +56,7 @@ class Local:
 class Cluster:
     """Workers of dask that see the same files; the runs of one that dies are done by another."""
 
-    client: object
+    client: Client
     executor: Executor
 
     def slots(self) -> int:

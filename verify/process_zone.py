@@ -198,8 +198,10 @@ def _bodies(scene: Scene) -> tuple[tuple[Material, float], ...]:
     """Material and thickness of every body."""
     specimen = scene.specimen
     if specimen.kind == "peel":
-        return (scene.strip, specimen.strip_thickness), (scene.substrate, specimen.substrate_thickness)
-    return ((scene.material, specimen.arm_thickness),) * 2
+        thickness = (specimen.strip_thickness, specimen.substrate_thickness)
+    else:
+        thickness = (specimen.arm_thickness, specimen.arm_thickness)
+    return tuple(zip(scene.materials, thickness, strict=True))
 
 
 def _bending(scene: Scene) -> tuple[tuple[Material, float], ...]:

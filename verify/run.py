@@ -116,7 +116,9 @@ def _explained(scene: Scene, result: Result) -> Result:
     return replace(result, status=f"stopped: {zone}; {result.status.removeprefix('stopped: ')}")
 
 
-def _filmed(solver: Solver, frames: Frames, scene: Scene, method: str, on_step: Callable | None) -> Result:
+def _filmed(
+    solver: Callable[..., Result], frames: Frames, scene: Scene, method: str, on_step: Callable | None
+) -> Result:
     result = solver(scene, method, on_step, on_frame=frames)
     frames.finish()
     return result

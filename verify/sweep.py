@@ -157,7 +157,8 @@ def _done(
 
     No more than the pool can do at once are handed over, so that a lane's next task never waits behind all the others.
     """
-    waiting, running = list({task.key: task for task in tasks}.values()), {}
+    waiting = list({task.key: task for task in tasks}.values())
+    running: dict[Future, Task] = {}
     try:
         while waiting or running:
             try:

@@ -30,7 +30,9 @@ def content(
     reports: Sequence[SceneReport], others: Iterable[tuple[str, Check]], included: Sequence[str] = ()
 ) -> dict[str, Any]:
     """What the file holds. A value that is no number, as of a run that ended without one, becomes null."""
-    found = [(report.scene.name, check, report) for report in reports for check in report.checks]
+    found: list[tuple[str, Check, SceneReport | None]] = [
+        (report.scene.name, check, report) for report in reports for check in report.checks
+    ]
     found += [(name, check, None) for name, check in others]
     checks = [check for _, check, _ in found]
     return {

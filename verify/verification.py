@@ -158,8 +158,8 @@ def convergence(reports: Sequence[SceneReport]) -> list[str]:
 def _as_run(outcome: Outcome, out: Path) -> Run:
     job, result = outcome.job, outcome.result
     scene = job.solved
-    mesh = {"dolfinx": scene.dolfinx, **dict.fromkeys(WITH_DOFS, scene.discretization)}.get(job.method)
-    name = NAMES.get(job.method, job.method) + (f" p={mesh.degree}" if mesh else "")
+    degree = {"dolfinx": scene.dolfinx.degree, **dict.fromkeys(WITH_DOFS, scene.discretization.degree)}.get(job.method)
+    name = NAMES.get(job.method, job.method) + (f" p={degree}" if degree else "")
     adaptive = job.method == "tspline" and scene.discretization.adaptive
     name, most = (f"{name}, adaptive", "at most ") if adaptive else (name, "")
     label = f"{name}, {most}{result.dofs} unknowns" if result is not None and result.dofs else name

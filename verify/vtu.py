@@ -76,7 +76,7 @@ def grid(cells: Sequence[Cells], whole: Mapping[str, float] | None = None) -> Gr
         ordered = (v.reshape(*v.shape[:2], -1)[:, order] for v, order in zip(values, orders, strict=True))
         return _three_columns(np.concatenate([v.reshape(-1, v.shape[2]) for v in ordered]))
 
-    point_data = {"RationalWeights": points([part.w_eb for part in cells])} if rational else {}
+    point_data = {"RationalWeights": points([part.w_eb for part in cells if part.w_eb is not None])} if rational else {}
     point_data |= {name: points([part.fields[name] for part in cells]) for name in cells[0].fields}
     sizes = [part.X_ebI.shape[:2] for part in cells]
     degrees = [np.tile([*part.degrees, 0.0], (n_e, 1)) for part, (n_e, _) in zip(cells, sizes, strict=True)]

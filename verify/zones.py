@@ -87,7 +87,7 @@ def find(
     if front is None:
         front = _last_above(x, v, slope, base.v_peak, precrack, x[-1])
     tip = _last_above(x, v, slope, base.v_open, precrack, front)
-    followed = np.count_nonzero(np.diff(kind_e[np.isin(kind_e, (ELASTIC, CONTACT))]))
+    followed = int(np.count_nonzero(np.diff(kind_e[np.isin(kind_e, (ELASTIC, CONTACT))])))
     strain = np.abs(v) * np.maximum(base.k[kind] / base.k[ELASTIC], 1.0) / base.v_peak
     crossings = _waves(x, v, slope, front, followed, strain) if base.contact else []
     beyond = [ELASTIC if i % 2 == 0 else CONTACT for i in range(len(crossings) + 1)]

@@ -107,7 +107,8 @@ def slope(rows: Sequence[Row], value: Callable[[Row], float]) -> float:
     points = [(row.dofs, value(row)) for row in rows if row.dofs and row.newton_iterations and value(row) > 0.0]
     if _sizes(rows) < 3 or len(points) < 3:
         return nan
-    return float(np.polyfit(*np.log(np.array(points)).T, 1)[0])
+    dofs, values = np.log(np.array(points)).T
+    return float(np.polyfit(dofs, values, 1)[0])
 
 
 def _sizes(rows: Sequence[Row]) -> int:

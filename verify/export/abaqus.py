@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from verify.export.mesh import SceneMesh
-from verify.export.numbers import effects, header, law, materials
+from verify.export.numbers import effects, header, law
 from verify.problems import counted_steps, elastic_constants
 from verify.schema import Scene
 from verify.specimen import Isotropic, Material
@@ -77,7 +77,7 @@ def _mesh(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
     means = {name: np.array([number - 1]) for name, number in reference_nodes(mesh).items()}
     for name, nodes in (mesh.sets | means).items():
         yield f"*NSET, NSET={name}"
-        yield from _wrapped(nodes + 1)
+        yield from _wrapped((nodes + 1).tolist())
 
 
 def _elements(conn_ea: np.ndarray, first: int) -> Iterator[str]:
@@ -97,7 +97,7 @@ def _sections(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
 
 
 def _materials(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
-    for name, material in zip(mesh.names, materials(scene), strict=True):
+    for name, material in zip(mesh.names, scene.materials, strict=True):
         yield f"*MATERIAL, NAME={name}"
         yield from _elastic(material, scene.specimen.plane)
     bond = law(scene)

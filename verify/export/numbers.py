@@ -12,15 +12,9 @@ from verify.export.mesh import SceneMesh
 from verify.law import Bilinear
 from verify.problems import counted_steps, elastic_constants
 from verify.schema import Scene
-from verify.specimen import Material
 
 #: Laws that other codes are told, and what they are.
 KINDS: Mapping[str, str] = {"bilinear": "bilinear, mode I: the gap along the normal alone bears traction"}
-
-
-def materials(scene: Scene) -> tuple[Material, Material]:
-    """Of the upper and of the lower body."""
-    return (scene.strip, scene.substrate) if scene.specimen.kind == "peel" else (scene.material, scene.material)
 
 
 def law(scene: Scene) -> Bilinear:
@@ -43,7 +37,7 @@ def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
         "specimen": specimen.model_dump(exclude={"mesh"}),
         "bodies": {
             name: {**elastic_constants(material), "isotropic": hasattr(material, "young")}
-            for name, material in zip(mesh.names, materials(scene), strict=True)
+            for name, material in zip(mesh.names, scene.materials, strict=True)
         },
         "law": {
             "kind": KINDS[scene.interface.law],

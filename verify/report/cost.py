@@ -57,7 +57,7 @@ def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -
     points = [
         (entry, total_seconds(entry.result), entry.agreement.error)
         for entry in runs
-        if total_seconds(entry.result) > 0 and entry.agreement.error > 0
+        if entry.agreement is not None and total_seconds(entry.result) > 0 and entry.agreement.error > 0
     ]
     if not points:
         return None

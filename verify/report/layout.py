@@ -34,11 +34,12 @@ def rows(count: int, height: float, below: float) -> tuple[Figure, list[tuple[Ax
     for i in range(count):
         bottom = (total - (i + 1) * (height + between) + 0.15) / total
         places = ((LEFT, WHOLE), (LEFT + WHOLE + GAP, CLOSE))
-        pairs.append(tuple(figure.add_axes((x / WIDE, bottom, w / WIDE, height / total)) for x, w in places))
-        for axes in pairs[-1]:
-            axes.grid(False)
-        pairs[-1][1].spines[["top", "right"]].set_visible(True)
-        pairs[-1][1].locator_params(nbins=4)
+        whole, close = (figure.add_axes((x / WIDE, bottom, w / WIDE, height / total)) for x, w in places)
+        whole.grid(False)
+        close.grid(False)
+        close.spines[["top", "right"]].set_visible(True)
+        close.locator_params(nbins=4)
+        pairs.append((whole, close))
     return figure, pairs
 
 

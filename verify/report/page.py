@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from markupsafe import Markup
@@ -33,7 +33,7 @@ _HERE = Path(__file__).parent
 #: Up to so many scenes have more openings than those that all runs keep, of about 120 kB a scene.
 FEW = 5
 
-_FILTERS = {
+_FILTERS: Mapping[str, Callable] = {
     "symbols": symbols,
     "percent": percent,
     "seconds": seconds,

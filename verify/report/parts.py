@@ -39,7 +39,7 @@ def deviation(axes: Axes, known: Reference, trials: Mapping[str, Trial | None]) 
     band = 100 * max(known.error, known.oscillation)
     axes.axhspan(-band, band, color=colour("muted"), alpha=0.3, linewidth=0)
     for basis, trial in trials.items():
-        if trial is not None and trial.drawable:
+        if trial is not None and trial.result is not None and trial.drawable:
             ratio = load_at(curve(trial.result), openings) / load_at(reference, openings) - 1.0
             axes.plot(openings, 100 * ratio, **line(basis).options(), label=METHOD_NAMES[basis])
     axes.set(ylabel="load / converged load − 1 (%)")

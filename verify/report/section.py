@@ -161,7 +161,10 @@ def _figures(
     base = next((entry for entry in drawn if entry.is_reference), None)
     ledger = next((e for e in sorted(drawn, key=lambda e: e.method != "nurbs") if e.method != "lefm"), None)
     groups = [group for group in groups if group]
-    load = [curves.load_opening(scene, drawn, f"{anchor}-load"), curves.peak(scene, drawn, f"{anchor}-peak")]
+    load: list[Panel | None] = [
+        curves.load_opening(scene, drawn, f"{anchor}-load"),
+        curves.peak(scene, drawn, f"{anchor}-peak"),
+    ]
     if base is not None and any(e is not base and e.method != "lefm" for e in drawn):
         load.append(curves.oscillation(scene, drawn, base, f"{anchor}-oscillation"))
     load.append(curves.j_figure(scene, drawn, f"{anchor}-j"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -152,13 +153,14 @@ def _sentences(sections: Sequence[Section]) -> list[Sentence]:
     """One sentence a method: its largest distance to the reference and its times."""
     sentences = []
     for method, repeat, name in _columns(sections):
-        found = [(s, e) for s in sections if (e := _nth(s, method, repeat)) is not None and e.agreement is not None]
-        times = [t for _, e in found if (t := total_seconds(e.result)) == t]
+        there = [(s, e) for s in sections if (e := _nth(s, method, repeat)) is not None]
+        found = [(e.agreement.error, s, e) for s, e in there if e.agreement is not None]
+        times = [t for _, _, e in found if (t := total_seconds(e.result)) == t]
         took = f"{span(times, seconds)} a scene" if times else "time unknown"
-        compared = [(e.agreement.error, s, e) for s, e in found if e.agreement.error == e.agreement.error]
+        compared = [one for one in found if not math.isnan(one[0])]
         if compared:
             error, worst, entry = max(compared, key=lambda row: row[0])
-            bases = sorted({s.reference.name for _, s, _ in compared})
+            bases = sorted({s.reference.name for _, s, _ in compared if s.reference is not None})
             base = bases[0] if len(bases) == 1 else f"the reference ({' or '.join(bases)})"
             whole = all(e.complete for _, _, e in compared)
             extent = "over the whole curve" if whole else "as far as its runs came"
@@ -166,8 +168,8 @@ def _sentences(sections: Sequence[Section]) -> list[Sentence]:
             agrees = f"load within {percent(error)} of {base} {extent}{where}"
             target = f"{worst.anchor}-run-{entry.run.name}"
             sentences.append(Sentence(f"{_capital(name)}: {agrees}; {took}.", target, "that run"))
-        elif any(e.is_reference for _, e in found):
-            section, entry = found[0]
+        elif any(e.is_reference for _, _, e in found):
+            _, section, entry = found[0]
             target = f"{section.anchor}-run-{entry.run.name}"
             sentences.append(Sentence(f"{_capital(name)}: the reference of this page; {took}.", target, "its run"))
     if any(e.method == "lefm" and e.agreement is not None for s in sections for e in s.entries):

@@ -82,7 +82,8 @@ def _assigned(raw: Mapping[str, Any], key: Key) -> list[str]:
 
 def _instead(raw: Mapping[str, Any], table: str) -> list[str]:
     """The other material."""
-    return ["# or, orthotropic:", *_commented("", raw | {table: ORTHOTROPIC}, keys_of(table, Orthotropic), ORTHOTROPIC)]
+    other = {**raw, table: ORTHOTROPIC}
+    return ["# or, orthotropic:", *_commented("", other, keys_of(table, Orthotropic), ORTHOTROPIC)]
 
 
 def _commented(head: str, raw: Mapping[str, Any], these: tuple[Key, ...], values: Mapping[str, Any]) -> list[str]:
