@@ -14,7 +14,7 @@ from verify.effects import simulated
 from verify.law import LAWS, Law
 from verify.result import Result
 from verify.schema import Scene
-from verify.verdict import Check
+from verify.verdict import Check, Kind
 
 Steps = Mapping[str, np.ndarray]
 
@@ -36,7 +36,7 @@ J_OF_ANY_LAW = "The J-integral of the specimen is G_Ic once the bond has opened 
 #: Checks that hold as well as the mesh resolves the process zone.
 OF_THE_ZONE = ("j-integral", "growth-angle")
 #: What stands behind a check that is no identity.
-KINDS = {"growth-angle": "analytical"}
+KINDS: Mapping[str, Kind] = {"growth-angle": "analytical"}
 
 
 def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, ...]:
@@ -63,8 +63,8 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
     resolved = not measures_the_mesh(scene, result)
     separated = result.complete and result.ending.startswith("separated")
     found = (
-        (name, 0.0 if separated and value is _missing_part else value(scene, result.steps), *rest)
-        for name, value, *rest in values
+        (name, 0.0 if separated and value is _missing_part else value(scene, result.steps), tolerance, meaning)
+        for name, value, tolerance, meaning in values
     )
     return tuple(
         Check(name, subject or result.method, worst, tolerance, KINDS.get(name, "exact"), meaning)

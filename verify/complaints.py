@@ -94,7 +94,8 @@ def _table(annotation: object) -> type[Section] | None:
 
 def _dotted(path: tuple[str | int, ...], raw: Mapping[str, Any]) -> str:
     """``load.opening[1]``; without the index where the file has a single value."""
-    text, value = "", raw
+    text = ""
+    value: object = raw
     for part in path:
         if isinstance(part, str):
             text += f".{part}" if text else part
@@ -121,9 +122,9 @@ def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) 
         table = _table(annotation)
         tables = [table] if table is not None else list(_ALTERNATIVES[str(path[0])].values())
         return "a table of " + ", or of ".join(", ".join(table.model_fields) for table in tables)
-    if annotation is str and field.metadata:
+    if annotation is str and field is not None and field.metadata:
         return "1 to 80 letters, digits, dots, dashes and underscores, a letter or digit first"
-    bounds = [f"{sign} {limit:g}" for limit, sign in _bounds(field)]
+    bounds = [f"{sign} {limit:g}" for limit, sign in (_bounds(field) if field is not None else ())]
     return " ".join([_KINDS[annotation]] * (full or not bounds) + [" and ".join(bounds)] * bool(bounds))
 
 

@@ -5,13 +5,13 @@ Every estimate is of beam theory, made before anything is solved; `verify.neglec
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import atan2, degrees, exp, sqrt
 from typing import Any
 
 from verify.schema import Scene
-from verify.specimen import Material
+from verify.specimen import Isotropic, Material
 
 FINITE_ABOVE_DEGREES = 5.0
 
@@ -62,7 +62,7 @@ def searches(effects: Mapping[str, Any]) -> bool:
 
 def decided(scene: Scene, method: str = "") -> tuple[Decision, ...]:
     """What is chosen for every effect that is ``auto``, but those that a method cannot choose."""
-    rules = {
+    rules: Mapping[str, Callable[[Scene], tuple[str | bool, str]]] = {
         "kinematics": _kinematics,
         "contact": _contact,
         "irreversible": _irreversible,
@@ -109,8 +109,9 @@ def load_of_squeezing(scene: Scene) -> float:
     """
     specimen, law, peel = scene.specimen, scene.interface, scene.specimen.kind == "peel"
     initial = law.strength**2 * law.ductility / (2.0 * law.toughness)
-    across = specimen.loaded_thickness / (2.0 * _modulus(scene.strip if peel else scene.material, 2))
-    across += specimen.substrate_thickness / _modulus(scene.substrate, 2) if peel else 0.0
+    across = specimen.loaded_thickness / (2.0 * _modulus(scene.materials[0], 2))
+    if specimen.kind == "peel":
+        across += specimen.substrate_thickness / _modulus(scene.materials[1], 2)
     k, closed = (1.0 / (1.0 / (bond if peel else 2.0 * bond) + across) for bond in (initial, law.penalty))
     alpha = specimen.free_length * (k * specimen.width / (4.0 * _bending(scene))) ** 0.25
     return squeezed(alpha) * stiffer(closed / k)
@@ -185,12 +186,13 @@ def _fixed(scene: Scene, method: str) -> dict[str, Any]:
 def _bending(scene: Scene) -> float:
     """E I of an arm, or of the strip."""
     specimen = scene.specimen
-    material = scene.strip if specimen.kind == "peel" else scene.material
-    return _modulus(material, 1) * specimen.width * specimen.loaded_thickness**3 / 12
+    return _modulus(scene.materials[0], 1) * specimen.width * specimen.loaded_thickness**3 / 12
 
 
 def _modulus(material: Material, axis: int) -> float:
-    return getattr(material, "young", None) or (material.E1 if axis == 1 else material.E2)
+    if isinstance(material, Isotropic):
+        return material.young
+    return material.E1 if axis == 1 else material.E2
 
 
 def _deflection(scene: Scene) -> float:
