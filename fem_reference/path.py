@@ -157,7 +157,8 @@ def step(
     if guess is None:
         move = (control.value - model.dot(control.row_n, state.u_n)) / model.dot(control.row_n, state.rate_n)
         guess = state.u_n + move * state.rate_n, state.load + move * state.slope
-    attempt = find_equilibrium(model, control, *guess, state.k_q, state.peak * model.norm(model.load_n))
+    u_n, load = guess
+    attempt = find_equilibrium(model, control, u_n, load, state.k_q, state.peak * model.norm(model.load_n))
     if not attempt.converged:
         return Failure(
             f"no equilibrium beyond opening {state.opening:.6g} in {attempt.iterations} iterations "

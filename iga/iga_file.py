@@ -122,8 +122,8 @@ def _lines(file: IgaFile) -> Iterator[str]:
     yield f"type {file.kind}"
     yield f"nodeN {len(file.P_AI)}"
     yield f"elemN {len(file.block_e)}"
-    for row in np.column_stack([file.P_AI, file.w_A]).tolist():
-        yield f"node {_numbers(row)}"
+    for row in np.column_stack([file.P_AI, file.w_A]):
+        yield f"node {_numbers(map(float, row))}"
     for b, e in zip(file.block_e, file.place_e, strict=True):
         block = file.blocks[b]
         C_ab = block.C_eab[e]

@@ -81,7 +81,8 @@ def _growing(EI: float, Gw: float, t: np.ndarray, arms: int) -> tuple[np.ndarray
 
 def _root(function: Callable[[np.ndarray], np.ndarray], n: int) -> np.ndarray:
     """Roots (n,) of functions that increase with t, by bisection to rounding."""
-    low, high = np.full(n, -300.0), np.full(n, 300.0)
+    low: np.ndarray = np.full(n, -300.0)
+    high: np.ndarray = np.full(n, 300.0)
     for _ in range(100):
         middle = 0.5 * (low + high)
         above = function(middle) > 0.0
