@@ -119,6 +119,19 @@ def test_tables_have_captions_and_heads_have_scopes(browser: Browser) -> None:
     assert browser.ask("[...document.querySelectorAll('th:not([scope])')].map((h) => h.textContent)") == []
 
 
+def test_no_word_of_a_figure_sticks_out_of_it(browser: Browser) -> None:
+    """In the font that the browser has found; the frames that the slider hides are shown for it."""
+    browser.ask("document.querySelectorAll('.frame, details').forEach((f) => { f.hidden = false; f.open = true; })")
+    cut = """[...document.querySelectorAll('svg.plot text')].filter((text) => {
+        const a = text.getBoundingClientRect(), b = text.closest('svg').getBoundingClientRect();
+        const out = [b.left - a.left, a.right - b.right, b.top - a.top, a.bottom - b.bottom];
+        return a.width && Math.max(...out) > 1;
+    }).map((text) => text.textContent)"""
+    found = browser.ask("document.querySelectorAll('svg.plot text').length"), browser.ask(cut)
+    browser.ask("location.reload()")
+    assert found[0] > 300 and found[1] == []
+
+
 def test_slider_shows_one_opening_at_a_time_by_keyboard(browser: Browser) -> None:
     shown = "[...document.querySelectorAll('.frame')].map((f) => f.getClientRects().length > 0)"
     assert browser.ask(shown) == [False, False, True]

@@ -65,8 +65,8 @@ PHASES = ("mesh", "basis", "assembly", "factor", "solve", "other")
 #: Width of a figure in inches; every figure is drawn at the size that makes 8 pt text readable where it is shown.
 THIRD, HALF, WIDE = 3.3, 4.6, 9.4
 
-#: Inches: what may stick out of a sheet unseen, and the margin beyond what does not.
-_SLIGHT, _SPARE = 0.02, 0.06
+#: Inches around what is drawn: a browser's font may be a little larger than that of the layout.
+_MARGIN = 0.04
 
 # A stress near zero is transparent: it takes the page's own colour, light or dark.
 STRESS_MAP = LinearSegmentedColormap.from_list(
@@ -199,10 +199,7 @@ def sheet_of(figure: Figure) -> Bbox:
         size = axes.get_window_extent()
         _broken(axes.xaxis.label, size.width)
         _broken(axes.yaxis.label, size.height)
-    own = figure.bbox_inches
-    needed = Bbox.union([own, figure.get_tightbbox()])
-    more = np.abs(np.subtract(needed.extents, own.extents)) > _SLIGHT
-    return Bbox.from_extents(*np.where(more, needed.extents + _SPARE * np.array([-1, -1, 1, 1]), own.extents))
+    return Bbox.union([figure.bbox_inches, figure.get_tightbbox().padded(_MARGIN)])
 
 
 def _broken(label: Text, room: float) -> None:
