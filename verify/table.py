@@ -22,11 +22,14 @@ def overview(reports: Iterable[SceneReport]) -> list[str]:
     for report in reports:
         runs = list(dict.fromkeys(_run(check) for check in report.checks))
         names = dict.fromkeys((check.name, check.kind) for check in report.checks)
-        lines.append(f"{report.scene.name:29}" + "".join(f"{run:>12}" for run in runs))
+        widths = {run: max(12, len(run) + 2) for run in runs}
+        lines.append(f"{report.scene.name:29}" + "".join(f"{run:>{width}}" for run, width in widths.items()))
         for name, kind in names:
             found = sorted((check for check in report.checks if check.name == name), key=_used)
             cells = {_run(check): _cell(check) for check in found}  # of several the one that is nearest to failing
-            lines.append(f"  {name:16} {kind:10}" + "".join(f"{cells.get(run, ''):>12}" for run in runs))
+            lines.append(
+                f"  {name:16} {kind:10}" + "".join(f"{cells.get(run, ''):>{width}}" for run, width in widths.items())
+            )
         lines += [f"  {run.method}: {run.left_out}" for run in report.runs if run.result is None]
         lines += [*(f"  {remark}" for remark in report.remarks), ""]
     return lines

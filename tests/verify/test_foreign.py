@@ -141,6 +141,14 @@ def test_of_several_codes_the_overview_shows_the_worst(order: int) -> None:
     assert "9.0e-03!" in row
 
 
+def test_columns_of_the_overview_are_as_wide_as_their_names() -> None:
+    names = ("dolfinx-p3", "tspline-adaptive", "nurbs")
+    found = tuple(Check("curve", name, 0.004, 0.005, "exact", "") for name in names)
+    head, row, *_ = overview([SceneReport(load_scene(LINEAR), (), found)])
+    assert head.split() == [LINEAR, *names] and row.split() == ["curve", "exact", *["4.0e-03"] * 3]
+    assert [head.index(name) + len(name) for name in names] == [m.end() + 1 for m in re.finditer("4.0e-03", row)]
+
+
 def test_names_come_from_files_or_are_given(folder: Path) -> None:
     (folder / "run").mkdir()
     (folder / "run" / "curve.csv").write_text("opening,load\n0,0\n1,1\n2,1\n")
