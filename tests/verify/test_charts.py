@@ -23,7 +23,7 @@ from test_cost import a_row  # noqa: E402
 from verify.compare import compare  # noqa: E402
 from verify.cost import figures as charts  # noqa: E402
 from verify.curve import envelope  # noqa: E402
-from verify.report import comparison, fields, opening, paint, undeformed  # noqa: E402
+from verify.report import comparison, fields, opening, paint, style, undeformed  # noqa: E402
 from verify.report.entry import entries  # noqa: E402
 from verify.report.fields import process_zone, shared_snapshots, traction  # noqa: E402
 from verify.report.opening import frames  # noqa: E402
@@ -265,6 +265,20 @@ def test_no_word_of_a_frame_is_cut_or_written_over_another_whatever_the_units(fo
         label = f"traction ({Units.of(units).stress})".replace(" ", "")
         assert label in "".join(words for words, _ in texts).replace(" ", "")
     assert len(shown) == 2 and len(sizes) == 1
+
+
+def test_a_sheet_grows_by_what_is_written_beside_it_and_not_otherwise() -> None:
+    with style.drawing():
+        figure, axes = style.panel(style.HALF, 3.0)
+        axes.plot([0.0, 1.0], [0.0, 1.0])
+        assert np.array_equal(style.sheet_of(figure).extents, (0.0, 0.0, style.HALF, 3.0))
+        axes.annotate("a name at the edge", (1.0, 0.5))
+        axes.set(ylabel="energy (pound-force inch)", ylim=(-90000.0, 90000.0))
+        size, texts = written(style.to_svg(figure, "key", "title"))
+    assert size[0] > 72.0 * style.HALF and size[1] == 216.0
+    assert {"a name at the edge", "energy (pound-force inch)"} <= {words for words, _ in texts}
+    for words, (least, most) in texts:
+        assert np.all(least >= 0.0) and np.all(most <= size), words
 
 
 @pytest.mark.parametrize(
