@@ -61,8 +61,9 @@ def finite_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
 
 def small_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Linear kinematics: the same with E replaced by the symmetric gradient and no geometric stiffness."""
-    P = (elasticity_tensor(D).reshape(4, 4) @ H.reshape(4, -1)).reshape(H.shape)
-    return P, 0.5 * (P * H).sum((0, 1))
+    E_v = np.stack([H[0, 0], H[1, 1], H[0, 1] + H[1, 0]])
+    S_v = (D @ E_v.reshape(3, -1)).reshape(E_v.shape)
+    return S_v[np.array(VOIGT)], 0.5 * (S_v * E_v).sum(0)
 
 
 def small_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 While damage grows the opening of the cohesive front is prescribed, so that the path is followed through snap-backs;
 otherwise the opening of the specimen is. Where a step fails, the next one ends at the next kink of the law: from kink
-to kink a path with a piecewise linear law has no surprises.
+to kink a path has few surprises, and with a law that is linear between them none.
 """
 
 from __future__ import annotations
