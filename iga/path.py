@@ -55,6 +55,7 @@ def follow(
     departed = _departing(system, system.start(), direction, 0.0, phase)
     if departed is None:
         raise ValueError("the system is singular: the supports or the interface do not hold the bodies")
+    known: Linearised | None
     point, known = departed
     yield point
     for goal in by_way_of_zero(programme):

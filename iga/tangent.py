@@ -79,6 +79,7 @@ def tangent(
     growing_q = soft_q if direction > 0.0 or not law.irreversible else np.zeros_like(soft_q)
     flat_q = law.contact & (np.abs(g_q) <= NO_GAP * law.g_max)
     closed_q = state.closed_q
+    inverse: Inverse | None
     for attempt in range(ATTEMPTS):
         if attempt > 0 or turning:
             # a history larger by a rounding is enough to be on the secant
@@ -103,7 +104,7 @@ def tangent(
                     touching_q,
                 )
         growing_q, closed_q = agreeing_q, touching_q
-    return found, Linearised(response, inverse)
+    return None if inverse is None else (found, Linearised(response, inverse))
 
 
 def _sorted_out(
