@@ -53,20 +53,26 @@ def sequences(report: SceneReport) -> tuple[Sequence, ...]:
         for method in dict.fromkeys(run.method for run in report.runs)
         if len(runs := _meshes(report, method)) >= FEWEST
         for quantity in QUANTITIES
-        if all(_known(quantity, run.result) for run in runs)
+        if all(_known(quantity, result) for result in _results(runs))
     )
 
 
 def _sequence(method: str, quantity: str, runs: tuple[Run, ...]) -> Sequence:
-    value = tuple(QUANTITIES[quantity](run.result) for run in runs)
-    return Sequence(method, quantity, runs, value, assess([1 / run.result.elements for run in runs], value))
+    results = _results(runs)
+    value = tuple(QUANTITIES[quantity](result) for result in results)
+    return Sequence(method, quantity, runs, value, assess([1 / result.elements for result in results], value))
+
+
+def _results(runs: tuple[Run, ...]) -> list[Result]:
+    """Of runs that all have one."""
+    return [run.result for run in runs if run.result is not None]
 
 
 def _meshes(report: SceneReport, method: str) -> tuple[Run, ...]:
     """Complete runs of a method, of one degree and at rest, finest first, one for each number of elements."""
-    whole = [run for run in report.runs if run.method == method and run.result is not None and run.result.complete]
-    kinds = [_kind(run) for run in whole]
-    of_elements = {run.result.elements: run for run, kind in zip(whole, kinds, strict=True) if kind == kinds[0]}
+    ours = [(run, run.result) for run in report.runs if run.method == method and run.result is not None]
+    whole = [(run, result.elements, _kind(run)) for run, result in ours if result.complete]
+    of_elements = {elements: run for run, elements, kind in whole if kind == whole[0][2]}
     return tuple(run for elements, run in sorted(of_elements.items(), reverse=True) if elements)
 
 

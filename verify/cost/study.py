@@ -248,5 +248,6 @@ def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: 
 
 
 def _no_reference(outcomes: Sequence[Outcome]) -> str:
-    why = [o.left_out or o.result.status for o in outcomes if o.result is None or not o.result.complete]
+    ends = [(o.left_out, o.result) for o in outcomes if o.result is None or not o.result.complete]
+    why = [left_out or (result.status if result is not None else "") for left_out, result in ends]
     return f"no converged reference, so that nothing can be measured: {why[0]}"

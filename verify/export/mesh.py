@@ -74,7 +74,8 @@ class SceneMesh:
     def sets(self) -> dict[str, np.ndarray]:
         """Every set of nodes by its name."""
         bond = {f"{name}_bond": self.pair_kb[:, 1 - b] for b, name in enumerate(self.names)}
-        return {part.name: part.node_n for part in (*self.loaded, *self.supports)} | bond
+        parts: tuple[LoadedFace | Support, ...] = (*self.loaded, *self.supports)
+        return {part.name: part.node_n for part in parts} | bond
 
     @property
     def cohesive_ea(self) -> np.ndarray:
@@ -113,7 +114,7 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
     for body in specimen.bodies:
         grids.append(_Grid.of(body, specimen, degree, count))
         count += len(grids[-1].X_nI)
-    bond = (tuple(sorted(specimen.bond)), (0.0, 0.0))
+    bond = (min(specimen.bond), max(specimen.bond)), (0.0, 0.0)
     upper, lower = (grid.on(bond) for grid in grids)
     X_nI = np.concatenate([grid.X_nI for grid in grids])
     pairs = np.stack([lower, upper], axis=1)[np.argsort(X_nI[lower, 0])]

@@ -34,7 +34,8 @@ def lines(
     text = ["# Verification report", "", f"**{plain(summary.headline)}.**", "", *_summary(summary)]
     for section in sections:
         text += ["", *_scene(section)]
-    for plane in (*planes, *filter(None, [rates])):
+    judged: list[PlaneSection | RatesSection] = [*planes, *([rates] if rates is not None else [])]
+    for plane in judged:
         text += ["", f"## {plain(plane.name)}", "", plain(plane.sentence), ""]
         text += _checks((check, None) for check in plane.checks)
     for study in included:
@@ -111,8 +112,7 @@ def _scene(section: Section) -> Iterator[str]:
     if section.convergence:
         yield from ("", "### Convergence", "", *_convergence(section))
     yield from ("", "### Checks", "")
-    rows = ((row.check, row.runs) for _, groups in section.checks for group in groups for row in group.rows)
-    yield from _checks(rows)
+    yield from _checks((row.check, row.runs) for _, groups in section.checks for group in groups for row in group.rows)
     yield from ("", "### Runs, and how to repeat them", "", *_runs(section))
 
 

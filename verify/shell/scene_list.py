@@ -9,7 +9,6 @@ from verify.shell.sketch import sketch
 from verify.specimen import Isotropic, Material
 
 NAME_WIDTH = 24
-WHOLE_WORDS = {"break_long_words": False, "break_on_hyphens": False}
 
 
 def line(name: str, scene: Scene, width: int) -> str:
@@ -39,12 +38,10 @@ def page(scene: Scene, width: int) -> str:
         f"degree {scene.dolfinx.degree}",
         "published": "; ".join(f"{one.quantity}, {one.source}" for one in scene.published),
     }
-    body = [
-        wrapped
-        for name, text in facts.items()
-        if text
-        for wrapped in textwrap.wrap(f"{name:11}{text}", min(width, 100), subsequent_indent=" " * 11, **WHOLE_WORDS)
-    ]
+    whole_words = textwrap.TextWrapper(
+        min(width, 100), subsequent_indent=" " * 11, break_long_words=False, break_on_hyphens=False
+    )
+    body = [part for name, text in facts.items() if text for part in whole_words.wrap(f"{name:11}{text}")]
     return "\n".join([f"{scene.name} ({scene.units})", "", *sketch(scene, width), "", *body])
 
 
