@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import combinations
 from types import ModuleType
 
+import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.container import BarContainer
 from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 
 
 class Drawn(list[tuple[str, Figure]]):
@@ -19,9 +27,76 @@ class Drawn(list[tuple[str, Figure]]):
 
     def _keep(self, figure: Figure, key: str, title: str, *more: float, **options: float) -> str:
         self.append((title, figure))
+        found = unreadable(figure)
+        assert not found, f"{title}: {found}"
         return f"<svg>{key}</svg>"
 
     def axes(self, words: str, number: int = 0) -> Axes:
         """The axes of the only figure whose title has these words."""
         (figure,) = [figure for title, figure in self if words in title]
         return figure.axes[number]
+
+
+#: Points: least and largest size of letters, of the widths of lines, of marks.
+LETTERS, WIDTHS, MARKS = (6.0, 8.5), (0.2, 5.5), (1.5, 8.0)
+
+
+def unreadable(figure: Figure) -> list[str]:
+    """What a reader could not make out: cut off, on top of something else, too small, too large, out of view."""
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    renderer, found = canvas.get_renderer(), []
+    width, height = figure.get_size_inches()
+    edges = figure.get_tightbbox(renderer)
+    if min(edges.x0, edges.y0, width - edges.x1, height - edges.y1) < -0.02:
+        found.append(f"cut off: {edges} of {width} x {height} inches")
+    texts = [(text, text.get_window_extent(renderer)) for text in _texts(figure)]
+    for text, _ in texts:
+        if not LETTERS[0] <= text.get_fontsize() <= LETTERS[1]:
+            found.append(f"{text.get_text()!r} in {text.get_fontsize()} points")
+    for (one, here), (other, there) in combinations(texts, 2):
+        if _meet(here, there):
+            found.append(f"{one.get_text()!r} on {other.get_text()!r}")
+    for (i, one), (j, other) in combinations(enumerate(figure.axes), 2):
+        if _meet(one.get_window_extent(renderer), other.get_window_extent(renderer)):
+            found.append(f"axes {i} on axes {j}")
+    for axes in figure.axes:
+        found += _lines(axes)
+        bars = [bar for group in axes.containers if isinstance(group, BarContainer) for bar in group]
+        boxes = [bar.get_window_extent(renderer) for bar in bars]
+        found += ["a bar on a bar" for here, there in combinations(boxes, 2) if _meet(here, there)]
+    return found
+
+
+def _texts(figure: Figure) -> Iterator[Text]:
+    """All words that are drawn."""
+    ticks = {id(t) for axis in figure.findobj(Axis) for minor in (0, 1) for t in axis.get_ticklabels(minor=bool(minor))}
+    shown = {id(t.label1) for axis in figure.findobj(Axis) if axis.get_visible() for t in axis._update_ticks()}
+    for text in figure.findobj(Text):
+        if text.get_visible() and text.get_text().strip() and (id(text) not in ticks or id(text) in shown):
+            yield text
+
+
+def _lines(axes: Axes) -> Iterator[str]:
+    x, y = (sorted(limits) for limits in (axes.get_xlim(), axes.get_ylim()))
+    for line in axes.lines:
+        name, points = line.get_label(), np.column_stack(line.get_data())
+        drawn = line.get_linestyle() != "None" and line.get_linewidth() > 0
+        if drawn and not WIDTHS[0] <= line.get_linewidth() <= WIDTHS[1]:
+            yield f"line {name} {line.get_linewidth()} points wide"
+        if (
+            line.get_marker() not in ("None", "", None)
+            and line.get_markersize()
+            and not MARKS[0] <= line.get_markersize() <= MARKS[1]
+        ):
+            yield f"marks of {name} of {line.get_markersize()} points"
+        if line.get_transform() == axes.transData and len(points):
+            seen = (points >= (x[0], y[0])) & (points <= (x[1], y[1]))
+            if not seen.all(axis=1).any():
+                yield f"line {name} out of view"
+
+
+def _meet(here: Bbox, there: Bbox) -> bool:
+    """Whether two boxes share more than a pixel in both directions."""
+    common = Bbox.intersection(here, there)
+    return common is not None and min(common.width, common.height) > 1.0

@@ -64,11 +64,15 @@ def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -
     names = short_names(runs)
     with drawing():
         figure, axes = panel(HALF, 2.5)
-        for entry, time, error in points:
+        times = [max(time, 1e-3) for _, time, _ in points]
+        middle = (min(times) * max(times)) ** 0.5
+        for (entry, _, error), time in zip(points, times, strict=True):
             ink = colour(entry.line.colour)
-            point = max(time, 1e-3), 100 * error
+            point = time, 100 * error
             axes.plot(*point, "o", color=ink, markersize=6)
-            axes.annotate(names[entry], point, (7, 4), textcoords="offset points", color=ink)
+            # into the figure, whose edge cuts, and not at the height of a name from the other side
+            at, ha = ((-7, -11), "right") if time > middle else ((7, 4), "left")
+            axes.annotate(names[entry], point, at, textcoords="offset points", color=ink, ha=ha)
         axes.set(xscale="log", yscale="log", xlabel="wall time (s)", ylabel=f"distance to {base.name} (%)")
         axes.margins(0.3, 0.3)
         for part in (axes.xaxis, axes.yaxis):

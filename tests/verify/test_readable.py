@@ -1,0 +1,245 @@
+"""Figures of every page can be read: nothing is cut off, on top of something else, too small or out of view."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("matplotlib")
+pytest.importorskip("jinja2")
+
+from figures import Drawn, unreadable  # noqa: E402
+from made_up_runs import made_up as a_run  # noqa: E402
+from made_up_runs import scene_report  # noqa: E402
+from matplotlib.axes import Axes  # noqa: E402
+from test_effects_study import made_up, of_pair  # noqa: E402
+from test_hard import FAKE, stub  # noqa: E402
+from test_undeformed import entry, snapshot  # noqa: E402
+
+from verify.hard import page as hard_page  # noqa: E402
+from verify.hard.case import Case, variant  # noqa: E402
+from verify.hard.one import run_case  # noqa: E402
+from verify.hard.suite import Cell  # noqa: E402
+from verify.methods import solve  # noqa: E402
+from verify.report import cost, curves, drawing, fields, meshes, opening, parts, peel_drawing, undeformed  # noqa: E402
+from verify.report.entry import entries  # noqa: E402
+from verify.report.section import section  # noqa: E402
+from verify.report.style import HALF, PALETTE, colour, panel  # noqa: E402
+from verify.report.style import drawing as settings  # noqa: E402
+from verify.scene import Scene, load_scene  # noqa: E402
+from verify.switches import page as effects_page  # noqa: E402
+from verify.switches.row import Row  # noqa: E402
+from verify.verdict import Run, SceneReport  # noqa: E402
+
+PAGE = (cost, curves, drawing, fields, meshes, opening, peel_drawing, undeformed)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (lambda axes: axes.set_xlabel("a label that is far longer than the figure is wide " * 3), "cut off"),
+        (lambda axes: axes.text(0.5, 0.5, "small", fontsize=4), "'small' in 4"),
+        (lambda axes: [axes.text(0.5, 0.5, text) for text in ("one", "other")], "'one' on 'other'"),
+        (lambda axes: axes.figure.add_axes((0.5, 0.5, 0.2, 0.2)), "axes 0 on axes 1"),
+        (lambda axes: axes.plot([0, 1], [0, 1], linewidth=9, label="thick"), "thick 9"),
+        (lambda axes: axes.plot([0, 1], [0, 1], "o", markersize=0.5, label="dots"), "dots of 0.5"),
+        (lambda axes: axes.plot([0, 1], [7, 7], label="high") and axes.set_ylim(0, 1), "high out of view"),
+        (lambda axes: axes.barh([0.0, 0.2], [1.0, 1.0], 0.8), "a bar on a bar"),
+    ],
+)
+def test_what_cannot_be_read_is_told(spoil: Callable[[Axes], object], words: str) -> None:
+    with settings():
+        figure, axes = panel(HALF, 3.0)
+        axes.plot([0.0, 1.0], [0.0, 1.0], "o-", markersize=3.0)
+        axes.set(xlabel="opening", ylabel="load")
+        assert unreadable(figure) == []
+        spoil(axes)
+        assert any(words in told for told in unreadable(figure))
+
+
+def test_figures_of_a_beam_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = Drawn(monkeypatch, *PAGE)
+    section(scene_report(), "beam")
+    assert len(drawn) > 12
+
+
+def test_figures_of_a_peel_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = load_scene("peel-80", ("discretization.dofs=1100", "load.opening=2.0", "discretization.steps=10"))
+    drawn = Drawn(monkeypatch, *PAGE)
+    runs = tuple(Run(method, method, solve(scene, method)) for method in ("nurbs", "beam"))
+    section(SceneReport(scene, runs, ()), "peel")
+    assert len(drawn) > 8
+
+
+def test_meshes_that_move_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, scene = Drawn(monkeypatch, undeformed), load_scene("dcb-czm1")
+    at = [snapshot((x, x + 1), junctions=(x + 0.5,), opening=x) for x in (4.0, 5.0, 7.0, 9.0)]
+    undeformed.undeformed(scene, [entry(snapshot()), entry(snapshot(junctions=(9.5,)), method="tspline")], "all")
+    undeformed.followed(scene, [entry(*at, method="tspline", label="moving")], "key")
+    assert [len(figure.axes) for _, figure in drawn] == [4, 6], "a whole and a part of each"
+
+
+# --- parts of several figures
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.3, 70.0), (2e-4, 9.0), (15.0, 4000.0)])
+def test_logarithmic_axes_have_plain_numbers_at_1_2_and_5(low: float, high: float) -> None:
+    with settings():
+        figure, axes = panel(HALF, 3.0)
+        axes.plot([low, high], [low, high])
+        axes.set(xscale="log", yscale="log", xlabel="x", ylabel="y")
+        parts.plain(axes.xaxis)
+        parts.plain(axes.yaxis)
+        figure.canvas.draw()
+    for axis, (left, right) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        shown = [(tick.get_loc(), tick.label1.get_text()) for tick in axis._update_ticks() if tick.label1.get_text()]
+        wanted = [m * 10.0**e for e in range(-6, 6) for m in (1, 2, 5) if left <= m * 10.0**e <= right]
+        assert np.allclose([at for at, _ in shown], wanted) and len(wanted) >= 5
+        assert [float(text) for _, text in shown] == pytest.approx(wanted) and "e" not in "".join(t for _, t in shown)
+
+
+def test_names_of_points_stay_in_the_figure(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With two runs of a method names are long, and those of slow runs stand at the edge."""
+    whole = scene_report()
+    slow = Run("NURBS p=3, 9999 unknowns", "nurbs", a_run("nurbs", 2e-3, 90.0, 9999, 112))
+    drawn, scene = Drawn(monkeypatch, cost), whole.scene
+    runs = [one for one in entries(replace(whole, runs=(*whole.runs, slow))) if one.agreement is not None]
+    cost.error_and_time(scene, runs, next(one for one in runs if one.is_reference), "key")
+    names = [text.get_text() for text in drawn.axes("Curve error against time").texts]
+    assert names.count("cohesive beam") == 1 and sum("unknowns" in name for name in names) == 2
+
+
+# --- studies
+
+
+def effect_rows() -> list[Row]:
+    fast, slow, none = made_up(seconds=1.0), made_up(1.02, seconds=3.0), made_up(dissipated=0.0, seconds=2.0)
+    stopped = replace(fast, status="stopped: here")
+    keys = ("kinematics", "contact", "irreversible", "symmetry")
+    pairs = ((slow, fast), (made_up(1.0 + 1e-7), fast), (fast, none), (stopped, fast))
+    return [of_pair(key, [a, a], [b, b]) for key, (a, b) in zip(keys, pairs, strict=True)]
+
+
+def test_bars_of_effects_are_their_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, rows = Drawn(monkeypatch, effects_page), effect_rows()[:3]
+    effects_page.changed(rows, "key")
+    axes = drawn.axes("What each effect changes")
+    for container, (column, (name, _)) in zip(axes.containers, effects_page.BARS.items(), strict=True):
+        assert container.get_label() == name
+        for bar, one, tick in zip(container, rows, axes.get_yticks(), strict=True):
+            value = abs(getattr(one, column))
+            size = value if value > effects_page.LEAST else effects_page.LEAST  # NaN is drawn as none
+            assert bar.get_width() == pytest.approx(100.0 * size)
+            assert abs(bar.get_y() + bar.get_height() / 2 - tick) < 0.4, "it stands with its effect"
+    inks = [container[0].get_facecolor()[:3] for container in axes.containers]
+    assert len(set(inks)) == len(effects_page.BARS)
+    assert axes.get_xscale() == "log" and axes.get_xlim()[0] == pytest.approx(100 * effects_page.LEAST)
+    assert [t.get_text() for t in axes.get_yticklabels()] == [one.effect for one in rows]
+    said = {t.get_text() for t in axes.texts}
+    assert {"2 %", "+2 %", "0 %"} <= said and "nan" not in " ".join(said)
+
+
+def test_bars_of_times_begin_at_equal_times(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, rows = Drawn(monkeypatch, effects_page), effect_rows()[:3]
+    effects_page.times(rows, "key")
+    axes = drawn.axes("What each effect costs in time")
+    (bars,) = axes.containers
+    assert [bar.get_x() for bar in bars] == [1.0] * 3
+    assert [bar.get_x() + bar.get_width() for bar in bars] == pytest.approx([one.time_ratio for one in rows])
+    assert [t.get_text() for t in axes.texts] == ["3 ×", "2 ×", "0.5 ×"]
+    (line,) = axes.lines
+    assert set(line.get_xdata()) == {1.0} and axes.get_xlim()[0] == 0.0
+    assert [t.get_text() for t in axes.get_yticklabels()] == [one.effect for one in rows]
+    heights = [bar.get_y() + bar.get_height() / 2 for bar in bars]
+    assert heights == pytest.approx(list(axes.get_yticks())) and heights == sorted(heights, reverse=True)
+
+
+def test_the_page_of_effects_draws_what_was_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Study:
+        scene, method, reasons = load_scene("dcb-czm1"), "nurbs", ("search: left out: no",)
+        rows = tuple(effect_rows())
+
+    drawn = Drawn(monkeypatch, effects_page)
+    effects_page.write(Study(), tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text()
+    assert len(drawn) == 2 and all(len(f.axes[0].get_yticks()) == 3 for _, f in drawn), "one of the four stopped"
+    assert text.count("<svg") == 2 and all(one.effect in text for one in Study.rows) and "left out: no" in text
+    Study.rows = Study.rows[3:]
+    effects_page.write(Study(), tmp_path / "none.html")
+    assert "<svg" not in (tmp_path / "none.html").read_text()
+
+
+def test_cells_have_signs_where_a_change_has() -> None:
+    cell = effects_page.in_cell
+    assert [cell(0.0068, key) for key in ("curve_change", "peak_change")] == ["0.68 %", "+0.68 %"]
+    assert cell(-0.25, "end_change") == "−25 %" and cell(float("nan"), "end_change") == "–"
+
+
+# --- hard cases
+
+
+def hard_cell(tmp_path: Path, many: int = 1, stops: str = "") -> tuple[Cell, Path]:
+    def solver(scene: Scene, method: str, on_step):
+        found = stub(scene, method, on_step)
+        if scene.load.opening[-1] == 2.0 and stops:
+            found = replace(found, status=stops, steps={k: c[:20] for k, c in found.steps.items()})
+        return found
+
+    names = [variant(f"v{i}", "dcb-czm1-linear", f"load.opening={2.0 + i}") for i in range(many)]
+    case = Case("fake", FAKE.hard, lambda: names)
+    return Cell(case, "nurbs", run_case(case, "nurbs", tmp_path / "fake" / "nurbs", solver)), tmp_path
+
+
+@pytest.mark.parametrize("many", [1, 2, 8, 9])
+def test_every_run_of_a_hard_case_is_drawn(many: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In its own line and named, where they are few; one alone with what displacement control would show."""
+    drawn = Drawn(monkeypatch, hard_page)
+    cell, out = hard_cell(tmp_path, many)
+    said = hard_page._figure(cell, out)
+    axes = drawn.axes("Load against opening, fake")
+    paths = [one for one in axes.lines if one.get_label() != "displacement control"]
+    assert sorted(round(max(one.get_xdata()), 9) for one in paths) == [2.0 + i for i in range(many)]
+    assert len(axes.lines) - len(paths) == (many == 1) and (axes.get_legend() is not None) == (many <= 8)
+    looks = {(one.get_color(), str(one._dash_pattern)) for one in paths}
+    assert len(looks) == (many if many <= 8 else 1), "each can be told from the others, or none"
+    assert {look[0] for look in looks} <= {colour(name) for name in PALETTE}
+    words = "the path, and dashed" if many == 1 else f"{many} runs. A cross marks the end"
+    assert said.caption.startswith("NURBS: ") and words in said.caption
+
+
+def test_a_cross_marks_where_a_run_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = Drawn(monkeypatch, hard_page)
+    cell, out = hard_cell(tmp_path, 2, "stopped: here")
+    hard_page._figure(cell, out)
+    axes = drawn.axes("Load against opening, fake")
+    (cross,) = [one for one in axes.lines if one.get_marker() == "x"]
+    path = max((o for o in axes.lines if o is not cross and o.get_color() == cross.get_color()), key=len_of)
+    assert [*cross.get_data()] == [path.get_xdata()[-1:], path.get_ydata()[-1:]]
+    hard_page._figure(hard_cell(tmp_path / "whole", 2)[0], tmp_path / "whole")
+    assert not [one for one in drawn[-1][1].axes[0].lines if one.get_marker() == "x"]
+
+
+def len_of(line) -> int:
+    return len(line.get_xdata())
+
+
+def test_runs_in_other_units_or_without_a_step_are_counted_and_not_drawn(tmp_path: Path, monkeypatch) -> None:
+    names = [variant("a", "dcb-czm1-linear"), variant("b", "dcb-czm1-linear"), variant("c", "dcb-czm1-linear")]
+    names[1] = replace(names[1], scene=names[1].scene.model_copy(update={"units": "kN, m, kPa"}))
+
+    def solver(scene: Scene, method: str, on_step):
+        if solver.calls == 2:
+            raise RuntimeError("no luck")
+        solver.calls += 1
+        return stub(scene, method, on_step)
+
+    solver.calls = 0
+    drawn, case = Drawn(monkeypatch, hard_page), Case("fake", FAKE.hard, lambda: names)
+    cell = Cell(case, "nurbs", run_case(case, "nurbs", tmp_path / "fake" / "nurbs", solver))
+    said = hard_page._figure(cell, tmp_path)
+    assert "1 runs; 2 more in other units or without a step." in said.caption and len(drawn) == 1
+    assert hard_page._figure(Cell(case, "nurbs", None, "signal 9"), tmp_path) is None
