@@ -69,6 +69,39 @@ def test_pre_asymptotic_and_wrong_order_are_told():
     assert "expected 4" in assess(h, 1.0 + h**2, expected=4.0).verdict
 
 
+@pytest.mark.parametrize(("apart", "settled"), [(-0.11, False), (-0.09, True), (0.09, True), (0.11, False)])
+def test_orders_of_successive_triples_may_differ_by_a_tenth(apart, settled):
+    """Differences that grow by 2^p, and by 2^(p (1 + apart)) on the coarser meshes."""
+    p, h = 1.7, np.array([1.0, 2.0, 4.0, 8.0])
+    steps = np.array([1.0, 2.0**p, 2.0 ** (p + p * (1.0 + apart))])
+    found = assess(h, 100.0 + np.concatenate([[0.0], np.cumsum(steps)]))
+    assert found.order == pytest.approx(p) and found.asymptotic == settled
+    assert settled or f"order {p * (1.0 + apart):.2f} on the coarser meshes" in found.verdict
+
+
+@pytest.mark.parametrize(("apart", "as_expected"), [(-0.26, False), (-0.24, True), (0.24, True), (0.26, False)])
+def test_an_order_may_be_a_quarter_off_what_is_expected(apart, as_expected):
+    h = np.array([1.0, 2.0, 4.0])
+    assert assess(h, 5.0 + h ** (2.0 * (1.0 + apart)), expected=2.0).asymptotic == as_expected
+
+
+def test_the_index_is_five_quarters_of_the_error_that_the_order_implies():
+    """The relative error of f = 1 + c h^p on the finest mesh is known; the index is over the value, not the limit."""
+    h, p, c = np.array([0.1, 0.2, 0.4]), 2.5, 3.0
+    found = assess(h, 1.0 + c * h**p)
+    error = c * 0.1**p
+    assert found.error == pytest.approx(error) and found.gci == pytest.approx(1.25 * error / (1.0 + error))
+    around = assess(h, c * h**p)
+    assert np.isnan(around.error) or around.error > 1e6, "nothing is relative to a limit of zero"
+    assert np.isnan(assess(h, c * (h**p - 0.1**p)).gci), "nor to a value of zero"
+
+
+@pytest.mark.parametrize("size", [(0.0, 1.0, 2.0), (-1.0, 1.0, 2.0), (1.0, 1.0, 2.0), (1.0, 2.0, 2.0)])
+def test_refuses_sizes_that_are_none_or_the_same(size):
+    with pytest.raises(ValueError, match="three different positive numbers"):
+        assess(size, (1.0, 1.1, 1.4))
+
+
 def test_refuses_two_meshes():
     with pytest.raises(ValueError, match="at least three"):
         assess((1.0, 2.0), (1.0, 1.1))
