@@ -8,6 +8,8 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import CancelledError, Future
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -217,6 +219,76 @@ def test_a_scheduler_that_does_not_answer_is_refused(capsys: pytest.CaptureFixtu
 
     assert main(["hard", "units", "--scheduler", "nowhere", "--out", str(tmp_path)]) == 2
     assert "debond: --scheduler: " in capsys.readouterr().err
+
+
+class Fading:
+    """A pool that does a task at once, and no longer answers after so many questions."""
+
+    def __init__(self, answers: int, broken: Exception | None = None) -> None:
+        self.answers, self.broken, self.stopped = answers, broken, False
+
+    def slots(self) -> int:
+        self.answers -= 1
+        if self.answers < 0:
+            raise OSError("nobody answers")
+        return 1
+
+    def submit(self, function, *given) -> Future:
+        future: Future = Future()
+        future.set_exception(self.broken) if self.broken else future.set_result(function(*given))
+        return future
+
+    def stop(self) -> None:
+        self.stopped = True
+
+
+def test_tasks_that_a_scheduler_never_got_are_lost_with_it_and_no_others(tmp_path: Path, marks: Path, capsys) -> None:
+    tasks = [task(name, "ends", marks) for name in "abc"]
+    pool = Fading(answers=2)  # how many go at once, and the first
+    found = [(done.task.place, done.why) for done in sweep([*tasks, tasks[2]], tmp_path, pool, "test", lambda d: d.why)]
+    lost = "failed: nobody answers"
+    assert found == [("scene/a", ""), ("scene/b", lost), ("scene/c", lost), ("scene/c", lost)]
+    assert [len(started(marks, name)) for name in "abc"] == [1, 0, 0] and not pool.stopped
+    assert capsys.readouterr().err.splitlines()[-1] == f"scene/c: {lost} (4 of 4)"
+
+
+@pytest.mark.parametrize(
+    ("error", "why"),
+    [(KeyError("x"), "failed: KeyError: 'x'"), (CancelledError(), "failed: the run was cancelled with its scheduler")],
+)
+def test_a_worker_that_is_gone_costs_its_task(error: Exception, why: str, tmp_path: Path, marks: Path) -> None:
+    (done,) = sweep([task("a", "ends", marks)], tmp_path, Fading(9, error), "test", lambda done: done.why)
+    assert done.why == why and not done.at_hand and not started(marks, "a")
+
+
+def test_equal_tasks_run_once_and_each_is_told(tmp_path: Path, marks: Path) -> None:
+    one = task("a", "ends", marks)
+    found = list(sweep([one, replace(one, place="scene/again")], tmp_path, Fading(9), "test", lambda done: done.why))
+    assert [done.task.place for done in found] == ["scene/a", "scene/again"] and len(started(marks, "a")) == 1
+    assert all((tmp_path / place / "proof").read_text() == "a" for place in ("scene/a", "scene/again"))
+
+
+def test_who_wants_no_more_stops_the_pool(tmp_path: Path, marks: Path) -> None:
+    pool = Fading(9)
+    half = sweep([task(name, "ends", marks) for name in "ab"], tmp_path, pool, "test", lambda done: done.why)
+    next(half)
+    half.close()
+    assert pool.stopped and not started(marks, "b")
+
+
+def test_a_run_that_takes_too_long_is_given_up(tmp_path: Path, marks: Path) -> None:
+    (done,) = sweep([replace(task("a", "waits", marks), timeout=0.5)], tmp_path, Fading(9), "test", lambda d: d.why)
+    assert done.why == "failed: signal 9"
+
+
+def test_a_lane_takes_its_tasks_one_after_the_other(tmp_path: Path) -> None:
+    """Two of 100 s that cannot go side by side, and three of 10 s beside them."""
+    lane = [Task(name, name, (), "proof", "lane", seconds=100.0) for name in "xy"]
+    free = [Task(name, name, (), "proof", seconds=10.0) for name in "abc"]
+    for jobs, whole in ((1, "3 min 50 s"), (2, "3 min 20 s"), (8, "3 min 20 s")):
+        assert listed([*lane, *free, lane[0]], tmp_path, jobs)[-1].endswith(f"about {whole}")
+    assert listed(free, tmp_path, 3)[-1] == "3 of 3 runs to do, 3 at a time: about 10 s"
+    assert listed(free, tmp_path, 1)[-1] == "3 of 3 runs to do: about 30 s"
 
 
 def test_a_lane_goes_one_by_one_and_first() -> None:
