@@ -61,8 +61,7 @@ def of_run(scene: Scene, result: Result) -> LeftOut | None:
     if result.method != "dolfinx" or not result.snapshots:
         return None
     specimen = scene.specimen
-    loaded_at = specimen.strip_length if specimen.kind == "peel" else 0.0
-    return left_out(result.snapshots, law_of(scene), loaded_at, specimen.width)
+    return left_out(result.snapshots, law_of(scene), specimen.place(0.0), specimen.width)
 
 
 def left_out(

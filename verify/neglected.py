@@ -188,7 +188,8 @@ def _tilt(scene: Scene, result: Result) -> Neglected | None:
     snapshots = tuple(snapshot for snapshot in result.snapshots if snapshot.X_euvi.size)  # a beam has no faces
     if effects["symmetry"] or effects["kinematics"] == "linear" or not snapshots:
         return None
-    found = matched.left_out(snapshots, law_of(scene), 0.0, scene.specimen.width, between=True)
+    specimen = scene.specimen
+    found = matched.left_out(snapshots, law_of(scene), specimen.place(0.0), specimen.width, between=True)
     tilt = f"{degrees(found.tilt):.2g} degrees"
     seen = f"half way between the faces the bond tilts by up to {tilt}, worth {found.bound:.2%} of G_Ic or of the load"
     return Neglected("search", found.bound, found.valid, seen)

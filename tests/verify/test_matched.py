@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from verify.checks import law_of
 from verify.law import Bilinear
 from verify.matched import left_out, summary
+from verify.neglected import of_run
 from verify.result import Result, Snapshot, steps_from_rows
 from verify.scene import load_scene
 
@@ -56,3 +58,19 @@ def test_only_the_method_whose_interface_is_matched_has_something_to_say(snapsho
     result = Result("dolfinx", steps_from_rows([]), snapshots=(fields,))
     assert summary(scene, result)["tilt"] == pytest.approx(TILT, rel=1e-12)
     assert summary(scene, replace(result, method="nurbs")) == summary(scene, replace(result, snapshots=())) == {}
+
+
+def test_without_a_search_the_surface_half_way_between_counts(snapshot):
+    """The upper surface does not turn, so that half is left."""
+    scene = load_scene("dcb-czm1", ["effects.search=false"])
+    law = law_of(scene)
+    gap_q, traction_q = np.full(601, 0.5 * (law.g_peak + law.g_open)), np.full(601, 0.5 * law.strength)
+    fields = replace(snapshot, s_q=np.abs(snapshot.s_q - LOADED_AT), gap_q=gap_q, traction_q=traction_q, load=1e6)
+    steps = {"opening": np.array([0.0, 1.0]), "load": np.array([0.0, 1.0])}
+    (found,) = [one for one in of_run(scene, Result("nurbs", steps, snapshots=(fields,))) if one.key == "search"]
+    change = gap_q[0] * (1 - np.cos(TILT / 2)) + SLIP * np.sin(TILT / 2)
+    assert found.value == pytest.approx(2.0 * change / law.g_open, rel=1e-9) and not found.negligible
+    assert f"tilts by up to {np.degrees(TILT / 2):.2g} degrees" in found.seen
+    bare = replace(fields, X_euvi=np.zeros((0, 1, 1, 2)), u_euvi=np.zeros((0, 1, 1, 2)))
+    for result in (Result("nurbs", steps, snapshots=(bare,)), Result("nurbs", steps)):
+        assert [one.key for one in of_run(scene, result) if one.key == "search"] == []
