@@ -9,6 +9,7 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from verify import front
 from verify.arm import Arm
 from verify.beam import BeamProblem, solve
 from verify.curve import curve_error, hermite, load_at, peak
@@ -312,6 +313,21 @@ def test_runs_until_the_arms_come_apart():
     assert found.status == "complete" and found.ending == f"separated at opening {s['opening'][-1]:.6g}"
     assert s["load"][-1] < 2e-3 * s["load"].max()
     assert s["dissipated_energy"][-1] == pytest.approx(0.1 * 10.0, rel=0.02)
+
+
+def test_what_cannot_be_landed_on_is_stepped_over(monkeypatch):
+    """The path goes on as it would have, past the opening that was to be met and not far from it."""
+    (opening, load), settle_again = curve(SHORT), front.resettle
+
+    def never(m, state, guess, control):
+        return None if control.front is None else settle_again(m, state, guess, control)
+
+    monkeypatch.setattr(front, "resettle", never)
+    passed = solve(SHORT)
+    path = steps_from_rows(passed.rows)
+    assert passed.status == "complete" and 1.0 <= path["opening"][-1] < 1.2 and np.all(np.diff(path["opening"]) > 0.0)
+    inside = opening < 1.0
+    assert np.interp(opening[inside], path["opening"], path["load"]) == pytest.approx(load[inside], rel=0.01)
 
 
 def test_reversible_stores_what_damage_costs():

@@ -215,6 +215,15 @@ def test_the_plan_is_what_the_figures_need(monkeypatch):
         references = planned(scenes).references
         assert [problem for problem, *_ in references] == list(product(LAWS, PENALTIES))
         assert all(job.method == method for _, *pair in references for job in pair)
+        for (_, penalty), coarse, fine in references:
+            here = [load_scene(job.source, job.overrides) for job in (coarse, fine)]
+            assert [scene.interface.penalty for scene in here] == [penalty] * 2
+            sizes = [s.dolfinx.elements if installed else s.discretization.dofs for s in here]
+            assert sizes[1] == 2 * sizes[0] and fine.variant != coarse.variant
+            assert "--fields" not in fine.command(Path()), "no figure shows its fields"
+            assert installed or all(scene.effects.symmetry is True for scene in here)
+            assert not installed or [scene.dolfinx.degree for scene in here] == [3, 3]
+        assert len({job.folder(Path()) for _, *pair in references for job in pair}) == 2 * len(references)
 
 
 @pytest.fixture(scope="module")
