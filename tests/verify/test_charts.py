@@ -31,6 +31,7 @@ from verify.report.style import PHASES, STRESS_MAP, colour  # noqa: E402
 from verify.report.text import Units  # noqa: E402
 from verify.result import Snapshot  # noqa: E402
 from verify.scaling import page as scaling  # noqa: E402
+from verify.scaling.growth import fit  # noqa: E402
 from verify.scaling.row import Row as ScalingRow  # noqa: E402
 from verify.scaling.study import Study  # noqa: E402
 
@@ -430,3 +431,27 @@ def test_every_axis_says_what_is_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
         axes = figure.axes[0]
         names = [text.get_text() for text in axes.get_yticklabels()]
         assert axes.get_xlabel() == "seconds" and len(names) == len(set(names)) >= 2 and all(names), title
+
+
+def test_bars_of_ranks_are_the_parts_of_their_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the sizes that were run on more ranks than one, each with one rank on top."""
+    drawn, study = Drawn(monkeypatch, scaling), a_study(1.0)
+    small, *_, large = study.ladder("dolfinx")
+    two = replace(large, ranks=2, elements=7, assembly=0.5 * large.assembly)
+    other = replace(two, method="nurbs"), replace(two, iteration=np.nan)
+    rows = scaling._strong([two, *other, replace(large, elements=7), small])
+    assert [(row.dofs, row.ranks) for row in rows] == [(8000, 1), (8000, 2)]
+    scaling.strong(rows, "key")
+    axes = drawn.axes("on one rank and on more")
+    assert [t.get_text() for t in axes.get_yticklabels()] == ["8000 unknowns, 1 rank", "8000 unknowns, 2 ranks"]
+    assert axes.get_yticks()[0] > axes.get_yticks()[1]
+    for container in axes.containers:
+        assert [bar.get_width() for bar in container] == [getattr(row, container.get_label()) for row in rows]
+
+
+def test_ranges_and_exponents_read_well() -> None:
+    assert scaling.between((0.4, 16.0)) == "0.4 to 16" and scaling.between((1.001, 0.999)) == "1"
+    known = [replace(fit([], []), exponent=p, error=e) for p, e in ((1.024, 0.006), (-0.5, 0.1))]
+    assert [scaling.power(one) for one in known] == ["1.02 ± 0.01", "−0.50 ± 0.10"]
+    assert scaling.power(fit([1.0, 2.0], [1.0, 2.0])) == "–"
+    assert scaling.readable("0.9 x as fast, N^1.0 +- 0.1, a box") == "0.9 × as fast, N^1.0 ± 0.1, a box"

@@ -1,0 +1,83 @@
+"""How large numbers may be beside each other: at the ends of each range, on both sides of them."""
+
+from __future__ import annotations
+
+import pytest
+
+from verify.scene import SceneError, load_scene
+
+#: Scene, key, and the ends of its range in N and mm, beside what they are held against.
+RANGES = [
+    ("dcb-czm1", "specimen.arm_thickness", 1e-6 * 14.0, 1e3 * 14.0),
+    ("dcb-czm1", "specimen.precrack", 1e-6 * 14.0, 0.999999 * 14.0),
+    ("dcb-czm1", "specimen.width", 1e-9 * 14.0, 1e9 * 14.0),
+    ("dcb-czm1", "interface.strength", 1e-12 * 120e3, 1e3 * 120e3),
+    ("dcb-czm1", "interface.toughness", 1e-9 * 4.0 * 0.2, 1e6 * 4.0 * 0.2),
+    ("dcb-czm1", "interface.ductility", 1.000001, 1e6),
+    ("dcb-czm1", "interface.penalty", 1e-6 * 1000.0, 1e12 * 1000.0),  # 4^2 12.5 / (2 0.1) = 1000
+    ("dcb-czm1", "material.poisson", -0.999999, 0.499999),
+    ("peel-60", "specimen.strip_thickness", 1e-6 * 150.0, 1e3 * 150.0),
+    ("peel-60", "specimen.substrate_thickness", 1e-6 * 120.0, 1e3 * 120.0),
+]
+
+
+def said(name: str, *overrides: str) -> str:
+    """What is said of a scene, nothing where it is taken."""
+    try:
+        load_scene(name, overrides)
+    except SceneError as error:
+        return "\n".join(error.sentences)
+    return ""
+
+
+@pytest.mark.parametrize(("name", "key", "low", "high"), RANGES, ids=[key for _, key, *_ in RANGES])
+def test_a_range_ends_where_it_is_said_to_end(name: str, key: str, low: float, high: float) -> None:
+    """What else the scene says of such a value is not asked here."""
+    told = f"{key}: must be >= {low:.10g} and <= {high:.10g}, "
+    for value, inside in ((low, True), (high, True), (low, False), (high, False)):
+        outward = -1 if (value == low) == (value > 0) else 1
+        off = value * (1.0 + (-outward if inside else outward) * 1e-7)
+        assert (told in said(name, f"{key}={off!r}")) != inside, (off, inside)
+
+
+@pytest.mark.parametrize(("key", "times"), [("E2", 1e6), ("G12", 1e6)])
+def test_moduli_of_a_body_go_with_the_first(key: str, times: float) -> None:
+    constants = {"E1": 120e3, "E2": 10e3, "G12": 5e3, "nu12": 1e-5}
+    for factor, taken in ((1 / times, True), (times, True), (0.99 / times, False), (1.01 * times, False)):
+        table = {**constants, key: factor * 120e3 * (1.0 + 1e-9 * (1 if factor < 1 else -1) * taken)}
+        words = ", ".join(f"{name} = {value!r}" for name, value in table.items())
+        assert (f"material.{key}: must be >= " in said("dcb-czm1", f"material={{{words}}}")) != taken, factor
+
+
+def test_the_second_body_goes_with_the_first() -> None:
+    strip = load_scene("peel-60").strip.young
+    for factor, taken in ((1.01e-9, True), (0.99e9, True), (0.99e-9, False), (1.01e9, False)):
+        told = said("peel-60", f"substrate.young={factor * strip!r}")
+        assert ("substrate.young: must be >= " in told and "the modulus of strip" in told) != taken, factor
+
+
+def test_openings_that_follow_each_other_are_apart() -> None:
+    """By 1e-12 of the length at the least."""
+    for step, taken in ((1.1e-12 * 14.0, True), (0.9e-12 * 14.0, False)):
+        assert ("load.opening: must be >= 1.4e-11" in said("dcb-czm1", f"load.opening={step!r}")) != taken
+    assert "load.opening[1]: " in said("dcb-czm1", "load.opening=[1.0, 1.0]")
+    assert said("dcb-czm1", "load.opening=[1.0, 0.5, 1.0]") == ""
+
+
+def test_a_scene_may_be_a_million_lengths_away() -> None:
+    for shift, taken in (
+        (0.99e6 * 14.0, True),
+        (-0.99e6 * 14.0, True),
+        (1.01e6 * 14.0, False),
+        (-1.01e6 * 14.0, False),
+    ):
+        for axis in (0, 1):
+            pose = [0.0, 0.0]
+            pose[axis] = shift
+            assert (f"pose.shift[{axis}]: must be >= -14000000" in said("dcb-czm1", f"pose.shift={pose}")) != taken
+
+
+@pytest.mark.parametrize(("value", "taken"), [(1.01e-30, True), (0.99e-30, False), (0.99e30, True), (1.01e30, False)])
+def test_no_number_is_beyond_all_units(value: float, taken: bool) -> None:
+    assert ("interface.toughness: must be of a size >= 1e-30 and <= 1e+30" in said(
+        "dcb-czm1", f"interface.toughness={value!r}")) != taken  # fmt: skip
