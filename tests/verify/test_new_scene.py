@@ -134,6 +134,20 @@ def test_a_strip_is_pulled_at_its_free_end_and_lies_flush_on_its_substrate(name:
     assert bond.count(":") + 2 <= strip and clamp.count("/") == len(corners[2]) - 4
 
 
+@pytest.mark.parametrize("bond", [20.0, 100.0, 119.9])
+def test_the_free_end_of_a_strip_can_be_seen(bond: float) -> None:
+    """However short it is; a strip as long as its substrate is drawn as long where there is room for that."""
+    scene = load_scene("peel-60", ["specimen.strip_length=120.0", f"specimen.bond_length={bond}"])
+    lines = sketch(scene, 60)
+    corners = [one for one in lines if one.strip().startswith("+-") and one.endswith("-+")]
+    dots = next(one for one in lines if ":::" in one).count(":")
+    strip, substrate = (one.count("-") for one in corners[1:3])
+    assert strip == max(substrate, dots + 2) and dots == pytest.approx(substrate * bond / 120.0, abs=0.5)
+    for text, length in ((f" {bond:.4g} ", dots), (" 120 ", substrate), (" 120 ", strip)):
+        assert any(text in one and one.rindex("|") - one.index("|") + 1 == length + 1 or text.rstrip() in one
+                   for one in lines[-3:])  # fmt: skip
+
+
 @pytest.mark.parametrize("width", [40, 100])
 def test_measures_begin_and_end_below_what_they_measure(width: int) -> None:
     lines = sketch(load_scene("dcb-czm1"), width)

@@ -1,0 +1,161 @@
+"""Runs against the reference of their page: which one that is, how far the others are, and how they are named."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import isnan
+
+import numpy as np
+import pytest
+
+pytest.importorskip("matplotlib")
+pytest.importorskip("jinja2")
+
+from verify.report import published  # noqa: E402
+from verify.report.agreement import agreement, branch, path, reference_run, usable  # noqa: E402
+from verify.report.entry import entries, rank, short_names  # noqa: E402
+from verify.report.layout import CLOSE, GAP, LEFT, WHOLE, rows, zoom  # noqa: E402
+from verify.report.style import METHODS, WIDE, line  # noqa: E402
+from verify.result import Result, Snapshot  # noqa: E402
+from verify.scene import Scene, load_scene  # noqa: E402
+from verify.verdict import Run, SceneReport  # noqa: E402
+
+SCENE = load_scene("dcb-czm1")
+
+
+def run(method: str, factor: float = 1.0, dofs: int = 100, n: int = 300, end: float = 3.0, **about) -> Run:
+    """Load ``factor`` d exp(1 - d), whose peak is ``factor`` at 1."""
+    d = np.linspace(0.0, end, n + 1)
+    load = factor * d * np.exp(1.0 - d)
+    return Run(f"{method} {dofs}", method, Result(method, {"opening": d, "load": load}, dofs=dofs, **about))
+
+
+def test_the_reference_is_the_finest_whole_run_of_the_first_code_that_has_one() -> None:
+    stopped, few = run("dolfinx", dofs=900, status="stopped: here"), run("dolfinx", dofs=200)
+    many, beam = run("dolfinx", dofs=800), run("beam", dofs=0)
+    none = replace(many, result=None)
+    single = replace(many, result=replace(many.result, steps={k: c[:1] for k, c in many.result.steps.items()}))
+    chosen = [
+        (many, (run("nurbs"), few, stopped, many, beam, run("lefm"))),
+        (beam, (run("nurbs"), stopped, none, single, beam)),
+        (None, (run("nurbs"), stopped, run("lefm"))),
+        (None, ()),
+    ]
+    for expected, runs in chosen:
+        assert reference_run(SceneReport(SCENE, runs, ())) is expected
+    assert [usable(one) for one in (many, none, single)] == [True, False, False]
+
+
+def test_a_factor_of_the_load_is_an_error_and_no_oscillation() -> None:
+    base = run("dolfinx")
+    found = agreement(run("nurbs", 1.02), base)
+    assert found.error == pytest.approx(0.02, rel=1e-9) and found.oscillation == pytest.approx(0.0, abs=1e-9)
+    assert (found.peak_load, found.peak_opening, found.end) == pytest.approx((1.02, 1.0, 3.0), rel=1e-6)
+    for one, against in ((base, base), (run("lefm"), base), (run("nurbs"), None)):
+        alone = agreement(one, against)
+        assert isnan(alone.error) and isnan(alone.oscillation) and (alone.peak_load, alone.end) == (1.0, 3.0)
+
+
+@pytest.mark.parametrize(("mine", "theirs", "end"), [(2.0, 3.0, 2.0), (3.0, 2.0, 2.0), (2.5, 2.5, 2.5)])
+def test_curves_are_compared_as_far_as_both_came(mine: float, theirs: float, end: float) -> None:
+    found = agreement(run("nurbs", 1.01, end=mine), run("dolfinx", end=theirs))
+    assert found.end == end and found.error == pytest.approx(0.01, rel=1e-2)
+    openings, ratio = branch(run("nurbs", 1.01, end=mine).result, run("dolfinx", end=theirs).result)
+    assert openings[0] == pytest.approx(1.3, rel=1e-2) and openings[-1] == end and len(openings) == 400
+    assert ratio == pytest.approx(0.01, abs=1e-4)
+
+
+def test_before_the_branch_there_is_nothing_to_compare() -> None:
+    openings, ratio = branch(run("nurbs", end=1.2).result, run("dolfinx").result)
+    assert openings.size == ratio.size == 0
+
+
+def test_an_arc_is_drawn_only_where_it_stays_near_its_chord() -> None:
+    """A parabola of height 1 in one step: its arc leaves the chord by a quarter, and 200 steps by next to nothing."""
+    for n, arcs in ((1, False), (200, True)):
+        d = np.linspace(0.0, 1.0, n + 1)
+        steps = {"opening": d, "load": d + 4.0 * d * (1.0 - d), "load_slope": 1.0 + 4.0 - 8.0 * d}
+        x, y = path(Result("nurbs", steps), 4)
+        assert len(x) == 4 * n + 1 and (x[0], x[-1]) == (0.0, 1.0)
+        exact = x + 4.0 * x * (1.0 - x) if arcs else x
+        assert y == pytest.approx(exact, abs=1e-12)
+        assert len(path(Result("lefm", steps))[0]) == n + 1
+
+
+def test_runs_stand_in_the_order_of_methods_and_fade_where_they_repeat() -> None:
+    runs = (run("lefm"), run("nurbs", dofs=1), run("mine"), run("dolfinx"), run("nurbs", dofs=2), run("yours"))
+    found = entries(SceneReport(SCENE, runs, ()))
+    assert [one.method for one in found] == ["dolfinx", "nurbs", "nurbs", "lefm", "mine", "yours"]
+    assert [one.repeat for one in found] == [0, 0, 1, 0, 0, 1] and [one.is_reference for one in found] == [True] + [
+        False
+    ] * 5
+    assert [rank(method) for method in METHODS] == list(range(len(METHODS))) and rank("mine") == len(METHODS)
+    first, second = found[1].line, found[2].line
+    assert (second.width, second.alpha, second.order) == pytest.approx((0.6 * first.width, 0.6, first.order - 0.1))
+    assert line("nurbs", 9).width == 0.6 and line("nurbs", 9).alpha == pytest.approx(0.4) and first.colour == "nurbs"
+    names = short_names(found)
+    assert [names[one] for one in found[:4]] == ["DOLFINx", "nurbs 1", "nurbs 2", "LEFM limit"]
+    assert [one.legend for one in found[2:5]] == ["nurbs 2", "lefm 100 (limit)", "mine 100"]
+    gone = entries(SceneReport(SCENE, (Run("x", "nurbs", None, "not run"),), ()))[0]
+    assert gone.agreement is None and not gone.complete and not gone.is_reference
+
+
+def test_published_values_stand_beside_what_runs_found() -> None:
+    known = [
+        {"quantity": "peak", "value": 1.0, "tolerance": 0.05, "kind": "cross-code", "source": "a book"},
+        {"quantity": "load_at", "opening": 2.0, "value": [0.6, 0.7], "tolerance": 0.02, "kind": "cross-code",
+         "source": "another"},
+    ]  # fmt: skip
+    from verify.scene import parse_scene
+
+    scene = parse_scene({**{k: v for k, v in SCENE.model_dump().items() if v is not None}, "published": known})
+    found = entries(SceneReport(scene, (run("nurbs", 1.1), Run("x", "beam", None, "not run")), ()))
+    peak, load = published.rows(scene, found)
+    assert [len(row.cells) for row in (peak, load)] == [1, 1], "no column for a run without a curve"
+    plain = [tuple(text.replace("\u00a0", " ") for text in row.cells[0]) for row in (peak, load)]
+    assert plain[0] == ("1.1 N", "+10 %")
+    assert plain[1][0] == f"{1.1 * 2.0 * np.exp(-1.0):.4f} N" and plain[1][1].startswith("+1")
+    assert (peak.quantity, load.quantity.replace("\u00a0", " ")) == ("peak load", "load at 2 mm")
+    assert peak.value == "1\u00a0N" and load.value == "0.6 to 0.7\u00a0N" and load.source == "another"
+    assert (peak.tolerance, load.tolerance) == ("5.0\u00a0%", "2.0\u00a0%")
+
+
+# --- rows of specimens
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_rows_are_as_high_as_they_are_told_and_stand_below_each_other(count: int) -> None:
+    figure, pairs = rows(count, 0.7, 0.5)
+    width, height = figure.get_size_inches()
+    assert width == WIDE and len(pairs) == count
+    boxes = [[axes.get_position() for axes in pair] for pair in pairs]
+    for whole, close in boxes:
+        assert (whole.height * height, close.height * height) == pytest.approx((0.7, 0.7))
+        assert (whole.x0 * width, whole.width * width) == pytest.approx((LEFT, WHOLE))
+        assert (close.x0 * width, close.width * width) == pytest.approx((LEFT + WHOLE + GAP, CLOSE))
+        assert close.x1 < 1.0 and whole.y0 == close.y0
+    tops, feet = [pair[0].y1 for pair in boxes], [pair[0].y0 for pair in boxes]
+    assert tops[0] < 1.0 and all(foot > top for foot, top in zip(feet, tops[1:], strict=False))
+    assert feet[-1] * height > 0.5
+
+
+def damaged(scene: Scene, start: float, end: float) -> Snapshot:
+    s_q = np.linspace(scene.specimen.free_length, scene.specimen.extent, 2001)
+    damage = np.where(s_q < start, 1.0, np.where(s_q <= end, 0.5, 0.0))
+    grids = {"X_euvi": np.zeros((0, 1, 1, 2)), "u_euvi": np.zeros((0, 1, 1, 2)), "stress_euv": np.zeros((0, 1, 1))}
+    return Snapshot(1.0, 1.0, s_q, 0 * s_q, 0 * s_q, damage, **grids)
+
+
+@pytest.mark.parametrize(("start", "end"), [(6.0, 7.0), (6.0, 8.0), (6.0, 6.1), (4.0, 13.0), (13.0, 13.9)])
+def test_what_is_enlarged_is_to_scale_around_the_zone(start: float, end: float) -> None:
+    """As wide as 1.7 zones, but no less than five arms and no more than 0.3 of the specimen; never beyond its end."""
+    (left, right), (low, high) = zoom(SCENE, [damaged(SCENE, start, end)], 0.7)
+    body = SCENE.specimen
+    wanted = min(max(1.7 * (end - start), 5 * body.arm_thickness), 0.3 * body.length)
+    assert right - left == pytest.approx(wanted, rel=0.02) and low == -high
+    assert (high - low) / 0.7 == pytest.approx((right - left) / CLOSE), "an inch is as long both ways"
+    assert right <= body.length + 1e-9
+    middle = min(0.5 * (start + end), body.length - 0.5 * wanted)
+    assert 0.5 * (left + right) == pytest.approx(middle, rel=0.01)
+    tip, _ = zoom(SCENE, [damaged(SCENE, 20.0, 21.0)], 0.7)
+    assert 0.5 * sum(tip) == pytest.approx(body.precrack), "without a zone the tip"
