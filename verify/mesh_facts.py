@@ -29,7 +29,7 @@ FLAT = 1e-9
 _CORNERS = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)])
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class MeshFacts:
     """The facts of one mesh, each computed when it is asked for."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import json
 import os
 import signal
@@ -18,6 +19,7 @@ import numpy as np
 import pytest
 
 from verify import methods
+from verify import run as run_of
 from verify.folder import read_columns, read_result, write_json
 from verify.result import CURVE_COLUMNS, Result, Snapshot, steps_from_rows
 from verify.run import run
@@ -215,3 +217,107 @@ def test_the_time_of_a_run_is_not_that_of_importing_its_solver(monkeypatch: pyte
     monkeypatch.setitem(sys.modules, "fem_reference.solve", Slow("fem_reference.solve"))
     monkeypatch.setattr(methods, "dolfinx_installed", lambda: True)
     assert methods.solve(load_scene("dcb-czm1"), "dolfinx").seconds["total"] < 0.4
+
+
+# --- ranks
+
+
+class Down(BaseException):
+    """What stands in for the end of all ranks."""
+
+
+@pytest.fixture
+def taken_down(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Reasons for which all ranks were ended."""
+    reasons: list[str] = []
+
+    def down(why: str) -> None:
+        reasons.append(why)
+        raise Down
+
+    monkeypatch.setattr(run_of, "_take_down_all_ranks", down)
+    return reasons
+
+
+def unlucky(scene: Scene, method: str, on_step: Callable | None) -> Result:
+    if on_step is not None:
+        on_step({name: 1.0 for name in CURVE_COLUMNS})
+    raise unlucky.error
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3])
+def test_an_error_is_told_before_other_ranks_are_taken_down(
+    ranks: int, scene: Scene, tmp_path: Path, taken_down: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They would wait for this one; a run that is alone just ends."""
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", str(ranks))
+    unlucky.error = RuntimeError("no luck")
+    if ranks == 1:
+        run(scene, "nurbs", tmp_path, solver=unlucky)
+    else:
+        with pytest.raises(Down):
+            run(scene, "nurbs", tmp_path, solver=unlucky)
+    status = json.loads((tmp_path / "result.json").read_text())["status"]
+    assert status.startswith("stopped: RuntimeError: no luck (an error in the program")
+    assert taken_down == ([] if ranks == 1 else [status.removeprefix("stopped: ")])
+    assert "no luck" in (tmp_path / "error.log").read_text() and len(read_columns(tmp_path / "curve.csv")["load"]) == 1
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_full_disk_ends_the_other_ranks_and_says_so_itself(
+    ranks: int, scene: Scene, tmp_path: Path, taken_down: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", str(ranks))
+    unlucky.error = OSError(errno.ENOSPC, "no room")
+    with pytest.raises(OSError if ranks == 1 else Down):
+        run(scene, "nurbs", tmp_path, solver=unlucky)
+    assert len(taken_down) == ranks - 1 and not (tmp_path / "error.log").exists()
+
+
+def test_other_ranks_compute_and_write_nothing(
+    scene: Scene, tmp_path: Path, taken_down: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "1")
+    whole = Result("nurbs", steps_from_rows([{name: 1.0 for name in CURVE_COLUMNS}]))
+    assert run(scene, "nurbs", tmp_path / "out", solver=lambda *given: whole) == (whole, ())
+    unlucky.error = RuntimeError("no luck")
+    with pytest.raises(Down):
+        run(scene, "nurbs", tmp_path / "out", solver=unlucky)
+    assert taken_down == ["RuntimeError: no luck"] and not (tmp_path / "out").exists()
+
+
+def test_taken_down_is_at_once_and_with_a_reason() -> None:
+    """Without what a program does at its end, where MPI would wait for the others."""
+    code = (
+        "import atexit; from verify.run import _take_down_all_ranks\n"
+        "atexit.register(print, 'late'); print('early'); _take_down_all_ranks('no luck'); print('on')"
+    )
+    environment = os.environ | {"PYTHONPATH": str(PROJECT), "OMPI_COMM_WORLD_RANK": "3"}
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, timeout=60)
+    assert (ended.returncode, ended.stdout) == (1, "early\n") and "rank 3: no luck" in ended.stderr
+
+
+@pytest.mark.parametrize(
+    ("variables", "found"),
+    [
+        ({}, (0, 1)),
+        ({"OMPI_COMM_WORLD_RANK": "2", "OMPI_COMM_WORLD_SIZE": "4"}, (2, 4)),
+        ({"PMI_RANK": "1", "PMI_SIZE": "8"}, (1, 8)),
+        ({"PMIX_RANK": "3"}, (3, 1)),
+        ({"PMI_RANK": "none", "PMI_SIZE": ""}, (0, 1)),
+    ],
+)
+def test_ranks_are_those_that_mpirun_tells(variables: dict, found: tuple, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "OMPI_COMM_WORLD_SIZE", "PMI_SIZE"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    assert (run_of.mpi_rank(), run_of.mpi_size()) == found
+
+
+def test_threads_are_those_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "3")
+    assert run_of.threads() == 3 and run_of.environment()["threads a run"] == "3"
+    monkeypatch.delenv("OMP_NUM_THREADS")
+    assert run_of.threads() == os.cpu_count() and run_of.environment()["threads a run"] == "as many as cores"
