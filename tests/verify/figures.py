@@ -37,6 +37,12 @@ class Drawn(list[tuple[str, Figure]]):
         return figure.axes[number]
 
 
+def legend(figure: Figure) -> list[str]:
+    """The names in the legends of a figure."""
+    legends = [axes.get_legend() for axes in figure.axes if axes.get_legend() is not None] + figure.legends
+    return [text.get_text() for one in legends for text in one.get_texts()]
+
+
 #: Points: least and largest size of letters, of the widths of lines, of marks.
 LETTERS, WIDTHS, MARKS = (6.0, 8.5), (0.2, 5.5), (1.5, 8.0)
 

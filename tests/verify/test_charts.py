@@ -14,7 +14,7 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
-from figures import Drawn  # noqa: E402
+from figures import Drawn, legend  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.textpath import TextPath  # noqa: E402
@@ -32,6 +32,7 @@ from verify.report.text import Units  # noqa: E402
 from verify.result import Snapshot  # noqa: E402
 from verify.scaling import page as scaling  # noqa: E402
 from verify.scaling.growth import fit  # noqa: E402
+from verify.scaling.row import PARTS  # noqa: E402
 from verify.scaling.row import Row as ScalingRow  # noqa: E402
 from verify.scaling.study import Study  # noqa: E402
 
@@ -104,6 +105,7 @@ def test_bars_of_the_cheapest_are_their_phases(monkeypatch: pytest.MonkeyPatch) 
             [getattr(row, container.get_label()) for row in ROWS[:2]]
         )
     assert {container.get_label() for container in axes.containers} == set(PHASES)
+    assert legend(axes.figure) == list(PHASES)
 
 
 # --- fields
@@ -408,6 +410,8 @@ def test_time_and_memory_grow_as_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     added, law, whole = [np.column_stack(o.get_data()) for o in memory.lines]
     assert np.allclose(added, [(m, 0.01 * m) for m in n]) and np.allclose(law, added)
     assert np.allclose(whole, [(m, 90.0 + 0.01 * m) for m in n])
+    assert legend(time.figure) == ["DOLFINx: 1.25", "its assembly", "its factor"]
+    assert legend(memory.figure) == ["DOLFINx: 1.00", "with the program"]
     assert {axes.get_xscale() for axes in (time, memory)} == {"log"} == {axes.get_yscale() for axes in (time, memory)}
 
 
@@ -447,6 +451,7 @@ def test_bars_of_ranks_are_the_parts_of_their_iterations(monkeypatch: pytest.Mon
     assert axes.get_yticks()[0] > axes.get_yticks()[1]
     for container in axes.containers:
         assert [bar.get_width() for bar in container] == [getattr(row, container.get_label()) for row in rows]
+    assert legend(axes.figure) == [container.get_label() for container in axes.containers] == list(PARTS)
 
 
 def test_ranges_and_exponents_read_well() -> None:

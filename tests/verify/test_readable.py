@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
-from figures import Drawn, unreadable  # noqa: E402
+from figures import Drawn, legend, unreadable  # noqa: E402
 from made_up_runs import made_up as a_run  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
@@ -141,6 +141,7 @@ def test_bars_of_effects_are_their_changes(monkeypatch: pytest.MonkeyPatch) -> N
     assert [t.get_text() for t in axes.get_yticklabels()] == [one.effect for one in rows]
     said = {t.get_text() for t in axes.texts}
     assert {"2 %", "+2 %", "0 %"} <= said and "nan" not in " ".join(said)
+    assert legend(axes.figure) == [name for name, _ in effects_page.BARS.values()]
 
 
 def test_bars_of_times_begin_at_equal_times(monkeypatch: pytest.MonkeyPatch) -> None:
