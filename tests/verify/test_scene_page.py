@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -94,6 +95,25 @@ def test_a_row_has_the_numbers_of_its_run(page: Section, report: SceneReport) ->
     assert found["NURBS p=3, 978 unknowns"].steps == "59 + 7 rejected"
     assert found["NURBS p=3, 978 unknowns"].status == "stopped: no convergence"
     assert found["NURBS p=3, 1952 unknowns"].seconds == "8.7\u00a0s" and found["LEFM"].seconds == "–"
+
+
+def significant(text: str) -> int:
+    """How many digits of a number are told, without zeros at its ends."""
+    number = re.match(r"[\d.]*", text.replace("\u202f", "").replace("−", ""))[0]
+    return len(number.replace(".", "").strip("0"))
+
+
+def test_tables_tell_no_more_digits_than_mean_something(page: Section) -> None:
+    """The most that a column has, which is that of a number that does not end by itself."""
+    of_runs = {"peak": 4, "error": 2, "oscillation": 2, "seconds": 2}
+    assert {name: max(significant(getattr(row, name)) for row in page.rows) for name in of_runs} == of_runs
+    assert all(significant(row.peak_opening) <= 3 and significant(row.memory) <= 3 for row in page.rows)
+    names = ("element", "estimate", "elements")
+    assert {name: max(significant(getattr(row, name)) for row in page.zones) for name in names} == dict.fromkeys(
+        names, 2
+    )
+    values = [row.value for _, groups in page.checks for group in groups for row in group.rows]
+    assert max(map(significant, values)) <= 3
 
 
 def test_what_is_not_compared_says_why(page: Section, report: SceneReport) -> None:
