@@ -106,3 +106,21 @@ def test_scenes_that_are_not_in_the_table_meet_their_accuracy_in_about_the_time(
     exact = solve(load_scene(name, [*fine, *symmetric, "discretization.interface_points=5"]), "nurbs")
     assert min(distance(curve, exact) for curve in (cubics(result), (result.opening, result.load))) <= 0.003
     assert 0.5 < result.seconds["total"] / found.seconds < 2.0
+
+
+def test_the_time_of_a_run_is_that_of_its_beginning_and_of_its_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
+    """4 s for what is done once and the first step, then 0.5 s an iteration, once slower; 1 s for what comes after."""
+    now, asked = [100.0], []
+
+    def solve(scene, method, note) -> None:
+        asked.append((scene.load.opening, scene.discretization.steps, scene.published, method))
+        for seconds, iterations in ((4.0, 0), (1.0, 2), (1.5, 3), (9.0, 3), (2.0, 4)):
+            now[0] += seconds
+            note({"newton_iterations": float(iterations)})
+        now[0] += 1.0
+
+    monkeypatch.setattr(accuracy, "solve", solve)
+    monkeypatch.setattr(accuracy, "perf_counter", lambda: now[0])
+    scene = load_scene("dcb-czm1", ["load.opening=[1.0, 2.0, 1.5]"])
+    assert accuracy.run_seconds(scene, "nurbs", 100.0) == pytest.approx(18.5 + 0.5 * (100.0 - 13.0))
+    assert asked == [((0.04,), 10, (), "nurbs")], "a fiftieth of the way in ten steps"

@@ -17,6 +17,7 @@ from verify.cost import study as cost_study
 from verify.curve_file import Reading
 from verify.hard import suite
 from verify.methods import DOLFINX_MISSING, Unsuitable
+from verify.refusal import Refusal
 from verify.result import Result
 from verify.scaling import study as scaling_study
 from verify.scene import load_scene
@@ -195,3 +196,15 @@ def test_numbers_of_a_comparison_name_both_sides(tmp_path: Path) -> None:
     assert found["curve_error"] == pytest.approx(0.01) and found["peak_difference"] == pytest.approx(0.01)
     assert found["loads"][0]["load_a"] == pytest.approx(1.01 * found["loads"][0]["load_b"])
     assert (found["begin"], found["end"], found["asked_end"]) == (0.0, 1.5, 1.5) and found["a"]["points"] == 40
+
+
+def test_tests_are_those_of_the_copy_that_is_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys) -> None:
+    asked: list[tuple] = []
+    monkeypatch.setattr(commands.subprocess, "call", lambda words, cwd: asked.append((words, cwd)) or 7)
+    assert commands.test(SimpleNamespace(rest=["-q", "tests/iga"])) == 7
+    ((words, cwd),) = asked
+    assert words[1:] == ["-m", "pytest", "-q", "tests/iga"] and (cwd / "tests" / "verify").is_dir()
+    monkeypatch.setattr(commands, "__file__", str(tmp_path / "verify" / "commands.py"))
+    with pytest.raises(Refusal, match="the tests are not installed"):
+        commands.test(SimpleNamespace(rest=[]))
+    assert len(asked) == 1

@@ -298,3 +298,38 @@ def test_a_run_may_stop_where_it_says_why(status: str, steps: int, passes: bool)
 
     found = judged("peel-as-printed", world("peel-as-printed", stop))
     assert found["honest-end", "mpa"].passed == passes and found["warned", "mpa"].passed
+
+
+def test_wiggles_are_told_for_every_number_of_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the load about the beam's, and of the traction at the last opening; none is judged."""
+    monkeypatch.setattr(interfaces, "solve", lambda scene, method: made_up(scene))
+    s = np.linspace(0.0, 1.0, 101)
+    saw = (snapshot(s, np.where(np.arange(101) % 2, 1.0, 0.0), 0 * s),)
+
+    def wavy(name: str, result: Result) -> Result:
+        if name != "gauss-3":
+            return replace(result, snapshots=saw)
+        steps = result.steps
+        return Result("nurbs", {"opening": steps["opening"],
+                                "load": steps["load"] * (1.0 + 0.1 * np.sin(20.0 * steps["opening"]))})  # fmt: skip
+
+    trials = world("points-sweep", wavy)
+    assert judged("points-sweep", trials) == {} and len(trials) == 12 + 11 + 1
+    found = numbers("points-sweep", trials)
+    assert {subject for _, subject in found} == set(trials)
+    assert found["load-oscillation", "gauss-3"] == pytest.approx(0.1 / np.sqrt(2.0), rel=0.1)
+    assert found["load-oscillation", "lumped"] == pytest.approx(0.0, abs=1e-5)
+    assert found["traction-variation", "lumped"] == pytest.approx(50.0)
+    assert np.isnan(found["traction-variation", "gauss-3"])
+
+
+def test_points_are_those_of_their_rules() -> None:
+    meshes = {v.name: v.scene.discretization for v in CASES["points-sweep"].variants()}
+    for rule, fewest in (("gauss", 1), ("lobatto", 2)):
+        named = {name: mesh for name, mesh in meshes.items() if name.startswith(rule)}
+        assert [mesh.interface_points for mesh in named.values()] == list(range(fewest, 13))
+        assert all(name == f"{rule}-{mesh.interface_points}" and mesh.interface_rule == rule
+                   for name, mesh in named.items())  # fmt: skip
+    assert meshes["lumped"].interface_rule == "lumped"
+    penalties = [v.scene.interface.penalty for v in CASES["penalty-sweep"].variants()]
+    assert penalties == [10.0**n for n in (*range(2, 11), 2, 6, 8, 10)]

@@ -83,3 +83,20 @@ def test_fracture_mechanics_goes_beyond_its_factors_by_the_elastica(name: str) -
     far = 1.2 * scene.specimen.extent
     result = solve(load_scene(name, [f"load.opening={far}", "discretization.steps=20"]), "lefm")
     assert result.opening[-1] <= far and np.all(np.isfinite(result.load)) and result.load.max() > 0.0
+
+
+@pytest.mark.parametrize(
+    ("installed", "whose"),
+    [(None, "mine"), ("0.10.0", "mine"), ("0.8.0", "DOLFINx 0.8.0, or for it: debond takes 0.9 to 0.11, see")],
+)
+def test_a_call_that_another_dolfinx_does_not_have_is_its_error(installed, whose: str, monkeypatch) -> None:
+    from types import SimpleNamespace
+
+    from verify import methods
+
+    monkeypatch.setitem(__import__("sys").modules, "dolfinx", installed and SimpleNamespace(__version__=installed))
+    error = TypeError("no such keyword")
+    error.whose = "mine"
+    assert methods._whose_dolfinx(error).startswith(whose)
+    if not whose.startswith("DOLFINx"):
+        assert "please report it with error.log" in methods._whose_dolfinx(TypeError("plain"))

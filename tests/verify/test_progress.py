@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -78,3 +80,60 @@ def test_work_that_does_not_say_how_far_it_is(monkeypatch: pytest.MonkeyPatch, c
     with pytest.raises(ValueError, match="it"), telling("report", 60.0):
         raise ValueError("it")
     assert not [one for one in threading.enumerate() if one.daemon and "tick" in one.name]
+
+
+class Bar:
+    """Stands in for that of tqdm."""
+
+    def __init__(self, total: float) -> None:
+        self.total, self.n, self.said, self.closed = total, 0.0, [], False
+
+    def set_postfix_str(self, text: str, refresh: bool = True) -> None:
+        self.said.append(text)
+
+    def update(self, step: float) -> None:
+        self.n += step
+
+    def write(self, text: str, file: object) -> None:
+        self.said.append(f"line {text}")
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def test_on_a_terminal_a_bar_goes_as_far_as_the_work(clock: list[float], monkeypatch, capsys) -> None:
+    bars: list[Bar] = []
+    monkeypatch.setattr(progress, "_bar", lambda title, total: bars.append(Bar(total)) or bars[-1])
+    with Progress("runs", total=4.0) as shown:
+        clock[0] = 20.0
+        shown.advance(1.0, "first")
+        assert bars[0].n == 1.0
+        shown.alive("at work")
+        shown.advance(3.0, "third")
+        shown.line("whole")
+        shown.advance(5.0, "beyond")
+        assert bars[0].n == 4.0, "never beyond its end"
+    assert bars[0].said == ["first", "at work, 60 s left", "third", "line whole", "beyond"] and bars[0].closed
+    assert capsys.readouterr().err == ""
+    Progress("runs", total=4.0, quiet=True).advance(1.0)
+    assert len(bars) == 1, "quiet work has none"
+
+
+def test_a_bar_needs_a_terminal_and_its_package(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[dict] = []
+    fake = SimpleNamespace(tqdm=lambda **how: made.append(how) or "bar")
+    monkeypatch.setitem(sys.modules, "tqdm", fake)
+    assert progress._bar("runs", 3.0) is None
+    monkeypatch.setattr(sys, "stderr", SimpleNamespace(isatty=lambda: True))
+    assert progress._bar("runs", 3.0) == "bar"
+    assert (made[0]["total"], made[0]["desc"], made[0]["leave"]) == (3.0, "runs", False)
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    assert progress._bar("runs", 3.0) is None
+
+
+def test_durations_change_their_units_where_they_round() -> None:
+    told = [progress.duration(s) for s in (0.0123, 9.94, 9.96, 99.4, 99.6, 119.6, 3599.0, 5939.0, 5941.0, 36000.0)]
+    assert told == [
+        "0.012 s", "9.9 s", "10 s", "99 s", "1 min 40 s", "2 min 0 s", "59 min 59 s", "98 min 59 s", "1 h 39 min",
+        "10 h 0 min",
+    ]  # fmt: skip

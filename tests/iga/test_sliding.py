@@ -1,0 +1,120 @@
+"""Energy that goes with points sliding off the master, along steps of which the integral is known."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from iga.cohesive import BilinearLaw
+from iga.work import _hermite, slid_off, step_work, straight_work
+
+LAW = BilinearLaw(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0)
+AREA = np.array([0.5, 0.25])
+
+
+def step(g: tuple, k: tuple, share: tuple, rate: float = 0.0, bonded: np.ndarray | None = None):
+    """System and both ends of a step of two points that do the same; the first stays on the master where told."""
+    interface = SimpleNamespace(law=LAW, dA_q=AREA, bonded_q=bonded)
+    ends = []
+    for i in (0, 1):
+        touch = SimpleNamespace(share_q=np.full(2, share[i]), g_q=np.full(2, g[i]), m_q=None)
+        point = SimpleNamespace(
+            response=SimpleNamespace(contact=touch),
+            tangent=SimpleNamespace(rate_q=np.full(2, rate), du_d=np.zeros(1)),
+            state=SimpleNamespace(k_q=np.full(2, k[i])),
+        )
+        ends.append(point)
+    return SimpleNamespace(interface=interface), *ends
+
+
+def stored(g: float, k: float) -> float:
+    cohesive, touching, _ = LAW.energies(np.array([g]), np.array([k]))
+    return float((cohesive + touching)[0])
+
+
+def spent(k: float) -> float:
+    return float(LAW.energies(np.array([k]), np.array([k]))[2][0])
+
+
+@pytest.mark.parametrize("g", [0.05, 0.3, -0.01])
+@pytest.mark.parametrize(("before", "after"), [(1.0, 0.0), (1.0, 0.4), (0.7, 0.2), (0.2, 0.7)])
+def test_a_still_point_takes_what_it_has_stored_with_it(g: float, before: float, after: float) -> None:
+    """In proportion to its share of the master; and brings it back with it."""
+    k = max(g, 0.1)
+    found = slid_off(*step((g, g), (k, k), (before, after)), 1.0, 1.0)
+    assert found == pytest.approx(stored(g, k) * (before - after) * AREA.sum(), rel=1e-12)
+
+
+def test_where_nothing_slides_nothing_is_taken() -> None:
+    assert slid_off(*step((0.1, 0.3), (0.1, 0.3), (1.0, 1.0)), 1.0, 1.0) == 0.0
+
+
+@pytest.mark.parametrize("share", [0.5, 0.125])
+def test_damage_is_booked_whole_and_paid_by_what_is_on_the_master(share: float) -> None:
+    """A point that is held by a share of it is torn by as much less than the ledger has."""
+    found = slid_off(*step((0.2, 0.4), (0.2, 0.4), (share, share)), 1.0, 1.0)
+    assert found == pytest.approx(-(1.0 - share) * (spent(0.4) - spent(0.2)) * AREA.sum(), rel=1e-9)
+
+
+def test_a_point_that_is_not_bonded_takes_no_cohesion_and_no_damage() -> None:
+    free = np.zeros(2)
+    assert slid_off(*step((0.2, 0.4), (0.2, 0.4), (1.0, 0.0), bonded=free), 1.0, 1.0) == 0.0
+    pressed = slid_off(*step((-0.02, -0.02), (0.2, 0.2), (1.0, 0.0), bonded=free), 1.0, 1.0)
+    assert pressed == pytest.approx(0.5 * LAW.penalty * 0.02**2 * AREA.sum())
+    half = slid_off(*step((0.3, 0.3), (0.3, 0.3), (1.0, 0.0), bonded=np.array([1.0, 0.0])), 1.0, 1.0)
+    assert half == pytest.approx(stored(0.3, 0.3) * AREA[0])
+
+
+def test_a_point_that_opens_as_it_slides_takes_the_integral() -> None:
+    """-psi d(share) along the step, share and gap as the cubics have them; in 16 pieces to half a per cent."""
+    g0, g1 = 0.02, 0.09  # elastic: nothing is damaged below g_max = 0.1
+
+    def smooth(s: float) -> float:
+        return s * s * (3.0 - 2.0 * s)
+
+    def share(s: float) -> float:
+        return 1.0 - smooth(smooth(s))  # what is left of the way goes from 1 to 0 like a smooth step
+
+    def taken(s: float) -> float:
+        g, h = g0 + (g1 - g0) * smooth(s), 1e-6
+        return -stored(g, 0.1) * (share(s + h) - share(s - h)) / (2 * h)
+
+    wanted = quad(taken, 1e-6, 1.0 - 1e-6)[0] * AREA.sum()
+    assert slid_off(*step((g0, g1), (0.1, 0.1), (1.0, 0.0)), 1.0, 1.0) == pytest.approx(wanted, rel=5e-3)
+
+
+def test_curves_between_two_ends_have_their_values_and_slopes_and_stay_between_them() -> None:
+    ends, rates = (np.array([1.0, 0.0]), np.array([2.0, 0.0])), (np.array([0.5, 9.0]), np.array([0.25, -9.0]))
+    v = _hermite(ends, rates, (2.0, 4.0))
+    assert np.array_equal(v[0], ends[0]) and np.array_equal(v[-1], ends[1])
+    s = np.linspace(0.0, 1.0, len(v))
+    assert v[:, 0] == pytest.approx(1.0 + s), "slopes of 1 at both ends: straight"
+    assert np.all(v[:, 1] == 0.0), "what would leave its ends is held"
+
+
+# --- work
+
+
+def point(opening: float, load: float, d_opening: float, d_load: float) -> SimpleNamespace:
+    tangent = SimpleNamespace(du_d=np.array([d_opening]), d_load=d_load)
+    slope = d_load / d_opening if d_opening else np.inf
+    return SimpleNamespace(opening=opening, state=SimpleNamespace(load=load), tangent=tangent, slope=slope)
+
+
+def test_work_along_cubics_is_exact_though_the_path_turns_back() -> None:
+    """Opening s - s^2 + s^3 / 2 and load 1 + 2 s - 3 s^3 of what is controlled, from 0 to 2."""
+    d, P = np.polynomial.Polynomial([0, 1, -1, 0.5]), np.polynomial.Polynomial([1, 2, 0, -3])
+    a, b = (point(d(s), P(s), d.deriv()(s), P.deriv()(s)) for s in (0.0, 2.0))
+    exact = (P * d.deriv()).integ()
+    found = step_work(SimpleNamespace(load_d=np.array([1.0])), a, b, 2.0, 2.0)
+    assert found == pytest.approx(exact(2.0) - exact(0.0), rel=1e-12)
+
+
+def test_work_over_the_opening_is_exact_for_cubics() -> None:
+    P = np.polynomial.Polynomial([1.0, 2.0, -0.5, 0.3])
+    a, b = (point(d, P(d), 1.0, P.deriv()(d)) for d in (0.5, 1.7))
+    assert straight_work(a, b) == pytest.approx(P.integ()(1.7) - P.integ()(0.5), rel=1e-12)
+    assert straight_work(b, a) == pytest.approx(-straight_work(a, b))
