@@ -16,10 +16,13 @@ from figures import Drawn, legend, unreadable  # noqa: E402
 from made_up_runs import made_up as a_run  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
+from test_charts import a_study  # noqa: E402
+from test_cost import a_row  # noqa: E402
 from test_effects_study import made_up, of_pair  # noqa: E402
 from test_hard import FAKE, stub  # noqa: E402
 from test_undeformed import entry, snapshot  # noqa: E402
 
+from verify.cost import figures as cost_figures  # noqa: E402
 from verify.hard import page as hard_page  # noqa: E402
 from verify.hard.case import Case, variant  # noqa: E402
 from verify.hard.one import run_case  # noqa: E402
@@ -30,6 +33,7 @@ from verify.report.entry import entries  # noqa: E402
 from verify.report.section import section  # noqa: E402
 from verify.report.style import HALF, PALETTE, colour, panel  # noqa: E402
 from verify.report.style import drawing as settings  # noqa: E402
+from verify.scaling import page as scaling  # noqa: E402
 from verify.scene import Scene, load_scene  # noqa: E402
 from verify.switches import page as effects_page  # noqa: E402
 from verify.switches.row import Row  # noqa: E402
@@ -244,3 +248,19 @@ def test_runs_in_other_units_or_without_a_step_are_counted_and_not_drawn(tmp_pat
     said = hard_page._figure(cell, tmp_path)
     assert "1 runs; 2 more in other units or without a step." in said.caption and len(drawn) == 1
     assert hard_page._figure(Cell(case, "nurbs", None, "signal 9"), tmp_path) is None
+
+
+@pytest.mark.parametrize("chart", ["changes", "times", "phases", "ranks"])
+def test_every_row_of_bars_adds_as_much_height(chart: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many there are, and enough for a line of words."""
+    draw, rows = {
+        "changes": (lambda rows: effects_page.changed(rows, "key"), effect_rows()[:1] * 4),
+        "times": (lambda rows: effects_page.times(rows, "key"), effect_rows()[:1] * 4),
+        "phases": (lambda rows: cost_figures.phases(rows, "key"), [a_row("nurbs", 0.01, 1.0)] * 4),
+        "ranks": (lambda rows: scaling.strong(rows, "key"), a_study(1.0).ladder("dolfinx")),
+    }[chart]
+    drawn = Drawn(monkeypatch, effects_page, cost_figures, scaling)
+    for number in (1, 2, 3, 4):
+        draw(rows[:number])
+    heights = [figure.get_size_inches()[1] for _, figure in drawn]
+    assert np.ptp(np.diff(heights)) < 1e-9 and np.diff(heights)[0] > 0.25 and heights[0] < 2.5
