@@ -11,11 +11,13 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
-from verify.report import published  # noqa: E402
+from verify import process_zone  # noqa: E402
+from verify.report import published, zones  # noqa: E402
 from verify.report.agreement import agreement, branch, path, reference_run, usable  # noqa: E402
 from verify.report.entry import entries, rank, short_names  # noqa: E402
 from verify.report.layout import CLOSE, GAP, LEFT, WHOLE, rows, zoom  # noqa: E402
 from verify.report.style import METHODS, WIDE, line  # noqa: E402
+from verify.report.text import number  # noqa: E402
 from verify.result import Result, Snapshot  # noqa: E402
 from verify.scene import Scene, load_scene  # noqa: E402
 from verify.verdict import Run, SceneReport  # noqa: E402
@@ -159,3 +161,23 @@ def test_what_is_enlarged_is_to_scale_around_the_zone(start: float, end: float) 
     assert 0.5 * (left + right) == pytest.approx(middle, rel=0.01)
     tip, _ = zoom(SCENE, [damaged(SCENE, 20.0, 21.0)], 0.7)
     assert 0.5 * sum(tip) == pytest.approx(body.precrack), "without a zone the tip"
+
+
+def test_the_process_zone_is_told_in_lengths_and_in_elements() -> None:
+    """Estimated for the mesh, measured as the median while the crack runs; without a mesh there is none to tell of."""
+    expected = process_zone.expected(SCENE, "nurbs")
+    one = run("nurbs")
+    crack = np.where(one.result.opening > 1.0, 5.0, 4.0)
+    steps = {
+        **one.result.steps,
+        "crack_length": crack,
+        "damage_front": crack + 1.2345 + 0.01 * (one.result.opening == 3),
+    }
+    measured = replace(one, result=replace(one.result, steps=steps))
+    found = entries(SceneReport(SCENE, (measured, run("nurbs", dofs=5), run("beam")), ()))
+    full, bare = zones.rows(SCENE, found)
+    plain = [text.replace("\u00a0", " ") for text in (full.element, full.estimate, full.measured)]
+    assert plain == [f"{number(expected.element, 2)} mm", f"{number(expected.length, 2)} mm", "1.2 mm"]
+    assert full.measured_elements == number(1.2345 / expected.element, 2)
+    assert full.elements == number(expected.elements, 2) and full.resolved == (expected.elements >= 3)
+    assert bare.measured == bare.measured_elements == "–" and bare.elements == full.elements

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from verify.scene import SceneError, load_scene
+from verify.scene import SceneError, load_scene, parse_scene
 
 #: Scene, key, and the ends of its range in N and mm, beside what they are held against.
 RANGES = [
@@ -81,3 +81,53 @@ def test_a_scene_may_be_a_million_lengths_away() -> None:
 def test_no_number_is_beyond_all_units(value: float, taken: bool) -> None:
     assert ("interface.toughness: must be of a size >= 1e-30 and <= 1e+30" in said(
         "dcb-czm1", f"interface.toughness={value!r}")) != taken  # fmt: skip
+
+
+#: Key, and the first and the last number that it takes.
+LIMITS = [
+    ("discretization.degree", 1, 5),
+    ("discretization.dofs", 40, 1_000_000),
+    ("discretization.interface_points", 1, 12),
+    ("discretization.mismatch", 0.05, 20.0),
+    ("discretization.steps", 1, 100_000),
+    ("discretization.bend", 1e-5, 0.2),
+    ("dolfinx.degree", 1, 4),
+    ("dolfinx.elements", 2, 100_000),
+    ("pose.angle", -360.0, 360.0),
+    ("load.opening", -0.4, 28.0),
+]
+
+
+@pytest.mark.parametrize(("key", "first", "last"), LIMITS, ids=[key for key, *_ in LIMITS])
+def test_limits_are_taken_and_what_is_beyond_is_not(key: str, first: float, last: float) -> None:
+    whole = isinstance(first, int)
+    beyond = (first - 1, last + 1) if whole else (first - 1e-6 * abs(first), last + 1e-6 * abs(last))
+    assert [said("dcb-czm1", f"{key}={value!r}") for value in (first, last)] == ["", ""]
+    for value in beyond:
+        assert said("dcb-czm1", f"{key}={value!r}").startswith(f"{key}")
+
+
+def test_what_is_not_given_is_as_it_is_written() -> None:
+    """In the README and in `debond new`: whoever leaves a key out counts on it."""
+    given = load_scene("dcb-czm1").model_dump()
+    needed = {"name": "a", "specimen": given["specimen"], "material": given["material"], "load": {"opening": 1.0}}
+    law = {key: given["interface"][key] for key in ("strength", "toughness", "ductility", "penalty")}
+    scene = parse_scene({**needed, "interface": law})
+    mesh = {
+        "degree": 3, "dofs": 1956, "interface_rule": "gauss", "interface_points": 2, "mismatch": 1.0,
+        "adaptive": False, "slave": "upper", "steps": 150, "bend": 0.005,
+    }  # fmt: skip
+    effects = {"kinematics": "finite", "contact": True, "irreversible": True, "symmetry": False, "search": True}
+    found = scene.model_dump()
+    assert found["discretization"] == mesh and found["effects"] == effects
+    assert found["dolfinx"] == {"degree": 2, "elements": 112} and found["interface"]["law"] == "bilinear"
+    assert found["pose"] == {"angle": 0.0, "mirror": False, "shift": (0.0, 0.0)} and found["published"] == ()
+
+
+def test_a_law_that_is_not_given_in_full_is_12_5_as_ductile_and_pushes_100_times_as_hard_as_it_pulls() -> None:
+    given = load_scene("dcb-czm1").model_dump()
+    needed = {"name": "a", "specimen": given["specimen"], "material": given["material"], "load": {"opening": 1.0}}
+    law = parse_scene({**needed, "interface": {"strength": 5.0, "toughness": 0.2}}).interface
+    assert law.ductility == 12.5
+    g_max = 2.0 * 0.2 / 5.0 / 12.5
+    assert law.penalty == pytest.approx(100.0 * 5.0 / g_max)
