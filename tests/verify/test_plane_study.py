@@ -12,7 +12,7 @@ from tests.iga.test_plane import ring, square_mesh
 from verify import plane_study
 from verify.cli import FAILED, REFUSED, main
 from verify.plane_errors import Errors
-from verify.plane_study import Level, lines, load_plate, settled, study
+from verify.plane_study import Level, _checks, lines, load_plate, settled, study
 from verify.refusal import Refusal
 
 FILES = Path(__file__).parents[3] / "shared" / "iga"
@@ -118,3 +118,30 @@ def test_two_files_of_one_name_are_refused(written, tmp_path, capsys):
     path = written(square_mesh(2))
     assert main(["verify", path, path, "--out", str(tmp_path)]) == REFUSED
     assert "different names, got 'body' more than once" in capsys.readouterr().err
+
+
+#: Check, the part that decides it, and what that may be at the most.
+ALLOWED = [
+    ("patch-test", 1e-10), ("nested-energy", 1e-6), ("exact-field", 1e-3), ("rate", 0.25),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "most"), ALLOWED, ids=[name for name, _ in ALLOWED])
+@pytest.mark.parametrize("part", [0.99, 1.01])
+def test_what_a_plane_problem_may_be_off_by(name, most, part):
+    """Everything else is as it should be: three meshes, each an eighth as wrong as the one before."""
+    off = {key: part * most if key == name else 0.0 for key, _ in ALLOWED}
+    energies = np.array([1.0, 0.5, 0.5 * (1.0 + off["nested-energy"]) if name == "nested-energy" else 0.25])
+    finest = off["exact-field"] or 1e-5
+    found = tuple(Level("", 1, 1, Errors(finest, energy, energy), 4.0 + off["rate"], 4.0) for energy in energies)
+    checks = {check.name: check for check in _checks("x", Errors(off["patch-test"], 0.0, 0.0), found, 4)}
+    assert set(checks) == {key for key, _ in ALLOWED}
+    assert {key for key, check in checks.items() if not check.passed} == ({name} if part > 1.0 else set())
+    below = {check.name: check for check in _checks("x", Errors(0.0, 0.0, off["patch-test"]), found, 4)}
+    assert below["patch-test"].value == off["patch-test"], "stress counts as displacement does"
+
+
+@pytest.mark.parametrize(("apart", "judged"), [(0.249, True), (-0.249, True), (0.251, False), (-0.251, False)])
+def test_a_rate_has_settled_where_the_last_two_agree_to_a_quarter(apart, judged):
+    found = [Level("", 1, 1, Errors(1e-5, 0.1, 0.1), rate, 4.0) for rate in (float("nan"), 4.0, 4.0 + apart)]
+    assert ("rate" in {check.name for check in _checks("x", Errors(0.0, 0.0, 0.0), tuple(found), 4)}) == judged
