@@ -39,19 +39,6 @@ def spent(k: float) -> float:
     return float(LAW.energies(np.array([k]), np.array([k]))[2][0])
 
 
-@pytest.mark.parametrize("g", [0.05, 0.3, -0.01])
-@pytest.mark.parametrize(("before", "after"), [(1.0, 0.0), (1.0, 0.4), (0.7, 0.2), (0.2, 0.7)])
-def test_a_still_point_takes_what_it_has_stored_with_it(g: float, before: float, after: float) -> None:
-    """In proportion to its share of the master; and brings it back with it."""
-    k = max(g, 0.1)
-    found = slid_off(*step((g, g), (k, k), (before, after)), 1.0, 1.0)
-    assert found == pytest.approx(stored(g, k) * (before - after) * AREA.sum(), rel=1e-12)
-
-
-def test_where_nothing_slides_nothing_is_taken() -> None:
-    assert slid_off(*step((0.1, 0.3), (0.1, 0.3), (1.0, 1.0)), 1.0, 1.0) == 0.0
-
-
 @pytest.mark.parametrize("share", [0.5, 0.125])
 def test_damage_is_booked_whole_and_paid_by_what_is_on_the_master(share: float) -> None:
     """A point that is held by a share of it is torn by as much less than the ledger has."""

@@ -49,6 +49,12 @@ LEAKS = [
     pytest.param(0.0, 0.0, 1e-6, 2e-6, False, id="nothing dissipated, no more gone than rounding leaves"),
     pytest.param(0.0, 1e-5, 1e-6, 1e-12, False, id="damage has just begun"),
     pytest.param(1e-5, 2e-5, 1e-6, 1e-12, True, id="a twentieth of all that is dissipated"),
+    pytest.param(1e-4, 5e-4, 4.9e-7, 1e-12, False, id="less than a thousandth of the little that is dissipated"),
+    pytest.param(1e-4, 5e-4, 5.1e-7, 1e-12, True, id="more than a thousandth of the little that is dissipated"),
+    pytest.param(1e-5, 1e-5, 0.9e-7, 1e-12, False, id="less than a tenth of a millionth of the work"),
+    pytest.param(1e-5, 1e-5, 1.1e-7, 1e-12, True, id="more than a tenth of a millionth of the work"),
+    pytest.param(1.1e-3, 1.1e-3, 0.9e-3, 1e-12, False, id="enough is dissipated to be held against all work"),
+    pytest.param(0.9e-3, 0.9e-3, 0.9e-3, 1e-12, True, id="not yet enough is"),
 ]
 
 
