@@ -131,3 +131,13 @@ def test_a_law_that_is_not_given_in_full_is_12_5_as_ductile_and_pushes_100_times
     assert law.ductility == 12.5
     g_max = 2.0 * 0.2 / 5.0 / 12.5
     assert law.penalty == pytest.approx(100.0 * 5.0 / g_max)
+
+
+def test_a_number_that_no_rule_can_be_worked_out_for_is_named() -> None:
+    """The default of the penalty divides by a gap that is nothing."""
+    given = load_scene("dcb-czm1").model_dump()
+    needed = {"name": "a", "specimen": given["specimen"], "material": given["material"], "load": {"opening": 1.0}}
+    with pytest.raises(SceneError) as caught:
+        parse_scene({**needed, "interface": {"strength": 5.0, "toughness": 5e-324}})
+    told = "interface.toughness: must be of a size >= 1e-30 and <= 1e+30, got 4.94066e-324"
+    assert list(caught.value.sentences) == [told]
