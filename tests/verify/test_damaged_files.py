@@ -206,6 +206,27 @@ def test_damaged_fields_are_found(kind: str, tmp_path: Path) -> None:
         read_fields(path)
 
 
+class Runs:
+    """An object that does something as soon as it is read."""
+
+    def __init__(self, mark: Path) -> None:
+        self.mark = mark
+
+    def __reduce__(self) -> tuple:
+        return Path.touch, (self.mark,)
+
+
+def test_fields_run_no_code_of_others(tmp_path: Path) -> None:
+    path, mark = tmp_path / "fields.npz", tmp_path / "mark"
+    path.write_bytes(as_npz(**{"0.opening": np.array([Runs(mark)], dtype=object)}))
+    with np.load(path, allow_pickle=True) as arrays:
+        assert arrays["0.opening"].shape == (1,) and mark.exists(), "it would"
+    mark.unlink()
+    with pytest.raises(Damaged, match="fields.npz"):
+        read_fields(path)
+    assert not mark.exists()
+
+
 @given(data=st.data())
 @SOME
 def test_any_fields_are_snapshots_or_damaged(data: st.DataObject, tmp_path: Path) -> None:

@@ -100,3 +100,23 @@ def test_a_call_that_another_dolfinx_does_not_have_is_its_error(installed, whose
     assert methods._whose_dolfinx(error).startswith(whose)
     if not whose.startswith("DOLFINx"):
         assert "please report it with error.log" in methods._whose_dolfinx(TypeError("plain"))
+
+
+def test_an_error_of_dolfinx_comes_out_with_whose_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of its calls alone; what the solver itself raises is as it was."""
+    import sys
+    from types import SimpleNamespace
+
+    from verify import methods
+
+    def broken(problem, **how) -> None:
+        raise broken.error
+
+    scene = load_scene("dcb-czm1", ["dolfinx.elements=20"])
+    monkeypatch.setitem(sys.modules, "fem_reference.solve", SimpleNamespace(solve_debonding=broken))
+    monkeypatch.setattr(methods, "_whose_dolfinx", lambda error: f"that of {error}")
+    for kind, told in ((TypeError, True), (AttributeError, True), (ImportError, True), (ValueError, False)):
+        broken.error = kind("no luck")
+        with pytest.raises(kind, match="no luck") as caught:
+            methods._dolfinx(scene, "dolfinx", None, None)
+        assert getattr(caught.value, "whose", None) == ("that of no luck" if told else None)

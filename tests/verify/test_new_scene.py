@@ -177,3 +177,36 @@ def test_scenes_are_listed_or_shown(capsys: pytest.CaptureFixture, monkeypatch: 
     assert "////" in text and text.count("::::") >= 2 and max(map(len, text.splitlines())) <= 40
     assert main(["scenes", "peel-61"]) == 2
     assert 'did you mean "peel-60"' in capsys.readouterr().err
+
+
+def test_a_page_of_a_scene_says_every_effect_and_number() -> None:
+    plain = " ".join(page(load_scene("dcb-czm1"), 100).split())
+    assert "effects kinematics finite, contact, irreversible, no symmetry, search" in plain
+    assert "interface bilinear, strength 4, toughness 0.1, ductility 12.5" in plain
+    assert "specimen dcb, plane stress, width 1 material isotropic, young 120000, poisson 0.2" in plain
+    assert "meshes 1956 unknowns of degree 3; DOLFINx 112 elements along, degree 2" in plain
+    chosen = load_scene("dcb-czm1", ["effects.contact=auto", "load.opening=[1.0, 0.5, 2.0]", "effects.search=false"])
+    other = " ".join(page(chosen, 100).split())
+    assert "contact auto, irreversible, no symmetry, no search" in other and "opening 1 -> 0.5 -> 2 " in other
+    layered = load_scene("dcb-czm1", ["material={E1=120e3, E2=9e3, G12=5e3, nu12=0.3}"])
+    assert "material orthotropic, E1 120000, E2 9000, G12 5000, nu12 0.3" in " ".join(page(layered, 100).split())
+
+
+def test_a_scene_is_told_in_one_line_where_that_has_room() -> None:
+    scene = load_scene("dcb-czm1")
+    text = "dcb, finite kinematics, strength 4, toughness 0.1, opened to 3 (N, mm, MPa)"
+    assert line("name", scene, 25 + len(text)) == f"{'name':24} {text}"
+    first, *rest = line("name", scene, 24 + len(text)).splitlines()
+    assert first == "name" and all(one.startswith("  ") for one in rest) and " ".join(" ".join(rest).split()) == text
+
+
+@pytest.mark.parametrize("width", [40, 100])
+def test_what_is_next_to_nothing_is_a_sign_wide(width: int) -> None:
+    """A precrack of a thousandth is told from none, and a bond of a thousandth is seen."""
+    short = sketch(load_scene("dcb-czm1", ["specimen.precrack=0.014", "load.opening=0.1"]), width)
+    (bond,) = [one for one in short if ":" in one]
+    (edge, *_) = [one for one in short if "+" in one]
+    assert bond.index(":") == edge.index("+") + 2 and bond.rindex(":") == edge.rindex("+") - 1
+    assert "|-| 0.014" in short[-2]
+    strip = sketch(load_scene("peel-60", ["specimen.bond_length=0.15"]), width)
+    assert max(one.count(":") for one in strip) == 1
