@@ -106,6 +106,8 @@ def test_bars_of_the_cheapest_are_their_phases(monkeypatch: pytest.MonkeyPatch) 
         )
     assert {container.get_label() for container in axes.containers} == set(PHASES)
     assert legend(axes.figure) == list(PHASES)
+    assert not any(line.get_visible() for line in axes.get_ygridlines()), "a line beside a bar would be one of length 0"
+    assert all(line.get_visible() for line in axes.get_xgridlines())
 
 
 # --- fields

@@ -22,7 +22,7 @@ from iga.tmesh_lines import tensor_grid, with_lines
 from iga.tspline import tspline_rectangle
 from verify import mesh_command, mesh_facts, progress
 from verify.cli import main
-from verify.mesh_command import examine
+from verify.mesh_command import _continuity, _sets, _unity, examine
 from verify.mesh_facts import MeshFacts, independent
 from verify.refusal import Refusal
 
@@ -252,3 +252,27 @@ def test_a_file_that_takes_long_says_that_it_is_at_work(tmp_path, capsys, monkey
     assert main(["mesh", str(small(tmp_path)), "--out", "small.vtu"]) == 0
     said = capsys.readouterr()
     assert said.err.startswith("mesh small.iga: at work") and "at work" not in said.out
+
+
+@pytest.mark.parametrize(
+    ("plain", "weighted", "words"),
+    [
+        (0.9e-10, 5.0, "1 to 9.0e-11"),
+        (1.1e-10, 0.9e-10, "1 to 9.0e-11 with the weights (semi-standard), 1.1e-10 without"),
+        (0.25, 1.1e-10, "misses 1 by up to 2.50e-01 (the rational functions, divided by it, add up to 1)"),
+    ],
+)
+def test_what_functions_add_up_to_is_one_but_for_rounding(plain: float, weighted: float, words: str) -> None:
+    report = {"sum_of_functions_misses_one_by": plain, "weighted_sum_misses_one_by": weighted}
+    assert _unity(report) == words
+
+
+def test_continuity_is_told_from_the_smoothest_on() -> None:
+    assert _continuity({"C0": 2, "C1": 0, "C2": 5}) == "C2 across 5, C0 across 2 inner edges"
+    assert _continuity({"C0": 0}) == "one element" and "vanish or are negative" in _continuity(None)
+    kinds = (("side", "a", 3), ("side", "b", 2), ("node", "c", 1))
+    sets = [{"kind": kind, "name": name, "entries": entries} for kind, name, entries in kinds]
+    report = {"sets": sets, "chains": {"a": 3, "b-1": 1, "b-2": 1}}
+    assert _sets(report) == "; side sets a (3 sides), b (2 sides)"
+    assert _sets({**report, "chains": {}}) == "; side sets a (3 sides, no chain), b (2 sides, no chain)"
+    assert _sets({"sets": [], "chains": {}}) == ""

@@ -268,3 +268,11 @@ def test_lefm_is_that_of_simple_beam_theory():
     assert load.max() == pytest.approx(np.sqrt(0.1 * 120e3 * 0.2**3 / 12) / 4, rel=1e-12)
     after = opening > 1.0
     assert np.ptp(load[after] * np.sqrt(opening[after])) < 1e-12
+
+
+@pytest.mark.parametrize(("rows", "drawable"), [(0, False), (1, False), (2, True)])
+def test_a_run_is_drawn_from_its_first_step_on(rows, drawable):
+    whole = world().trials[0]
+    short = replace(whole.result, steps={name: column[:rows] for name, column in whole.result.steps.items()})
+    assert replace(whole, result=short).drawable == drawable
+    assert not replace(whole, result=None).drawable and not replace(whole, result=None).complete

@@ -12,6 +12,7 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
+import matplotlib  # noqa: E402
 from figures import Drawn, legend, unreadable  # noqa: E402
 from made_up_runs import made_up as a_run  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
@@ -22,11 +23,15 @@ from test_effects_study import made_up, of_pair  # noqa: E402
 from test_hard import FAKE, stub  # noqa: E402
 from test_undeformed import entry, snapshot  # noqa: E402
 
+from iga.bisection import initial  # noqa: E402
+from iga.tspline import greville, tspline_mesh  # noqa: E402
+from verify import mesh_drawing  # noqa: E402
 from verify.cost import figures as cost_figures  # noqa: E402
 from verify.hard import page as hard_page  # noqa: E402
 from verify.hard.case import Case, variant  # noqa: E402
 from verify.hard.one import run_case  # noqa: E402
 from verify.hard.suite import Cell  # noqa: E402
+from verify.mesh_facts import MeshFacts  # noqa: E402
 from verify.methods import solve  # noqa: E402
 from verify.report import cost, curves, drawing, fields, meshes, opening, parts, peel_drawing, undeformed  # noqa: E402
 from verify.report.entry import entries  # noqa: E402
@@ -159,6 +164,7 @@ def test_bars_of_times_begin_at_equal_times(monkeypatch: pytest.MonkeyPatch) -> 
     (line,) = axes.lines
     assert set(line.get_xdata()) == {1.0} and axes.get_xlim()[0] == 0.0
     assert [t.get_text() for t in axes.get_yticklabels()] == [one.effect for one in rows]
+    assert not any(line.get_visible() for line in axes.get_ygridlines())
     heights = [bar.get_y() + bar.get_height() / 2 for bar in bars]
     assert heights == pytest.approx(list(axes.get_yticks())) and heights == sorted(heights, reverse=True)
 
@@ -264,3 +270,29 @@ def test_every_row_of_bars_adds_as_much_height(chart: str, monkeypatch: pytest.M
         draw(rows[:number])
     heights = [figure.get_size_inches()[1] for _, figure in drawn]
     assert np.ptp(np.diff(heights)) < 1e-9 and np.diff(heights)[0] > 0.25 and heights[0] < 2.5
+
+
+@pytest.mark.parametrize("control", [False, True])
+@pytest.mark.parametrize("marked", [False, True])
+@pytest.mark.parametrize("stretch", [0.7, 0.1])
+def test_pictures_of_meshes_can_be_read(control: bool, marked: bool, stretch: float) -> None:
+    """Marks are named where there are any, whatever the shape of the body; the title is above, and all is to scale."""
+    tmesh = initial(np.arange(4.0), np.arange(4.0)).tmesh
+    mesh = tspline_mesh(tmesh, greville(tmesh) * [1.0, stretch])
+    facts = MeshFacts(mesh)
+    facts.__dict__["junctions"] = np.array([[1.0, 0.5 * stretch], [2.0, 1.0 * stretch]] if marked else []).reshape(
+        -1, 2
+    )
+    facts.__dict__["extraordinary"] = [(5, np.array([1.5, 1.5 * stretch]))] if marked else []
+    with matplotlib.rc_context(mesh_drawing._RC):
+        figure = mesh_drawing.mesh_figure(facts, "a mesh of nine elements", control)
+        assert unreadable(figure) == []
+    marks = ["2 T-junctions", "extraordinary points, with their valence"]
+    assert legend(figure) == [*["control points"] * control, *marks * marked]
+    (axes,) = figure.axes
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    assert np.all(mesh.P_AI > low) and np.all(mesh.P_AI < high)
+    assert [text.get_text() for text in axes.texts] == ["5"] * marked
+    box = axes.get_window_extent()
+    assert box.width / box.height == pytest.approx(np.divide(*(high - low)), rel=0.02), "to scale"
+    assert figure.get_size_inches()[0] == 7.0 and 1.2 <= figure.get_size_inches()[1] <= 8.1
