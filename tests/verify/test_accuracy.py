@@ -124,3 +124,17 @@ def test_the_time_of_a_run_is_that_of_its_beginning_and_of_its_iterations(monkey
     scene = load_scene("dcb-czm1", ["load.opening=[1.0, 2.0, 1.5]"])
     assert accuracy.run_seconds(scene, "nurbs", 100.0) == pytest.approx(18.5 + 0.5 * (100.0 - 13.0))
     assert asked == [((0.04,), 10, (), "nurbs")], "a fiftieth of the way in ten steps"
+
+
+def test_what_cannot_be_solved_here_is_passed_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A mesh that the scene does not take, a method that is missing or unknown; then comes the next, however slow."""
+    monkeypatch.setattr("verify.methods.dolfinx_installed", lambda: False)
+
+    def one(solver: str, seconds: float, *overrides: str) -> dict:
+        about = {"method": solver, "degree": 3, "dofs": 500, "curve_error": 0.001}
+        return {**about, "solver": solver, "seconds": seconds, "overrides": list(overrides)}
+
+    scene, slow = load_scene("dcb-czm1"), one("nurbs", 9.0, "discretization.dofs=500")
+    others = [one("nurbs", 1.0, "discretization.degree=9"), one("dolfinx", 2.0), one("bem", 3.0), one("beam", 4.0)]
+    found = choose(scene, 0.01, a_study(tmp_path, scene, pareto=[slow, *others]))
+    assert (found.method, found.overrides, found.seconds) == ("nurbs", ("discretization.dofs=500",), 9.0)

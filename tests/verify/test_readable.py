@@ -74,6 +74,8 @@ def test_figures_of_a_beam_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = Drawn(monkeypatch, *PAGE)
     section(scene_report(), "beam")
     assert len(drawn) > 12
+    for words in ("Meshes of all runs", "Deformed meshes", "The crack of dcb-czm1: opening 3"):
+        assert drawn.axes(words).get_xlim() == pytest.approx((-0.14, 14.14)), "a hundredth of it is left beside it"
 
 
 def test_figures_of_a_peel_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -90,6 +92,7 @@ def test_meshes_that_move_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
     undeformed.undeformed(scene, [entry(snapshot()), entry(snapshot(junctions=(9.5,)), method="tspline")], "all")
     undeformed.followed(scene, [entry(*at, method="tspline", label="moving")], "key")
     assert [len(figure.axes) for _, figure in drawn] == [4, 6], "a whole and a part of each"
+    assert drawn[0][1].axes[0].get_xlim() == pytest.approx((-0.14, 14.14)), "a hundredth of it is left beside it"
 
 
 # --- parts of several figures
