@@ -333,3 +333,24 @@ def test_points_are_those_of_their_rules() -> None:
     assert meshes["lumped"].interface_rule == "lumped"
     penalties = [v.scene.interface.penalty for v in CASES["penalty-sweep"].variants()]
     assert penalties == [10.0**n for n in (*range(2, 11), 2, 6, 8, 10)]
+
+
+def test_what_the_judges_allow(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What only rounding may do, what a mesh or a beam may be to blame for, and no more."""
+    monkeypatch.setattr(bodies, "solve", lambda scene, method: replace(made_up(scene), method=method))
+    made = {"unload-reload": back_and_forth, "full-separation": separated}
+    allowed = {
+        "big-steps": {"same-curve": {0.002}},
+        "tiny-reversals": {"same-envelope": {0.002}},
+        "mismatch": {"same-curve": {0.005}},
+        "slender": {"compliance": {0.005}},
+        "incompressible": {"compliance": {0.02}},
+        "stiffness-contrast": {"condition-known": {0.0}},
+        "unload-reload": {"secant": {1e-6, 1e-3}, "return": {1e-6}, "same-envelope": {0.002}, "contact": {0.1}},
+        "full-separation": {"separated": {0.0}, "no-load": {0.01}, "all-dissipated": {0.01 + 1.0 / 50}},
+    }
+    for name, wanted in allowed.items():
+        found: dict[str, set[float]] = {}
+        for (check, _), one in judged(name, world(name, make=made.get(name, made_up))).items():
+            found.setdefault(check, set()).add(one.tolerance)
+        assert found == wanted, name
