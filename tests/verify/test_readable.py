@@ -28,6 +28,7 @@ from iga.tspline import greville, tspline_mesh  # noqa: E402
 from verify import mesh_drawing  # noqa: E402
 from verify.cost import figures as cost_figures  # noqa: E402
 from verify.hard import page as hard_page  # noqa: E402
+from verify.hard import suite  # noqa: E402
 from verify.hard.case import Case, variant  # noqa: E402
 from verify.hard.one import run_case  # noqa: E402
 from verify.hard.suite import Cell  # noqa: E402
@@ -299,3 +300,17 @@ def test_pictures_of_meshes_can_be_read(control: bool, marked: bool, stretch: fl
     box = axes.get_window_extent()
     assert box.width / box.height == pytest.approx(np.divide(*(high - low)), rel=0.02), "to scale"
     assert figure.get_size_inches()[0] == 7.0 and 1.2 <= figure.get_size_inches()[1] <= 8.1
+
+
+def test_failures_name_criteria_and_runs_that_stopped(tmp_path: Path) -> None:
+    cell, _ = hard_cell(tmp_path, 2, "stopped: here")
+    lines = suite.failures([cell, Cell(cell.case, "tspline", None, "signal 9")])
+    assert "fake nurbs: v0: stopped: here" in lines and not any("v1" in line for line in lines)
+    assert any(line.startswith("fake nurbs: ") and "completed" in line for line in lines)
+    assert not any("tspline" in line for line in lines), "of one without a verdict the matrix tells"
+    assert suite.failures([hard_cell(tmp_path / "whole", 2)[0]]) == []
+    told = [
+        suite._in_short(one) for one in (cell, hard_cell(tmp_path / "again", 2)[0], Cell(cell.case, "x", None, "why"))
+    ]
+    assert told[0].endswith(" criteria fail, 2 runs, 1.0 s") and told[0].startswith("1 of ")
+    assert told[1:] == ["holds, 2 runs, 1.0 s", "no verdict, why"]
