@@ -10,6 +10,9 @@ import numpy as np
 from iga.bernstein import bernstein, bernstein_derivative, tensor
 from iga.extraction import SIDES, Chain, ElementBlock, Mesh
 
+#: Where all Bezier weights of an element are one but for so much, there is nothing to divide by.
+POLYNOMIAL = 1e-13
+
 
 @dataclass(frozen=True)
 class BlockBasis:
@@ -100,10 +103,9 @@ def _rational(
     B_kqb = np.concatenate([tensor(B_s, B_t), tensor(dB_s, B_t), tensor(B_s, dB_t)])
     w_ea = mesh.w_A[block.conn_ea]
     wN_ekqa = (B_kqb @ block.C_eab.swapaxes(1, 2)).reshape(len(w_ea), 3, len(points_q), -1)
-    N, dN_s, dN_t = np.moveaxis(wN_ekqa, 1, 0)
-    if np.all(w_ea == 1.0):  # where the sum of all functions is one there is nothing to divide by
-        return N, (dN_s, dN_t)
-    wN, wdN_s, wdN_t = (v * w_ea[:, None, :] for v in (N, dN_s, dN_t))
+    wN, wdN_s, wdN_t = np.moveaxis(wN_ekqa * w_ea[:, None, None], 1, 0)
+    if np.allclose(w_ea[:, None] @ block.C_eab, 1.0, rtol=0.0, atol=POLYNOMIAL):
+        return wN, (wdN_s, wdN_t)
     W, W_s, W_t = (v.sum(-1, keepdims=True) for v in (wN, wdN_s, wdN_t))
     N = wN / W
     return N, ((wdN_s - N * W_s) / W, (wdN_t - N * W_t) / W)

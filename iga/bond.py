@@ -93,10 +93,9 @@ def _bonded_sides(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[fl
 
 def _ends(problem: Debonding, bodies: tuple[Body, ...]) -> np.ndarray:
     """Where along the specimen the sides of the slave begin and end (n_c, 2)."""
-    face = _slave(problem, bodies)
-    return problem.pose.own(face.bezier_points(control_points(bodies))[:, [0, -1]] / face.w_cb[:, [0, -1], None])[
-        ..., 0
-    ]
+    face, P_AI = _slave(problem, bodies), control_points(bodies)
+    X_ckI = face.bezier_points(P_AI)[:, [0, -1]] / face.w_cb[:, [0, -1], None]
+    return problem.pose.own(X_ckI)[..., 0]
 
 
 def _between(

@@ -66,16 +66,16 @@ def all_values(parts: Sequence[np.ndarray]) -> np.ndarray:
 
 
 @cache
-def half(n_a: int) -> np.ndarray:
+def half_places(n_a: int) -> np.ndarray:
     """Places in an element's (n_a, 3, n_a) entries of those that tell all of a symmetric matrix, each once."""
     a, p, b = np.indices((n_a, len(PAIRS), n_a))
     return np.flatnonzero((p == 1) | (a >= b))
 
 
 def half_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and columns (n_e, n_h) of the entries of `half`, on either side of the diagonal."""
+    """Rows and columns (n_e, n_h) of the entries of `half_places`, on either side of the diagonal."""
     n_e, n_a = conn_ea.shape
-    return tuple(np.reshape(v[:, :, :3], (n_e, -1))[:, half(n_a)] for v in stiffness_entries(conn_ea))
+    return tuple(np.reshape(v[:, :, :3], (n_e, -1))[:, half_places(n_a)] for v in stiffness_entries(conn_ea))
 
 
 def full_matrices(K_eapb: np.ndarray) -> np.ndarray:

@@ -17,8 +17,8 @@ from iga.bulk import (
     energy,
     full_matrices,
     gradient,
-    half,
     half_entries,
+    half_places,
     relative,
 )
 from iga.dense import Dense
@@ -428,7 +428,7 @@ def _scatter(solids: Sequence[Solid], band: Band) -> csr_array:
     for solid in solids:
         n_e, n_a = solid.basis.conn_ea.shape
         places.append(_positions(band, [half_entries(solid.basis.conn_ea)]))
-        columns.append((first + np.arange(n_e)[:, None] * 3 * n_a**2 + half(n_a)).ravel())
+        columns.append((first + np.arange(n_e)[:, None] * 3 * n_a**2 + half_places(n_a)).ravel())
         first += 3 * n_e * n_a**2
     place, column = (np.concatenate(parts).astype(np.int32) for parts in (places, columns))
     return coo_array((np.ones(place.size), (place, column)), shape=(band.size, first)).tocsr()

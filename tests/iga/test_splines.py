@@ -1,5 +1,7 @@
 """Bases: partition of unity, two routes to every value, knot insertion, exact geometry."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -150,3 +152,16 @@ def test_a_mesh_that_is_turned_inside_out_is_refused():
 def test_bad_knot_vectors_are_refused(knots):
     with pytest.raises(ValueError):
         KnotVector(2, np.array(knots, dtype=float))
+
+
+def test_functions_that_do_not_sum_to_one_are_divided_by_their_sum(rng):
+    """Whatever the weights, also where all are one: as of T-splines that are no partition of unity by themselves."""
+    mesh = nurbs_rectangle(open_knots(np.array([0.0, 1.0, 2.5]), 3), open_knots(np.array([0.0, 1.0]), 2))
+    (block,), rule = mesh.blocks, (rng.random((5, 2)), np.ones(5))
+    a, b = 1.0 + rng.random(2)
+    doubled = replace(block, C_eab=a * block.C_eab)
+    for weight in (1.0, b, 1.0 / a):
+        heavy = replace(mesh, w_A=weight * mesh.w_A)
+        found, plain = block_basis(heavy, doubled, *rule), block_basis(mesh, block, *rule)
+        for name in ("N_eqa", "dN_eqaI", "dV_eq", "X_eqI"):
+            assert getattr(found, name) == pytest.approx(getattr(plain, name), rel=1e-12, abs=1e-12), name
