@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import threading
-import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -56,7 +55,11 @@ def test_a_sweep_tells_what_is_running(
 ) -> None:
     monkeypatch.setattr(progress, "LINES_EVERY_SECONDS", 0.0)
     monkeypatch.setattr(sweep, "ALIVE_EVERY_SECONDS", 0.05)
-    go = threading.Event()
+    go, alive = threading.Event(), Progress.alive
+
+    def heard(self: Progress, news: str) -> None:
+        alive(self, news)
+        go.set()
 
     def execute(task: sweep.Task, root: Path, cwd: Path, running: set) -> str:
         go.wait(30)
@@ -64,7 +67,7 @@ def test_a_sweep_tells_what_is_running(
         return ""
 
     monkeypatch.setattr(sweep, "execute", execute)
-    threading.Timer(0.4, go.set).start()
+    monkeypatch.setattr(Progress, "alive", heard)
     tasks = [sweep.Task(name, name, (), "proof", seconds=60.0) for name in ("a", "b")]
     with pool(2) as workers:
         assert len(list(sweep.sweep(tasks, tmp_path, workers, "runs", lambda done: "done"))) == 2
@@ -74,9 +77,11 @@ def test_a_sweep_tells_what_is_running(
 
 def test_work_that_does_not_say_how_far_it_is(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
     monkeypatch.setattr(progress, "LINES_EVERY_SECONDS", 0.0)
+    said, line = threading.Event(), Progress.line
+    monkeypatch.setattr(Progress, "line", lambda self, text: (line(self, text), said.set()))
     with telling("report", 60.0):
-        time.sleep(1.1)
-    assert capsys.readouterr().err.startswith("report: at work, about 59 s left\n")
+        assert said.wait(30)
+    assert capsys.readouterr().err.startswith("report: at work, about 5")
     with pytest.raises(ValueError, match="it"), telling("report", 60.0):
         raise ValueError("it")
     assert not [one for one in threading.enumerate() if one.daemon and "tick" in one.name]
