@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.checks import law_of, loading, run_checks
+from verify.checks import dissipation_gap, law_of, loading, run_checks
 from verify.crosschecks import cross_checks, remarks, squeeze
 from verify.methods import solve
 from verify.result import Result, steps_from_rows
@@ -91,6 +91,22 @@ def test_a_separated_specimen_has_completed(scene: Scene, beam: Result) -> None:
     assert failed(scene, short) == {"completed"}
     assert failed(scene, replace(short, ending="separated at opening 2")) == set()
     assert failed(scene, replace(short, ending="separated at opening 2", status="stopped: no")) == {"completed"}
+
+
+def test_a_crack_that_runs_from_point_to_point_costs_what_it_costs(scene: Scene) -> None:
+    """A zone that spends a fifth of an element's G_Ic before its point opens, and a crack of too few elements."""
+    element = 1.0
+    spent = np.linspace(0.0, 5.3, 500)
+    seen = 4.0 + spent + 0.2 * np.sin(2.0 * np.pi * spent) * element
+    cost = scene.interface.toughness * scene.specimen.width
+    steps = {"opening": spent, "crack_length": seen, "dissipated_energy": cost * spent}
+    first_to_last = (spent[-1] - spent[0]) / (seen[-1] - seen[0]) - 1.0
+    assert abs(first_to_last) > 0.03, "what must not be taken for a lost energy"
+    assert dissipation_gap(scene, steps, element) == pytest.approx(0.0, abs=0.01)
+    dear = {**steps, "dissipated_energy": 1.05 * cost * spent}
+    assert dissipation_gap(scene, dear, element) == pytest.approx(0.05, abs=0.01)
+    assert dissipation_gap(scene, steps, element=2.0) is None
+    assert dissipation_gap(scene, steps) is not None, "a method without a mesh has no elements to count"
 
 
 def test_unloading_steps_do_not_count_for_j() -> None:
