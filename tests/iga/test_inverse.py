@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-from iga.banded import Band, BandCholesky, BandLU, Skew
+from iga.banded import Band, BandCholesky, BandLU, Skew, number
 from iga.dcb import build
 from iga.dense import Dense, DenseCholesky, DenseLU
 from iga.path import Point, follow
@@ -139,3 +139,52 @@ def test_dense_solvers_read_the_lower_half_alone(rng):
     assert all(np.allclose(factors.solve(b), np.linalg.solve(A, b), rtol=0, atol=1e-12) for factors in found)
     assert Dense(n).condition(half) == pytest.approx(np.linalg.cond(A, 1), rel=1e-6)
     assert Dense(n).cholesky(-half) is None
+
+
+def farthest(band, groups) -> int:
+    """Largest distance of two equations that are coupled."""
+    free = [[place for place in band.place_d[d_m] if place >= 0] for d_nm in groups for d_m in d_nm]
+    return max((max(places) - min(places) for places in free if places), default=0)
+
+
+@pytest.mark.parametrize("held", [(), (0, 7, 8, 29)])
+@pytest.mark.parametrize("useful", [True, False])
+def test_a_chain_has_a_narrow_band_in_whatever_order_it_is_given(held, useful, rng):
+    """Pairs one after another and triples beside them: the band that the coordinate gives, or one found without it."""
+    n = 30
+    name = rng.permutation(n)
+    groups = [np.stack([name[:-1], name[1:]], -1), np.stack([name[:-2], name[1:-1], name[2:]], -1)]
+    x_d = np.empty(n)
+    x_d[name] = np.arange(n) if useful else rng.random(n)
+    free_d = ~np.isin(np.arange(n), held)
+    band = number(groups, x_d, free_d)
+    assert band.n == free_d.sum() and band.k == farthest(band, groups) <= 2
+    assert np.all(band.place_d[~free_d] == -1) and sorted(band.place_d[free_d]) == list(range(band.n))
+
+
+def test_the_narrower_numbering_is_taken(rng):
+    """A grid of 4 by 12, coupled as its cells are: along its length, or as narrow as can be found."""
+    i, j = np.indices((3, 11)).reshape(2, -1)
+    cells = np.stack([12 * i + j, 12 * i + j + 1, 12 * (i + 1) + j, 12 * (i + 1) + j + 1], -1)
+    across, along = np.indices((4, 12)).reshape(2, -1).astype(float)
+    free_d = np.ones(48, dtype=bool)
+    bands = [number([cells], x_d, free_d) for x_d in (along + 0.01 * across, across, rng.random(48))]
+    assert bands[0].k == 5 and all(band.k == farthest(band, [cells]) <= 8 for band in bands)
+    assert bands[0].reach(cells[:, 0], cells[:, 3]) <= 5 and bands[0].reaching(np.array([0]), np.array([11])).k > 5
+    assert bands[0].reaching(cells[:, 0], cells[:, 3]).k == 5
+    assert number([np.array([[3]])], np.zeros(4), np.array([False] * 3 + [True])).k == 0
+
+
+def test_a_singular_matrix_has_no_factors_and_no_finite_condition():
+    band = Band(np.arange(3), 3, 1)
+    half = np.bincount(band.positions(np.array([0, 2]), np.array([0, 2])), [2.0, 3.0], band.size)
+    assert band.lu(half) is None and band.cholesky(half) is None and band.condition(half) == np.inf
+    flat = np.diag([2.0, 0.0, 3.0]).ravel()
+    assert Dense(3).lu(flat) is None and Dense(3).cholesky(flat) is None and Dense(3).condition(flat) == np.inf
+
+
+def test_a_right_hand_side_of_another_size_is_refused():
+    band, dense = Band(np.arange(3), 3, 0), Dense(3)
+    for matrix, half in ((band, np.append(np.ones(3), 0.0)), (dense, np.eye(3).ravel())):
+        for factors in (matrix.cholesky(half), matrix.lu(half)):
+            assert np.allclose(factors.solve(np.arange(3.0)[:, None])[:, 0], np.arange(3.0))
