@@ -1,0 +1,66 @@
+"""What is foreseen of a step, before its equilibrium is sought."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from specimens import PAPER
+
+import iga.path
+import iga.step
+from iga.dcb import build
+from iga.path import follow
+from iga.step import foresee
+
+
+@pytest.fixture(scope="module")
+def asked():
+    """What is known where a step sets out from a growing front, as the path asks for it."""
+    given = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(iga.path, "foresee", lambda *words: given.append(words) or foresee(*words))
+        list(follow(build(replace(PAPER, opening=(1.0,), dofs=400)).system, (1.0,), 20))
+    return next(words for words in reversed(given) if words[4] is not None and words[1].tangent.growing_q.any())
+
+
+def foreseen(asked, part, monkeypatch):
+    """Where a step sets out by whose tangent the front opens by a part of g_u, and by how much that part travels."""
+    system, point, step, _, known, phase = asked
+    path, moved = point.tangent, []
+    away = part * system.interface.law.g_u / path.rate_q[point.front]
+
+    def recorded(interface, g_q, q, goal):
+        moved.append((q, goal - g_q[q]))
+        return travelled(interface, g_q, q, goal)
+
+    travelled = iga.step.travelled
+    with monkeypatch.context() as patch:
+        patch.setattr(iga.step, "travelled", recorded)
+        return foresee(system, point, replace(step, away=away), False, known, phase), moved
+
+
+@pytest.mark.parametrize("part", [0.05, 0.48, 0.52, 0.9])
+def test_gaps_travel_where_the_front_leaps_by_half_of_the_opening_that_breaks_it(asked, part, monkeypatch):
+    system, point = asked[:2]
+    found, moved = foreseen(asked, part, monkeypatch)
+    leap = [(point.front, pytest.approx(part * system.interface.law.g_u))]
+    assert moved == (leap if part > 0.5 else []) and found.state.u_d.shape == point.state.u_d.shape
+
+
+def test_a_short_step_of_a_law_of_straight_lines_is_its_tangent(asked, monkeypatch):
+    system, point = asked[:2]
+    path = point.tangent
+    for part in (0.02, 0.005):
+        found, _ = foreseen(asked, part, monkeypatch)
+        away = part * system.interface.law.g_u / path.rate_q[point.front]
+        along_d = np.append(path.du_d, path.d_load) * away
+        moved_d = np.append(found.state.u_d - point.state.u_d, found.state.load - point.state.load)
+        assert np.abs(moved_d - along_d).max() < 1e-7 * np.abs(along_d).max() and found.settled and found.place is None
+
+
+def test_without_a_known_tangent_a_step_sets_out_along_the_last_one(asked):
+    system, point, step, _, _, phase = asked
+    found, path = foresee(system, point, step, True, None, phase), point.tangent
+    assert np.array_equal(found.state.u_d, point.state.u_d + step.away * path.du_d)
+    assert found.state.load == point.state.load + step.away * path.d_load
+    assert not found.settled and found.spent == () and found.place is None
