@@ -145,6 +145,15 @@ def test_hanging_nodes_of_different_levels():
     assert len(np.unique(element_sides(mesh).hanging[:, 0])) == 2 + 3
 
 
+def test_cuts_that_do_not_end_are_given_up(monkeypatch):
+    """Each round crosses one element; what needs more rounds than are allowed is refused in words."""
+    mesh = _rows_of(np.array([1, 3, 6]))
+    assert conforming(conforming(mesh)).elements == 18
+    monkeypatch.setattr("iga.conform.ROUNDS", 1)
+    with pytest.raises(ValueError, match="hanging nodes are left after 1 rounds of cuts, at 1[0-9] elements"):
+        conforming(mesh)
+
+
 @given(suitable_tmeshes())
 def test_elements_of_any_t_mesh_are_a_conforming_disk(mesh):
     """Vertices, edges and elements add up by Euler's formula, and the space of the T-spline is still there."""
