@@ -1,0 +1,46 @@
+"""How long runs are expected to take: by their steps, their unknowns and their method."""
+
+from __future__ import annotations
+
+import pytest
+
+from verify.estimate import BESIDES, PER_STEP, STEPS_CHOSEN, UNKNOWN, seconds, steps, unknowns
+from verify.process_zone import bulk_length, slender_length
+from verify.scene import load_scene
+
+#: Arms in which the process zone is as long as in an unbounded body.
+THICK = ("load.opening=28", "specimen.arm_thickness=3.0", "interface.strength=120")
+
+
+def test_unknowns_are_those_aimed_at() -> None:
+    dofs = "discretization.dofs=1001"
+    whole, mirrored = (load_scene("dcb-czm1", [dofs, f"effects.symmetry={s}"]) for s in ("false", "true"))
+    assert [unknowns(scene, "nurbs") for scene in (whole, mirrored)] == [1001, 500]
+    assert unknowns(whole, "beam") == unknowns(whole, "code of another") == 1000
+    elements = load_scene("dcb-czm1", ["dolfinx.elements=100", "dolfinx.degree=2"])
+    assert unknowns(elements, "dolfinx") == 2 * 2 * 201 * 3, "two arms, two components, one element through each"
+
+
+@pytest.mark.parametrize(("method", "per_step"), [*PER_STEP.items(), ("code of another", UNKNOWN)])
+def test_time_goes_with_steps_and_unknowns(method: str, per_step: float) -> None:
+    scene = load_scene("dcb-czm1", ["discretization.steps=40", "discretization.dofs=4000"])
+    steady = BESIDES.get(method, 2.0)
+    per_run = per_step * steps(scene, method) * unknowns(scene, method) / 1000
+    assert seconds(scene, method) == pytest.approx(steady + per_run) and per_run > 0.0
+
+
+def test_steps_beyond_those_of_an_intact_bond_go_with_the_lengths_of_the_zone() -> None:
+    """A crack that runs through the whole bond has it all to grow; without growth twenty are enough."""
+    few = "discretization.steps=2"
+    assert steps(load_scene("dcb-czm1", [few, "load.opening=1e-6"]), "nurbs") == 20
+    assert steps(load_scene("dcb-czm1", ["discretization.steps=21", "load.opening=1e-6"]), "nurbs") == 21
+    shorter = []
+    for name, *more in (("dcb-czm1", "load.opening=28"), ("peel-120", "load.opening=150"), ("dcb-czm1", *THICK)):
+        scene = load_scene(name, [few, *more])
+        specimen = scene.specimen
+        shorter.append(bulk_length(scene) < slender_length(scene))
+        bond = specimen.bond_length if specimen.kind == "peel" else specimen.length - specimen.precrack
+        zones = bond / min(slender_length(scene), bulk_length(scene))
+        assert steps(scene, "nurbs") == round(20 + 8.2 * zones)
+    assert len(set(shorter)) == 2, "of slender arms the one length is shorter, of thick ones the other"
+    assert steps(load_scene("dcb-czm1", ["discretization.steps=auto"]), "tspline") == STEPS_CHOSEN
