@@ -70,6 +70,8 @@ def unreadable(figure: Figure) -> list[str]:
             found.append(f"axes {i} on axes {j}")
     for axes in figure.axes:
         found += _lines(axes)
+        if (scale := getattr(axes, "_colorbar", None)) is not None and scale.outline.get_visible():
+            found.append("a frame around the scale of colours")
         bars = [bar for group in axes.containers if isinstance(group, BarContainer) for bar in group]
         boxes = [bar.get_window_extent(renderer) for bar in bars]
         found += ["a bar on a bar" for here, there in combinations(boxes, 2) if _meet(here, there)]
@@ -79,10 +81,14 @@ def unreadable(figure: Figure) -> list[str]:
 def _texts(figure: Figure) -> Iterator[Text]:
     """All words that are drawn."""
     ticks = {id(t) for axis in figure.findobj(Axis) for minor in (0, 1) for t in axis.get_ticklabels(minor=bool(minor))}
-    shown = {id(t.label1) for axis in figure.findobj(Axis) if axis.get_visible() for t in axis._update_ticks()}
+    shown = {id(t.label1) for axis in figure.findobj(Axis) if _seen(axis) for t in axis._update_ticks()}
     for text in figure.findobj(Text):
         if text.get_visible() and text.get_text().strip() and (id(text) not in ticks or id(text) in shown):
             yield text
+
+
+def _seen(axis: Axis) -> bool:
+    return axis.get_visible() and axis.axes.axison
 
 
 def _lines(axes: Axes) -> Iterator[str]:

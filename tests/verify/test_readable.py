@@ -17,6 +17,7 @@ from figures import Drawn, legend, unreadable  # noqa: E402
 from made_up_runs import made_up as a_run  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.cm import ScalarMappable  # noqa: E402
 from test_charts import a_study  # noqa: E402
 from test_cost import a_row  # noqa: E402
 from test_effects_study import made_up, of_pair  # noqa: E402
@@ -24,6 +25,8 @@ from test_hard import FAKE, stub  # noqa: E402
 from test_undeformed import entry, snapshot  # noqa: E402
 
 from iga.bisection import initial  # noqa: E402
+from iga.bspline import open_knots  # noqa: E402
+from iga.nurbs import nurbs_rectangle  # noqa: E402
 from iga.tspline import greville, tspline_mesh  # noqa: E402
 from verify import mesh_drawing  # noqa: E402
 from verify.cost import figures as cost_figures  # noqa: E402
@@ -59,6 +62,7 @@ PAGE = (cost, curves, drawing, fields, meshes, opening, peel_drawing, undeformed
         (lambda axes: axes.plot([0, 1], [0, 1], "o", markersize=0.5, label="dots"), "dots of 0.5"),
         (lambda axes: axes.plot([0, 1], [7, 7], label="high") and axes.set_ylim(0, 1), "high out of view"),
         (lambda axes: axes.barh([0.0, 0.2], [1.0, 1.0], 0.8), "a bar on a bar"),
+        (lambda axes: axes.figure.colorbar(ScalarMappable(), ax=axes), "a frame around the scale"),
     ],
 )
 def test_what_cannot_be_read_is_told(spoil: Callable[[Axes], object], words: str) -> None:
@@ -300,6 +304,44 @@ def test_pictures_of_meshes_can_be_read(control: bool, marked: bool, stretch: fl
     box = axes.get_window_extent()
     assert box.width / box.height == pytest.approx(np.divide(*(high - low)), rel=0.02), "to scale"
     assert figure.get_size_inches()[0] == 7.0 and 1.2 <= figure.get_size_inches()[1] <= 8.1
+
+
+def test_all_marks_of_a_mesh_are_named_below_it() -> None:
+    """Four names are more than fit into a line; what is not of the least degrees is filled."""
+    tmesh = initial(np.arange(4.0), np.arange(4.0)).tmesh
+    facts = MeshFacts(tspline_mesh(tmesh, greville(tmesh)))
+    facts.__dict__["kinds"] = [((2, 2), 9, 1), *facts.kinds]
+    facts.__dict__["junctions"] = np.array([[1.0, 0.5]])
+    facts.__dict__["extraordinary"] = [(3, np.array([1.0, 1.0])), (5, np.array([2.0, 2.0]))]
+    with matplotlib.rc_context(mesh_drawing._RC):
+        figure = mesh_drawing.mesh_figure(facts, "a mesh with everything", True)
+        assert unreadable(figure) == []
+    names = ["control points", "1 T-junctions", "extraordinary points, with their valence"]
+    assert sorted(legend(figure)) == sorted([*names, "degrees other than 2 and 2"])
+    (axes,), (one,) = figure.axes, figure.legends
+    place = one.get_window_extent()
+    assert figure.bbox.x0 <= place.x0 and place.x1 <= figure.bbox.x1
+    assert figure.bbox.y0 <= place.y0 and place.y1 <= axes.get_window_extent().y0
+    (filled,) = [c for c in axes.collections if c.get_label().startswith("degrees")]
+    boxes = sorted(tuple(path.get_extents().extents.round(9)) for path in filled.get_paths())
+    assert boxes == [(i, j, i + 1.0, j + 1.0) for i in range(3) for j in range(3)]
+
+
+def test_sides_are_curves_where_they_bend_by_a_millionth() -> None:
+    """Of their length; otherwise their ends are enough. The outline of an element goes once around it."""
+    kv, scale = open_knots([0.0, 1.0], 3), 20.0
+    body = nurbs_rectangle(kv, kv)
+    for bend, points in ((0.0, 2), (0.97e-6, 2), (1.03e-6, 17)):
+        P_AI = scale * body.P_AI
+        inner = (body.P_AI[:, 1] == 0.0) & (body.P_AI[:, 0] % 1.0 > 0.0)
+        P_AI[inner, 1] = scale * bend / 0.75
+        facts = MeshFacts(replace(body, P_AI=P_AI))
+        curves = mesh_drawing._curves(facts)
+        assert [len(curve) for curve in curves] == [2, 2, points, 2]
+        assert max(curves[2][:, 1]) == pytest.approx(scale * bend * (points > 2), rel=1e-6, abs=1e-12)
+        x, y = mesh_drawing._outline(curves, 0).T
+        area = 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
+        assert area == pytest.approx(scale**2, rel=1e-5), "walked with the element on the left"
 
 
 def test_failures_name_criteria_and_runs_that_stopped(tmp_path: Path) -> None:
