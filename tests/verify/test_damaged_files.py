@@ -19,7 +19,7 @@ from test_accuracy import a_study
 
 from verify import report, verification
 from verify.cost import accuracy
-from verify.folder import damage, read_fields, read_result, write_fields
+from verify.folder import _append, damage, read_fields, read_result, write_fields
 from verify.included import found_in, named
 from verify.jobs import Job, Outcome, run_all
 from verify.plain import Damaged, read_json
@@ -280,3 +280,34 @@ def test_a_result_of_other_types_is_damaged(changes: dict, swept: tuple, tmp_pat
     assert damage(folder, "result.json") == "result.json"
     with pytest.raises(Damaged, match=next(iter(changes))):
         read_result(folder)
+
+
+def test_fields_of_sizes_that_do_not_belong_together_are_damaged(tmp_path: Path) -> None:
+    """As many points in every column of the interface, as many displacements and stresses as places."""
+    path = tmp_path / "fields.npz"
+    write_fields(path, made_up("nurbs", 0.0, 1.0, 500, 2).snapshots)
+    with np.load(path) as arrays:
+        whole = dict(arrays)
+    short = {name: whole[f"0.{name}"][1:] for name in ("s_q", "gap_q", "traction_q", "damage_q", "X_euvi", "u_euvi")}
+    short |= {"stress_euv": whole["0.stress_euv"][..., 1:], "s_q": whole["0.s_q"].astype(str)}
+    for name, array in short.items():
+        path.write_bytes(as_npz(**{**whole, f"0.{name}": array}))
+        with pytest.raises(Damaged, match="fields.npz"):
+            read_fields(path)
+    path.write_bytes(as_npz(**{**whole, "0.stress_euv": np.zeros(0)}))
+    assert len(read_fields(path)) == 3, "stress is not told by every code"
+
+
+def test_of_a_row_that_does_not_fit_on_the_disk_nothing_is_left(tmp_path: Path) -> None:
+    class Full(io.FileIO):
+        def write(self, data: bytes) -> int:
+            if self.tell() > 12:
+                raise OSError(28, "No space left on device")
+            return super().write(data[:7])
+
+    with Full(tmp_path / "curve.csv", "w") as stream:
+        _append(stream, ("a", "b"), {"a": 1.5, "b": 2.0})
+        with pytest.raises(OSError, match="No space left on device") as raised:
+            _append(stream, ("a", "b"), {"a": 1.0 / 3.0, "b": 2.0})
+    assert raised.value.filename == str(tmp_path / "curve.csv") and raised.value.errno == 28
+    assert (tmp_path / "curve.csv").read_text() == "1.5,2\n"

@@ -203,6 +203,27 @@ def test_nested_phases_count_once() -> None:
     assert sum(seconds.values()) - seconds["total"] == pytest.approx(seconds["total"])
 
 
+def test_phases_add_up_to_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a clock that goes on by one between any two looks at it."""
+    monkeypatch.setattr("verify.timing.perf_counter", iter(range(100)).__next__)
+    watch = Stopwatch()
+    with watch.phase("mesh"):
+        pass
+    assert watch.seconds() == {"mesh": 1, "basis": 0, "assembly": 0, "factor": 0, "solve": 0, "other": 2, "total": 3}
+    with watch.phase("basis"), watch.phase("compile"):
+        pass
+    with watch.phase("strange"):
+        pass
+    found = watch.seconds()
+    assert watch.compile == 1 and (found["basis"], found["other"], found["total"]) == (3, 6, 10)
+    whole = Stopwatch()
+    with whole.phase("solve"):
+        assert whole.seconds()["other"] == 1
+    with whole.phase("solve"):
+        pass
+    assert whole.seconds()["solve"] == 3
+
+
 def test_the_time_of_a_run_is_not_that_of_importing_its_solver(monkeypatch: pytest.MonkeyPatch) -> None:
     """A module that is slow to come, and a solver that has nothing to do."""
     solution = SimpleNamespace(rows=({"opening": 0.0, "load": 0.0},), status="complete", rejected_steps=0, snapshots=())
