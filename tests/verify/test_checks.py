@@ -145,6 +145,7 @@ def test_a_beam_is_no_judge_of_arms_that_a_strong_bond_squeezes(scene: Scene, be
     for part, judged in ((0.09, True), (0.11, False)):
         strong = load_scene("dcb-czm1-linear", [f"interface.strength={strength * part**0.5}"])
         assert squeeze(strong) == pytest.approx(part)
+        assert squeeze(load_scene("peel-80", [f"interface.strength={strong.interface.strength}"])) == 0.0
         names = {check.name for check in cross_checks(strong, results)}
         assert ("beam-curve" in names) == judged and {"curve", "peak"} <= names
         assert len(remarks(strong, results)) == (not judged)

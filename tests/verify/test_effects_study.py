@@ -152,6 +152,8 @@ def test_a_run_that_stopped_keeps_its_row() -> None:
     assert not found.complete and found.sentence == "contact: without it: stopped: here" and isnan(found.end_change)
     gone = of_pair("contact", [None], [made_up()] * 2, "failed: signal 9")
     assert gone.sentence == "contact: with it: failed: signal 9" and isnan(gone.time_ratio)
+    untimed = of_pair("contact", [made_up()] * 2, [replace(made_up(), seconds=None)] * 2)
+    assert untimed.complete and untimed.sentence.endswith(", no time")
 
 
 def test_numbers_with_their_sign() -> None:

@@ -18,7 +18,7 @@ from verify.paper import plan as plans
 from verify.paper import statements
 from verify.paper.comparison import lines
 from verify.paper.plan import LAWS, Case, planned
-from verify.paper.study import Reference, Study, Trial, limit, measured, trial
+from verify.paper.study import Reference, Study, Trial, distance, limit, measured, trial
 from verify.result import Result
 from verify.scene import load_scene
 
@@ -276,3 +276,6 @@ def test_a_run_is_drawn_from_its_first_step_on(rows, drawable):
     short = replace(whole.result, steps={name: column[:rows] for name, column in whole.result.steps.items()})
     assert replace(whole, result=short).drawable == drawable
     assert not replace(whole, result=None).drawable and not replace(whole, result=None).complete
+    assert np.isfinite(replace(whole, result=short).peak_load) == drawable
+    assert distance(whole, whole) == 0.0 and np.isnan(distance(whole, None)) and np.isnan(distance(None, whole))
+    assert np.isnan(distance(whole, replace(whole, result=replace(whole.result, status="stopped: here"))))

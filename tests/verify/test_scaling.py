@@ -7,7 +7,7 @@ import json
 import shutil
 import sys
 from dataclasses import fields, replace
-from math import inf, isnan
+from math import inf, isnan, nan
 from pathlib import Path
 
 import numpy as np
@@ -92,6 +92,7 @@ def test_the_part_that_is_not_shared_gives_back_the_speed_up(ranks: int) -> None
         assert serial_part(amdahl(serial, ranks), ranks) == pytest.approx(serial)
     assert amdahl(0.0, ranks) == ranks and amdahl(0.25, inf) == 4.0
     assert serial_part(0.5, ranks) > 1.0, "slower than one rank"
+    assert serial_part(0.0, ranks) == inf and isnan(serial_part(-1.0, ranks)) and isnan(serial_part(nan, ranks))
 
 
 # --- which runs
