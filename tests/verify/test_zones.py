@@ -18,6 +18,7 @@ from verify.zones import (
     ELASTIC,
     FREE,
     OPEN,
+    SMALLEST_WAVE,
     SOFTENING,
     Ends,
     Foundation,
@@ -25,6 +26,7 @@ from verify.zones import (
     _graded,
     _last_above,
     _root,
+    _waves,
     find,
     mesh,
 )
@@ -125,3 +127,22 @@ def test_the_last_place_above_a_level_stays_between_its_ends() -> None:
     assert _last_above(x, v, slope, 2.5, 3.0, 9.0) == 3.0 and _last_above(x, v, slope, 2.5, 1.0, 2.2) == 2.2
     assert _last_above(x, v, slope, -9.0, 1.0, 10.0) == 10.0 and _last_above(x, v, slope, 7.0, 1.0, 9.0) == 1.0
     assert _last_above(x, v, slope, 3.0, 0.0, 9.0) == pytest.approx(2.0), "a level that is met at a sample"
+
+
+def test_waves_are_sought_behind_the_front_alone() -> None:
+    """Ends of contact are where the gap changes its sign; of waves that are too small none is kept."""
+    x = np.linspace(0.0, 10.0, 41)
+    v, slope = np.cos(x), -np.sin(x)
+    strong = np.ones(41)
+    roots = np.pi * np.array([0.5, 1.5, 2.5])
+    assert _waves(x, v, slope, 0.0, 0, strong) == pytest.approx(roots, abs=1e-4)
+    assert _waves(x, v, slope, 2.0, 0, strong) == pytest.approx(roots[1:], abs=1e-4)
+    assert _waves(x, v, slope, 9.75, 0, strong) == _waves(x, v, slope, 10.0, 0, strong) == []
+    new, followed = SMALLEST_WAVE
+    assert followed < new
+    for part, number in ((1.01 * new, 3), (0.99 * new, 0)):
+        assert len(_waves(x, v, slope, 0.0, 0, part * strong)) == number
+    for part, number in ((1.01 * followed, 2), (0.99 * followed, 0)):
+        assert len(_waves(x, v, slope, 0.0, 2, part * strong)) == number
+    fading = np.where(x < 6.0, 1.0, 0.5 * followed)
+    assert _waves(x, v, slope, 0.0, 3, fading) == pytest.approx(roots[:2], abs=1e-4), "nothing is left behind the third"
