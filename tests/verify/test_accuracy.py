@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -138,3 +139,24 @@ def test_what_cannot_be_solved_here_is_passed_over(tmp_path: Path, monkeypatch: 
     others = [one("nurbs", 1.0, "discretization.degree=9"), one("dolfinx", 2.0), one("bem", 3.0), one("beam", 4.0)]
     found = choose(scene, 0.01, a_study(tmp_path, scene, pareto=[slow, *others]))
     assert (found.method, found.overrides, found.seconds) == ("nurbs", ("discretization.dofs=500",), 9.0)
+
+
+def test_where_no_mesh_is_fine_enough_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ever finer ones are tried, by half as much more or less, up to as many unknowns as a scene may have."""
+    tried: list[int] = []
+
+    def few(scene, solver: str) -> SimpleNamespace:
+        tried.append(scene.discretization.dofs)
+        return SimpleNamespace(elements=7.5 if len(tried) % 2 else 0.0)
+
+    monkeypatch.setattr(accuracy, "expected", few)
+    words = "--accuracy: no mesh is known with 10.0 elements in the process zone of dcb-czm1"
+    with pytest.raises(Refusal, match=words):
+        unknowns_for(load_scene("dcb-czm1"), 10.0)
+    growth = [b / a for a, b in zip(tried[1:7], tried[2:8], strict=True)]
+    assert sorted(growth[::2]) == pytest.approx([1.2] * 3, abs=0.05)
+    assert sorted(growth[1::2]) == pytest.approx([10.0 / 7.5] * 3, abs=0.05)
+    assert 5e5 < tried[-1] <= 1e6 and tried == sorted(set(tried))
+    monkeypatch.undo()
+    with pytest.raises(Refusal, match="no mesh is known with 10.0 elements"):
+        unknowns_for(load_scene("dcb-czm1", ["interface.strength=1e6", "interface.penalty=1e12"]), 10.0)

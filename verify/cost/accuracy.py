@@ -28,7 +28,7 @@ from verify.progress import duration
 from verify.refusal import Refusal
 from verify.run import machine
 from verify.say import say
-from verify.scene import parse_scene
+from verify.scene import SceneError, parse_scene
 from verify.schema import Scene
 
 KNOWN = Path(__file__).with_name("known.csv")
@@ -157,7 +157,10 @@ def unknowns_for(scene: Scene, elements: float) -> int:
     """Unknowns with which at least so many elements span the process zone."""
     size = round(size_of_an_element(scene, FAMILY) * elements)
     for _ in range(40):
-        chosen = parse_scene(scene.model_dump(), Try(FAMILY, 0, size, STEPS).job(scene.name, scene).overrides)
+        try:
+            chosen = parse_scene(scene.model_dump(), Try(FAMILY, 0, size, STEPS).job(scene.name, scene).overrides)
+        except SceneError:  # more unknowns than a scene may have
+            break
         there = expected(chosen, FAMILY.solver).elements
         if there >= elements:
             return size
