@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from verify.complaints import _shown
+from verify.magnitudes import too_large
 from verify.scene import SceneError, load_scene, parse_scene
 
 #: Scene, key, and the ends of its range in N and mm, beside what they are held against.
@@ -141,3 +143,22 @@ def test_a_number_that_no_rule_can_be_worked_out_for_is_named() -> None:
         parse_scene({**needed, "interface": {"strength": 5.0, "toughness": 5e-324}})
     told = "interface.toughness: must be of a size >= 1e-30 and <= 1e+30, got 4.94066e-324"
     assert list(caught.value.sentences) == [told]
+
+
+def test_what_is_too_large_is_shown_as_far_as_it_can_be() -> None:
+    """A whole number that no float holds is told by its length."""
+    raw = {"load": {"opening": [1e31, 10**40, -(10**299), 10**301, True, float("inf")]}, "pose": {"shift": (1e-31, 0)}}
+    told = [line.partition(", got ")[::2] for line in too_large(raw)]
+    assert [got for _, got in told] == ["1e+31", "1e+40", "-1e+299", "an integer of hundreds of digits", "1e-31"]
+    assert [words.partition(":")[0] for words, _ in told] == [
+        *(f"load.opening[{i}]" for i in range(4)),
+        "pose.shift[0]",
+    ]
+    assert all(words.endswith(": must be of a size >= 1e-30 and <= 1e+30") for words, _ in told)
+    assert too_large({"discretization": {"dofs": 1e40}, "specimen": {"length": 1e30, "width": 1e-30}}) == []
+
+
+def test_a_value_of_any_size_has_a_complaint() -> None:
+    """One of more digits than are ever printed as well."""
+    assert _shown(10**5000) == "an integer of thousands of digits" and _shown(True) == "true" and _shown("a") == "'a'"
+    assert _shown("x" * 58) == f"'{'x' * 58}'" and _shown("x" * 59) == f"'{'x' * 56}..."

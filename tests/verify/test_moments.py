@@ -86,3 +86,22 @@ def test_the_slider_has_them_between_the_others(tmp_path: Path) -> None:
     bare = section(replace(given, runs=runs), "scene", between=False)
     assert [frame.opening for frame in bare.frames] == [frame.opening for frame in section(given, "scene").frames]
     assert len(bare.frames) == 3
+
+
+def test_pages_of_few_scenes_have_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("jinja2")
+    from verify.report import page
+
+    asked: list[tuple[str, bool]] = []
+    monkeypatch.setattr(page, "section", lambda report, anchor, between: asked.append((anchor, between)))
+    monkeypatch.setattr(page, "summarise", lambda sections, planes: None)
+    monkeypatch.setattr(page, "_scripts", lambda sections, studies: ())
+    monkeypatch.setattr(page, "rendered", lambda *words, **parts: "page")
+    for number, between in ((1, True), (5, True), (6, False)):
+        asked.clear()
+        page.write((scene_report(),) * number, tmp_path / "of" / "all" / "report.html", {})
+        assert asked == [(f"scene-{i + 1}", between) for i in range(number)]
+        assert [path.name for path in (tmp_path / "of" / "all").iterdir()] == ["report.html"], (
+            "Markdown only if asked for"
+        )
