@@ -141,6 +141,14 @@ def test_meshes_that_do_not_match_are_refused():
         lumped(Interface(N_qa, slave.conn_ca, np.ones(slave.sides), X_qi, P_AI, law, master))
 
 
+def test_a_control_point_without_an_area_is_refused():
+    interface = gauss_twin(PROBLEM)
+    beyond_q = interface.X_qi[:, 0] > np.median(interface.X_qi[:, 0])
+    away = replace(interface, dA_q=np.where(beyond_q, 0.0, interface.dA_q))
+    with pytest.raises(ValueError, match='"gauss" or "lobatto" where a control point has no positive area, got "lump'):
+        lumped(away)
+
+
 @bases
 def test_one_arm_against_its_mirror_image_is_the_whole(basis):
     rows = [

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from iga.cohesive import BilinearLaw
-from iga.work import _hermite, slid_off, step_work, straight_work
+from iga.work import _hermite, _left_rate, slid_off, step_work, straight_work
 
 LAW = BilinearLaw(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0)
 AREA = np.array([0.5, 0.25])
@@ -105,3 +105,26 @@ def test_work_over_the_opening_is_exact_for_cubics() -> None:
     a, b = (point(d, P(d), 1.0, P.deriv()(d)) for d in (0.5, 1.7))
     assert straight_work(a, b) == pytest.approx(P.integ()(1.7) - P.integ()(0.5), rel=1e-12)
     assert straight_work(b, a) == pytest.approx(-straight_work(a, b))
+
+
+@pytest.mark.parametrize("left", [0.3, 0.5, 0.8])
+def test_the_way_off_the_master_goes_on_as_its_share_does(left: float) -> None:
+    """Against the share l^2 (3 - 2 l) of the way l that is left, by a difference quotient; at its ends it stands."""
+
+    def share_of(way: float) -> float:
+        return way**2 * (3.0 - 2.0 * way)
+
+    rate, g, m, fading, Nb = 0.7, 0.02, 1.3, 0.4, 0.25
+    d_share = rate * (share_of(left + 1e-6) - share_of(left - 1e-6)) / 2e-6
+    T = d_share * m / (share_of(left) * fading) - g * Nb
+    touch = SimpleNamespace(
+        share_q=np.array([9.0, share_of(left)]), fading_q=np.array([9.0, fading]), g_q=np.array([9.0, g]),
+        m_q=np.array([9.0, m]), dof_qd=np.array([[0, 1], [1, 2]]),
+        V_qrd=np.array([np.full((3, 2), 9.0), [[9.0, 9.0], [T, 0.0], [Nb - 2.0, 1.0]]]),
+    )  # fmt: skip
+    tangent = SimpleNamespace(du_d=np.array([9.0, 1.0, 2.0]))
+    point = SimpleNamespace(response=SimpleNamespace(contact=touch), tangent=tangent)
+    assert _left_rate(point, np.array([1]), np.array([left])) == pytest.approx(rate, rel=1e-8)
+    assert [_left_rate(point, np.array([1]), np.array([end]))[0] for end in (0.0, 1.0)] == [0.0, 0.0]
+    touch.m_q = None
+    assert _left_rate(point, np.array([1]), np.array([left])).tolist() == [0.0]

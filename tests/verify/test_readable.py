@@ -80,7 +80,11 @@ def test_figures_of_a_beam_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
     section(scene_report(), "beam")
     assert len(drawn) > 12
     for words in ("Meshes of all runs", "Deformed meshes", "The crack of dcb-czm1: opening 3"):
-        assert drawn.axes(words).get_xlim() == pytest.approx((-0.14, 14.14)), "a hundredth of it is left beside it"
+        axes = drawn.axes(words)
+        assert axes.get_xlim() == pytest.approx((-0.14, 14.14)), "a hundredth of it is left beside it"
+        low, high = axes.get_ylim()
+        box, to_scale = axes.get_window_extent(), pytest.approx(14.28 / (high - low))
+        assert high == pytest.approx(-low) and (words.startswith("Mesh") or box.width / box.height == to_scale)
 
 
 def test_figures_of_a_peel_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
