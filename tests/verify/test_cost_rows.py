@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import isnan
+from pathlib import Path
 
 import numpy as np
-from test_cost import a_row, profile
+import pytest
+from test_cost import SCENE, a_row, made_up, profile
 
+from verify.cost import reference as reference_of
+from verify.cost import study as study_of
 from verify.cost.findings import cheapest
 from verify.cost.row import traction_error
+from verify.jobs import Outcome
 
 
 def test_of_a_theory_alone_nothing_is_called_the_cheapest() -> None:
@@ -24,3 +29,25 @@ def test_without_a_zone_there_is_no_error_of_tractions() -> None:
     for damage in (np.zeros(exact[0].s_q.size), np.ones(exact[0].s_q.size)):
         without = (replace(exact[0], damage_q=damage), exact[1])
         assert isnan(traction_error(without, exact)) and isnan(traction_error(exact, without))
+
+
+@pytest.mark.parametrize(
+    ("last", "why"), [(None, "not run: too coarse"), (made_up(status="stopped: here"), "stopped: here")]
+)
+def test_without_a_reference_nothing_is_measured(last, why: str, tmp_path: Path, monkeypatch, capsys) -> None:
+    """What stands in the way is said; whatever is run has one thread."""
+    threads = []
+    for name in study_of.THREADS:
+        monkeypatch.setenv(name, "7")
+
+    def run_all(plan, out, jobs):
+        threads.append([study_of.os.environ[name] for name in study_of.THREADS])
+        for i, job in enumerate(plan):
+            whole = i + 1 < len(plan)
+            yield Outcome(job, made_up() if whole else last, "" if whole or last is not None else why)
+
+    monkeypatch.setattr(study_of, "run_all", run_all)
+    monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
+    assert study_of.cost("dcb-czm1", SCENE, (), tmp_path, 2) is None
+    assert f"no converged reference, so that nothing can be measured: {why}" in capsys.readouterr().err
+    assert threads == [["1"] * 3] and not list(tmp_path.iterdir())

@@ -107,6 +107,7 @@ def test_errors_are_drawn_over_the_unknowns_a_direction(study: PlaneStudy, monke
         assert slope.get_xdata() == pytest.approx(n[1:]) and slope.get_ydata() == pytest.approx(values[1:])
     assert [t.get_text() for t in axes.texts] == ["4", "3"]
     assert axes.get_xscale() == axes.get_yscale() == "log"
+    assert not [*axes.xaxis.get_minorticklocs(), *axes.yaxis.get_minorticklocs()], "every tick has its number"
 
 
 def test_stress_and_its_error_are_painted_to_scale(study: PlaneStudy, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -366,6 +366,7 @@ def test_error_and_time_of_every_run_that_has_both(report: SceneReport, drawn: D
     names = {t.get_text(): t.xy for t in axes.texts}
     assert names["cohesive beam"][0] == 0.3 if "cohesive beam" in names else len(names) == 4
     assert axes.get_xscale() == axes.get_yscale() == "log"
+    assert not [*axes.xaxis.get_minorticklocs(), *axes.yaxis.get_minorticklocs()], "every tick has its number"
 
 
 def test_j_is_drawn_over_the_toughness_and_enlarged_where_it_has_settled(report: SceneReport, drawn: Drawn) -> None:
