@@ -1,6 +1,7 @@
 """Newton on the bordered system: how fast it converges, what it leaves where it does not, contact it must search."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,17 @@ import iga.newton
 from iga.control import gap_control, load_control, opening_control
 from iga.dcb import build
 from iga.grading import rectangle
-from iga.newton import DEFAULT, PATIENT, equilibrium, residual_norm
+from iga.newton import (
+    DEFAULT,
+    PATIENT,
+    SLACK,
+    _holds,
+    _hopeless,
+    _met,
+    _searched,
+    equilibrium,
+    residual_norm,
+)
 from iga.path import TRIFLE, Point, follow
 from iga.system import respond, untimed
 from iga.tangent import tangent
@@ -117,3 +128,65 @@ def test_contact_is_decided_on_the_way_from_one_equilibrium_to_another(kinematic
         changed += int(np.any(found.state.closed_q != point.state.closed_q))
     print(f"{kinematics}: residual with contact by the signs of the gaps {worst:.1e}, sets changed {changed} times")
     assert changed > 3 and worst <= DEFAULT.settle
+
+
+def test_a_search_that_goes_round_in_circles_ends():
+    """As many residuals above the best one as there is patience are borne; then it ends, however it began."""
+    falling = [10.0**-i for i in range(8)]
+    for residuals in ([1.0], falling, [1.0, *[2.0] * DEFAULT.patience], [*falling, *[1.0] * DEFAULT.patience]):
+        assert not _hopeless(residuals, DEFAULT) and _hopeless([*residuals, np.nan], DEFAULT)
+    assert _hopeless([1.0, *[2.0] * (DEFAULT.patience + 1)], DEFAULT)
+    assert not _hopeless([1.0, *[2.0] * (4 * DEFAULT.patience)], DEFAULT.searching)
+    many = list(np.geomspace(1.0, 1e-3, DEFAULT.iterations))
+    assert not _hopeless(many, DEFAULT) and _hopeless([*many, 1e-4], DEFAULT) and _hopeless([np.inf], DEFAULT)
+    assert not _hopeless([*many, 1e-4, 1e-5], DEFAULT.searching)
+
+
+def test_a_control_is_met_within_a_millionth_of_its_change_or_to_rounding():
+    assert _met(1.0 + 0.9e-6, 1.0, 1.0) and not _met(1.0 + 1.1e-6, 1.0, -1.0)
+    assert _met(1.0 - 0.9e-12, 1.0, 0.0) and not _met(1.0 - 1.1e-12, 1.0, 0.0)
+    assert _met(-2.0, -2.0, 0.0) and _met(0.0, 0.0, 0.0) and not _met(1e-300, 0.0, 0.0)
+
+
+def test_factors_hold_where_what_they_leave_is_below_the_tolerance():
+    """Newton's residual fell from 1e-2 to 1e-5; with the same factors it falls by 2e-3 and comes to 2e-8."""
+    assert _holds([1.0, 1e-2, 1e-5], 2.1e-8) and not _holds([1.0, 1e-2, 1e-5], 1.9e-8)
+
+
+def along(force, start):
+    """A system of one unknown whose residual along the step is a function of how far it goes; where it was asked."""
+    asked = []
+
+    def at(s):
+        asked.append(s)
+        response = SimpleNamespace(internal_d=np.array([force(s), 7.0]))
+        return SimpleNamespace(load=2.0), response, abs(force(s))
+
+    system = SimpleNamespace(free_d=np.array([True, False]), load_d=np.zeros(2))
+    before = SimpleNamespace(load=2.0), SimpleNamespace(internal_d=np.array([start, 7.0])), abs(start)
+    return _searched(system, at, np.ones(2), before), asked
+
+
+@pytest.mark.parametrize("stiffening", [1.0, 3.0, 20.0])
+def test_a_search_ends_where_little_work_is_left(stiffening):
+    """Residual -1 + s + c s^3: the whole step goes too far, and the energy is lowest where it vanishes."""
+
+    def force(s):
+        return -1.0 + s + stiffening * s**3
+
+    (_, _, left), asked = along(force, -1.0)
+    assert asked[0] == 1.0 and left == abs(force(asked[-1])) and all(0.0 < s <= 1.0 for s in asked)
+    assert -0.5 <= force(asked[-1]) <= SLACK and len(asked) < 10
+    assert all(not -0.5 <= force(s) <= SLACK for s in asked[:-1]), "it stops as soon as that is so"
+    assert asked[1] == pytest.approx(1.0 / (1.0 + stiffening)), "first where the line through both ends vanishes"
+
+
+def test_a_step_that_does_not_go_too_far_is_taken_whole():
+    for force, start in ((lambda s: -0.1, -1.0), (lambda s: 0.0, -1.0), (lambda s: 1.0, 0.0), (lambda s: 1.0, 0.5)):
+        assert along(force, start)[1] == [1.0]
+
+
+def test_a_search_that_finds_nothing_ends():
+    """The work jumps over zero: bisection and false position close in on the place, a given number of times."""
+    (_, _, _), asked = along(lambda s: -1.0 if s < 0.3 else 1.0, -1.0)
+    assert len(asked) == 13 and abs(asked[-1] - 0.3) < 0.02
