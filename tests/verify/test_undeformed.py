@@ -11,7 +11,17 @@ from matplotlib.figure import Figure  # noqa: E402
 
 from verify.report.entry import Entry  # noqa: E402
 from verify.report.style import drawing, line  # noqa: E402
-from verify.report.undeformed import bond_element, draw, followed, undeformed, zone_at  # noqa: E402
+from verify.report.undeformed import (  # noqa: E402
+    _changes,
+    _distinct,
+    _last,
+    _names,
+    bond_element,
+    draw,
+    followed,
+    undeformed,
+    zone_at,
+)
 from verify.result import Result, Snapshot  # noqa: E402
 from verify.scene import load_scene  # noqa: E402
 from verify.verdict import Run  # noqa: E402
@@ -119,3 +129,33 @@ def test_stocky_and_short_bonds_are_drawn_too(change):
     thick = replace(given, X_euvi=given.X_euvi * [1.0, body.arm_thickness / ARM])
     panel = undeformed(SCENE.model_copy(update={"specimen": body}), [entry(thick)], "key")
     assert ("too thick" in panel.caption) == (body.arm_thickness == ARM)
+
+
+def test_the_last_mesh_with_a_zone_is_shown():
+    """Or the last one, where nothing is damaged; a moment without fields is none."""
+    early, late = snapshot((5.0, 6.0), opening=1.0), snapshot((9.0, 10.0), opening=2.0)
+    intact, gone = snapshot((0.0, 0.0), opening=3.0), snapshot((20.0, 21.0), opening=4.0)
+    bare = replace(late, X_euvi=np.zeros((0, 3, 3, 2)), opening=5.0)
+    assert _last(entry(early, late, intact, gone, bare)) is late and _last(entry(early, intact)) is early
+    assert _last(entry(intact, gone, bare)) is gone and _last(entry(bare)) is None and _last(entry()) is None
+
+
+def test_a_mesh_that_changes_is_shown_before_every_change_and_at_last():
+    meshes = [snapshot(junctions=at, opening=i) for i, at in enumerate([(8.5,), (8.5,), (9.5,), (10.5,), (10.5,)])]
+    assert [one.opening for one in _changes(entry(*meshes))] == [1, 2, 4]
+    assert [one.opening for one in _changes(entry(*meshes[:2]))] == [1] and _changes(entry(snapshot())) == []
+
+
+def test_runs_on_the_same_mesh_are_one_picture():
+    """To rounding; where the zone is does not matter, T-junctions do."""
+    here, there, other = (
+        entry(snapshot()),
+        entry(snapshot((5.0, 6.0)), label="another"),
+        entry(snapshot(junctions=(9.5,))),
+    )
+    shifted = replace(snapshot(), X_euvi=snapshot().X_euvi + 1e-12)
+    finer = snapshot(breaks=np.linspace(0.0, LENGTH, 57))
+    shown = [(here, snapshot()), (there, shifted), (other, snapshot(junctions=(9.5,))), (other, finer)]
+    groups = _distinct(shown)
+    assert [runs for runs, _ in groups] == [[here, there], [other], [other]]
+    assert _names(groups[0][0]) == "NURBS, 280 unknowns and another" and groups[0][1] is shown[0][1]

@@ -163,7 +163,8 @@ def _distinct(shown: Sequence[tuple[Entry, Snapshot]]) -> list[tuple[list[Entry]
     """Runs by mesh: the same elements and the same T-mesh."""
     groups: dict[tuple[bytes, bytes], tuple[list[Entry], Snapshot]] = {}
     for entry, snapshot in shown:
-        mesh = tuple(np.round(values, 9).tobytes() for values in (_corners(snapshot), snapshot.line_nki))
+        places = _corners(snapshot), snapshot.line_nki
+        mesh = tuple((np.round(values, 9) + 0.0).tobytes() for values in places)  # + 0.0 makes 0 of -0
         groups.setdefault(mesh, ([], snapshot))[0].append(entry)
     return list(groups.values())
 
