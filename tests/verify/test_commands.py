@@ -208,3 +208,26 @@ def test_tests_are_those_of_the_copy_that_is_run(monkeypatch: pytest.MonkeyPatch
     with pytest.raises(Refusal, match="the tests are not installed"):
         commands.test(SimpleNamespace(rest=[]))
     assert len(asked) == 1
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_study_has_a_folder_of_its_own(name: str, studied, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = studied(True)
+    monkeypatch.chdir(tmp_path)
+    assert main([name, *(["slender"] if name == "hard" else ["dcb-czm1"])]) == 0
+    assert Path(f"debond-{name}") in asked[0] and [path.name for path in tmp_path.iterdir()] == [f"debond-{name}"]
+
+
+def test_what_is_written_has_a_place_where_none_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of runs and exports one for every scene and method, or format."""
+    exported: list[Path] = []
+    monkeypatch.setattr(
+        "verify.export.command.export", lambda scene, kind, folder, layers: exported.append(folder) or []
+    )
+    monkeypatch.chdir(tmp_path)
+    for words in ([], ["--out", "there"]):
+        assert main(["export", "dcb-czm1", "--format", "csv", *words]) == 0
+        assert main(["solve", "dcb-czm1", "--method", "lefm", *words]) == 0
+    assert exported == [Path("debond-export/dcb-czm1-csv"), Path("there")]
+    found = {path.parent.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("curve.csv")}
+    assert found == {"debond-out/dcb-czm1-lefm", "there"}

@@ -300,6 +300,10 @@ def test_a_run_may_stop_where_it_says_why(status: str, steps: int, passes: bool)
     assert found["honest-end", "mpa"].passed == passes and found["warned", "mpa"].passed
 
 
+def test_no_other_run_may_stop() -> None:
+    assert [case.name for case in CASES.values() if case.may_stop] == ["peel-as-printed"]
+
+
 def test_wiggles_are_told_for_every_number_of_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of the load about the beam's, and of the traction at the last opening; none is judged."""
     monkeypatch.setattr(interfaces, "solve", lambda scene, method: made_up(scene))
