@@ -29,6 +29,12 @@ def test_knot_vectors(degree: int, knots: list[float], words: str) -> None:
         KnotVector(degree, np.array(knots))
 
 
+def test_knots_may_be_given_as_a_list_of_integers() -> None:
+    kv = KnotVector(2, [0, 0, 0, 1, 3, 3, 3])
+    assert kv.knots.dtype == float and kv.functions == 4 and kv.greville == pytest.approx([0.0, 0.5, 2.0, 3.0])
+    assert kv.breaks.tolist() == [0.0, 1.0, 3.0] and kv.spans.tolist() == [2, 3]
+
+
 @pytest.mark.parametrize("x", [-0.5, 0.0, 1.0, 1.5])
 def test_a_knot_goes_inside(x: float) -> None:
     with pytest.raises(ValueError, match=r"a knot can be inserted inside \(0.0, 1.0\) only, got"):

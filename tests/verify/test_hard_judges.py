@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from unittest.mock import ANY
 
 import numpy as np
 import pytest
-from test_hard import fake_rows
+from test_hard import FAKE, fake_rows, stub
 
 from verify.checks import law_of
 from verify.curve import PROPAGATION
-from verify.hard import bodies, interfaces
+from verify.hard import bodies, interfaces, one
 from verify.hard.case import Number, Trial, Trials
 from verify.hard.cases import CASES
 from verify.hard.interfaces import variation
-from verify.methods import solve
+from verify.methods import Unsuitable, solve
+from verify.plain import Damaged
 from verify.result import Result, Snapshot, steps_from_rows
 from verify.scene import Scene
 from verify.verdict import Check
@@ -304,6 +308,32 @@ def test_no_other_run_may_stop() -> None:
     assert [case.name for case in CASES.values() if case.may_stop] == ["peel-as-printed"]
 
 
+def test_the_process_of_a_case_ends_with_its_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple] = []
+    for passed in (True, False):
+        monkeypatch.setattr(one, "run_case", lambda *what, p=passed: asked.append(what) or SimpleNamespace(passed=p))
+        assert one.main(["units", "nurbs", str(tmp_path)]) == (0 if passed else 1)
+    assert asked == [(CASES["units"], "nurbs", tmp_path)] * 2
+
+
+def test_a_verdict_counts_with_the_runs_that_it_is_about(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run without a step, as one that was refused, has left nothing to read."""
+    run = one.run
+
+    def refusing(scene: Scene, *words, **options) -> tuple:
+        if scene.load.opening[-1] == 2.0:
+            raise Unsuitable("too coarse")
+        return run(scene, *words, **options)
+
+    monkeypatch.setattr(one, "run", refusing)
+    known = one.run_case(FAKE, "nurbs", tmp_path, stub)
+    assert [line.status for line in known.runs] == ["complete", "stopped: too coarse"] and known.runs[1].steps == 0
+    assert one.read_cell(tmp_path).runs == known.runs[:1] + (replace(known.runs[1], ledger=ANY),)
+    (tmp_path / "a" / "evidence.csv").write_text("no curve")
+    with pytest.raises(Damaged, match="evidence.csv"):
+        one.read_cell(tmp_path)
+
+
 def test_wiggles_are_told_for_every_number_of_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of the load about the beam's, and of the traction at the last opening; none is judged."""
     monkeypatch.setattr(interfaces, "solve", lambda scene, method: made_up(scene))
@@ -355,6 +385,6 @@ def test_what_the_judges_allow(monkeypatch: pytest.MonkeyPatch) -> None:
     }
     for name, wanted in allowed.items():
         found: dict[str, set[float]] = {}
-        for (check, _), one in judged(name, world(name, make=made.get(name, made_up))).items():
-            found.setdefault(check, set()).add(one.tolerance)
+        for (check, _), given in judged(name, world(name, make=made.get(name, made_up))).items():
+            found.setdefault(check, set()).add(given.tolerance)
         assert found == wanted, name
