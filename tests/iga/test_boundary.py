@@ -149,6 +149,24 @@ def test_body_of_a_file_without_sets(tmp_path):
         assert found.chains[name].outward == chain.outward
 
 
+@pytest.mark.parametrize("inner", [(14.2, 13.0), (1.0, -0.2)])
+def test_the_ends_of_a_body_are_where_its_corners_are(tmp_path, inner):
+    """Control points reach beyond them where lengths are uneven, the body does not."""
+    body = nurbs_rectangle(*(open_knots(np.array([0.0, end]), 3) for end in (14.0, 0.2)))
+    P_AI = body.P_AI.copy()
+    for number, x in enumerate(inner, 1):
+        P_AI[number::4, 0] = x
+    for turn in (np.eye(2), -np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])):
+        write_iga(from_mesh(replace(body, P_AI=P_AI @ turn, chains={})), tmp_path / "uneven.iga")
+        found = body_mesh(tmp_path / "uneven.iga")
+        lengths = {name: length(found, chain) for name, chain in found.chains.items()}
+        long, short = ("bottom", "top"), ("left", "right")
+        if turn[0, 0] == 0.0:
+            long, short = short, long
+        assert [lengths[name] for name in short] == pytest.approx([0.2] * 2)
+        assert min(lengths[name] for name in long) > 13.99
+
+
 def test_names_come_before_places(tmp_path):
     """A body that lies on its side keeps the names of its sets."""
     body = strip()

@@ -4,22 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from pathlib import Path
-from types import SimpleNamespace
-from unittest.mock import ANY
 
 import numpy as np
 import pytest
-from test_hard import FAKE, fake_rows, stub
+from test_hard import fake_rows
 
 from verify.checks import law_of
 from verify.curve import PROPAGATION
-from verify.hard import bodies, interfaces, one
+from verify.hard import bodies, interfaces
 from verify.hard.case import Number, Trial, Trials
 from verify.hard.cases import CASES
 from verify.hard.interfaces import variation
-from verify.methods import Unsuitable, solve
-from verify.plain import Damaged
+from verify.methods import solve
 from verify.result import Result, Snapshot, steps_from_rows
 from verify.scene import Scene
 from verify.verdict import Check
@@ -302,36 +298,6 @@ def test_a_run_may_stop_where_it_says_why(status: str, steps: int, passes: bool)
 
     found = judged("peel-as-printed", world("peel-as-printed", stop))
     assert found["honest-end", "mpa"].passed == passes and found["warned", "mpa"].passed
-
-
-def test_no_other_run_may_stop() -> None:
-    assert [case.name for case in CASES.values() if case.may_stop] == ["peel-as-printed"]
-
-
-def test_the_process_of_a_case_ends_with_its_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[tuple] = []
-    for passed in (True, False):
-        monkeypatch.setattr(one, "run_case", lambda *what, p=passed: asked.append(what) or SimpleNamespace(passed=p))
-        assert one.main(["units", "nurbs", str(tmp_path)]) == (0 if passed else 1)
-    assert asked == [(CASES["units"], "nurbs", tmp_path)] * 2
-
-
-def test_a_verdict_counts_with_the_runs_that_it_is_about(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A run without a step, as one that was refused, has left nothing to read."""
-    run = one.run
-
-    def refusing(scene: Scene, *words, **options) -> tuple:
-        if scene.load.opening[-1] == 2.0:
-            raise Unsuitable("too coarse")
-        return run(scene, *words, **options)
-
-    monkeypatch.setattr(one, "run", refusing)
-    known = one.run_case(FAKE, "nurbs", tmp_path, stub)
-    assert [line.status for line in known.runs] == ["complete", "stopped: too coarse"] and known.runs[1].steps == 0
-    assert one.read_cell(tmp_path).runs == known.runs[:1] + (replace(known.runs[1], ledger=ANY),)
-    (tmp_path / "a" / "evidence.csv").write_text("no curve")
-    with pytest.raises(Damaged, match="evidence.csv"):
-        one.read_cell(tmp_path)
 
 
 def test_wiggles_are_told_for_every_number_of_points(monkeypatch: pytest.MonkeyPatch) -> None:
