@@ -21,6 +21,9 @@ def drawn(tmesh, *given, **options):
     with drawing():
         axes = Figure(figsize=(4, 3)).add_subplot()
         draw_tmesh(axes, tmesh, *given, **options)
+        assert not any(line.get_visible() for line in (*axes.get_xgridlines(), *axes.get_ygridlines())), (
+            "no other lines"
+        )
     parts = {c.get_label(): c.get_segments() for c in axes.collections}
     return axes, parts | {line.get_label(): line.get_xydata() for line in axes.lines}
 

@@ -1,0 +1,35 @@
+"""Pictures of the crack at one opening after the other: one scale for all of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("matplotlib")
+
+from figures import Drawn  # noqa: E402
+from made_up_runs import scene_report  # noqa: E402
+
+from verify.report import opening  # noqa: E402
+from verify.report.entry import entries  # noqa: E402
+from verify.report.fields import shared_snapshots  # noqa: E402
+
+
+@pytest.mark.parametrize(("least", "below"), [(0.5, 0.1), (0.0, 0.1), (-0.4, 0.54), (-5.0, 3.4)])
+def test_tractions_are_seen_whole_but_for_the_pressure_of_contact(
+    least: float, below: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In parts of the strength: a fifth above it, a tenth below what there is, and three times of pressure at most."""
+    drawn, report = Drawn(monkeypatch, opening), scene_report()
+    found = [entry for entry in entries(report) if entry.agreement is not None]
+    strength = report.scene.interface.strength
+    groups = [
+        [(entry, replace(one, traction_q=np.linspace(0.5, least, len(one.s_q)) * strength)) for entry, one in group]
+        for group in shared_snapshots(found)
+    ]
+    shown = opening.frames(report.scene, groups, found, "key", between=False)
+    assert len(shown) == len(drawn) == len(groups)
+    for _, figure in drawn:
+        assert figure.axes[1].get_ylim() == pytest.approx((-below * strength, 1.2 * strength))
