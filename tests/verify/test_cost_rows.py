@@ -15,6 +15,7 @@ from verify.cost import study as study_of
 from verify.cost.findings import cheapest
 from verify.cost.row import traction_error
 from verify.jobs import Outcome
+from verify.scene import load_scene
 
 
 def test_of_a_theory_alone_nothing_is_called_the_cheapest() -> None:
@@ -51,3 +52,16 @@ def test_without_a_reference_nothing_is_measured(last, why: str, tmp_path: Path,
     assert study_of.cost("dcb-czm1", SCENE, (), tmp_path, 2) is None
     assert f"no converged reference, so that nothing can be measured: {why}" in capsys.readouterr().err
     assert threads == [["1"] * 3] and not list(tmp_path.iterdir())
+
+
+def test_the_reference_is_one_arm_where_the_arms_are_alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
+    alike = {"dcb-czm1": (), "peel-80": (), "mismatch": ("discretization.mismatch=1.37",)}
+    for name, words in alike.items():
+        scene = load_scene("peel-80" if name == "peel-80" else "dcb-czm1", words)
+        own, other = reference_of.reference_jobs(name, scene, words)
+        halved = ["effects.symmetry=true" in job.overrides for job in own]
+        assert halved == [name == "dcb-czm1"] * len(own) and len(own) == 3 and other == ()
+        assert all(set(words) <= set(job.overrides) and job.variant.startswith("reference/") for job in own)
+        sizes = [job.solved.discretization.dofs for job in own]
+        assert sizes == sorted(set(sizes)), "from coarse to fine"

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from verify import doctor
 from verify.cli import main
+from verify.methods import NotRun
 
 
 def said(capsys: pytest.CaptureFixture) -> dict[str, str]:
@@ -48,6 +50,14 @@ def test_the_cache_folder_is_looked_at(
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("DEBOND_CACHE", str(tmp_path / "file" / "below"))
     assert "read-only" in said(capsys)["cache"]
+
+
+def test_a_plugin_that_does_not_load_says_why() -> None:
+    def missing() -> None:
+        raise NotRun("not run: no module named bem")
+
+    for load, words in ((missing, "does not work, no module named bem"), (lambda: None, "works (bem 1.0)")):
+        assert doctor._state(SimpleNamespace(name="bem", package="bem 1.0", load=load)) == f"bem: {words}"
 
 
 @pytest.mark.parametrize("found, known", [("0.9.0", True), ("0.11.0.post1", True), ("0.8.0", False), ("0.12.0", False)])
