@@ -10,6 +10,7 @@ import pytest
 
 from verify.checks import OF_THE_ZONE
 from verify.jobs import Job, _in_short, dry_run, left_out, outcome
+from verify.run import run
 from verify.scene import load_scene
 from verify.store import Store
 from verify.sweep import FOLDER, Done
@@ -70,6 +71,11 @@ def test_a_run_that_left_no_result_or_a_damaged_one_has_failed(tmp_path: Path) -
         wrong = outcome(JOB, done)
         assert wrong.result is None and wrong.failed and wrong.left_out.startswith("failed: ")
         assert "result.json: must be as debond has written it" in wrong.left_out and _in_short(done) == wrong.left_out
+    small = replace(JOB, method="lefm", overrides=("load.opening=0.1",))
+    result, _ = run(small.solved, "lefm", tmp_path)
+    kept = outcome(small, done)
+    assert kept.result is not None and kept.result.complete and not kept.failed and kept.left_out == ""
+    assert _in_short(done).startswith(f"complete, peak load {result.load.max():.5g}, ") and result.load.max() < 0.9
 
 
 def test_a_result_that_cannot_be_kept_is_an_error_and_not_lost(tmp_path: Path) -> None:

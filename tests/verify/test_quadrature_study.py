@@ -7,6 +7,7 @@ import pytest
 
 from verify.quadrature_study import Study, Trial, excess_variation, finding, study
 from verify.result import Snapshot
+from verify.scene import load_scene
 
 
 def profile(traction: np.ndarray) -> Snapshot:
@@ -48,3 +49,53 @@ def test_a_rule_that_fails_is_told_and_costs_no_other(found, tmp_path):
     text = (tmp_path / "report.html").read_text()
     assert "failed: ValueError: no mesh" in text and "NURBS, gauss, 2 points" in text
     assert text.count('id="quadrature-nurbs-t"') == 1 and 'href="#quadrature"' in text
+
+
+def made_up() -> Study:
+    """Rules by methods and ductilities, each with an oscillation of its own."""
+    trials = []
+    for i, method in enumerate(("nurbs", "lagrange")):
+        for rule, points, size in (("gauss", 2, 0.5), ("lobatto", 4, 0.2), ("lumped", None, 0.049 + 0.002 * i)):
+            for ductility, part in ((12.5, 0.01), (500.0, 1.0)):
+                shown = profile(np.linspace(4.0, 0.0, 9) * (1.0 + size)) if ductility > 12.5 else None
+                trials.append(Trial(method, rule, points, ductility, part * size, shown, "complete"))
+    trials[0] = replace(trials[0], status="stopped: here")
+    beams = tuple(
+        (ductility, replace(profile(np.linspace(4.0, 0.0, 30)), opening=0.413)) for ductility in (12.5, 500.0)
+    )
+    return Study(load_scene("dcb-czm1"), tuple(trials), beams)
+
+
+def test_lumping_cures_where_a_tenth_is_left_of_what_gauss_points_have():
+    assert finding(made_up()) == (
+        "Traction oscillation relative to the strength at ductility 500: with NURBS 50% with 2 Gauss points, 20% with 4 "
+        "Lobatto points, 5% lumped: lumping cures it; with Lagrange elements 50% with 2 Gauss points, 20% with 4 "
+        "Lobatto points, 5% lumped: lumping does not cure it"
+    )
+
+
+def test_the_section_has_every_rule_and_draws_the_stiffest_interface(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("matplotlib")
+    from figures import Drawn, legend
+
+    from verify.report import study as page
+    from verify.report.style import colour
+
+    drawn, given = Drawn(monkeypatch, page), made_up()
+    found = page.section(given, "quadrature")
+    heads = ("NURBS, ductility 12.5", "NURBS, ductility 500", "Lagrange, ductility 12.5", "Lagrange, ductility 500")
+    assert found.columns == heads and found.finding == finding(given)
+    assert [name for name, _ in found.rows] == ["gauss, 2 points", "lobatto, 4 points", "lumped"]
+    cells = [[cell.replace("\u00a0", " ") for cell in row] for _, row in found.rows]
+    assert cells[0] == ["0.50 %", "50 %"] * 2 and cells[2] == ["0.049 %", "4.9 %", "0.051 %", "5.1 %"]
+    assert found.notes == ("NURBS, gauss, 2 points, ductility 12.5: stopped: here",)
+    assert [one.svg for one in found.panels] == ["<svg>quadrature-nurbs</svg>", "<svg>quadrature-lagrange</svg>"]
+    assert found.panels[0].caption.replace("\u00a0", " ") == "NURBS, ductility 500, opening 0.413 mm."
+    start = given.scene.specimen.precrack
+    for _, figure in drawn:
+        (axes,) = figure.axes
+        assert legend(figure) == ["beam", "gauss, 2 points", "lobatto, 4 points", "lumped"]
+        assert [max(line.get_ydata()) for line in axes.lines] == pytest.approx([1.0, 1.5, 1.2, 1.05], rel=2e-3)
+        inks = [colour(name) for name in ("muted", "bad", "lagrange", "nurbs")]
+        assert [line.get_color() for line in axes.lines] == inks and axes.get_xlim() == (start, start + 2.5)
+        assert axes.get_ylabel() == "traction / strength" and "mm" in axes.get_xlabel()

@@ -76,7 +76,8 @@ def test_an_axis_says_its_numbers_in_full() -> None:
 def test_a_figure_has_two_spines_a_grid_behind_and_no_boxes() -> None:
     with drawing():
         figure, axes = plotted(ylabel="load ($N$ & <mm>)")
-        legend = axes.legend()
+        legend, word = axes.legend(), axes.text(0.5, 0.2, "word")
+        assert word.get_size() == 8.0
         axes.set_title("what it shows")
         assert unreadable(figure) == []
         shown = {name for name, spine in axes.spines.items() if spine.get_visible()}
