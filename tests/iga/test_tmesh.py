@@ -30,6 +30,32 @@ UNIT = np.array([0.0, 1.0])
 FOUR = np.linspace(0.0, 1.0, 5)
 
 
+def test_the_edges_of_a_grid_are_its_lines_from_knot_to_knot():
+    """Those of no length, at the repeated knots of the ends, are left out."""
+    s, t = np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.5, 1.0, 2.0])
+    level = {((a, y), (b, y)) for a, b in zip(s, s[1:], strict=False) for y in t}
+    upright = {((x, a), (x, b)) for a, b in zip(t, t[1:], strict=False) for x in s}
+    found = [tuple(map(tuple, edge)) for edge in tensor_grid(s, t).edges().tolist()]
+    assert set(found) == level | upright and len(found) == len(set(found))
+    ended = {tuple(map(tuple, e)) for e in with_line(tensor_grid(s, t), "vertical", 2.0, (0.5, 2.0)).edges().tolist()}
+    halves = {((a, y), (b, y)) for y in t for a, b in ((1.0, 2.0), (2.0, 3.0))}
+    line = {((2.0, 0.5), (2.0, 1.0)), ((2.0, 1.0), (2.0, 2.0))}
+    assert ended == {edge for edge in level if edge[0][0] != 1.0} | upright | halves | line
+
+
+@some
+@given(suitable_tmeshes())
+def test_edges_are_as_long_as_the_lines_and_bound_every_face(mesh):
+    """Each of the edges is a side of elements on one or both sides, in all as long as the sides of all faces."""
+    edges = mesh.edges()
+    assert np.all(edges[:, 0] <= edges[:, 1]) and np.all((edges[:, 0] == edges[:, 1]).sum(1) == 1)
+    box = faces(mesh)
+    s, t = mesh.knots_i[box[:, :2]], mesh.knots_j[box[:, 2:]]
+    around = 2.0 * (np.diff(s, axis=1).sum() + np.diff(t, axis=1).sum())
+    outline = 2.0 * (np.ptp(mesh.knots_i) + np.ptp(mesh.knots_j))
+    assert np.sum(edges[:, 1] - edges[:, 0]) == pytest.approx(0.5 * (around + outline), rel=1e-12)
+
+
 @some
 @given(any_tmeshes())
 def test_anchors_and_local_knots_are_those_of_a_walk(mesh):

@@ -68,8 +68,8 @@ def made_up() -> Study:
 
 def test_lumping_cures_where_a_tenth_is_left_of_what_gauss_points_have():
     assert finding(made_up()) == (
-        "Traction oscillation relative to the strength at ductility 500: with NURBS 50% with 2 Gauss points, 20% with 4 "
-        "Lobatto points, 5% lumped: lumping cures it; with Lagrange elements 50% with 2 Gauss points, 20% with 4 "
+        "Traction oscillation relative to the strength at ductility 500: with NURBS 50% with 2 Gauss points, 20% with "
+        "4 Lobatto points, 5% lumped: lumping cures it; with Lagrange elements 50% with 2 Gauss points, 20% with 4 "
         "Lobatto points, 5% lumped: lumping does not cure it"
     )
 
