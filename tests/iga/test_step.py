@@ -64,3 +64,11 @@ def test_without_a_known_tangent_a_step_sets_out_along_the_last_one(asked):
     assert np.array_equal(found.state.u_d, point.state.u_d + step.away * path.du_d)
     assert found.state.load == point.state.load + step.away * path.d_load
     assert not found.settled and found.spent == () and found.place is None
+
+
+def test_a_front_that_does_not_grow_does_not_leap(asked, monkeypatch):
+    """However far the step goes: what unloads has no gap that travels."""
+    system, point, *rest = asked
+    still = replace(point, tangent=replace(point.tangent, growing_q=np.zeros_like(point.tangent.growing_q)))
+    moved = [foreseen((system, one, *rest), 0.9, monkeypatch)[1] for one in (point, still)]
+    assert len(moved[0]) == 1 and moved[1] == []

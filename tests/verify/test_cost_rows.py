@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_cost import SCENE, a_row, made_up, profile
+from test_cost import NURBS, SCENE, a_row, against, made_up, profile
 
 from verify.cost import reference as reference_of
 from verify.cost import study as study_of
 from verify.cost.findings import cheapest
+from verify.cost.ladder import Try
 from verify.cost.row import traction_error
 from verify.jobs import Outcome
 from verify.scene import load_scene
@@ -65,3 +66,30 @@ def test_the_reference_is_one_arm_where_the_arms_are_alike(monkeypatch: pytest.M
         assert all(set(words) <= set(job.overrides) and job.variant.startswith("reference/") for job in own)
         sizes = [job.solved.discretization.dofs for job in own]
         assert sizes == sorted(set(sizes)), "from coarse to fine"
+
+
+def test_few_steps_are_tried_where_a_run_comes_near_the_coarsest_level() -> None:
+    near = study_of.NEAR * 0.01
+    assert near > 0.01 and [study_of._worth(a_row("nurbs", part * near, 1.0)) for part in (0.99, 1.01)] == [True, False]
+
+
+def test_what_is_timed_runs_alone_and_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Until the time is over: what has begun comes to its end, nothing else is begun."""
+    asked, now = [], [0.0]
+
+    def run_all(plan, out, jobs):
+        for job in plan:
+            asked.append((job.variant, jobs, out))
+            now[0] += 10.0
+            yield Outcome(job, made_up())
+
+    monkeypatch.setattr(study_of, "run_all", run_all)
+    monkeypatch.setattr(study_of, "monotonic", lambda: now[0])
+    tries = [Try(NURBS, i, size, 80) for i, size in enumerate((300, 420, 590, 830))]
+    runner = study_of.Runner("dcb-czm1", SCENE, (), tmp_path, against(), start=0.0)
+    assert runner(tries[:2]) and not runner(tries, seconds=25.0) and list(runner.found) == tries[:3]
+    assert runner(tries, seconds=45.0) and runner(tries, seconds=0.0), "nothing is left to do"
+    assert len(asked) == 4 and {(jobs, out) for _, jobs, out in asked} == {(1, tmp_path)}
+    again = [replace(tries[1], repeat=number) for number in (1, 2)]
+    assert runner(again) and runner.again(tries[1]) == [tries[1], *again] and list(runner.rows) == tries
+    assert [found.times for found in runner.rows.values()] == [1, 3, 1, 1]
