@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from math import isnan
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from verify.cost import reference as reference_of
 from verify.cost import study as study_of
 from verify.cost.findings import cheapest
 from verify.cost.ladder import Try
-from verify.cost.row import traction_error
+from verify.cost.row import Row, traction_error
 from verify.jobs import Outcome
 from verify.scene import load_scene
 
@@ -93,3 +93,15 @@ def test_what_is_timed_runs_alone_and_once(tmp_path: Path, monkeypatch: pytest.M
     again = [replace(tries[1], repeat=number) for number in (1, 2)]
     assert runner(again) and runner.again(tries[1]) == [tries[1], *again] and list(runner.rows) == tries
     assert [found.times for found in runner.rows.values()] == [1, 3, 1, 1]
+
+
+def test_the_chart_shows_errors_in_per_cent_and_everything_else_as_it_is() -> None:
+    """Every axis is a column of the rows, and its name says its unit."""
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("jinja2")
+    from verify.cost.page import ACROSS, UP
+
+    columns = {field.name for field in fields(Row)}
+    assert {key for key, _, _ in (*ACROSS, *UP)} <= columns
+    assert all(factor == 1 and "%" not in name for _, name, factor in ACROSS) and ACROSS[0][0] == "seconds"
+    assert all(factor == 100 and name.endswith("(%)") for _, name, factor in UP) and UP[0][0] == "curve_error"

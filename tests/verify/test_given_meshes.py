@@ -15,7 +15,7 @@ from iga.iga_file import from_mesh, write_iga
 from iga.peel_meshes import tmeshes as peel_tmeshes
 from iga.tspline import tspline_rectangle
 from verify.given_meshes import given_meshes
-from verify.methods import solve
+from verify.methods import require, solve
 from verify.problems import iga_problem
 from verify.refusal import Refusal
 from verify.scene import Scene, load_scene
@@ -102,3 +102,24 @@ def test_what_is_no_mesh_is_refused(tmp_path: Path) -> None:
     absent.write_text("type plane\nnodeN three\n")
     with pytest.raises(Refusal, match=r"specimen.mesh: .*absent.iga"):
         given_meshes(scene_with([str(absent)]))
+
+
+def test_what_is_no_mesh_of_the_specimen_is_refused_before_a_run(arms: tuple[Mesh, ...], tmp_path: Path) -> None:
+    files = written(tmp_path, *arms)
+    require(scene_with(files), "tspline")
+    require(scene_with([str(tmp_path / "none.iga")]), "beam")
+    shifted = [replace(arm, P_AI=arm.P_AI + [0.0, 0.01]) for arm in arms]
+    for wrong in (written(tmp_path, *shifted), [str(tmp_path / "none.iga")]):
+        with pytest.raises(Refusal, match="specimen.mesh: "):
+            require(scene_with(wrong), "tspline")
+
+
+def test_bodies_may_be_off_their_places_by_a_millionth_of_the_length(arms: tuple[Mesh, ...], tmp_path: Path) -> None:
+    for part, taken in ((0.9e-6, True), (1.1e-6, False)):
+        moved = [replace(arm, P_AI=arm.P_AI + [0.0, part * 14.0]) for arm in arms]
+        files = written(tmp_path, *moved)
+        if taken:
+            assert len(given_meshes(scene_with(files))) == 2
+        else:
+            with pytest.raises(Refusal, match="its bottom side must lie on Y = 0"):
+                given_meshes(scene_with(files))

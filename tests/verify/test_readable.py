@@ -327,6 +327,7 @@ def test_all_marks_of_a_mesh_are_named_below_it() -> None:
     assert figure.bbox.x0 <= place.x0 and place.x1 <= figure.bbox.x1
     assert figure.bbox.y0 <= place.y0 and place.y1 <= axes.get_window_extent().y0
     (filled,) = [c for c in axes.collections if c.get_label().startswith("degrees")]
+    assert 0.1 < filled.get_alpha() < 0.4 and set(filled.get_linewidths()) == {0}, "the lines are seen through it"
     boxes = sorted(tuple(path.get_extents().extents.round(9)) for path in filled.get_paths())
     assert boxes == [(i, j, i + 1.0, j + 1.0) for i in range(3) for j in range(3)]
 
