@@ -154,3 +154,20 @@ def test_a_reversible_law_dissipates_nothing(shape):
     assert (
         lost[0] == 0.0 and contact[0] == 0.0 and cohesive[0] == pytest.approx(float(law.work(np.array(0.5 * law.g_u))))
     )
+
+
+@pytest.mark.parametrize("shape", EVERY)
+@pytest.mark.parametrize("irreversible", [True, False])
+@pytest.mark.parametrize("contact", [True, False])
+def test_the_traction_is_the_slope_of_what_is_stored(contact, irreversible, shape):
+    """Open and closed, where nothing more is damaged: by central differences of cohesion and contact together."""
+    law = EVERY[shape](4.0, 0.1, 12.5, 1e3, contact, irreversible)
+    g, h = law.g_u * np.array([-0.9, -0.3, -1e-3, 1e-3, 0.03, 0.3, 0.6]), 1e-7 * law.g_u
+
+    def stored(g):
+        k = np.full_like(g, 0.7 * law.g_u) if irreversible else np.maximum(g, 0.0)
+        return sum(law.energies(g, k)[:2])
+
+    p = law.traction(g, np.full_like(g, 0.7 * law.g_u))[0]
+    assert (stored(g + h) - stored(g - h)) / (2.0 * h) == pytest.approx(p, rel=1e-5, abs=1e-6 * law.strength)
+    assert np.all(stored(g) > 0.0) and np.all(p[:3] < 0.0)
