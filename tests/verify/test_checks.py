@@ -115,6 +115,13 @@ def test_unloading_steps_do_not_count_for_j() -> None:
     assert loading(steps).tolist() == [True, True, True, True, False, False, False, True]
 
 
+def test_damage_that_grows_by_rounding_does_not_grow() -> None:
+    """By a billionth of a thousandth of what is dissipated in the end; before any of it every step counts."""
+    lost = np.array([0.0, 1e-14, 1e-14, 0.4, 0.4 + 2e-13, 0.4 + 4e-12, 1.0, 1.0])
+    assert loading({"dissipated_energy": 0.2 * lost}).tolist() == [True, True, True, True, False, True, True, False]
+    assert loading({"dissipated_energy": np.zeros(3)}).all() and loading({"dissipated_energy": np.zeros(0)}).size == 0
+
+
 def test_the_law_encloses_its_toughness(scene: Scene) -> None:
     law = law_of(scene)
     assert law.area(law.g_open) == pytest.approx(scene.interface.toughness, rel=1e-14)

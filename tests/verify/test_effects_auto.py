@@ -112,6 +112,21 @@ def test_auto_decides_and_says_why(name: str, overrides: tuple[str, ...], key: s
     assert why in str(found) and str(found).startswith(f"effects.{key}: ")
 
 
+@pytest.mark.parametrize(
+    ("programme", "why"),
+    [
+        ("0.5", "the programme only opens"),
+        ("[0.2, 0.5, 3.0]", "the programme only opens"),
+        ("-0.1", "the programme goes from 0 down to -0.1"),
+        ("[0.5, 0.2, 0.1, 1.0]", "the programme goes from 0.5 down to 0.2"),
+    ],
+)
+def test_damage_must_stay_where_a_programme_goes_back(programme: str, why: str) -> None:
+    """From where it begins on, which is closed."""
+    decision = effects._irreversible(load_scene("dcb-czm1", [f"load.opening={programme}"]))
+    assert decision == ("only opens" not in why, why)
+
+
 def test_what_a_method_cannot_choose_is_not_decided() -> None:
     scene = load_scene("dcb-czm1", ALL_AUTO)
     assert {one.key for one in decided(scene, "dolfinx")} == {"kinematics", "contact", "irreversible"}

@@ -328,3 +328,13 @@ def test_memory_of_a_hundred_thousand_unknowns(measured: dict) -> None:
     largest = max(measured["measured"], key=lambda one: one["dofs"])
     assert largest["dofs"] == pytest.approx(100_000, rel=0.02)
     assert largest["peak_memory_mb"] <= 1500.0
+
+
+def test_cores_are_those_that_a_process_may_use(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ranks_of.os, "sched_getaffinity", lambda process: {0, 3, 5}, raising=False)
+    monkeypatch.setattr(ranks_of.os, "cpu_count", lambda: 16)
+    assert ranks_of.cores() == 3
+    monkeypatch.delattr(ranks_of.os, "sched_getaffinity")
+    assert ranks_of.cores() == 16
+    monkeypatch.setattr(ranks_of.os, "cpu_count", lambda: None)
+    assert ranks_of.cores() == 1

@@ -71,3 +71,16 @@ def test_at_a_t_junction_the_long_side_and_both_short_ones_are_drawn() -> None:
 
 def test_nothing_is_drawn_of_nothing() -> None:
     assert strokes(np.zeros((0, 2, 2))).shape == (0, 2)
+
+
+def test_sides_are_the_same_whichever_way_elements_go() -> None:
+    """Three upright sides and four level ones of two elements, one of them turned by half."""
+    k = np.linspace(0.0, 1.0, 3)
+    x, y = np.meshgrid(k, k, indexing="ij")
+    left = np.stack([x, y], axis=-1)
+    right = left[::-1, ::-1] + [1.0, 0.0]
+    found = sides(np.stack([left, right]))
+    ends = {tuple(sorted((tuple(side[0]), tuple(side[-1])))) for side in found.tolist()}
+    upright = {((float(x), 0.0), (float(x), 1.0)) for x in range(3)}
+    level = {((float(x), float(y)), (x + 1.0, float(y))) for x in range(2) for y in range(2)}
+    assert ends == upright | level and len(found) == 7
