@@ -149,6 +149,8 @@ def test_where_no_mesh_is_fine_enough_it_says_so(monkeypatch: pytest.MonkeyPatch
         tried.append(scene.discretization.dofs)
         return SimpleNamespace(elements=7.5 if len(tried) % 2 else 0.0)
 
+    monkeypatch.setattr(accuracy, "expected", lambda scene, solver: SimpleNamespace(elements=10.0))
+    first = unknowns_for(load_scene("dcb-czm1"), 10.0)
     monkeypatch.setattr(accuracy, "expected", few)
     words = "--accuracy: no mesh is known with 10.0 elements in the process zone of dcb-czm1"
     with pytest.raises(Refusal, match=words):
@@ -157,6 +159,7 @@ def test_where_no_mesh_is_fine_enough_it_says_so(monkeypatch: pytest.MonkeyPatch
     assert sorted(growth[::2]) == pytest.approx([1.2] * 3, abs=0.05)
     assert sorted(growth[1::2]) == pytest.approx([10.0 / 7.5] * 3, abs=0.05)
     assert 5e5 < tried[-1] <= 1e6 and tried == sorted(set(tried))
+    assert first in tried[:3], "what is as fine as it was asked for is fine enough"
     monkeypatch.undo()
     with pytest.raises(Refusal, match="no mesh is known with 10.0 elements"):
         unknowns_for(load_scene("dcb-czm1", ["interface.strength=1e6", "interface.penalty=1e12"]), 10.0)

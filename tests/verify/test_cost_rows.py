@@ -14,7 +14,7 @@ from verify.cost import reference as reference_of
 from verify.cost import study as study_of
 from verify.cost.findings import cheapest
 from verify.cost.ladder import Try
-from verify.cost.row import Row, traction_error
+from verify.cost.row import Row, _middle, traction_error
 from verify.jobs import Outcome
 from verify.scene import load_scene
 
@@ -105,3 +105,18 @@ def test_the_chart_shows_errors_in_per_cent_and_everything_else_as_it_is() -> No
     assert {key for key, _, _ in (*ACROSS, *UP)} <= columns
     assert all(factor == 1 and "%" not in name for _, name, factor in ACROSS) and ACROSS[0][0] == "seconds"
     assert all(factor == 100 and name.endswith("(%)") for _, name, factor in UP) and UP[0][0] == "curve_error"
+
+
+def test_the_middle_of_a_zone_is_where_half_of_the_damage_is() -> None:
+    """Linear between the two points on either side of it, the last ones where there are several."""
+    s = np.array([0.0, 1.0, 3.0, 4.0, 8.0])
+    for damage, place in (
+        ([1.0, 1.0, 0.8, 0.3, 0.0], 3.6),
+        ([1.0, 0.2, 0.9, 0.5, 0.0], 4.0),
+        ([0.6, 0.4, 0.3, 0.2, 0.0], 0.5),
+        ([1.0, 0.9, 0.7, 0.6, 0.4], 6.0),
+    ):
+        found = replace(profile(0.0), s_q=s, damage_q=np.array(damage), traction_q=0 * s, gap_q=0 * s)
+        assert _middle(found) == pytest.approx(place)
+    whole = replace(profile(0.0), s_q=s, damage_q=np.ones(5), traction_q=0 * s, gap_q=0 * s)
+    assert isnan(_middle(whole)) and isnan(_middle(replace(whole, damage_q=np.full(5, 0.5))))

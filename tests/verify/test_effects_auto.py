@@ -127,6 +127,12 @@ def test_damage_must_stay_where_a_programme_goes_back(programme: str, why: str) 
     assert decision == ("only opens" not in why, why)
 
 
+def test_theories_of_one_arm_stand_for_both_arms_and_a_strip_is_peeled_alone() -> None:
+    for method, dcb in (("beam", True), ("lefm", True), ("dolfinx", False)):
+        assert simulated(load_scene("dcb-czm1"), method)["symmetry"] is dcb
+    assert simulated(load_scene("peel-80"), "beam")["symmetry"] is False
+
+
 def test_what_a_method_cannot_choose_is_not_decided() -> None:
     scene = load_scene("dcb-czm1", ALL_AUTO)
     assert {one.key for one in decided(scene, "dolfinx")} == {"kinematics", "contact", "irreversible"}

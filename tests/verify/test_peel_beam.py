@@ -293,3 +293,16 @@ def test_scenes_are_solved_and_checked(method):
     assert {"completed", "energy-ledger"} <= {check.name for check in checks} and all(check.passed for check in checks)
     if method == "beam":
         assert {"j-integral", "interface-force"} <= {check.name for check in checks}
+
+
+@pytest.mark.parametrize("part", [0.2, 1.0, 5.0])
+def test_a_layer_that_hardly_contracts_is_coupled_by_a_hundredth(part: float) -> None:
+    """Of K / (1 / t^2 + q^2), which keeps its foundation stable; one that contracts has more by itself."""
+    q, thickness = part / 10.0, 10.0
+    soft, plain = Layer.of(120.0, thickness, 5e3, 5e3, 10.0, 0.2), PEEL
+    for layer, least in ((soft, True), (plain, False)):
+        k, g = layer.parameters(q)
+        K = layer.stiffness(complex(q)).real
+        assert k + g * q**2 == pytest.approx(K, rel=1e-12) and k > 0.0
+        share = g / (K / (thickness**-2 + q**2))
+        assert (share == pytest.approx(0.01, rel=1e-9)) == least and share >= 0.01 * (1.0 - 1e-9)

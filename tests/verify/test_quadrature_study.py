@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.quadrature_study import Study, Trial, excess_variation, finding, study
+from verify.quadrature_study import DUCTILITIES, RULES, Study, Trial, excess_variation, finding, study
 from verify.result import Snapshot
 from verify.scene import load_scene
 
@@ -99,3 +99,15 @@ def test_the_section_has_every_rule_and_draws_the_stiffest_interface(monkeypatch
         inks = [colour(name) for name in ("muted", "bad", "lagrange", "nurbs")]
         assert [line.get_color() for line in axes.lines] == inks and axes.get_xlim() == (start, start + 2.5)
         assert axes.get_ylabel() == "traction / strength" and "mm" in axes.get_xlabel()
+
+
+def test_rules_that_are_drawn_or_spoken_of_are_among_those_that_are_tried() -> None:
+    """Gauss and Lobatto rules of as many points, 2, 4 and 8, and lumping, on ever stiffer interfaces."""
+    pytest.importorskip("matplotlib")
+    from verify.report.study import DRAWN
+
+    assert {(rule, points) for rule, points, _ in DRAWN} <= set(RULES)
+    assert {("gauss", 2), ("lobatto", 4), ("lumped", None)} <= set(RULES), "the finding is theirs"
+    points = {rule: [n for name, n in RULES if name == rule] for rule in ("gauss", "lobatto", "lumped")}
+    assert points == {"gauss": [2, 4, 8], "lobatto": [2, 4, 8], "lumped": [None]}
+    assert list(DUCTILITIES) == sorted(DUCTILITIES) and DUCTILITIES[0] == load_scene("dcb-czm1").interface.ductility
