@@ -69,6 +69,11 @@ def test_a_wrong_column_fails_its_checks(
     assert failed(scene, changed(beam, column, factor, shift)) == broken
 
 
+def test_checks_are_named_after_their_run_or_its_method(scene: Scene, beam: Result) -> None:
+    assert {check.subject for check in run_checks(scene, beam)} == {"beam"}
+    assert {check.subject for check in run_checks(scene, beam, "beam-fine")} == {"beam-fine"}
+
+
 def test_one_wrong_step_is_enough(scene: Scene, beam: Result) -> None:
     load = beam.load.copy()
     load[len(load) // 2] *= 1.01

@@ -101,6 +101,10 @@ def test_meshes_that_move_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
     undeformed.undeformed(scene, [entry(snapshot()), entry(snapshot(junctions=(9.5,)), method="tspline")], "all")
     undeformed.followed(scene, [entry(*at, method="tspline", label="moving")], "key")
     assert [len(figure.axes) for _, figure in drawn] == [4, 6], "a whole and a part of each"
+    of_tmesh = ["(Bézier) elements, in the colour of the method", "line of the T-mesh", "T-junction", "process zone"]
+    assert [legend(figure) for _, figure in drawn] == [of_tmesh] * 2
+    undeformed.undeformed(scene, [entry(snapshot())], "plain")
+    assert legend(drawn[-1][1]) == ["elements", "process zone"]
     assert drawn[0][1].axes[0].get_xlim() == pytest.approx((-0.14, 14.14)), "a hundredth of it is left beside it"
 
 

@@ -87,7 +87,7 @@ def test_a_figure_has_two_spines_a_grid_behind_and_no_boxes() -> None:
         assert [patch.get_facecolor()[3] for patch in (figure.patch, axes.patch)] == [0.0, 0.0]
         sizes = [axes.xaxis.label.get_size(), axes.title.get_size(), *(t.get_size() for t in legend.get_texts())]
         assert sizes == [8.0, 8.0, 7.5] and {t.get_size() for t in axes.get_xticklabels()} == {7.5}
-        marks = [tick.tick1line for tick in axes.yaxis.majorTicks]
+        marks = [tick.tick1line for axis in (axes.xaxis, axes.yaxis) for tick in axis.majorTicks]
         assert {(mark.get_markersize(), mark.get_markeredgewidth()) for mark in marks} == {(3.0, 0.6)}
         assert {spine.get_linewidth() for spine in axes.spines.values()} == {0.6}
         assert {grid.get_linewidth() for grid in axes.get_xgridlines()} == {0.5}
