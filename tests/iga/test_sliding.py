@@ -86,7 +86,7 @@ def test_curves_between_two_ends_have_their_values_and_slopes_and_stay_between_t
 
 
 def point(opening: float, load: float, d_opening: float, d_load: float) -> SimpleNamespace:
-    tangent = SimpleNamespace(du_d=np.array([d_opening]), d_load=d_load)
+    tangent = SimpleNamespace(du_d=np.array([d_opening]), d_load=d_load, growing_q=np.array([True]))
     slope = d_load / d_opening if d_opening else np.inf
     return SimpleNamespace(opening=opening, state=SimpleNamespace(load=load), tangent=tangent, slope=slope)
 
@@ -105,3 +105,10 @@ def test_work_over_the_opening_is_exact_for_cubics() -> None:
     a, b = (point(d, P(d), 1.0, P.deriv()(d)) for d in (0.5, 1.7))
     assert straight_work(a, b) == pytest.approx(P.integ()(1.7) - P.integ()(0.5), rel=1e-12)
     assert straight_work(b, a) == pytest.approx(-straight_work(a, b))
+
+
+def test_work_up_to_where_damage_begins_knows_nothing_of_what_comes_then() -> None:
+    """Along a line whose end tells a mean slope, as it is where a point stands on its strength."""
+    a, b = point(0.0, 0.0, 1.0, 2.0), point(0.5, 1.0, 1.0, 1.2)
+    a.tangent.growing_q, b.tangent.arrival = np.array([False]), 2.0
+    assert straight_work(a, b) == pytest.approx(0.25, rel=1e-15)
