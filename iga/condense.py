@@ -101,6 +101,7 @@ def condensed(system: System) -> Condensed | None:
     S_rr -= y_rm @ (y_rm.T @ S_rr)
     S_rr -= (S_rr @ y_rm) @ y_rm.T
     at_rest = replace(rest, pairing=None, dof_qd=kept_qd, V_qrd=weight_qd[:, None])
+    at_rest = replace(at_rest, full_qd=at_rest.rows(np.arange(interface.points), n_r).T)
     small = System(
         solids=(),
         interface=replace(interface, master=None, at_rest=at_rest),

@@ -131,7 +131,8 @@ class Contact:
     ``g_q`` (n_q,), ``n_qi`` (n_q, 2) master normals, ``share_q`` (n_q,) part of each point's area that faces the
     master. ``dof_qd`` (n_q, n_d) lists the unknowns of slave and master side that a point touches; ``V_qrd``
     (n_q, r, n_d) holds the row of the first variation, ``dg = V_0 du``, and, where the geometry is not frozen, the rows
-    T and Nb of the second (see `stiffness`) with ``m_q``, ``kappa_q`` and ``fading_q``.
+    T and Nb of the second (see `stiffness`) with ``m_q``, ``kappa_q`` and ``fading_q``. Of few unknowns ``full_qd``
+    (n_q, n_dof) are the rows of the first over all of them.
     """
 
     pairing: Pairing | None
@@ -143,6 +144,7 @@ class Contact:
     m_q: np.ndarray | None = None
     kappa_q: np.ndarray | None = None
     fading_q: np.ndarray | None = None
+    full_qd: np.ndarray | None = None
 
     @property
     def on_q(self) -> np.ndarray:
@@ -151,11 +153,15 @@ class Contact:
 
     def rates(self, v_d: np.ndarray, q: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Rates (n_q, ...) of the gaps, or of some of them, when the displacements change by v_d (n_dof, ...)."""
+        if self.full_qd is not None:
+            return self.full_qd[q] @ v_d
         G_qd, v_qd = self.V_qrd[q, 0], v_d[self.dof_qd[q]]
         return np.sum(G_qd * v_qd, axis=1) if v_d.ndim == 1 else (G_qd[:, None] @ v_qd)[:, 0]
 
     def rows(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
         """Gradients (n_dof, n_m) of the gaps at some points."""
+        if self.full_qd is not None:
+            return self.full_qd[q_m].T
         rows_dm = np.zeros((n_dof, q_m.size), order="F")
         np.add.at(rows_dm, (self.dof_qd[q_m], np.arange(q_m.size)[:, None]), self.V_qrd[q_m, 0])
         return rows_dm
@@ -237,6 +243,8 @@ def holding(interface: Interface, contact: Contact) -> np.ndarray:
 
 def forces(interface: Interface, contact: Contact, p_q: np.ndarray, n_dof: int) -> np.ndarray:
     """Residual ``R = int p dg/du dGamma`` (n_dof,)."""
+    if contact.full_qd is not None:
+        return (p_q * interface.dA_q) @ contact.full_qd
     R_qd = contact.V_qrd[:, 0] * (p_q * interface.dA_q)[:, None]
     return np.bincount(contact.dof_qd.ravel(), weights=R_qd.ravel(), minlength=n_dof)
 
