@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import qr
+from scipy.linalg.lapack import dgesv
 
 from iga.interface import Contact, Interface
 from iga.inverse import Inverse
@@ -104,10 +105,10 @@ def settled_step(
             felt_mr = touch.rates(steps_dr[:-1], points)
         # of the tractions only what the pulls feel is unknown: z = P w
         slope, w = (dp_q - dp0_q)[points], w_q[points]
-        matrix = np.eye(parts_rm.shape[0]) + (parts_rm * slope) @ felt_mr
-        try:
-            z_r = np.linalg.solve(matrix, parts_rm @ (w + slope * (g0_q - g_q)[points]))
-        except np.linalg.LinAlgError:  # just as soft as the specimen is stiff
+        matrix_rr = (parts_rm * slope) @ felt_mr
+        matrix_rr.flat[:: len(matrix_rr) + 1] += 1.0
+        _, _, z_r, failed = dgesv(matrix_rr, parts_rm @ (w + slope * (g0_q - g_q)[points]))
+        if failed:  # just as soft as the specimen is stiff
             return None
         next_q = g0_q - touch.rates(steps_dr[:-1] @ z_r)
         w_m, g_q = w + slope * (next_q - g_q)[points], next_q

@@ -148,8 +148,8 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
     if event is not None and event.away < away:
         q, away = event.q, event.beyond
     controls = {
-        "front": gap_control(system, q),
-        "dissipation": dissipation_control(system),
-        "arc length": arc_length_control(system, point.response, path.du_d),
+        "front": lambda: gap_control(system, q),
+        "dissipation": lambda: dissipation_control(system),
+        "arc length": lambda: arc_length_control(system, point.response, path.du_d),
     }
-    return Step(controls[pace.control], away)
+    return Step(controls[pace.control](), away)
