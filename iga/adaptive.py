@@ -17,8 +17,9 @@ from iga.control import opening_control
 from iga.grading import largest
 from iga.newton import PATIENT, equilibrium
 from iga.point import Point
+from iga.state import State
 from iga.strip import Strip
-from iga.system import Phase, State
+from iga.system import Phase
 from iga.tmesh import TMesh
 from iga.transfer import transfer
 

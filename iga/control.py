@@ -11,7 +11,8 @@ from collections.abc import Callable
 import numpy as np
 
 from iga.interface import forces, holding
-from iga.system import Response, State, System
+from iga.state import Response, State
+from iga.system import System
 
 #: Value at a state with its response, gradient by the displacements (n_dof,), derivative by the load.
 Control = Callable[[State, Response], tuple[float, np.ndarray, float]]

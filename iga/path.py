@@ -16,8 +16,9 @@ from iga.control import opening_control
 from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium
 from iga.pace import BEND, Step, next_step, paced
 from iga.point import End, Point
+from iga.state import State
 from iga.step import advance, foresee
-from iga.system import Phase, State, System, energies, respond, untimed
+from iga.system import Phase, System, energies, respond, untimed
 from iga.tangent import Linearised, tangent
 from iga.work import leaks
 

@@ -11,7 +11,8 @@ from iga.landing import SEVERAL, Kink, Landing, broken_between, landing, slope_o
 from iga.newton import Equilibrium, Newton, correction, equilibrium, roughly
 from iga.pace import Pace, Step
 from iga.point import Point
-from iga.system import Phase, State, System, energies, respond
+from iga.state import State
+from iga.system import Phase, System, energies, respond
 from iga.tangent import Linearised, tangent
 from iga.work import slid_off, step_work, straight_work
 

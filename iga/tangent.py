@@ -15,7 +15,8 @@ from iga.inner import Bordered, settled_step
 from iga.interface import holding
 from iga.inverse import Inverse
 from iga.landing import Kink
-from iga.system import Phase, Response, State, System, factorise, respond
+from iga.state import Response, State
+from iga.system import Phase, System, factorise, respond
 
 #: Attempts at the set of points, the gap, in units of g_max, that counts as none, and the part of the largest rate
 #: that counts as rounding.
