@@ -254,7 +254,11 @@ def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
 
 def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np.ndarray, Skew | None]:
     """Derivative of the forces by the displacements: the band, the lower half (band.size,), and what is skew."""
-    pattern, touch = _pattern(system, response), response.contact
+    touch = response.contact
+    if touch.full_qd is not None:
+        weighted_qd = (response.dp_q * system.interface.dA_q)[:, None] * touch.full_qd
+        return system.band, system.linear_band + (touch.full_qd.T @ weighted_qd).ravel(), None
+    pattern = _pattern(system, response)
     K_qdd = stiffness(system.interface, touch, response.p_q, response.dp_q)
     half = pattern.half(K_qdd, system.spring_entries[2])
     if pattern.bulk is None:
