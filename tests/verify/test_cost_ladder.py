@@ -119,7 +119,7 @@ def test_more_is_tried_where_it_may_pay() -> None:
     assert [one.size for one in study_of._best(tries, 1.3)] == [420, 590, 830]
     assert [one.size for one in study_of._between(tries)] == [355, 498, 700]
     first = next(iter(tries))
-    assert [one.steps for one in first.with_few_steps()] == ["auto", "auto-0.02", "auto-0.05"]
+    assert [one.steps for one in first.with_few_steps()] == ["auto", "auto-0.02", "auto-0.05", "auto-0.1"]
     assert [one.steps for one in first.with_other_steps()] == [40, 150]
     job = replace(first, steps="auto-0.02").job("dcb-czm1", SCENE)
     fewer = load_scene(job.source, job.overrides)
@@ -164,7 +164,8 @@ def test_a_study_from_ladder_to_files(seconds: float, tmp_path: Path, monkeypatc
     assert found.left_out == () and len({job.place for job in asked}) == len(asked)
     best = cheapest(rows, "0.1%").of_method["nurbs"]
     assert best.times == 3 and best.dofs >= 580
-    assert {one.asked for one in rows if one.method == "nurbs"} == {"80", "auto", "auto-0.02", "auto-0.05", "40", "150"}
+    few = {"auto", "auto-0.02", "auto-0.05", "auto-0.1"}
+    assert {one.asked for one in rows if one.method == "nurbs"} == {"80", *few, "40", "150"}
 
 
 @pytest.mark.slow
