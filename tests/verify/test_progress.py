@@ -33,10 +33,13 @@ def test_long_work_is_told_of_before_any_of_it_is_done(clock: list[float], capsy
         shown.advance(25.0)
         clock[0] = 22.0
         shown.alive("b")
-        assert capsys.readouterr().err == "runs: b, 66 s left\n"
+        assert capsys.readouterr().err == "runs: b, 22 s left\n", "a quarter took 11 s, and 11 s of the rest are over"
         clock[0] = 25.0
         shown.alive("b")
         assert capsys.readouterr().err == ""
+        clock[0] = 50.0
+        shown.alive("b")
+        assert capsys.readouterr().err == "runs: b\n", "a long one makes the rest no longer"
 
 
 def test_longer_than_expected_is_no_time_left(clock: list[float], capsys: pytest.CaptureFixture) -> None:
