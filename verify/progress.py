@@ -66,7 +66,7 @@ class Progress:
         The rate is that up to where the work is known to be; since then it has gone on.
         """
         since, spent = monotonic() - self._reached, self._reached - self._start
-        if 0.0 < self._done < self._total:
+        if 0.0 < self._done < self._total * (1.0 - 1e-9):  # more than rounding, where times are added up
             about, left = "", spent * (self._total / self._done - 1.0) - since
         else:
             about, left = "about ", self._total / self._pace - since if self._pace and not self._done else 0.0

@@ -53,6 +53,17 @@ def test_longer_than_expected_is_no_time_left(clock: list[float], capsys: pytest
     assert capsys.readouterr().err == ""
 
 
+def test_after_the_last_run_no_time_is_left(clock: list[float]) -> None:
+    """Ten times 0.1, added up one after the other, are less than 1 by rounding."""
+    done = 0.0
+    with Progress("runs", total=1.0) as shown:
+        for seconds in range(1, 11):
+            clock[0], done = float(seconds), done + 0.1
+            shown.advance(done)
+            assert (shown.left == "") == (seconds == 10), shown.left
+    assert done < 1.0
+
+
 def test_a_sweep_tells_what_is_running(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
