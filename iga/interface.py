@@ -86,6 +86,8 @@ class Interface:
         """Where its points meet the master in the reference configuration; None where nothing is searched."""
         if self.master is None:
             return None
+        if self.at_rest is not None:
+            return self.at_rest.pairing
         X_qi = self.at_slave(self.local_AI)
         start = nearest_samples(self.master, X_qi, self.local_AI)
         return closest_points(self.master, X_qi, self.local_AI, start)
