@@ -68,7 +68,7 @@ def parser() -> Parser:
     top = Parser(
         prog="debond",
         description="Verify codes for interface debonding.",
-        epilog="example: debond verify\n         # every method on the scenes of the paper; read debond-report/report.html",
+        epilog="example: debond verify\n         # every method, scenes of the paper; read debond-report/report.html",
         formatter_class=Help,
         allow_abbrev=False,
     )
