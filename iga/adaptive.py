@@ -17,8 +17,9 @@ from iga.control import opening_control
 from iga.grading import largest
 from iga.newton import PATIENT, equilibrium
 from iga.point import Point
+from iga.state import State
 from iga.strip import Strip
-from iga.system import Phase, State
+from iga.system import Phase
 from iga.tmesh import TMesh
 from iga.transfer import transfer
 
@@ -71,7 +72,8 @@ def strip(problem: Problem, window: Window) -> Strip:
     before = max(int(np.ceil(window.roots * problem.precrack / bond)), 1)
     starts, sizes = [], []
     for start, length, roots in ((0.0, problem.precrack, before), (problem.precrack, bond, window.roots)):
-        x, size = start + length * np.arange(roots) / roots, np.full(roots, length / roots)
+        x = start + length * np.arange(roots) / roots
+        size: np.ndarray = np.full(roots, length / roots)
         finest = bond / window.roots / 2**HALVINGS
         for _ in range(HALVINGS):
             away = np.maximum(np.maximum(window.start - (x + size), x - window.end), 0.0)

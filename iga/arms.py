@@ -6,6 +6,7 @@ that it divides the process zone as often as possible; elements up to `coarsenin
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -149,8 +150,12 @@ def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
         upper, lower = zip(unequal(path, problem.mismatch), spare or (0, 0), strict=True)
         return upper, lower
 
+    @cache
+    def along(arm: Arm) -> int:
+        return columns(basis, p, sum(division(problem, *arm)[0]))
+
     def unknowns(both: tuple[Arm, Arm], q: int) -> int:
-        return 2 * (q + 1) * sum(columns(basis, p, sum(division(problem, *arm)[0])) for arm in both)
+        return 2 * (q + 1) * sum(along(arm) for arm in both)
 
     def chosen(q: int) -> tuple[Arm, Arm]:
         n = largest(lambda n: unknowns(arms(n), q), 1, problem.dofs)

@@ -89,7 +89,7 @@ def _mapped(mesh: Mesh, block: ElementBlock, points_q: np.ndarray) -> tuple[Bloc
     dN_eqaI, (dN_s, dN_t) = np.empty((*N_eqa.shape, 2)), dN_seqa
     dN_eqaI[..., 0] = (J11 / det)[..., None] * dN_s - (J10 / det)[..., None] * dN_t
     dN_eqaI[..., 1] = (J00 / det)[..., None] * dN_t - (J01 / det)[..., None] * dN_s
-    J_eqIs = np.stack([np.stack([J00, J01], -1), np.stack([J10, J11], -1)], -2)
+    J_eqIs = np.stack([J00, J01, J10, J11], -1).reshape(*det.shape, 2, 2)
     return BlockBasis(block.conn_ea, N_eqa, dN_eqaI, det, N_eqa @ P_eaI), J_eqIs
 
 
@@ -104,7 +104,7 @@ def _rational(
     w_ea = mesh.w_A[block.conn_ea]
     wN_ekqa = (B_kqb @ block.C_eab.swapaxes(1, 2)).reshape(len(w_ea), 3, len(points_q), -1)
     wN, wdN_s, wdN_t = np.moveaxis(wN_ekqa * w_ea[:, None, None], 1, 0)
-    if np.allclose(w_ea[:, None] @ block.C_eab, 1.0, rtol=0.0, atol=POLYNOMIAL):
+    if np.abs(w_ea[:, None] @ block.C_eab - 1.0).max() <= POLYNOMIAL:
         return wN, (wdN_s, wdN_t)
     W, W_s, W_t = (v.sum(-1, keepdims=True) for v in (wN, wdN_s, wdN_t))
     N = wN / W

@@ -53,7 +53,7 @@ class Bisection:
         breaks = (self.breaks_s, self.breaks_t)
         unit_ni = np.stack([np.interp(x, b, np.arange(len(b))) for x, b in zip(x_ni.T, breaks, strict=True)], -1)
         unit_ni = np.minimum(unit_ni, np.nextafter([len(b) - 1.0 for b in breaks], 0.0))
-        found = np.full(len(x_ni), -1)
+        found: np.ndarray = np.full(len(x_ni), -1)
         for level in np.unique(self.level_e):
             e = self._lookup(level, np.floor(unit_ni / _size(level)).astype(np.int64))
             found = np.where(e >= 0, e, found)

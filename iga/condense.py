@@ -30,8 +30,6 @@ STRAIGHT = 1e-12
 ALIKE = 1e-12
 #: Part of a rigid motion below which a spring does not feel it.
 RESISTED = 1e-9
-#: Further solutions of the saddle point problem, each for what the last one has left.
-REFINEMENTS = 1
 #: Work of a dense LU over that of a banded one, for matrices of equal size: n^3 2/3 against 4 n k^2.
 DENSE, BANDED = 2.0 / 3.0, 4.0
 
@@ -78,22 +76,15 @@ def condensed(system: System) -> Condensed | None:
     if not _pays(system, n_r):
         return None
     free = np.flatnonzero(system.free_d)
+    # rows as large as the stiffness: else the forces lose half of their digits to it
+    size = max(float(np.abs(K).max()) for K in system.linear_matrices)
     try:
-        # of SuperLU's orderings the one that fills in least here, and hundreds of solutions follow
-        lu = splu(_saddle(system, B_rd, free), permc_spec="MMD_ATA")
+        lu = splu(_saddle(system, size * B_rd, free))
     except RuntimeError:  # rows that say the same twice
         return None
-    U_dr, unit_rr = np.zeros((system.n_dof, n_r)), np.eye(n_r)
-    first = lu.solve(np.concatenate([np.zeros((free.size, n_r)), unit_rr]))
-    U_dr[free], S_rr = first[: free.size], -first[free.size :]
-    for _ in range(REFINEMENTS):
-        held_dr = _bulk_forces(system, U_dr)
-        left_dr = (
-            held_dr - B_rd.T @ S_rr + system.springs_rd.T @ (system.spring_r[:, None] * (system.springs_rd @ U_dr))
-        )
-        change = lu.solve(np.concatenate([-left_dr[free], unit_rr - B_rd @ U_dr]))
-        U_dr[free] += change[: free.size]
-        S_rr -= change[free.size :]
+    U_dr = np.zeros((system.n_dof, n_r))
+    found = lu.solve(np.concatenate([np.zeros((free.size, n_r)), size * np.eye(n_r)]))
+    U_dr[free], S_rr = found[: free.size], -size * found[free.size :]
     # rigid motions ask for no force: said once more, rounding of the solution does not come into the balance of forces
     rigid_dm = _mechanisms(system)
     y_rm, triangle = np.linalg.qr(B_rd @ rigid_dm)
@@ -101,6 +92,7 @@ def condensed(system: System) -> Condensed | None:
     S_rr -= y_rm @ (y_rm.T @ S_rr)
     S_rr -= (S_rr @ y_rm) @ y_rm.T
     at_rest = replace(rest, pairing=None, dof_qd=kept_qd, V_qrd=weight_qd[:, None])
+    at_rest = replace(at_rest, full_qd=at_rest.rows(np.arange(interface.points), n_r).T)
     small = System(
         solids=(),
         interface=replace(interface, master=None, at_rest=at_rest),

@@ -10,8 +10,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from iga.interface import holding
-from iga.system import Response, State, System
+from iga.interface import forces, holding
+from iga.state import Response, State
+from iga.system import System
 
 #: Value at a state with its response, gradient by the displacements (n_dof,), derivative by the load.
 Control = Callable[[State, Response], tuple[float, np.ndarray, float]]
@@ -58,7 +59,7 @@ def dissipation_control(system: System) -> Control:
         dissipated = float(interface.dA_q @ law.energies(g_q, response.k_q)[2])
         growing_q = (g_q >= response.k_q) & (g_q > law.g_max) & (g_q < law.g_u) & holding(interface, response.contact)
         rate_q = np.where(growing_q, law.dissipation_rate(g_q), 0.0)
-        return dissipated, _weighted_gaps(system, response, rate_q), 0.0
+        return dissipated, forces(interface, response.contact, rate_q, system.n_dof), 0.0
 
     return control
 
@@ -76,13 +77,6 @@ def arc_length_control(system: System, start: Response, du_d: np.ndarray) -> Con
 
     def control(state: State, response: Response) -> tuple[float, np.ndarray, float]:
         value = float(interface.dA_q @ (rate_q * (response.contact.g_q - g0_q)))
-        return value, _weighted_gaps(system, response, rate_q), 0.0
+        return value, forces(interface, response.contact, rate_q, system.n_dof), 0.0
 
     return control
-
-
-def _weighted_gaps(system: System, response: Response, weight_q: np.ndarray) -> np.ndarray:
-    """Gradient (n_dof,) of the integral of the gap times a weight over the interface."""
-    contact = response.contact
-    rows_qd = contact.V_qrd[:, 0] * (weight_q * system.interface.dA_q)[:, None]
-    return np.bincount(contact.dof_qd.ravel(), weights=rows_qd.ravel(), minlength=system.n_dof)

@@ -18,7 +18,8 @@ from iga.problem import Debonding, smooth
 from iga.solid import joined
 from iga.solve import OnFrame, Solution, run
 from iga.specimen import Specimen
-from iga.system import Phase, State, System, untimed
+from iga.state import State
+from iga.system import Phase, System, untimed
 from iga.tmesh import TMesh
 from iga.tspline import tspline_rectangle
 

@@ -51,11 +51,11 @@ def _tmesh(specimen: Specimen) -> dict[str, np.ndarray]:
 
 def _grids(specimen: Specimen, number: int, u_d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     body, pose = specimen.bodies[number], specimen.pose
-    u_Ai, along_i, parts = u_d.reshape(-1, 2)[body.points], pose.axes_kI[0], []
+    u_Ai, along_ij, parts = u_d.reshape(-1, 2)[body.points], np.outer(pose.axes_kI[0], pose.axes_kI[0]), []
     for basis in body.sampled:
-        u_eqi = np.einsum("eqa,eai->eqi", basis.N_eqa, u_Ai[basis.conn_ea])
+        u_eqi = basis.N_eqa @ u_Ai[basis.conn_ea]
         sigma = cauchy_stress(body.D, gradient(basis, u_Ai), specimen.system.kinematics)
-        stress_eq = np.einsum("i,ijeq,j->eq", along_i, sigma, along_i)
+        stress_eq = np.tensordot(along_ij, sigma, axes=2)
         parts.append((pose.own(basis.X_eqI), pose.components(u_eqi), stress_eq))
     shape = (-1, SAMPLES + 1, SAMPLES + 1)
     X, u, stress = (np.concatenate([part[i] for part in parts]) for i in range(3))

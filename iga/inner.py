@@ -17,12 +17,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import qr
+from scipy.linalg.lapack import dgesv
 
 from iga.interface import Contact, Interface
 from iga.inverse import Inverse
 
-#: Corrections of the gaps, and how far tractions may be from the law, in parts of the largest.
-CORRECTIONS, AGREED = 20, 1e-12
+#: Corrections of the gaps, after how many of them one goes half way, as they may go round in circles on a law that
+#: softens, and how far tractions may be from the law, in parts of the largest.
+CORRECTIONS, ROUND, AGREED = 40, 8, 1e-12
 #: Solutions that this may take, two tangents or so, each of which is worth 25 to 40 of them; unknowns up to which
 #: tangents are so little work that any number may be taken; numbers in all solutions, which are more work to move about
 #: than a tangent where there are more; and points that share a solution.
@@ -82,7 +84,7 @@ def settled_step(
     steps_dr = system.solve(np.eye(n_dof)) if few else np.zeros((plain_d.size, 0))
     felt_mr, w_m, z_r = touch.rates(steps_dr[:-1], points), np.zeros(points.size), np.zeros(len(parts_rm))
     g_q, guessed = (g0_q, False) if guess_q is None else (guess_q, True)
-    for _ in range(CORRECTIONS):
+    for correction in range(1, CORRECTIONS + 1):
         p_q, dp_q = law(g_q)
         w_q = p_q - p0_q - dp0_q * (g_q - touch.g_q)
         left_q = w_q.copy()
@@ -90,7 +92,6 @@ def settled_step(
         leaving_q = np.abs(left_q) > AGREED * np.abs(p_q).max()
         if not (guessed or leaving_q.any()):
             return plain_d - steps_dr @ z_r
-        guessed = False
         leaving_q[points] = False
         new = np.flatnonzero(leaving_q)
         if new.size:
@@ -104,13 +105,15 @@ def settled_step(
             felt_mr = touch.rates(steps_dr[:-1], points)
         # of the tractions only what the pulls feel is unknown: z = P w
         slope, w = (dp_q - dp0_q)[points], w_q[points]
-        matrix = np.eye(parts_rm.shape[0]) + (parts_rm * slope) @ felt_mr
-        try:
-            z_r = np.linalg.solve(matrix, parts_rm @ (w + slope * (g0_q - g_q)[points]))
-        except np.linalg.LinAlgError:  # just as soft as the specimen is stiff
-            return None
+        matrix_rr = (parts_rm * slope) @ felt_mr
+        matrix_rr.flat[:: len(matrix_rr) + 1] += 1.0
+        if len(matrix_rr):  # a guess may have all points on their tangents
+            _, _, z_r, failed = dgesv(matrix_rr, parts_rm @ (w + slope * (g0_q - g_q)[points]))
+            if failed:  # just as soft as the specimen is stiff
+                return None
         next_q = g0_q - touch.rates(steps_dr[:-1] @ z_r)
-        w_m, g_q = w + slope * (next_q - g_q)[points], next_q
+        w_m, guessed = w + slope * (next_q - g_q)[points], correction % ROUND == 0
+        g_q = 0.5 * (g_q + next_q) if guessed else next_q
     return None
 
 

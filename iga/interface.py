@@ -13,13 +13,12 @@ from functools import cached_property
 import numpy as np
 
 from iga.cohesive import TractionLaw
-from iga.projection import FREE, HELD, Pairing, closest_points, nearest_samples
+from iga.partner import partner
+from iga.projection import Pairing, closest_points, nearest_samples
 from iga.surface import Surface, normal
 
 #: Part of the model's size within which surfaces count as touching where nothing has moved.
 TOUCHING = 1e-9
-#: Part of a side beyond its end that is none.
-AT_END = 1e-9
 
 
 @dataclass(frozen=True)
@@ -87,6 +86,8 @@ class Interface:
         """Where its points meet the master in the reference configuration; None where nothing is searched."""
         if self.master is None:
             return None
+        if self.at_rest is not None:
+            return self.at_rest.pairing
         X_qi = self.at_slave(self.local_AI)
         start = nearest_samples(self.master, X_qi, self.local_AI)
         return closest_points(self.master, X_qi, self.local_AI, start)
@@ -107,31 +108,14 @@ class Interface:
 
 
 @dataclass(frozen=True)
-class Partner:
-    """Places on the master, for points beyond its ends or on a kink on the straight continuation of a side.
-
-    ``c_q`` sides; ``M_qb`` and ``dM_qb`` (n_q, n_b) functions there and their derivatives; ``t_qi`` and ``t_xi_qi``
-    (n_q, 2) derivatives of the position, the second one nothing on a continuation; ``share_q`` (n_q,) part of a point's
-    area that faces the master, ``fading_q`` (n_q,) its logarithmic derivative along the surface.
-    """
-
-    c_q: np.ndarray
-    M_qb: np.ndarray
-    dM_qb: np.ndarray
-    t_qi: np.ndarray
-    t_xi_qi: np.ndarray
-    share_q: np.ndarray
-    fading_q: np.ndarray
-
-
-@dataclass(frozen=True)
 class Contact:
     """Gaps and their variations in one configuration.
 
     ``g_q`` (n_q,), ``n_qi`` (n_q, 2) master normals, ``share_q`` (n_q,) part of each point's area that faces the
     master. ``dof_qd`` (n_q, n_d) lists the unknowns of slave and master side that a point touches; ``V_qrd``
     (n_q, r, n_d) holds the row of the first variation, ``dg = V_0 du``, and, where the geometry is not frozen, the rows
-    T and Nb of the second (see `stiffness`) with ``m_q``, ``kappa_q`` and ``fading_q``.
+    T and Nb of the second (see `stiffness`) with ``m_q``, ``kappa_q`` and ``fading_q``. Of few unknowns ``full_qd``
+    (n_q, n_dof) are the rows of the first over all of them.
     """
 
     pairing: Pairing | None
@@ -143,6 +127,7 @@ class Contact:
     m_q: np.ndarray | None = None
     kappa_q: np.ndarray | None = None
     fading_q: np.ndarray | None = None
+    full_qd: np.ndarray | None = None
 
     @property
     def on_q(self) -> np.ndarray:
@@ -151,11 +136,15 @@ class Contact:
 
     def rates(self, v_d: np.ndarray, q: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Rates (n_q, ...) of the gaps, or of some of them, when the displacements change by v_d (n_dof, ...)."""
+        if self.full_qd is not None:
+            return self.full_qd[q] @ v_d
         G_qd, v_qd = self.V_qrd[q, 0], v_d[self.dof_qd[q]]
         return np.sum(G_qd * v_qd, axis=1) if v_d.ndim == 1 else (G_qd[:, None] @ v_qd)[:, 0]
 
     def rows(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
         """Gradients (n_dof, n_m) of the gaps at some points."""
+        if self.full_qd is not None:
+            return self.full_qd[q_m].T
         rows_dm = np.zeros((n_dof, q_m.size), order="F")
         np.add.at(rows_dm, (self.dof_qd[q_m], np.arange(q_m.size)[:, None]), self.V_qrd[q_m, 0])
         return rows_dm
@@ -163,33 +152,6 @@ class Contact:
     def row(self, q: int, n_dof: int) -> np.ndarray:
         """Gradient (n_dof,) of the gap at one point."""
         return self.rows(np.array([q]), n_dof)[:, 0]
-
-
-def partner(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarray) -> Partner:
-    """Where the points x_qi (n_q, 2) meet the master with the control points y_AI (n_A, 2).
-
-    Beyond the ends of a side, at ``eta`` from there, the surface goes on along its tangent, ``y + eta y'``: the gap is
-    then as smooth as the motion, its variation complete, and the forces are in balance. Up to `HELD` a point beyond an
-    end of the chain carries all its traction, from `FREE` on nothing, and in between its share falls smoothly: what it
-    stands for slides off the master little by little.
-    """
-    c_q, xi_q = pairing.c_q, pairing.xi_q
-    r0, r1, r2 = master.coefficients(c_q, xi_q, 2)
-    Q_qbi = master.bezier_points(y_AI, c_q)
-    t_qi, t_xi_qi = ((r[:, None] @ Q_qbi)[:, 0] for r in (r1, r2))
-    share_q, fading_q = np.ones(len(c_q)), np.zeros(len(c_q))
-    edge = np.flatnonzero((xi_q == 0.0) | (xi_q == 1.0))
-    if edge.size:
-        t, way = t_qi[edge], np.where(xi_q[edge] == 1.0, 1.0, -1.0)
-        d = x_qi[edge] - (r0[edge][:, None] @ Q_qbi[edge])[:, 0]
-        eta = np.sum(d * t, -1) / np.sum(t * t, -1)
-        r0[edge] += eta[:, None] * r1[edge]
-        t_xi_qi[edge] = np.where((way * eta > AT_END)[:, None], 0.0, t_xi_qi[edge])
-        at_end = master.following(c_q[edge], way.astype(int)) == c_q[edge]
-        share, rate = _share(np.where(at_end, way * eta, 0.0))
-        share_q[edge], fading_q[edge] = share, way * rate
-    M_qb, dM_qb = (master.functions(c_q, r) for r in (r0, r1))
-    return Partner(c_q, M_qb, dM_qb, t_qi, t_xi_qi, share_q, fading_q)
 
 
 def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Contact:
@@ -237,6 +199,8 @@ def holding(interface: Interface, contact: Contact) -> np.ndarray:
 
 def forces(interface: Interface, contact: Contact, p_q: np.ndarray, n_dof: int) -> np.ndarray:
     """Residual ``R = int p dg/du dGamma`` (n_dof,)."""
+    if contact.full_qd is not None:
+        return (p_q * interface.dA_q) @ contact.full_qd
     R_qd = contact.V_qrd[:, 0] * (p_q * interface.dA_q)[:, None]
     return np.bincount(contact.dof_qd.ravel(), weights=R_qd.ravel(), minlength=n_dof)
 
@@ -289,16 +253,6 @@ def _known(interface: Interface, u_d: np.ndarray) -> Contact:
     n_qi = np.broadcast_to(interface.mirror_i, interface.X_qi.shape)
     g_q = np.sum((D_qa[:, None] @ u_d.reshape(-1, 2)[conn_qa])[:, 0] * n_qi, -1)
     return Contact(None, g_q, n_qi, np.ones(interface.points), dofs(conn_qa), _along(D_qa, n_qi)[:, None])
-
-
-def _share(over: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Share of a point beyond an end by ``over``, in parts of the side, and its logarithmic derivative.
-
-    ``(1 - s)^2 (1 + 2 s)``, s from 0 at `HELD` to 1 at `FREE`.
-    """
-    s = np.clip((over - HELD) / (FREE - HELD), 0.0, 1.0)
-    left = np.where(s < 1.0, 1.0 - s, 1.0)
-    return (1.0 - s) ** 2 * (1.0 + 2.0 * s), -6.0 * np.where(s < 1.0, s, 0.0) / (left * (1.0 + 2.0 * s) * (FREE - HELD))
 
 
 def _jump(D_qa: np.ndarray, u_qai: np.ndarray) -> np.ndarray:

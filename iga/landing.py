@@ -16,7 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from iga.interface import Contact, Interface, holding
-from iga.system import State, System
+from iga.state import State
+from iga.system import System
 
 #: How far beyond the kink a step ends, in parts of its gap, and how many points break on one that passes over arcs.
 BEYOND, SEVERAL = 1e-9, 2

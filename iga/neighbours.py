@@ -178,10 +178,10 @@ def chains_of(sides: Sides, k_n: np.ndarray) -> tuple[Chain, ...]:
 def _walks(start_n: np.ndarray, end_n: np.ndarray) -> list[np.ndarray]:
     """Sides in walking order, a piece an array: from the side that follows none, in a loop from the first."""
     n, order = len(start_n), np.argsort(start_n)
-    before, place = np.arange(n), np.searchsorted(start_n, end_n, sorter=order)
+    place = np.searchsorted(start_n, end_n, sorter=order)
     has_next = place < n
     has_next[has_next] = start_n[order[place[has_next]]] == end_n[has_next]
-    before, after = before[has_next], order[place[has_next]]
+    before, after = np.flatnonzero(has_next), order[place[has_next]]
     graph = coo_array((np.ones(len(before)), (before, after)), shape=(n, n)).tocsr()
     _, piece_n = connected_components(graph, directed=False)
     follows_n = np.isin(np.arange(n), after)

@@ -15,7 +15,8 @@ from iga.control import Control
 from iga.inner import bordered, settled_step
 from iga.interface import traction
 from iga.inverse import Inverse
-from iga.system import Phase, Response, State, System, factorise, respond, rounding
+from iga.state import Response, State
+from iga.system import Phase, System, factorise, respond, rounding
 
 #: Part of the work along a step that may be left, and the attempts to find its length.
 SLACK, SEARCHES = 0.05, 12

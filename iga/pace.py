@@ -108,13 +108,17 @@ class Pace:
         return replace(self, step=float(np.clip(grown, SMALLEST * self.largest, self.largest)))
 
 
-def paced(programme: np.ndarray, steps: int | None, bend: float = BEND) -> Pace:
-    """The pace at which a programme begins; ``bend`` as in `follow`."""
+def paced(programme: np.ndarray, steps: int | None, bend: float = BEND, linear: bool = False) -> Pace:
+    """The pace at which a programme begins; ``bend`` as in `follow`.
+
+    Where kinematics and bulk are ``linear`` nothing bends before damage begins, and the first step goes that far.
+    """
     whole = float(np.sum(np.abs(np.diff(programme, prepend=0.0))))
     asked = whole / steps if steps else np.inf
     if steps and steps >= FEWEST:
         return Pace(asked, asked)
-    first, largest = min(FIRST * whole, asked), min(LARGEST * whole, asked)
+    largest = min(LARGEST * whole, asked)
+    first = largest if linear else min(FIRST * whole, asked)
     return Pace(largest, first, by_accuracy=True, counted=whole / SAFE, bend=bend)
 
 
@@ -144,8 +148,8 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
     if event is not None and event.away < away:
         q, away = event.q, event.beyond
     controls = {
-        "front": gap_control(system, q),
-        "dissipation": dissipation_control(system),
-        "arc length": arc_length_control(system, point.response, path.du_d),
+        "front": lambda: gap_control(system, q),
+        "dissipation": lambda: dissipation_control(system),
+        "arc length": lambda: arc_length_control(system, point.response, path.du_d),
     }
-    return Step(controls[pace.control], away)
+    return Step(controls[pace.control](), away)

@@ -16,8 +16,9 @@ from iga.control import opening_control
 from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium
 from iga.pace import BEND, Step, next_step, paced
 from iga.point import End, Point
+from iga.state import State
 from iga.step import advance, foresee
-from iga.system import Phase, State, System, energies, respond, untimed
+from iga.system import Phase, System, energies, respond, untimed
 from iga.tangent import Linearised, tangent
 from iga.work import leaks
 
@@ -49,7 +50,8 @@ def follow(
     bend : by how much of the peak the load may leave the tangent of a step that the path chooses.
     renew : may answer a converged point with another system, and its state in equilibrium at the same opening.
     """
-    pace, reach = paced(np.array(programme), steps, bend), float(np.max(np.abs(programme)))
+    pace = paced(np.array(programme), steps, bend, system.kinematics == "linear")
+    reach = float(np.max(np.abs(programme)))
     rejected, peak, most = 0, 0.0, 0.0
     direction = float(np.sign(programme[0]))
     departed = _departing(system, system.start(), direction, 0.0, phase)

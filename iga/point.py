@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.system import Energies, Response, State
+from iga.state import Energies, Response, State
 from iga.tangent import Tangent
 
 

@@ -137,8 +137,10 @@ def _walk(
     apart_q, lost_q = np.full(len(x_qi), np.inf), np.ones(len(x_qi), dtype=bool)
     # the points under way: where they are, between which places the distance is least, and how they came to their side
     q, x, c, xi, Q = np.arange(len(x_qi)), x_qi, c_q, xi_q, surface.bezier_points(y_AI, c_q)
-    low, high = np.full(len(q), -1.0), np.full(len(q), 2.0)  # both off the side: nothing is known
-    crossed, came, aside = np.zeros(len(q), dtype=int), np.zeros(len(q), dtype=int), np.zeros(len(q))
+    low: np.ndarray = np.full(len(q), -1.0)  # off the side, as high is: nothing is known
+    high: np.ndarray = np.full(len(q), 2.0)
+    came: np.ndarray = np.zeros(len(q), dtype=int)
+    crossed, aside = np.zeros(len(q), dtype=int), np.zeros(len(q))
     for _ in range(iterations):
         r0, r1, r2 = surface.coefficients(c, xi, 2)
         y, t, t_xi = ((r[:, None] @ Q)[:, 0] for r in (r0, r1, r2))

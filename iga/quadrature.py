@@ -10,8 +10,8 @@ import numpy as np
 @cache
 def gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre points and weights (n,), exact for degree 2n - 1."""
-    x, w = np.polynomial.legendre.leggauss(n)
-    x, w = 0.5 * (x + 1.0), 0.5 * w
+    xi, weights = np.polynomial.legendre.leggauss(n)  # on [-1, 1]
+    x, w = 0.5 * (xi + 1.0), 0.5 * weights
     x.flags.writeable = w.flags.writeable = False  # all who ask share them
     return x, w
 

@@ -14,7 +14,8 @@ from iga.observe import row
 from iga.path import End, Point, follow
 from iga.problem import Debonding
 from iga.specimen import Specimen
-from iga.system import Phase, State, System, respond, tangent_matrix
+from iga.state import State
+from iga.system import Phase, System, respond, tangent_matrix
 
 #: Called with the opening of every converged step, and with what makes its frame (see `iga.frames`) where it is wanted.
 OnFrame = Callable[[float, Callable[[], dict[str, Any]]], None]

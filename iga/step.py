@@ -11,7 +11,8 @@ from iga.landing import SEVERAL, Kink, Landing, broken_between, landing, slope_o
 from iga.newton import Equilibrium, Newton, correction, equilibrium, roughly
 from iga.pace import Pace, Step
 from iga.point import Point
-from iga.system import Phase, State, System, energies, respond
+from iga.state import State
+from iga.system import Phase, System, energies, respond
 from iga.tangent import Linearised, tangent
 from iga.work import slid_off, step_work, straight_work
 
@@ -46,13 +47,16 @@ def foresee(
     value, a_d, a_load = control(old, response)
     target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
     follows_on, guess_q, place = point.before is not None, None, None
+    linear = system.kinematics == "linear"
     with phase("solve"):
         q = point.front
         opens = asked.away * path.rate_q[q] if path.growing_q[q] else 0.0
         if opens > LEAP * system.interface.law.g_u:
             guess_q = travelled(system.interface, touch.g_q, q, touch.g_q[q] + opens)
-        if by_kinks and guess_q is not None:
-            place = landing(system, old, touch, guess_q, follows_on)
+        # one kink is as good as the next one; of a linear bulk the step onto it is exact, and no other is made
+        ahead_q = touch.g_q + asked.away * path.rate_q if guess_q is None and linear else guess_q
+        if by_kinks and ahead_q is not None:
+            place = landing(system, old, touch, ahead_q, follows_on)
         if place is not None:
             control, target = gap_control(system, place.q), place.target
         found = correction(system, old, response, known.inverse, control, target, True, guess_q)
@@ -61,7 +65,7 @@ def foresee(
     if by_kinks and place is None:
         guess_q = touch.g_q + touch.rates(found[0][:-1])
         place = landing(system, old, touch, guess_q, follows_on)
-        if place is not None and system.kinematics == "linear":  # this is exact then; else Newton is needed anyway
+        if place is not None and linear:  # this is exact then; else Newton is needed anyway
             control = gap_control(system, place.q)
             with phase("solve"):
                 onto = correction(system, old, response, known.inverse, control, place.target, True, guess_q)

@@ -4,30 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array
 
+from iga.assembly import Pattern, element_sums, element_values, lower_half, pattern_of, skew_part, spring_entries
 from iga.banded import Band, Skew, number
-from iga.bulk import (
-    element_forces,
-    element_stiffness,
-    energy,
-    full_matrices,
-    gradient,
-    half_entries,
-    half_places,
-    relative,
-)
+from iga.bulk import element_forces, element_stiffness, energy, full_matrices, gradient, relative
 from iga.dense import Dense
 from iga.interface import Contact, Interface, contact, dofs, forces, holding, stiffness, traction
 from iga.interface import rounding as interface_rounding
 from iga.inverse import Inverse, held_inverse, inverse
 from iga.kinematics import KINEMATICS
-from iga.projection import Pairing
 from iga.solid import Solid
+from iga.state import Energies, Response, State
 
 #: Times the phases of a run ("mesh", "basis", "assembly", "factor", "solve"); whoever calls brings the clock.
 Phase = Callable[[str], AbstractContextManager]
@@ -48,85 +39,6 @@ HIDDEN = LOST / 5e-12
 HOLD = 100.0
 #: Part of the forces in play below which a point of the interface neither opens nor closes.
 NOTHING = 1e-13
-
-
-@dataclass(frozen=True)
-class State:
-    """A configuration: displacements u_d (n_dof,), load, history k_q (n_q,).
-
-    ``scale`` is the largest force scale (see `Response`) of all converged states so far. ``closed_q`` (n_q,) and
-    ``pairing``, which points were in contact and where the interface met, are where the next
-    search starts, not history. ``slid`` is history again: what has gone with points that slid off the master, beyond
-    what `energies` would count of them as dissipated.
-    """
-
-    u_d: np.ndarray
-    load: float
-    k_q: np.ndarray
-    closed_q: np.ndarray
-    pairing: Pairing | None
-    scale: float = 0.0
-    slid: float = 0.0
-
-    def moved(self, step_d: np.ndarray) -> State:
-        """Displacements and load moved on by a step (n_dof + 1,), the load last."""
-        return replace(self, u_d=self.u_d + step_d[:-1], load=self.load + float(step_d[-1]))
-
-
-@dataclass(frozen=True)
-class Energies:
-    """What the work has become: stored in bulk and springs, in cohesion and in contact, and dissipated.
-
-    A spring that carries what tilted tractions pull lengthwise stores some, too.
-    """
-
-    bulk: float
-    cohesive: float
-    contact: float
-    dissipated: float
-
-    @property
-    def stored(self) -> float:
-        return self.bulk + self.cohesive + self.contact
-
-    @property
-    def total(self) -> float:
-        return self.stored + self.dissipated
-
-
-@dataclass(frozen=True)
-class Response:
-    """What a configuration answers.
-
-    ``internal_d`` (n_dof,) forces of bulk and interface; ``scale`` the norm of the forces that the elements hold
-    against each other, by which a residual is judged; ``bulk_energy``; the interface with traction p_q, slope dp_q and
-    new history k_q; the displacement gradients of the solids, of which a tangent is made once one is asked for.
-    """
-
-    internal_d: np.ndarray
-    scale: float
-    bulk_energy: float
-    contact: Contact
-    p_q: np.ndarray
-    dp_q: np.ndarray
-    k_q: np.ndarray
-    closed_q: np.ndarray
-    gradients: tuple[np.ndarray, ...]
-
-
-@dataclass(frozen=True)
-class Pattern:
-    """The lower half of the tangent, and where in it all entries go.
-
-    ``bulk`` (band.size, n_values) adds up what the elements say; linear kinematics has it in place already. Of
-    interface and springs ``positions`` (n_values,) are the places, of the spring across the opening ``held``.
-    """
-
-    dof_qd: np.ndarray
-    band: Band | Dense
-    bulk: csr_array | None
-    positions: np.ndarray
-    held: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -163,6 +75,35 @@ class System:
         n_q = self.interface.points
         return State(np.zeros(self.n_dof), 0.0, np.zeros(n_q), np.zeros(n_q, dtype=bool), self.interface.pairing)
 
+    def spring_forces(self, u_d: np.ndarray) -> np.ndarray:
+        """Forces (n_r,) that the springs exert on the bodies, along their own displacements."""
+        return -self.spring_r * (self.springs_rd @ u_d)
+
+    @property
+    def connectivity(self) -> tuple[np.ndarray, ...]:
+        """Control points (n_e, n_a) of the elements of each block."""
+        return tuple(solid.basis.conn_ea for solid in self.solids)
+
+    @cached_property
+    def element_dofs(self) -> tuple[np.ndarray, ...]:
+        """Degrees of freedom (n_e, 2 n_a) of the elements of each block."""
+        return tuple(dofs(conn_ea) for conn_ea in self.connectivity)
+
+    @cached_property
+    def reference_dof_qd(self) -> np.ndarray:
+        """Unknowns that each interface point touches before anything moves."""
+        interface, master, pairing = self.interface, self.interface.master, self.interface.pairing
+        if interface.at_rest is not None:
+            return interface.at_rest.dof_qd
+        if master is None or pairing is None:
+            return dofs(interface.known_conn_qa)
+        return dofs(np.concatenate([interface.conn_qa, master.conn_ca[pairing.c_q]], axis=1))
+
+    @cached_property
+    def loaded(self) -> np.ndarray:
+        """Degrees of freedom that feel the load."""
+        return np.flatnonzero(self.load_d)
+
     @cached_property
     def band(self) -> Band | Dense:
         """Numbering for bulk and interface before anything moves; what slides may ask for a wider band."""
@@ -171,55 +112,6 @@ class System:
         springs = [np.flatnonzero(a_d)[None] for a_d in self.springs_rd]
         touching = self.reference_dof_qd
         return number([*self.element_dofs, touching, *springs, self.loaded[None]], self.x_d, self.free_d)
-
-    @cached_property
-    def loaded(self) -> np.ndarray:
-        """Degrees of freedom that feel the load."""
-        return np.flatnonzero(self.load_d)
-
-    @cached_property
-    def reference_dof_qd(self) -> np.ndarray:
-        """Unknowns that each interface point touches before anything moves."""
-        interface = self.interface
-        if interface.at_rest is not None:
-            return interface.at_rest.dof_qd
-        pairing = interface.pairing
-        if pairing is None:
-            return dofs(interface.known_conn_qa)
-        return dofs(np.concatenate([interface.conn_qa, interface.master.conn_ca[pairing.c_q]], axis=1))
-
-    @cached_property
-    def spring_entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Rows, columns and values that the springs add to the lower half of the tangent."""
-        parts = [np.zeros((3, 0))]
-        for a_d, k in zip(self.springs_rd, self.spring_r, strict=True):
-            held = np.flatnonzero(a_d)
-            row, column = _pairs(held)
-            parts.append(np.stack([row, column, k * a_d[row] * a_d[column]]))
-        row, column, value = np.concatenate(parts, axis=1)
-        return row.astype(int), column.astype(int), value
-
-    def spring_forces(self, u_d: np.ndarray) -> np.ndarray:
-        """Forces (n_r,) that the springs exert on the bodies, along their own displacements."""
-        return -self.spring_r * (self.springs_rd @ u_d)
-
-    @cached_property
-    def loads_squared(self) -> np.ndarray:
-        """Lower half of ``f f'`` over the degrees of freedom that feel the load."""
-        row, column = _pairs(self.loaded)
-        return self.load_d[row] * self.load_d[column]
-
-    @cached_property
-    def hold(self) -> float:
-        """Stiffness of the spring that holds the opening while a tangent is factorised; 0 where none is known."""
-        found = inverse(*tangent_matrix(self, respond(self, self.start(), decide=False)), self.load_d)
-        compliance = 0.0 if found is None else abs(float(self.load_d @ found.under_load_d))
-        return HOLD / compliance if compliance > 0.0 else 0.0
-
-    @cached_property
-    def element_dofs(self) -> tuple[np.ndarray, ...]:
-        """Degrees of freedom (n_e, 2 n_a) of the elements of each block."""
-        return tuple(dofs(solid.basis.conn_ea) for solid in self.solids)
 
     @cached_property
     def unloaded_stiffness(self) -> list[np.ndarray]:
@@ -233,16 +125,34 @@ class System:
         return tuple(full_matrices(K) for K in self.unloaded_stiffness)
 
     @cached_property
+    def stiffest(self) -> tuple[np.ndarray, ...]:
+        """Largest entry (n_e,) of each element's stiffness."""
+        return tuple(np.abs(K).max((1, 2, 3)) for K in self.unloaded_stiffness)
+
+    @cached_property
     def linear_band(self) -> np.ndarray:
         """The stiffness of a linear bulk, lower half."""
         if self.bulk_dd is not None:
             return self.bulk_dd.ravel()
-        return _scatter(self.solids, self.band) @ _all_values(self.unloaded_stiffness)
+        return element_sums(self.connectivity, self.band) @ element_values(self.unloaded_stiffness)
 
     @cached_property
-    def stiffest(self) -> tuple[np.ndarray, ...]:
-        """Largest entry (n_e,) of each element's stiffness."""
-        return tuple(np.abs(K).max((1, 2, 3)) for K in self.unloaded_stiffness)
+    def spring_entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rows, columns and values that the springs add to the lower half of the tangent."""
+        return spring_entries(self.springs_rd, self.spring_r)
+
+    @cached_property
+    def loads_squared(self) -> np.ndarray:
+        """Lower half of ``f f'`` over the degrees of freedom that feel the load."""
+        row, column = lower_half(self.loaded)
+        return self.load_d[row] * self.load_d[column]
+
+    @cached_property
+    def hold(self) -> float:
+        """Stiffness of the spring that holds the opening while a tangent is factorised; 0 where none is known."""
+        found = inverse(*tangent_matrix(self, respond(self, self.start(), decide=False)), self.load_d)
+        compliance = 0.0 if found is None else abs(float(self.load_d @ found.under_load_d))
+        return HOLD / compliance if compliance > 0.0 else 0.0
 
     def pattern(self, dof_qd: np.ndarray) -> Pattern:
         """Where all entries go when the points touch dof_qd; wider than `band` where one has slid too far for it.
@@ -251,12 +161,8 @@ class System:
         """
         kept = self.__dict__.get("_pattern")
         if kept is None or not np.array_equal(kept.dof_qd, dof_qd):
-            touching = [_lower(dof_qd), self.spring_entries[:2]]
-            band = self.band.reaching(*touching[0])
-            bulk = None
-            if self.kinematics != "linear":
-                bulk = kept.bulk if kept is not None and kept.band.k == band.k else _scatter(self.solids, band)
-            kept = Pattern(dof_qd, band, bulk, _positions(band, touching), _positions(band, [_pairs(self.loaded)]))
+            conns = () if self.kinematics == "linear" else self.connectivity
+            kept = pattern_of(self.band, dof_qd, self.spring_entries[:2], self.loaded, conns, kept)
             self.__dict__["_pattern"] = kept
         return kept
 
@@ -279,50 +185,38 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     return Response(internal_d, scale, bulk_energy, touch, p_q, dp_q, k_q, closed_q, gradients)
 
 
-def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np.ndarray, Skew | None]:
-    """Derivative of the forces by the displacements: the band, the lower half (band.size,), and what is skew."""
-    pattern, touch = _pattern(system, response), response.contact
-    K_qdd = stiffness(system.interface, touch, response.p_q, response.dp_q)
-    i, j = _tril(K_qdd.shape[1])
-    values = np.concatenate([K_qdd[:, i, j].ravel(), system.spring_entries[2]])
-    half = np.bincount(pattern.positions, values, pattern.band.size)
-    if pattern.bulk is None:
-        half += system.linear_band
-    else:
-        half += pattern.bulk @ _all_values(_bulk_stiffness(system, response.gradients))
-    return pattern.band, half, _skew(touch, response.p_q, K_qdd)
+def _finite_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
+    internal_d, square, stored, gradients = np.zeros(system.n_dof), 0.0, 0.0, []
+    for solid, d in zip(system.solids, system.element_dofs, strict=True):
+        H = gradient(solid.basis, u_d.reshape(-1, 2))
+        P, W = KINEMATICS[system.kinematics].stress(solid.D, H)
+        f = element_forces(solid.basis, P)
+        internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
+        square += float(np.sum(f * f))
+        stored += energy(solid.basis, W)
+        gradients.append(H)
+    return internal_d, square**0.5, stored, tuple(gradients)
 
 
-def factorise(system: System, response: Response, phase: Phase) -> Inverse | None:
-    """Inverse of the tangent; None where it is exactly singular."""
-    with phase("assembly"):
-        band, half, skew = tangent_matrix(system, response)
-    with phase("factor"):
-        found = None
-        if skew is None and system.hold > 0.0:
-            held = half.copy()
-            held[_pattern(system, response).held] += system.hold * system.loads_squared
-            found = held_inverse(band, held, system.load_d, system.hold)
-        return inverse(band, half, skew, system.load_d) if found is None else found
+def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
+    internal_d, square = np.zeros(system.n_dof), 0.0
+    for K, solid, d in zip(system.linear_matrices, system.solids, system.element_dofs, strict=True):
+        f = K @ relative(solid.basis.conn_ea, u_d.reshape(-1, 2)).reshape(len(d), -1, 1)
+        internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
+        square += float(np.sum(f * f))
+    return internal_d, square**0.5, 0.5 * float(u_d @ internal_d), ()
 
 
-def _pattern(system: System, response: Response) -> Pattern:
-    """An open crack asks for no entries in the matrix, however far it has moved."""
-    carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
-    return system.pattern(np.where(carries_q[:, None], response.contact.dof_qd, system.reference_dof_qd))
+def _condensed_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
+    """A force that rounding hides is none: the scale is at least that for which `Newton` would ask no more."""
+    internal_d = system.bulk_dd @ u_d
+    scale = max(float(np.linalg.norm(internal_d)), HIDDEN * _held(system, u_d))
+    return internal_d, scale, 0.5 * float(u_d @ internal_d), ()
 
 
-def _skew(touch: Contact, p_q: np.ndarray, K_qdd: np.ndarray) -> Skew | None:
-    """What the upper half has more than the lower one: something only at points that slide off the master."""
-    if touch.fading_q is None:
-        return None
-    q = np.flatnonzero(touch.fading_q * p_q)
-    if q.size == 0:
-        return None
-    i, j = np.triu_indices(K_qdd.shape[1], 1)
-    d_qd = touch.dof_qd[q]
-    row, column, value = d_qd[:, i], d_qd[:, j], K_qdd[q][:, i, j] - K_qdd[q][:, j, i]
-    return Skew(row.ravel(), column.ravel(), value.ravel())
+def _held(system: System, u_d: np.ndarray) -> float:
+    """Norm of the forces that the unknowns hold against each other."""
+    return float(np.linalg.norm(system.bulk_dd * u_d))
 
 
 def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.ndarray:
@@ -358,38 +252,26 @@ def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
     return float(np.hypot(40.0 * np.finfo(float).eps * np.sqrt(sum(squares)), touching))
 
 
-def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
-    internal_d, square = np.zeros(system.n_dof), 0.0
-    for K, solid, d in zip(system.linear_matrices, system.solids, system.element_dofs, strict=True):
-        f = K @ relative(solid.basis.conn_ea, u_d.reshape(-1, 2)).reshape(len(d), -1, 1)
-        internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
-        square += float(np.sum(f * f))
-    return internal_d, square**0.5, 0.5 * float(u_d @ internal_d), ()
+def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np.ndarray, Skew | None]:
+    """Derivative of the forces by the displacements: the band, the lower half (band.size,), and what is skew."""
+    touch = response.contact
+    if touch.full_qd is not None:
+        weighted_qd = (response.dp_q * system.interface.dA_q)[:, None] * touch.full_qd
+        return system.band, system.linear_band + (touch.full_qd.T @ weighted_qd).ravel(), None
+    pattern = _pattern(system, response)
+    K_qdd = stiffness(system.interface, touch, response.p_q, response.dp_q)
+    half = pattern.half(K_qdd, system.spring_entries[2])
+    if pattern.bulk is None:
+        half += system.linear_band
+    else:
+        half += pattern.bulk @ element_values(_bulk_stiffness(system, response.gradients))
+    return pattern.band, half, skew_part(touch, response.p_q, K_qdd)
 
 
-def _condensed_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
-    """A force that rounding hides is none: the scale is at least that for which `Newton` would ask no more."""
-    internal_d = system.bulk_dd @ u_d
-    scale = max(float(np.linalg.norm(internal_d)), HIDDEN * _held(system, u_d))
-    return internal_d, scale, 0.5 * float(u_d @ internal_d), ()
-
-
-def _held(system: System, u_d: np.ndarray) -> float:
-    """Norm of the forces that the unknowns hold against each other."""
-    return float(np.linalg.norm(system.bulk_dd * u_d))
-
-
-def _finite_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
-    internal_d, square, stored, gradients = np.zeros(system.n_dof), 0.0, 0.0, []
-    for solid, d in zip(system.solids, system.element_dofs, strict=True):
-        H = gradient(solid.basis, u_d.reshape(-1, 2))
-        P, W = KINEMATICS[system.kinematics].stress(solid.D, H)
-        f = element_forces(solid.basis, P)
-        internal_d += np.bincount(d.ravel(), f.ravel(), system.n_dof)
-        square += float(np.sum(f * f))
-        stored += energy(solid.basis, W)
-        gradients.append(H)
-    return internal_d, square**0.5, stored, tuple(gradients)
+def _pattern(system: System, response: Response) -> Pattern:
+    """An open crack asks for no entries in the matrix, however far it has moved."""
+    carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
+    return system.pattern(np.where(carries_q[:, None], response.contact.dof_qd, system.reference_dof_qd))
 
 
 def _bulk_stiffness(system: System, gradients: Sequence[np.ndarray]) -> list[np.ndarray]:
@@ -400,39 +282,14 @@ def _bulk_stiffness(system: System, gradients: Sequence[np.ndarray]) -> list[np.
     ]
 
 
-def _lower(d_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and columns (n_q, n_h) of the lower halves of the matrices of all points."""
-    i, j = _tril(d_qd.shape[1])
-    return d_qd[:, i], d_qd[:, j]
-
-
-@cache
-def _tril(n: int) -> tuple[np.ndarray, np.ndarray]:
-    return np.tril_indices(n)
-
-
-def _pairs(d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and columns of the lower half of a matrix over some degrees of freedom."""
-    i, j = _tril(d.size)
-    return d[i], d[j]
-
-
-def _all_values(parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Entries (n_values,) of the element stiffness of all blocks."""
-    return parts[0].ravel() if len(parts) == 1 else np.concatenate([K.ravel() for K in parts])
-
-
-def _scatter(solids: Sequence[Solid], band: Band) -> csr_array:
-    """Sums (band.size, n_values) of the entries of the element stiffness, of each symmetric pair one."""
-    places, columns, first = [], [], 0
-    for solid in solids:
-        n_e, n_a = solid.basis.conn_ea.shape
-        places.append(_positions(band, [half_entries(solid.basis.conn_ea)]))
-        columns.append((first + np.arange(n_e)[:, None] * 3 * n_a**2 + half_places(n_a)).ravel())
-        first += 3 * n_e * n_a**2
-    place, column = (np.concatenate(parts).astype(np.int32) for parts in (places, columns))
-    return coo_array((np.ones(place.size), (place, column)), shape=(band.size, first)).tocsr()
-
-
-def _positions(band: Band, entries: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-    return np.concatenate([band.positions(row.ravel(), column.ravel()) for row, column in entries])
+def factorise(system: System, response: Response, phase: Phase) -> Inverse | None:
+    """Inverse of the tangent; None where it is exactly singular."""
+    with phase("assembly"):
+        band, half, skew = tangent_matrix(system, response)
+    with phase("factor"):
+        found = None
+        if skew is None and system.hold > 0.0:
+            held = half.copy()
+            held[_pattern(system, response).held] += system.hold * system.loads_squared
+            found = held_inverse(band, held, system.load_d, system.hold)
+        return inverse(band, half, skew, system.load_d) if found is None else found

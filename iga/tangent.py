@@ -15,7 +15,8 @@ from iga.inner import Bordered, settled_step
 from iga.interface import holding
 from iga.inverse import Inverse
 from iga.landing import Kink
-from iga.system import Phase, Response, State, System, factorise, respond
+from iga.state import Response, State
+from iga.system import Phase, System, factorise, respond
 
 #: Attempts at the set of points, the gap, in units of g_max, that counts as none, and the part of the largest rate
 #: that counts as rounding.
@@ -26,9 +27,9 @@ ATTEMPTS, NO_GAP, NO_RATE = 30, 1e-6, 1e-9
 class Tangent:
     """Direction of the path ``(du_d, d_load)``, of any length, forward.
 
-    ``slope`` is d load / d opening, ``heading`` the sign of the change of the opening, ``rate_q`` (n_q,) the rates of
-    the gaps, and ``growing_q`` the points whose damage grows. ``closed_q`` is the contact; whether the rates agree with
-    it and with ``growing_q``, ``agreed`` says.
+    ``slope`` is d load / d opening, ``arrival`` that before the kink on which the path stands, ``heading`` the sign of
+    the change of the opening, ``rate_q`` (n_q,) the rates of the gaps, and ``growing_q`` the points whose damage grows.
+    ``closed_q`` is the contact; whether the rates agree with it and with ``growing_q``, ``agreed`` says.
     """
 
     du_d: np.ndarray
@@ -38,6 +39,7 @@ class Tangent:
     rate_q: np.ndarray
     growing_q: np.ndarray
     closed_q: np.ndarray
+    arrival: float
     agreed: bool = False
 
 
@@ -157,13 +159,14 @@ def _along(
     z_d = inverse.under_load_d
     compliance = float(system.load_d @ z_d)
     before = compliance if kink is None else float(system.load_d @ _before(system, response, kink, inverse))
-    slope = 0.5 * (1.0 / compliance + 1.0 / before) if before * compliance > 0.0 else 1.0 / compliance
+    arrival, slope = 1.0 / before if before != 0.0 else np.inf, 1.0 / compliance
+    slope = 0.5 * (slope + arrival) if before * compliance > 0.0 else slope
     rate_q = response.contact.rates(z_d)
     growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
     dissipating = growth != 0.0 and (direction > 0.0 or not system.interface.law.irreversible)
     sign = direction * float(np.sign(growth if dissipating else compliance))
     heading = sign * float(np.sign(compliance))
-    return Tangent(sign * z_d, sign, slope, heading, sign * rate_q, growing_q, response.closed_q)
+    return Tangent(sign * z_d, sign, slope, heading, sign * rate_q, growing_q, response.closed_q, arrival)
 
 
 def _before(system: System, response: Response, kink: Kink, inverse: Inverse) -> np.ndarray:

@@ -47,9 +47,13 @@ def step_work(system: System, start: Point, end: Point, away: float, back: float
 
 
 def straight_work(start: Point, end: Point) -> float:
-    """The same over the opening itself, with the slopes that are told, for a step that does not turn round."""
+    """The same over the opening itself, with the slopes that are told, for a step that does not turn round.
+
+    Where damage begins at its end the slope that is told there is the mean of both sides, and the step has seen one.
+    """
     move = end.opening - start.opening
-    return 0.5 * move * (start.state.load + end.state.load) + move**2 / 12.0 * (start.slope - end.slope)
+    slope = end.slope if start.tangent.growing_q.any() else end.tangent.arrival
+    return 0.5 * move * (start.state.load + end.state.load) + move**2 / 12.0 * (start.slope - slope)
 
 
 def slid_off(system: System, start: Point, end: Point, away: float, back: float) -> float:

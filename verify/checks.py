@@ -49,7 +49,7 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
     subject : the name of the run in the report; the method's where empty
     """
     j_tolerance = J_TOLERANCE_LAGRANGE if result.method == "lagrange" else J_TOLERANCE
-    dissipation = partial(dissipation_gap, element=process_zone.element_length(scene, result.method))
+    dissipation = partial(dissipation_gap, element=partial(process_zone.element_length, scene, result.method))
     values: list[tuple[str, Callable[[Scene, Steps], float | None], float, str]] = [
         ("completed", _missing_part, 1e-9, "The run reached the end of the load programme, or the specimen separated."),
         ("j-integral", j_deviation, j_tolerance, J_OF_LAW if scene.interface.law in LAWS else J_OF_ANY_LAW),
@@ -235,13 +235,14 @@ def support_forces(scene: Scene, steps: Steps) -> float | None:
     return _worst(np.hypot(steps["reaction_x"], steps["reaction_y"]) / _scale(_peak(steps["load"])))
 
 
-def dissipation_gap(scene: Scene, steps: Steps, element: float = nan) -> float | None:
+def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: nan) -> float | None:
     """|slope of dissipated against crack / (G_Ic w) - 1|; none below five thicknesses or three elements of the bond.
 
     Counted from the first growth on, when a whole process zone is already under way: it travels with the crack and
     drops out of the slope, but for its slow change of length. It is counted until the zone reaches the far end. The
     slope is that of the straight line nearest to all that lies between (least squares over the crack): from first to
     last it would hold what the zone has spent beyond the points that see the crack, a few percent on a coarse mesh.
+    ``element`` makes a mesh to tell the longest one, and is asked last.
     """
     if not _has(steps, "crack_length", "dissipated_energy"):
         return None
@@ -250,7 +251,8 @@ def dissipation_gap(scene: Scene, steps: Steps, element: float = nan) -> float |
     if not simulated(scene, "")["irreversible"] or not counted.any():
         return None
     crack, dissipated = crack[counted], steps["dissipated_energy"][counted]
-    if crack[-1] - crack[0] < np.fmax(5 * scene.specimen.loaded_thickness, 3 * element):
+    new_crack = crack[-1] - crack[0]
+    if new_crack < 5 * scene.specimen.loaded_thickness or new_crack < 3 * element():
         return None
     share = np.gradient(crack)  # of the crack that a step stands for: as a whole it counts by its length
     from_mean = crack - np.average(crack, weights=share)

@@ -68,7 +68,7 @@ def parser() -> Parser:
     top = Parser(
         prog="debond",
         description="Verify codes for interface debonding.",
-        epilog="example: debond verify\n         # every method on every scene; read debond-report/report.html",
+        epilog="example: debond verify\n         # every method, scenes of the paper; read debond-report/report.html",
         formatter_class=Help,
         allow_abbrev=False,
     )
@@ -80,7 +80,7 @@ def parser() -> Parser:
         sub.set_defaults(command=function, keeps=None)
         return sub
 
-    text = "Every method on every scene, all checks, one report."
+    text = "Every method on the scenes of the paper or those named, all checks, one report."
     leaves = "read debond-report/report.html; exit 0: all checks hold"
     _verify_options(command(commands.verify, text, "verify dcb-czm1 --jobs 2", leaves))
     text = "One scene by one method: T-splines, NURBS, Lagrange or DOLFINx elements, a beam, LEFM."

@@ -13,6 +13,7 @@ are 0.84 to 1.16 of it, but 0.48 to 1.14 of the smaller limit.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import nan
 
 import numpy as np
@@ -156,7 +157,15 @@ def crack_modulus(material: Material, plane: str) -> float:
 
 
 def element_length(scene: Scene, method: str) -> float:
-    """Longest element along the bond, NaN for a method without a mesh, or where none can be made."""
+    """Longest element along the bond, NaN for a method without a mesh, or where none can be made.
+
+    A mesh that is made from the scene is made once; files may have changed.
+    """
+    return _longest.__wrapped__(scene, method) if scene.specimen.mesh else _longest(scene, method)
+
+
+@lru_cache(maxsize=32)
+def _longest(scene: Scene, method: str) -> float:
     try:
         if method in WITH_DOFS:
             from iga.sizes import element_length as longest

@@ -25,7 +25,7 @@ class Progress:
     def __init__(self, title: str, total: float, quiet: bool = False, pace: float = 0.0) -> None:
         self._title, self._total, self._done, self._pace = title, total, 0.0, pace
         self._quiet = quiet
-        self._start = self._said = monotonic()
+        self._start = self._said = self._reached = monotonic()
         self._bar = None if quiet else _bar(title, total)
 
     def __enter__(self) -> Self:
@@ -37,7 +37,7 @@ class Progress:
 
     def advance(self, done: float, news: str = "") -> None:
         """``done`` of ``total``; ``news`` is shown beside the bar."""
-        step, self._done = done - self._done, done
+        step, self._done, self._reached = done - self._done, done, monotonic()
         if self._bar is not None:
             self._bar.set_postfix_str(news, refresh=False)
             self._bar.update(min(step, self._total - self._bar.n))
@@ -61,12 +61,16 @@ class Progress:
 
     @property
     def left(self) -> str:
-        """The time that the rest takes at the rate so far: ", 3 min 20 s left", or nothing where none can be told."""
-        spent = monotonic() - self._start
-        if 0.0 < self._done < self._total:
-            return f", {duration(spent * (self._total / self._done - 1.0))} left"
-        expected = self._total / self._pace - spent if self._pace and not self._done else 0.0
-        return f", about {duration(expected)} left" if expected > 0.0 else ""
+        """The time that the rest takes at the rate so far: ", 3 min 20 s left", or nothing where none can be told.
+
+        The rate is that up to where the work is known to be; since then it has gone on.
+        """
+        since, spent = monotonic() - self._reached, self._reached - self._start
+        if 0.0 < self._done < self._total * (1.0 - 1e-9):  # more than rounding, where times are added up
+            about, left = "", spent * (self._total / self._done - 1.0) - since
+        else:
+            about, left = "about ", self._total / self._pace - since if self._pace and not self._done else 0.0
+        return f", {about}{duration(left)} left" if left > 0.0 else ""
 
 
 @contextmanager

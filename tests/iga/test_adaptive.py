@@ -12,8 +12,9 @@ from iga.dcb import build, solve
 from iga.path import End, Point, follow
 from iga.point import Point as Converged
 from iga.specimen import Specimen
+from iga.state import State
 from iga.surface import surface
-from iga.system import State, untimed
+from iga.system import untimed
 
 ADAPTIVE = replace(PAPER, basis="tspline", adaptive=True, opening=(1.2,), dofs=800, steps=40)
 

@@ -82,18 +82,43 @@ def test_too_many_points_are_left_to_a_new_tangent(monkeypatch):
     assert not settled and residual_norm(system, moved.load, response) > 1e-6, "the plain step is no equilibrium"
 
 
+def step_of_a_point(law, plain: float, guess: float | None = None, n_dof: int = 1) -> float | None:
+    """How far one point on a spring of stiffness 1 goes, the first of some unknowns: ``g = plain - w(g)``."""
+    touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), np.array([[0]]), np.ones((1, 1, 1)))
+    spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm[:1]]))
+    flat, guess_q = (np.zeros(1), np.zeros(1)), None if guess is None else np.array([guess])
+    one = SimpleNamespace(dA_q=np.ones(1))
+    plain_d = np.append(plain, np.zeros(n_dof))
+    found = inner.settled_step(one, touch, law, flat, plain_d, spring, guess_q)
+    return None if found is None else float(found[0])
+
+
 @pytest.mark.parametrize(("softening", "gap"), [(-1.0, None), (-0.5, 2.0)])
 def test_a_point_as_soft_as_the_specimen_is_stiff_has_no_gap(softening, gap):
-    """One point on a spring of stiffness 1: ``g = 1 - softening g``."""
-    touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), np.array([[0]]), np.ones((1, 1, 1)))
-    spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm]))
-
     def law(g_q):
         return softening * g_q, np.full(1, softening)
 
-    flat = np.zeros(1), np.zeros(1)
-    found = inner.settled_step(SimpleNamespace(dA_q=np.ones(1)), touch, law, flat, np.array([1.0, 0.0]), spring)
-    assert found is None if gap is None else found[0] == pytest.approx(gap)
+    found = step_of_a_point(law, 1.0)
+    assert found is None if gap is None else found == pytest.approx(gap)
+
+
+@pytest.mark.parametrize("n_dof", [1, inner.MOST + 1])
+def test_a_search_that_goes_round_in_circles_is_thrown_off(monkeypatch, n_dof):
+    """Beyond 1 the law takes two thirds of every step away: from 2 Newton goes to -2, and from there to 2."""
+
+    def law(g_q):
+        beyond = np.abs(g_q) > 1.0
+        return np.where(beyond, 2.0 / 3.0 * (np.sign(g_q) - g_q), 0.0), np.where(beyond, -2.0 / 3.0, 0.0)
+
+    assert step_of_a_point(law, 0.0, 2.0, n_dof) == pytest.approx(0.0, abs=1e-12)
+    monkeypatch.setattr(inner, "ROUND", inner.CORRECTIONS + 1)
+    assert step_of_a_point(law, 0.0, 2.0, n_dof) is None
+
+
+def test_a_guess_with_all_points_on_their_tangents_is_no_step_of_its_own():
+    """Nothing pulls anywhere then, and there are no equations."""
+    for n_dof in (1, inner.MOST + 1):
+        assert step_of_a_point(lambda g_q: (0.0 * g_q, 0.0 * g_q), 1.0, 0.3, n_dof) == 1.0
 
 
 @pytest.mark.parametrize("chosen", ["opening", "load and opening"])

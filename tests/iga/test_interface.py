@@ -214,3 +214,10 @@ def test_a_surface_must_have_one_degree():
     both = Mesh(np.concatenate([a.P_AI, b.P_AI]), np.ones(len(a.P_AI) + len(b.P_AI)), (*a.blocks, *b.blocks))
     with pytest.raises(ValueError, match="one degree"):
         surface(both, chain, 0)
+
+
+def test_partners_that_stay_are_searched_for_once(monkeypatch):
+    """Where gaps change in proportion all is known of the points, and what reads them asks for no search."""
+    probe = build(replace(PROBLEM, kinematics="linear")).probe
+    monkeypatch.setattr("iga.interface.nearest_samples", lambda *given: pytest.fail("searched for again"))
+    assert probe.at_rest is not None and np.array_equal(probe.pairing.c_q, probe.at_rest.pairing.c_q)

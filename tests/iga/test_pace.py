@@ -25,6 +25,7 @@ def test_few_steps_or_none_are_chosen_by_accuracy() -> None:
         pace = paced(whole, steps)
         assert pace.by_accuracy and pace.by_kinks and (pace.step, pace.largest) == pytest.approx((first, largest))
         assert pace.counted == pytest.approx(0.02) and pace.bend == BEND == 0.005
+        assert paced(whole, steps, linear=True).step == pytest.approx(largest), "nothing bends there before damage"
     assert not paced(whole, FEWEST).by_accuracy and FEWEST == 40
     assert paced(whole, None, 0.02).bend == 0.02
 

@@ -86,7 +86,7 @@ def test_curves_between_two_ends_have_their_values_and_slopes_and_stay_between_t
 
 
 def point(opening: float, load: float, d_opening: float, d_load: float) -> SimpleNamespace:
-    tangent = SimpleNamespace(du_d=np.array([d_opening]), d_load=d_load)
+    tangent = SimpleNamespace(du_d=np.array([d_opening]), d_load=d_load, growing_q=np.array([True]))
     slope = d_load / d_opening if d_opening else np.inf
     return SimpleNamespace(opening=opening, state=SimpleNamespace(load=load), tangent=tangent, slope=slope)
 
@@ -128,3 +128,10 @@ def test_the_way_off_the_master_goes_on_as_its_share_does(left: float) -> None:
     assert [_left_rate(point, np.array([1]), np.array([end]))[0] for end in (0.0, 1.0)] == [0.0, 0.0]
     touch.m_q = None
     assert _left_rate(point, np.array([1]), np.array([left])).tolist() == [0.0]
+
+
+def test_work_up_to_where_damage_begins_knows_nothing_of_what_comes_then() -> None:
+    """Along a line whose end tells a mean slope, as it is where a point stands on its strength."""
+    a, b = point(0.0, 0.0, 1.0, 2.0), point(0.5, 1.0, 1.0, 1.2)
+    a.tangent.growing_q, b.tangent.arrival = np.array([False]), 2.0
+    assert straight_work(a, b) == pytest.approx(0.25, rel=1e-15)

@@ -9,7 +9,7 @@ from test_peel import PEEL, column, isotropic
 
 from iga.cohesive import BilinearLaw
 from iga.peel import solve
-from iga.system import Energies
+from iga.state import Energies
 from iga.work import leaks, slid_off
 
 #: So soft that the bond hardly gives: strip and substrate stretch, slide on each other and tilt.

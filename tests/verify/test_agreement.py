@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import isnan
+from math import inf, isnan, nan
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicHermiteSpline
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
@@ -72,16 +73,41 @@ def test_before_the_branch_there_is_nothing_to_compare() -> None:
     assert openings.size == ratio.size == 0
 
 
-def test_an_arc_is_drawn_only_where_it_stays_near_its_chord() -> None:
-    """A parabola of height 1 in one step: its arc leaves the chord by a quarter, and 200 steps by next to nothing."""
-    for n, arcs in ((1, False), (200, True)):
-        d = np.linspace(0.0, 1.0, n + 1)
-        steps = {"opening": d, "load": d + 4.0 * d * (1.0 - d), "load_slope": 1.0 + 4.0 - 8.0 * d}
-        x, y = path(Result("nurbs", steps), 4)
-        assert len(x) == 4 * n + 1 and (x[0], x[-1]) == (0.0, 1.0)
-        exact = x + 4.0 * x * (1.0 - x) if arcs else x
-        assert y == pytest.approx(exact, abs=1e-12)
-        assert len(path(Result("lefm", steps))[0]) == n + 1
+@pytest.mark.parametrize("at", range(4))
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize("far", [0.0099, 0.0101, 0.0199, 0.0201, 0.0399, 0.0401, inf, nan])
+def test_an_arc_is_drawn_only_where_it_stays_near_its_chord(far: float, sign: float, at: int) -> None:
+    """One slope of a straight line is off, so that arcs at that point leave their chords, the longest by ``far``.
+
+    In parts of the peak, and most at a third of the step: where a cubic that is steeper at one end is farthest away.
+    """
+    x, n = np.array([0.0, 1.0, 3.0, 3.5]), 30
+    y, h = 3.0 * sign * x, np.diff(x)
+    slope, peak = np.full(4, 3.0 * sign), 10.5
+    slope[at] += far * peak * 27.0 / 4.0 / h.max()
+    drawn_x, drawn_y = path(Result("nurbs", {"opening": x, "load": y, "load_slope": slope}), n)
+    assert len(drawn_x) == 3 * n + 1 and (drawn_x[-1], drawn_y[-1]) == (x[-1], y[-1])
+    for i in range(3):
+        here, ends = slice(n * i, n * (i + 1)), slice(i, i + 2)
+        assert drawn_x[here] == pytest.approx(x[i] + h[i] * np.arange(n) / n, abs=1e-12)
+        away = np.abs(drawn_y[here] - 3.0 * sign * drawn_x[here]) / peak
+        leaves = far * h[i] / h.max() if at in (i, i + 1) else 0.0
+        if leaves <= 0.01:
+            arc = CubicHermiteSpline(x[ends], y[ends], slope[ends])
+            assert drawn_y[here] == pytest.approx(arc(drawn_x[here]), abs=1e-12)
+            assert away.max() == pytest.approx(leaves, abs=1e-12)
+            assert leaves == 0.0 or away.argmax() == (n // 3 if at == i else 2 * n // 3)
+        else:
+            assert away == pytest.approx(0.0, abs=1e-12)
+
+
+def test_arcs_of_small_steps_are_the_curve_and_a_limit_is_a_polygon() -> None:
+    d = np.linspace(0.0, 1.0, 201)
+    steps = {"opening": d, "load": d + 4.0 * d * (1.0 - d), "load_slope": 5.0 - 8.0 * d}
+    x, y = path(Result("nurbs", steps), 4)
+    assert y == pytest.approx(x + 4.0 * x * (1.0 - x), abs=1e-12)
+    for polygon in (Result("lefm", steps), Result("mine", {k: steps[k] for k in ("opening", "load")})):
+        assert all(np.array_equal(a, b) for a, b in zip(path(polygon), (d, steps["load"]), strict=True))
 
 
 def test_runs_stand_in_the_order_of_methods_and_fade_where_they_repeat() -> None:

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 
+from verify import process_zone
 from verify.methods import WITH_DOFS, solve
 from verify.problems import iga_problem
 from verify.process_zone import (
@@ -98,6 +99,21 @@ def test_elements_are_those_of_the_mesh_maker(method, rule):
         assert element_length(scene, method) == pytest.approx(3 * np.diff(x[(x >= start) & (x <= end)]).max())
     on_path = (end - start) / element_length(scene, method)
     assert on_path == pytest.approx(round(on_path), rel=1e-9) and 0 < on_path < specimen.meshes[0].elements
+
+
+@pytest.mark.parametrize(("mesh", "made"), [((), 1), (('specimen.mesh=["upper.iga", "lower.iga"]',), 2)])
+def test_a_mesh_is_made_once_to_see_it_but_files_may_have_changed(mesh, made, monkeypatch):
+    scene, asked = load_scene("dcb-czm1", ["discretization.dofs=777", *mesh]), []
+
+    def problem(*given):
+        asked.append(given)
+        raise ValueError("no mesh")
+
+    monkeypatch.setattr(process_zone, "iga_problem", problem)
+    assert np.isnan(element_length(scene, "nurbs")) and np.isnan(element_length(scene, "nurbs"))
+    assert asked == made * [(scene, "nurbs")]
+    monkeypatch.undo()
+    process_zone._longest.cache_clear()  # of a mesh that could be made after all
 
 
 @pytest.mark.parametrize("method", ["beam", "lefm"])

@@ -33,10 +33,13 @@ def test_long_work_is_told_of_before_any_of_it_is_done(clock: list[float], capsy
         shown.advance(25.0)
         clock[0] = 22.0
         shown.alive("b")
-        assert capsys.readouterr().err == "runs: b, 66 s left\n"
+        assert capsys.readouterr().err == "runs: b, 22 s left\n", "a quarter took 11 s, and 11 s of the rest are over"
         clock[0] = 25.0
         shown.alive("b")
         assert capsys.readouterr().err == ""
+        clock[0] = 50.0
+        shown.alive("b")
+        assert capsys.readouterr().err == "runs: b\n", "a long one makes the rest no longer"
 
 
 def test_longer_than_expected_is_no_time_left(clock: list[float], capsys: pytest.CaptureFixture) -> None:
@@ -48,6 +51,17 @@ def test_longer_than_expected_is_no_time_left(clock: list[float], capsys: pytest
         clock[0] = 40.0
         shown.alive("a")
     assert capsys.readouterr().err == ""
+
+
+def test_after_the_last_run_no_time_is_left(clock: list[float]) -> None:
+    """Ten times 0.1, added up one after the other, are less than 1 by rounding."""
+    done = 0.0
+    with Progress("runs", total=1.0) as shown:
+        for seconds in range(1, 11):
+            clock[0], done = float(seconds), done + 0.1
+            shown.advance(done)
+            assert (shown.left == "") == (seconds == 10), shown.left
+    assert done < 1.0
 
 
 def test_a_sweep_tells_what_is_running(

@@ -14,12 +14,12 @@ pytest.importorskip("jinja2")
 
 import matplotlib  # noqa: E402
 from figures import Drawn, legend, unreadable  # noqa: E402
+from made_up_costs import a_row  # noqa: E402
 from made_up_runs import made_up as a_run  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.cm import ScalarMappable  # noqa: E402
 from test_charts import a_study  # noqa: E402
-from test_cost import a_row  # noqa: E402
 from test_effects_study import made_up, of_pair  # noqa: E402
 from test_hard import FAKE, stub  # noqa: E402
 from test_undeformed import entry, snapshot  # noqa: E402

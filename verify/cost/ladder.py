@@ -19,7 +19,7 @@ RATIO, RUNGS = 1.4, 8
 #: accurate, and others for the best of them. The ``iga`` path chooses its own, few where it is asked to, fewer where
 #: they may leave their tangents further; those of the DOLFINx path are counted, and the front adds to them.
 STEPS, FEW_STEPS, OTHER_STEPS = 80, {"dolfinx": (20,)}, (40, 150)
-FEW_STEPS_OF_IGA = ("auto", "auto-0.02", "auto-0.05")
+FEW_STEPS_OF_IGA = ("auto", "auto-0.02", "auto-0.05", "auto-0.1")
 
 
 @dataclass(frozen=True)

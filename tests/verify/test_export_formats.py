@@ -1,0 +1,227 @@
+"""Scenes in the formats of Abaqus, VTK and Gmsh: each is read back, by hand and by meshio."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from exported import DCB, PEEL, check_areas, exported
+from vtu_files import arrays
+
+from verify.cli import main
+from verify.export.mesh import scene_mesh
+from verify.scene import load_scene
+
+
+def abaqus_blocks(text: str) -> list[tuple[str, dict[str, str], list[list[str]]]]:
+    """Keyword, parameters and data lines of an input file."""
+    blocks: list[tuple[str, dict[str, str], list[list[str]]]] = []
+    for line in text.splitlines():
+        if line.startswith("**"):
+            continue
+        cells = [cell.strip() for cell in line.split(",")]
+        if line.startswith("*"):
+            blocks.append((cells[0], dict(cell.partition("=")[::2] for cell in cells[1:]), []))
+        else:
+            blocks[-1][2].append([cell for cell in cells if cell])
+    return blocks
+
+
+@pytest.mark.parametrize(("degree", "plane", "solid"), [(1, "strain", "CPE4I"), (2, "stress", "CPS8")])
+@pytest.mark.parametrize("scene", [DCB, PEEL])
+def test_abaqus_holds_mesh_law_and_steps(scene: str, degree: int, plane: str, solid: str, tmp_path: Path) -> None:
+    words = [
+        "--set",
+        f"dolfinx.degree={degree}",
+        "--set",
+        f"specimen.plane={plane}",
+        "--set",
+        "load.opening=[2.0, 0.5]",
+    ]
+    model = load_scene(scene)
+    text = (exported(scene, "abaqus", tmp_path, *words) / f"{scene}.inp").read_text()
+    assert max(map(len, text.splitlines())) <= 256
+    blocks = abaqus_blocks(text)
+    nodes = [row for keyword, _, rows in blocks if keyword == "*NODE" for row in rows]
+    X_nI = np.array([[float(x) for x in row[1:]] for row in nodes])
+    assert [int(row[0]) for row in nodes] == list(range(1, len(nodes) + 1))
+    elements = {known["ELSET"]: (known["TYPE"], rows) for keyword, known, rows in blocks if keyword == "*ELEMENT"}
+    *bodies, bond = elements
+    assert bond == "bond" and {elements[name][0] for name in bodies} == {solid} and elements[bond][0] == "COH2D4"
+    conn_ea = np.array([[int(a) for a in row[1:]] for name in bodies for row in elements[name][1]]) - 1
+    check_areas(scene, bodies, X_nI, conn_ea, [name for name in bodies for _ in elements[name][1]])
+    cohesive = np.array([[int(a) for a in row[1:]] for row in elements[bond][1]]) - 1
+    assert np.array_equal(X_nI[cohesive[:, 0]], X_nI[cohesive[:, 3]])  # of no thickness
+    assert np.array_equal(X_nI[cohesive[:, 1]], X_nI[cohesive[:, 2]])
+    assert np.all(X_nI[cohesive[:, 1], 0] > X_nI[cohesive[:, 0], 0]), "lower side first and along X: normal upwards"
+    numbers = [int(row[0]) for _, rows in elements.values() for row in rows]
+    assert numbers == list(range(1, len(numbers) + 1))
+
+    law = model.interface
+    of_bond = [
+        block for block in blocks if block[0] in ("*DAMAGE INITIATION", "*DAMAGE EVOLUTION", "*COHESIVE SECTION")
+    ]
+    assert [block[1] for block in of_bond] == [
+        {"ELSET": "bond", "MATERIAL": "bond", "RESPONSE": "TRACTION SEPARATION", "THICKNESS": "SPECIFIED"},
+        {"CRITERION": "MAXS"},
+        {"TYPE": "ENERGY", "SOFTENING": "LINEAR"},
+    ]
+    strength, toughness = float(of_bond[1][2][0][0]), float(of_bond[2][2][0][0])
+    (traction,) = (
+        rows[0] for keyword, known, rows in blocks if keyword == "*ELASTIC" and known.get("TYPE") == "TRACTION"
+    )
+    assert (strength, toughness) == (law.strength, law.toughness)
+    assert strength / float(traction[0]) == pytest.approx(2 * toughness / strength / law.ductility)  # g_max
+
+    sets = {
+        known["NSET"]: {int(a) for row in rows for a in row} for keyword, known, rows in blocks if keyword == "*NSET"
+    }
+    equations = [rows for keyword, _, rows in blocks if keyword == "*EQUATION"]
+    loaded = [name for name in sets if name.endswith("_loaded")]
+    for name, (count, *terms) in zip(loaded, equations, strict=True):
+        assert int(count[0]) == len(terms) and {int(a) for a, _, _ in terms[:-1]} == sets[name]
+        assert sum(float(w) for _, _, w in terms) == pytest.approx(0.0, abs=1e-11) and float(terms[-1][2]) == -1.0
+    steps = [known["NLGEOM"] for keyword, known, _ in blocks if keyword == "*STEP"]
+    assert steps == ["YES" if scene == PEEL else "NO"] * 2
+    moved = [float(row[3]) for keyword, _, rows in blocks if keyword == "*BOUNDARY" for row in rows if len(row) == 4]
+    assert moved == ([2.0, 0.5] if scene == PEEL else [1.0, -1.0, 0.25, -0.25])
+
+
+def test_abaqus_takes_fibres_along_the_specimen(tmp_path: Path) -> None:
+    scene = tmp_path / "fibres.toml"
+    scene.write_text(
+        'specimen = {kind = "dcb", length = 10, arm_thickness = 0.2, precrack = 3, plane = "strain"}\n'
+        "material = {E1 = 130e3, E2 = 9e3, G12 = 5e3, nu12 = 0.3}\n"
+        "interface = {strength = 4, toughness = 0.1}\nload = {opening = 1}\n"
+    )
+    for plane, kind, row in (
+        ("stress", "LAMINA", [130e3, 9e3, 0.3, 5e3, 5e3, 5e3]),
+        ("strain", "ENGINEERING CONSTANTS", [130e3, 9e3, 9e3, 0.3, 0.3, 0.3, 5e3, 5e3, 5e3]),
+    ):
+        words = ["--set", f"specimen.plane={plane}"]
+        assert main(["export", str(scene), "--format", "abaqus", "--out", str(tmp_path), *words]) == 0
+        blocks = abaqus_blocks((tmp_path / "fibres.inp").read_text())
+        found = [rows for keyword, known, rows in blocks if keyword == "*ELASTIC" and known.get("TYPE") == kind]
+        assert [[float(cell) for line in rows for cell in line] for rows in found] == [row, row]
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("scene", [DCB, PEEL])
+def test_a_vtu_file_holds_mesh_bond_and_sets(scene: str, degree: int, tmp_path: Path) -> None:
+    words = ["--set", f"dolfinx.degree={degree}"]
+    model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
+    found, _ = arrays(exported(scene, "vtu", tmp_path, *words) / f"{scene}.vtu")
+    values = {name: column.ravel() for name, column in found.items() if name != "Points"}
+    X_nI = found["Points"][:, :2]
+    assert found["Points"].shape == (len(model.X_nI), 3) and np.all(found["Points"][:, 2] == 0.0)
+    cells = np.split(values["connectivity"], values["offsets"][:-1])
+    body, types = values["body"], values["types"]
+    assert values["offsets"][-1] == len(values["connectivity"]) and len(cells) == len(body) == len(types)
+    assert set(types[body < 2]) == {9 if degree == 1 else 23} and set(types[body == 2]) == {9}
+    solid = np.array([nodes for nodes, b in zip(cells, body, strict=True) if b < 2])
+    assert solid.shape[1] == 4 * degree
+    check_areas(scene, list(model.names), X_nI, solid, [model.names[b] for b in body if b < 2])
+
+    pair = values["pair"]
+    bonded = np.flatnonzero(pair >= 0)
+    assert np.array_equal(pair[pair[bonded]], bonded) and np.array_equal(X_nI[pair[bonded]], X_nI[bonded])
+    assert len(bonded) == 2 * len(model.pair_kb) and not np.any(pair == np.arange(len(pair)))
+    bond = np.array([nodes for nodes, b in zip(cells, body, strict=True) if b == 2])
+    assert set(bond.ravel()) == set(bonded) and np.array_equal(pair[bond], bond[:, [3, 2, 1, 0]])
+    s = load_scene(scene).specimen
+    length = s.bond_length if scene == PEEL else s.length - s.precrack
+    assert values["pair_length"].sum() == pytest.approx(2.0 * length) and np.all(values["pair_length"][pair < 0] == 0)
+    assert np.array_equal(values["pair_length"][bonded], values["pair_length"][pair[bonded]])
+    for face in model.loaded:
+        assert values["load_weight"][face.node_n].sum() == pytest.approx(1.0)
+    loaded = np.concatenate([face.node_n for face in model.loaded])
+    assert set(np.flatnonzero(values["load_weight"])) == set(loaded)
+    for name, nodes in model.sets.items():
+        assert np.array_equal(np.flatnonzero(values[name] == 1), np.sort(nodes)) and set(values[name]) <= {0, 1}
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("scene", [DCB, PEEL])
+def test_a_gmsh_file_names_bodies_and_sets(scene: str, degree: int, tmp_path: Path) -> None:
+    """Read as the manual of format 2.2 says, by hand."""
+    model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
+    file = exported(scene, "gmsh", tmp_path, "--set", f"dolfinx.degree={degree}") / f"{scene}.msh"
+    parts = re.findall(r"^\$(\w+)\n(.*?)\n\$End\1$", file.read_text(), re.DOTALL | re.MULTILINE)
+    block = {name: [line.split() for line in lines.split("\n")] for name, lines in parts}
+    assert list(block) == ["MeshFormat", "PhysicalNames", "Nodes", "Elements"] and block["MeshFormat"] == [
+        ["2.2", "0", "8"]
+    ]
+    for name in ("PhysicalNames", "Nodes", "Elements"):
+        assert int(block[name][0][0]) == len(block[name]) - 1
+        if name != "PhysicalNames":
+            assert [int(row[0]) for row in block[name][1:]] == list(range(1, len(block[name])))
+    X_nI = np.array([row[1:3] for row in block["Nodes"][1:]], dtype=float)
+    names = {int(number): (int(dim), name.strip('"')) for dim, number, name in block["PhysicalNames"][1:]}
+    assert {name for _, name in names.values()} == {*model.names, *model.sets}
+    kinds = {2: {3: 4, 16: 8}, 1: {1: 2, 8: 3}, 0: {15: 1}}
+    groups: dict[str, list[np.ndarray]] = {}
+    for _, kind, tags, group, entity, *nodes in (map(int, row) for row in block["Elements"][1:]):
+        dim, name = names[group]
+        assert tags == 2 and entity == group and kinds[dim][kind] == len(nodes)
+        groups.setdefault(name, []).append(np.array(nodes) - 1)
+    for name, nodes in model.sets.items():
+        assert set(np.concatenate(groups[name])) == set(nodes)
+    solid = np.array([nodes for name in model.names for nodes in groups[name]])
+    check_areas(scene, list(model.names), X_nI, solid, [name for name in model.names for _ in groups[name]])
+    sides = np.array(groups[f"{model.names[0]}_bond"])
+    assert np.all(X_nI[sides[:, 1], 0] > X_nI[sides[:, 0], 0]) and sides.shape[1] == degree + 1
+    if degree == 2:
+        assert np.allclose(X_nI[sides[:, 2]], X_nI[sides[:, :2]].mean(axis=1))
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("scene", [DCB, PEEL])
+def test_meshio_reads_gmsh_and_vtu(scene: str, degree: int, tmp_path: Path) -> None:
+    meshio = pytest.importorskip("meshio")
+    words = ["--set", f"dolfinx.degree={degree}"]
+    model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
+    quad, side = {1: ("quad", "line"), 2: ("quad8", "line3")}[degree]
+
+    mesh = meshio.read(exported(scene, "gmsh", tmp_path, *words) / f"{scene}.msh")
+    names = {number: name for name, (number, _) in mesh.field_data.items()}
+    groups: dict[str, list[np.ndarray]] = {}
+    for cells, tags in zip(mesh.cells, mesh.cell_data["gmsh:physical"], strict=True):
+        for tag in np.unique(tags):
+            assert cells.type in (quad, side, "vertex")
+            groups.setdefault(names[tag], []).append(cells.data[tags == tag])
+    assert set(groups) == {*model.names, *model.sets}
+    for name, nodes in model.sets.items():
+        assert set(np.concatenate([part.ravel() for part in groups[name]])) == set(nodes)
+    conn_ea = np.concatenate([part for name in model.names for part in groups[name]])
+    body_e = [name for name in model.names for part in groups[name] for _ in part]
+    check_areas(scene, list(model.names), mesh.points[:, :2], conn_ea, body_e)
+    if degree == 2:
+        (bond,) = groups[f"{model.names[0]}_bond"]
+        assert np.allclose(mesh.points[bond[:, 2]], mesh.points[bond[:, :2]].mean(axis=1))
+
+    mesh = meshio.read(exported(scene, "vtu", tmp_path, *words) / f"{scene}.vtu")
+    body = np.concatenate(mesh.cell_data["body"]).ravel()
+    cells = [nodes for block in mesh.cells for nodes in block.data]
+    solid = np.array([nodes for nodes, b in zip(cells, body, strict=True) if b < 2])
+    of = [model.names[b] for b in body if b < 2]
+    check_areas(scene, list(model.names), mesh.points[:, :2], solid, of)
+    pair = mesh.point_data["pair"].ravel()
+    bonded = np.flatnonzero(pair >= 0)
+    assert np.array_equal(pair[pair[bonded]], bonded) and np.array_equal(mesh.points[pair[bonded]], mesh.points[bonded])
+    assert len(bonded) == 2 * len(model.pair_kb) and not np.any(pair == np.arange(len(pair)))
+    for name, nodes in model.sets.items():
+        assert np.array_equal(np.flatnonzero(mesh.point_data[name].ravel()), np.sort(nodes))
+
+
+def test_meshio_reads_the_solids_of_abaqus(tmp_path: Path) -> None:
+    """By names of elements that it knows, of the same nodes; it knows neither plane strain nor cohesive elements."""
+    meshio = pytest.importorskip("meshio")
+    for degree, known in ((1, ("CPS4I", "CPS4")), (2, ("CPS8", "S8R"))):
+        file = exported(DCB, "abaqus", tmp_path, "--set", f"dolfinx.degree={degree}") / f"{DCB}.inp"
+        before, _, after = file.read_text().replace(*known).partition("*ELEMENT, TYPE=COH2D4")
+        file.write_text(before + after[after.index("*NSET") : after.index("*ORIENTATION")])
+        mesh = meshio.read(file)
+        assert [block.type for block in mesh.cells] == ["quad" if degree == 1 else "quad8"] * 2
+        assert set(mesh.point_sets) >= {"upper_loaded", "lower_bond"}
