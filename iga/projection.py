@@ -102,8 +102,8 @@ def _stroll(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing
         step_q = pull_q / np.where(a_q > 0.1 * m_q, a_q, m_q)
         goal_q = xi_q + step_q
         on_q &= (a_q > 0.1 * m_q) & (goal_q > -1.0) & (goal_q < 2.0)
-        inside_q = (goal_q > 0.0) & (goal_q < 1.0)
-        xi_q = np.where(on_q & inside_q, goal_q, xi_q)
+        inside_q = (goal_q > -tolerance) & (goal_q < 1.0 + tolerance)
+        xi_q = np.where(on_q & inside_q, np.clip(goal_q, 0.0, 1.0), xi_q)
         crossing = np.flatnonzero(on_q & ~inside_q)
         if crossing.size:
             way = np.where(goal_q[crossing] > 0.5, 1, -1)
