@@ -9,7 +9,7 @@ import numpy as np
 
 from iga.body import Body
 from iga.cohesive import TractionLaw
-from iga.interface import Interface, contact
+from iga.interface import Interface, settled
 from iga.lumped import lumped
 from iga.problem import Debonding
 from iga.quadrature import gauss, lobatto
@@ -36,7 +36,7 @@ def bond(
     side. Lumped partners are one to one, and only on the bond.
     """
     found = _bonded(problem, bodies, extent, touching)
-    return found if problem.search or problem.kinematics == "linear" else settled(found)
+    return settled(found) if stays(problem) else found
 
 
 def _bonded(
@@ -57,6 +57,11 @@ def _bonded(
     return replace(whole, bonded_q=np.arange(len(c_q)) < len(held[0]))
 
 
+def stays(problem: Debonding) -> bool:
+    """Whether partners and normals stay what they are before anything moves."""
+    return problem.kinematics == "linear" or not problem.search
+
+
 def closes(programme: Sequence[float]) -> bool:
     """Whether a programme of openings goes down anywhere: elsewhere no gap that has opened closes again."""
     return any(after < before for before, after in zip((0.0, *programme), programme, strict=False))
@@ -68,12 +73,7 @@ def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, flo
     X_ck = _ends(problem, bodies)[c]
     at = np.array([np.argmin(np.abs(X_ck - X)) for X in extent])
     found = _interface(problem, bodies, c[at // 2], at % 2.0, np.full(2, 0.5))
-    return settled(found) if found.frozen else found
-
-
-def settled(interface: Interface) -> Interface:
-    """The same where partners and normals stay what they are: gaps then change in proportion."""
-    return replace(interface, at_rest=contact(interface, np.zeros(interface.P_AI.size), interface.pairing))
+    return settled(found) if stays(problem) else found
 
 
 def _everywhere(
@@ -117,7 +117,6 @@ def _interface(
     return replace(
         between(face, master, P_AI, problem.law, (c_q, xi_q, w_q), problem.width),
         mirror_i=problem.pose.axes_kI[1] if alone else None,
-        frozen=problem.kinematics == "linear" or not problem.search,
     )
 
 

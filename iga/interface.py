@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from iga.cohesive import TractionLaw
-from iga.partner import partner
+from iga.partner import Partner, partner
 from iga.projection import Pairing, closest_points, nearest_samples
 from iga.surface import Surface, normal
 
@@ -41,14 +41,14 @@ class Interface:
 
     ``N_qa`` (n_q, n_a) slave functions at the points, on the control points ``conn_qa``; ``dA_q`` (n_q,) reference area
     (length x width) of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the
-    whole model. ``frozen`` keeps the pairing and normals of the reference configuration (linear kinematics): no search
-    is done.
+    whole model.
 
-    Nothing is searched either where ``master`` is None: ``mirror_i`` (2,) or (n_q, 2) is the unit normal and partners
+    Nothing is searched where ``master`` is None: ``mirror_i`` (2,) or (n_q, 2) is the unit normal and partners
     are known, the control points ``twin_qa`` that take the same functions and lie at the same places, or, without
     these, the mirror image of the slave in the straight line that it lies on: then the gap is twice the distance to it.
 
-    Where the contact ``at_rest``, before anything moves, is told, its rows hold for good: gaps change in proportion.
+    Where the contact ``at_rest``, before anything moves, is told, partners and normals stay what they are there and no
+    search is done (linear kinematics, see `settled`): its rows hold for good, and gaps change in proportion.
 
     ``bonded_q`` (n_q,) is False for points that only touch: nothing holds them, and they have no history. All are
     bonded where it is left out.
@@ -62,7 +62,6 @@ class Interface:
     law: TractionLaw
     master: Surface | None
     mirror_i: np.ndarray | None = None
-    frozen: bool = False
     twin_qa: np.ndarray | None = None
     bonded_q: np.ndarray | None = None
     at_rest: Contact | None = None
@@ -93,12 +92,16 @@ class Interface:
         return closest_points(self.master, X_qi, self.local_AI, start)
 
     @cached_property
+    def partner(self) -> Partner:
+        """The master where it is met in the reference configuration; only where there is one."""
+        return partner(self.master, self.pairing, self.at_slave(self.local_AI), self.local_AI)
+
+    @cached_property
     def home(self) -> Home:
         """Reference places on the master; only where there is one."""
-        X_qi = self.at_slave(self.local_AI)
-        there = partner(self.master, self.pairing, X_qi, self.local_AI)
+        there = self.partner
         Y_qi = (there.M_qb[:, None] @ self.local_AI[self.master.conn_ca[there.c_q]])[:, 0]
-        apart_qi = X_qi - Y_qi
+        apart_qi = self.at_slave(self.local_AI) - Y_qi
         touching = np.linalg.norm(apart_qi, axis=1) < TOUCHING * np.ptp(self.local_AI, axis=0).max()
         return Home(there.c_q, there.M_qb, Y_qi, np.where(touching[:, None], 0.0, apart_qi))
 
@@ -113,7 +116,7 @@ class Contact:
 
     ``g_q`` (n_q,), ``n_qi`` (n_q, 2) master normals, ``share_q`` (n_q,) part of each point's area that faces the
     master. ``dof_qd`` (n_q, n_d) lists the unknowns of slave and master side that a point touches; ``V_qrd``
-    (n_q, r, n_d) holds the row of the first variation, ``dg = V_0 du``, and, where the geometry is not frozen, the rows
+    (n_q, r, n_d) holds the row of the first variation, ``dg = V_0 du``, and, where partners and normals move, the rows
     T and Nb of the second (see `stiffness`) with ``m_q``, ``kappa_q`` and ``fading_q``. Of few unknowns ``full_qd``
     (n_q, n_dof) are the rows of the first over all of them.
     """
@@ -161,21 +164,27 @@ def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Con
     if interface.master is None:
         return _known(interface, u_d)
     master, u_Ai = interface.master, u_d.reshape(-1, 2)
-    y_AI = interface.local_AI if interface.frozen else interface.local_AI + u_Ai
+    y_AI = interface.local_AI + u_Ai
     x_qi = interface.at_slave(y_AI)
-    pairing = guess if interface.frozen else closest_points(master, x_qi, y_AI, guess)
+    pairing = closest_points(master, x_qi, y_AI, guess)
     there = partner(master, pairing, x_qi, y_AI)
-    n_qi = normal(there.t_qi, master.outward)
-    conn_qa = np.concatenate([interface.conn_qa, master.conn_ca[there.c_q]], axis=1)
-    D_qa = np.concatenate([interface.N_qa, -there.M_qb], axis=1)
+    conn_qa, D_qa, n_qi = _between(interface, there)
     g_q = np.sum((_slid(interface, there.c_q, there.M_qb) + _jump(D_qa, u_Ai[conn_qa])) * n_qi, -1)
-    G_qd = _along(D_qa, n_qi)
-    if interface.frozen:
-        return Contact(pairing, g_q, n_qi, there.share_q, dofs(conn_qa), G_qd[:, None])
     moving_qa = np.concatenate([np.zeros_like(interface.N_qa), there.dM_qb], axis=1)
-    V_qrd = np.stack([G_qd, _along(D_qa, there.t_qi), _along(moving_qa, n_qi)], axis=1)
+    V_qrd = np.stack([_along(D_qa, n_qi), _along(D_qa, there.t_qi), _along(moving_qa, n_qi)], axis=1)
     m_q, kappa_q = np.sum(there.t_qi**2, -1), np.sum(n_qi * there.t_xi_qi, -1)
     return Contact(pairing, g_q, n_qi, there.share_q, dofs(conn_qa), V_qrd, m_q, kappa_q, there.fading_q)
+
+
+def settled(interface: Interface) -> Interface:
+    """The same where partners and normals stay what they are before anything moves."""
+    if interface.master is None:
+        return replace(interface, at_rest=_known(interface, np.zeros(interface.P_AI.size)))
+    there = interface.partner
+    conn_qa, D_qa, n_qi = _between(interface, there)
+    g_q, G_qd = np.sum(interface.home.apart_qi * n_qi, -1), _along(D_qa, n_qi)
+    rest = Contact(interface.pairing, g_q, n_qi, there.share_q, dofs(conn_qa), G_qd[:, None])
+    return replace(interface, at_rest=rest)
 
 
 def traction(
@@ -253,6 +262,13 @@ def _known(interface: Interface, u_d: np.ndarray) -> Contact:
     n_qi = np.broadcast_to(interface.mirror_i, interface.X_qi.shape)
     g_q = np.sum((D_qa[:, None] @ u_d.reshape(-1, 2)[conn_qa])[:, 0] * n_qi, -1)
     return Contact(None, g_q, n_qi, np.ones(interface.points), dofs(conn_qa), _along(D_qa, n_qi)[:, None])
+
+
+def _between(interface: Interface, there: Partner) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Control points of both sides, their functions, slave minus master (n_q, n_a + n_b), and the master's normals."""
+    conn_qa = np.concatenate([interface.conn_qa, interface.master.conn_ca[there.c_q]], axis=1)
+    D_qa = np.concatenate([interface.N_qa, -there.M_qb], axis=1)
+    return conn_qa, D_qa, normal(there.t_qi, interface.master.outward)
 
 
 def _jump(D_qa: np.ndarray, u_qai: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from iga.interface import Contact, Interface, contact
+from iga.interface import Contact, Interface, settled
 
 #: Part of the specimen's size, or of one, within which control points and functions are the same.
 SAME = 1e-9
@@ -35,7 +35,7 @@ def lumped(interface: Interface) -> Interface:
     ------
     ValueError : the meshes of the two bodies do not match along the interface, or a control point has no area.
     """
-    start = contact(replace(interface, frozen=True), np.zeros(interface.P_AI.size), interface.pairing)
+    start = settled(interface).at_rest
     w_A, n_Ai = _areas(interface, start.n_qi)
     A = _in_order(interface.conn_qa)
     if np.any(w_A[A] <= 0.0):

@@ -68,7 +68,7 @@ def reach(specimen: Specimen, k_q: np.ndarray, limit: float) -> float:
 def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
     """Gaps at the tip of the bond and at its far end."""
     start, met = specimen.probe.pairing, point.response.contact.pairing
-    if start is not None and met is not None and not specimen.probe.frozen:
+    if start is not None and met is not None and specimen.probe.at_rest is None:
         start = met[specimen.beside_probe]
     g_q = contact(specimen.probe, point.state.u_d, start).g_q
     return float(g_q[0]), float(g_q[-1])

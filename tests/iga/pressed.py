@@ -10,7 +10,7 @@ from scipy.sparse.linalg import splu
 from iga.bond import between, everywhere
 from iga.cohesive import BilinearLaw
 from iga.extraction import Mesh
-from iga.interface import Contact, Interface, contact, forces, stiffness, traction
+from iga.interface import Contact, Interface, contact, forces, settled, stiffness, traction
 from iga.plane import Fixed
 from iga.plane import stiffness as bulk_stiffness
 from iga.quadrature import gauss
@@ -31,16 +31,17 @@ class Pressed:
 
 
 def loose(
-    slave: int, meshes: Sequence[Mesh], faces: Sequence[str], penalty: float, points: int, frozen: bool
+    slave: int, meshes: Sequence[Mesh], faces: Sequence[str], penalty: float, points: int, stays: bool
 ) -> Interface:
-    """Contact without cohesion between the faces of two meshes, numbered one after the other."""
+    """Contact without cohesion between the faces of two meshes, numbered one after the other; partners may stay."""
     first = (0, len(meshes[0].P_AI))
     both = [surface(mesh, mesh.chains[face], start) for mesh, face, start in zip(meshes, faces, first, strict=True)]
     law = BilinearLaw(strength=1.0, toughness=1.0, ductility=2.0, penalty=penalty)
     P_AI = np.concatenate([mesh.P_AI for mesh in meshes])
     ours, theirs = both[slave], both[1 - slave]
     interface = between(ours, theirs, P_AI, law, everywhere(np.arange(ours.sides), gauss(points)))
-    return replace(interface, frozen=frozen, bonded_q=np.zeros(interface.points, dtype=bool))
+    interface = replace(interface, bonded_q=np.zeros(interface.points, dtype=bool))
+    return settled(interface) if stays else interface
 
 
 def press(

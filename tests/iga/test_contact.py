@@ -30,7 +30,7 @@ def shifted(fixed: Fixed, first: int) -> Fixed:
 def patch(basis: str, degree: int, points: int, slave: int, lower: int = 8) -> tuple[float, float]:
     """Largest deviation of the pressure at the points, and of the stress in both bodies, from the uniform one."""
     meshes = upper, below = block(basis, degree, 11, (0.0, 1.0)), block(basis, degree, lower, (-1.0, 0.0))
-    interface = loose(slave, meshes, ("bottom", "top"), 100.0 * E, points, frozen=True)
+    interface = loose(slave, meshes, ("bottom", "top"), 100.0 * E, points, stays=True)
     f_Ai = traction_forces(upper, (upper.chains["top"],), lambda X, n: -1.0 * n)
     f_d = np.concatenate([f_Ai.ravel(), np.zeros(below.P_AI.size)])
     held = symmetry(below, below.chains["bottom"]) + symmetry(below, below.chains["left"])
@@ -108,7 +108,7 @@ def hertz(elements: int, points: int, slave: int, penalty: float = 100.0, approa
     arc, length = cylinder(elements), 1.37 * BREADTH / elements
     breaks = np.concatenate([length * np.arange(2.5 * elements), [0.3, 0.6]])
     flat = nurbs_rectangle(open_knots(breaks, 2), open_knots(np.array([-0.1, 0.0]), 2))
-    interface = loose(slave, (arc, flat), ("top", "top"), penalty * E / RADIUS * elements, points, frozen=False)
+    interface = loose(slave, (arc, flat), ("top", "top"), penalty * E / RADIUS * elements, points, stays=False)
     down = prescribed(arc, (arc.chains["left"],), lambda X: np.stack([0.0 * X[..., 0], 0.0 * X[..., 1] - approach], -1))
     down = Fixed(down.dof_d[down.dof_d % 2 == 1], down.value_d[down.dof_d % 2 == 1])
     rigid = Fixed(2 * len(arc.P_AI) + np.arange(flat.P_AI.size), np.zeros(flat.P_AI.size))
