@@ -20,7 +20,7 @@ from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 
-from iga.interface import Contact, Interface, contact, forces
+from iga.interface import Contact, Interface, forces
 from iga.point import Point
 from iga.system import System
 
@@ -70,7 +70,7 @@ def condensed(system: System) -> Condensed | None:
     interface = system.interface
     if system.kinematics != "linear":
         return None
-    rest = contact(interface, np.zeros(system.n_dof), interface.pairing)
+    rest = interface.at_rest
     B_rd, kept_qd, weight_qd = _rows(system, rest)
     n_r = B_rd.shape[0]
     if not _pays(system, n_r):
@@ -119,7 +119,7 @@ def _pays(system: System, n_r: int) -> bool:
     return less(int(system.free_d.sum()), least) or less(system.band.n, system.band.k)
 
 
-def _rows(system: System, rest: Contact) -> tuple[csr_array, np.ndarray, np.ndarray]:
+def _rows(system: System, rest: Contact) -> tuple[coo_array, np.ndarray, np.ndarray]:
     """Displacements that are kept, as rows B (n_r, n_dof), the opening last, and the gaps in them.
 
     The gap of point q is the sum of ``weight_qd`` times the kept displacements ``kept_qd`` (n_q, n_d): on a straight
@@ -145,7 +145,7 @@ def _rows(system: System, rest: Contact) -> tuple[csr_array, np.ndarray, np.ndar
     opening = np.flatnonzero(system.load_d)
     entries.append((np.full(opening.size, n_r - 1), opening, system.load_d[opening]))
     row, column, value = (np.concatenate([entry[i] for entry in entries]) for i in range(3))
-    return csr_array((value, (row, column)), shape=(n_r, system.n_dof)), kept_qd, weight_qd
+    return coo_array((value, (row, column)), shape=(n_r, system.n_dof)), kept_qd, weight_qd
 
 
 def _facing(interface: Interface, A_qd: np.ndarray, weight_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
@@ -208,9 +208,9 @@ def _bodies(system: System) -> tuple[int, np.ndarray]:
     return connected_components(coo_array((np.ones(far.size), (near, far)), shape=(system.n_dof,) * 2), directed=False)
 
 
-def _saddle(system: System, B_rd: csr_array, free: np.ndarray) -> csc_array:
+def _saddle(system: System, B_rd: coo_array, free: np.ndarray) -> csc_array:
     """``[K B'; B 0]`` over the free unknowns and the multipliers, K with its springs."""
-    n, springs_rd, B = system.n_dof, system.springs_rd, B_rd.tocoo()
+    n, springs_rd, B = system.n_dof, system.springs_rd, B_rd
     held = np.flatnonzero(springs_rd.any(axis=0))
     blocks = [*zip(system.element_dofs, system.linear_matrices, strict=True)]
     blocks.append((held[None], (springs_rd[:, held].T @ (system.spring_r[:, None] * springs_rd[:, held]))[None]))
