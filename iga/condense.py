@@ -202,25 +202,29 @@ def _bulk_forces(system: System, U_dr: np.ndarray) -> np.ndarray:
 def _bodies(system: System) -> tuple[int, np.ndarray]:
     """How many bodies there are, each of elements that share control points, and the one of each unknown (n_dof,)."""
     near, far = (
-        np.concatenate([d.ravel() for d in parts])
-        for parts in zip(*(np.broadcast_arrays(d[:, :1], d) for d in system.element_dofs), strict=True)
+        np.concatenate([A.ravel() for A in parts])
+        for parts in zip(*(np.broadcast_arrays(A[:, :1], A) for A in system.connectivity), strict=True)
     )
-    return connected_components(coo_array((np.ones(far.size), (near, far)), shape=(system.n_dof,) * 2), directed=False)
+    shape = (system.n_dof // 2,) * 2
+    number, body_A = connected_components(coo_array((np.ones(far.size), (near, far)), shape=shape), directed=False)
+    return number, np.repeat(body_A, 2)
 
 
 def _saddle(system: System, B_rd: coo_array, free: np.ndarray) -> csc_array:
     """``[K B'; B 0]`` over the free unknowns and the multipliers, K with its springs."""
-    n, springs_rd, B = system.n_dof, system.springs_rd, B_rd
+    n, springs_rd = free.size + B_rd.shape[0], system.springs_rd
+    place = np.full(system.n_dof, -1, dtype=np.int32)
+    place[free] = np.arange(free.size)
     held = np.flatnonzero(springs_rd.any(axis=0))
     blocks = [*zip(system.element_dofs, system.linear_matrices, strict=True)]
     blocks.append((held[None], (springs_rd[:, held].T @ (system.spring_r[:, None] * springs_rd[:, held]))[None]))
-    row, column = B.coords
-    entries = [(n + row, column, B.data), (column, n + row, B.data)]
+    row, column = (free.size + B_rd.coords[0]).astype(np.int32), place[B_rd.coords[1]]
+    entries = [(row, column, B_rd.data), (column, row, B_rd.data)]
     for d, K in blocks:
-        entries.append((*(np.broadcast_to(v, K.shape).ravel() for v in (d[:, :, None], d[:, None, :])), K.ravel()))
+        at = place[d]
+        entries.append((*(np.broadcast_to(v, K.shape).ravel() for v in (at[:, :, None], at[:, None])), K.ravel()))
     i, j, values = (np.concatenate(parts) for parts in zip(*entries, strict=True))
-    place = np.full(n + B.shape[0], -1)
-    place[np.append(free, n + np.arange(B.shape[0]))] = np.arange(free.size + B.shape[0])
-    there = (place[i] >= 0) & (place[j] >= 0)
-    shape = (free.size + B.shape[0],) * 2
-    return coo_array((values[there], (place[i[there]], place[j[there]])), shape=shape).tocsc()
+    if free.size < system.n_dof:
+        there = (i >= 0) & (j >= 0)
+        i, j, values = i[there], j[there], values[there]
+    return coo_array((values, (i, j)), shape=(n, n)).tocsc()
