@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -21,15 +20,11 @@ SAMPLES = 3
 
 @dataclass(frozen=True)
 class Body:
-    """A mesh in place whose control points are numbered from ``first`` on in the whole model.
-
-    ``faces`` holds the basis on its ends "left" and "right", as they were before the specimen was put in place.
-    """
+    """A mesh in place whose control points are numbered from ``first`` on in the whole model."""
 
     mesh: Mesh
     first: int
     solids: tuple[Solid, ...]
-    faces: Mapping[str, tuple[BlockBasis, ...]]
     D: np.ndarray
 
     @property
@@ -43,6 +38,18 @@ class Body:
         t, s = np.meshgrid(*[np.linspace(0.0, 1.0, SAMPLES + 1)] * 2, indexing="ij")
         points_q = np.stack([s.ravel(), t.ravel()], -1)
         return tuple(block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)
+
+    def face(self, name: str) -> tuple[BlockBasis, ...]:
+        """Basis on the sides of one of the mesh's chains, made when it is first asked for.
+
+        The ends "left" and "right" are told as they were before the specimen was put in place.
+        """
+        made = self.__dict__.setdefault("_faces", {})
+        if name not in made:
+            through = gauss(max(block.degrees[1] for block in self.mesh.blocks) + 1)
+            sides = chain_basis(self.mesh, self.mesh.chains[name], *through)
+            made[name] = tuple(_numbered(basis, self.first) for basis in sides)
+        return made[name]
 
     def surface(self, name: str) -> Surface:
         """The surface of one of the mesh's chains, made when it is first asked for."""
@@ -73,12 +80,7 @@ def _body(mesh: Mesh, first: int, D: np.ndarray, width: float, smooth: bool) -> 
         p, q = block.degrees
         rules = gauss(max(p, 2) if smooth else p + 1), gauss(q + 1)
         solids.append(Solid(_numbered(block_basis(mesh, block, *square(*rules), width), first), D))
-    through = gauss(max(block.degrees[1] for block in mesh.blocks) + 1)
-    faces = {
-        name: tuple(_numbered(basis, first) for basis in chain_basis(mesh, mesh.chains[name], *through))
-        for name in ("left", "right")
-    }
-    return Body(mesh, first, tuple(solids), faces, D)
+    return Body(mesh, first, tuple(solids), D)
 
 
 def _numbered(basis: BlockBasis, first: int) -> BlockBasis:

@@ -65,7 +65,7 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
         copies = 2.0 if problem.symmetry else 1.0
         arms = bodies(meshes, (D,) * len(meshes), pose, copies * problem.width, smooth(problem))
         P_AI = control_points(arms)
-        across = [mean_row(arm.faces["left"], pose.axes_kI[1], P_AI.size) for arm in arms]
+        across = [mean_row(arm.face("left"), pose.axes_kI[1], P_AI.size) for arm in arms]
         springs_rd, spring_r = _supports(problem, arms, pose)
         system = System(
             solids=joined([solid for arm in arms for solid in arm.solids]),
@@ -166,6 +166,6 @@ def _supports(problem: Problem, arms: tuple[Body, ...], pose: Pose) -> tuple[np.
     along_rd = [point_row(A, along_i, P_AI.size) for A in at]
     if len(arms) == 1:
         return np.array(along_rd), np.array([soft])
-    upper_d, lower_d = (mean_row(arm.faces["left"], along_i, P_AI.size) for arm in arms)
+    upper_d, lower_d = (mean_row(arm.face("left"), along_i, P_AI.size) for arm in arms)
     rows = [along_rd[1], point_row(at[1], across_i, P_AI.size), upper_d - lower_d, along_rd[0] - along_rd[1]]
     return np.array(rows), np.array([soft, soft, soft, TIE * problem.E1 * problem.width])

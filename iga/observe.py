@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from iga.basis import BlockBasis
-from iga.body import Body
-from iga.bulk import gradient
+from iga.bulk import energy, gradient
 from iga.interface import contact
 from iga.kinematics import KINEMATICS
 from iga.path import Point
@@ -76,17 +74,8 @@ def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
 
 def face_energy(specimen: Specimen, u_d: np.ndarray) -> float:
     """Strain energy on the end faces as the J-integral counts it, per unit width."""
-    return specimen.copies * sum(
-        sign * _energy_on(specimen.bodies[number], end, u_d.reshape(-1, 2), specimen.system.kinematics)
-        for number, end, sign in specimen.energy_faces
-    )
-
-
-def _energy_on(body: Body, end: str, u_Ai: np.ndarray, kinematics: str) -> float:
-    def density(basis: BlockBasis) -> np.ndarray:
-        return KINEMATICS[kinematics].stress(body.D, gradient(basis, u_Ai))[1]
-
-    return sum(float(np.sum(density(basis) * basis.dV_eq)) for basis in body.faces[end])
+    stress, u_Ai = KINEMATICS[specimen.system.kinematics].stress, u_d.reshape(-1, 2)
+    return sum(energy(side.basis, stress(side.D, gradient(side.basis, u_Ai))[1]) for side in specimen.energy_sides)
 
 
 def _balance(specimen: Specimen, point: Point, support_Ai: np.ndarray) -> dict[str, float]:

@@ -64,7 +64,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             solids=joined([solid for body in pair for solid in body.solids]),
             interface=bond(problem, pair, extent, _touching(problem)),
             kinematics=problem.kinematics,
-            load_d=mean_row(strip.faces["right"], pose.axes_kI[1], P_AI.size),
+            load_d=mean_row(strip.face("right"), pose.axes_kI[1], P_AI.size),
             free_d=_free(substrate, P_AI.size),
             x_d=np.repeat(pose.own(P_AI)[:, 0], 2),
             springs_rd=springs_rd,
@@ -116,6 +116,6 @@ def _support(problem: Problem, strip: Body, pose: Pose, n_dof: int) -> tuple[np.
     tractions amount to lengthwise: nothing in linear kinematics, where they stay across the specimen, and in finite
     kinematics as much as the master's surface tilts where they pull.
     """
-    row_d = mean_row(strip.faces["left"], pose.axes_kI[0], n_dof)
+    row_d = mean_row(strip.face("left"), pose.axes_kI[0], n_dof)
     stiffness = problem.strip.E1 * problem.strip_thickness * problem.width / problem.strip_length
     return row_d[None], np.array([stiffness])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,6 +11,7 @@ from iga.body import Body, mean_row, slope_row
 from iga.extraction import Mesh
 from iga.interface import Interface
 from iga.pose import Pose
+from iga.solid import Solid, joined
 from iga.system import System
 from iga.tmesh import TMesh
 
@@ -49,14 +50,25 @@ class Specimen:
         """Rows (n_dof,) of the mean slopes of the bodies' loaded faces, zero without one."""
         n, axes_kI = self.system.n_dof, self.pose.axes_kI
         return tuple(
-            slope_row(body.faces[end], axes_kI[0], axes_kI[1], n) if end else np.zeros(n)
+            slope_row(body.face(end), axes_kI[0], axes_kI[1], n) if end else np.zeros(n)
             for body, end in zip(self.bodies, self.loaded, strict=True)
+        )
+
+    @cached_property
+    def energy_sides(self) -> tuple[Solid, ...]:
+        """The ends whose strain energy enters the J-integral, its sign in what each point stands for."""
+        return joined(
+            [
+                Solid(replace(basis, dV_eq=sign * self.copies * basis.dV_eq), self.bodies[number].D)
+                for number, end, sign in self.energy_faces
+                for basis in self.bodies[number].face(end)
+            ]
         )
 
     @cached_property
     def face_row(self) -> np.ndarray:
         """Row (n_dof,) of the mean displacement of the upper body's loaded face along the specimen."""
-        return mean_row(self.bodies[0].faces[self.loaded[0]], self.pose.axes_kI[0], self.system.n_dof)
+        return mean_row(self.bodies[0].face(self.loaded[0]), self.pose.axes_kI[0], self.system.n_dof)
 
     @cached_property
     def beside_probe(self) -> np.ndarray:
