@@ -18,8 +18,8 @@ FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.125, 1.0, 1.0 / 4096
 #: Steps chosen by accuracy: the first and the largest one in parts of the programme, and by how much of the peak the
 #: load may leave the tangent of a step, if nothing else is asked for.
 FIRST, LARGEST, BEND = 1.0 / 30.0, 0.25, 0.005
-#: How often a step chosen by accuracy may fail.
-SPARED = 2
+#: How often in a row a step chosen by accuracy may fail, but for each one since that did not.
+SPARED = 3
 #: Fewer steps than these would not draw the curve: what is asked for is then a least number of steps. How long they are
 #: once one that was chosen by accuracy has failed, in such parts of the programme.
 FEWEST, SAFE = 40, 150
@@ -41,8 +41,8 @@ class Pace:
     """Step length: ``step`` of the opening, at most ``largest``, and a part of g_u at the cohesive front.
 
     ``by_accuracy``: the steps are not counted but as long as the curve allows, and end where a point breaks. One that
-    fails is halved, and the front goes half as far from there on; where that is ``spared`` no more they are
-    ``counted``, each of this length.
+    fails is halved, and the front goes half as far until as many have converged; where that is ``spared`` no more they
+    are ``counted``, each of this length.
     ``bend`` is by how much of the peak the load may leave the tangent of such a step; the front may go as much further
     as steps are longer for it.
     ``attempt`` counts how often the next one has failed: careful steps end at the kinks of the law; they change the
@@ -105,7 +105,8 @@ class Pace:
         moved = end.opening - start.opening
         bend = abs(end.state.load - start.state.load - start.slope * moved) / (self.bend * peak)
         grown = abs(moved) * float(np.clip(bend**-0.5 if bend > 0.0 else 2.0, 0.5, 2.0))
-        return replace(self, step=float(np.clip(grown, SMALLEST * self.largest, self.largest)))
+        step = float(np.clip(grown, SMALLEST * self.largest, self.largest))
+        return replace(self, step=step, spared=min(self.spared + 1, SPARED))
 
 
 def paced(programme: np.ndarray, steps: int | None, bend: float = BEND, linear: bool = False) -> Pace:

@@ -57,14 +57,28 @@ def test_a_careful_step_that_converged_is_followed_by_one_twice_as_long(attempt:
     assert after.length == pytest.approx(min(2.0 * pace.length, 0.1) if attempt > 3 else 0.1)
 
 
-def test_a_step_by_accuracy_may_fail_twice_and_is_then_counted() -> None:
+def test_a_step_by_accuracy_may_fail_three_times_in_a_row_and_is_then_counted() -> None:
     pace = paced(np.array([3.0]), None)
-    first, second = pace.slower(), pace.slower().slower()
-    assert (first.step, second.step) == (0.5 * pace.step, 0.25 * pace.step)
-    assert (pace.front, first.front, second.front) == (1.0, 0.5, 0.25)
-    assert not first.careful and second.by_accuracy and second.largest == pace.largest
-    counted = second.slower()
+    failed = [pace]
+    for _ in range(4):
+        failed.append(failed[-1].slower())
+    assert [now.step / pace.step for now in failed[:4]] == [1.0, 0.5, 0.25, 0.125]
+    assert [now.front for now in failed[:4]] == [1.0, 0.5, 0.25, 0.125]
+    assert all(now.by_accuracy and not now.careful and now.largest == pace.largest for now in failed[:4])
+    counted = failed[4]
     assert not counted.by_accuracy and (counted.step, counted.largest) == (0.02, 0.02) and counted.front == 0.125
+
+
+def test_every_step_by_accuracy_that_converged_makes_up_for_one_that_failed() -> None:
+    """So that a path with a failure now and then is never counted, and its front goes as far as before."""
+    pace = start = paced(np.array([10.0]), None)
+    for _ in range(20):
+        pace = pace.slower().slower()
+        assert pace.by_accuracy and pace.front == 0.25
+        for front in (0.5, 1.0, 1.0):
+            pace = pace.after(*ends(1.0, 0.1, 0.0), 4.0)
+            assert pace.front == front
+    assert pace.spared == start.spared
 
 
 def test_the_front_goes_further_where_loads_may_leave_their_tangents_by_more() -> None:
