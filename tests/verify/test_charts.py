@@ -146,7 +146,7 @@ def a_study(power: float) -> Study:
         for n in sizes
     ]
     bare = replace(plain, dofs=100, bare=True, peak_memory_mb=90.0)
-    return Study(scene_report().scene, (bare, *rows), (), 10)
+    return Study(scene_report().scene, (bare, *rows), (), 10, (0.0, 0.0))
 
 
 def test_time_and_memory_grow_as_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
