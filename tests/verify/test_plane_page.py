@@ -125,5 +125,8 @@ def test_stress_and_its_error_are_painted_to_scale(study: PlaneStudy, monkeypatc
     for axes, *_ in painted:
         box = axes.get_window_extent()
         assert box.width / box.height == pytest.approx((x[1] - x[0]) / (y[1] - y[0]))
+        sheet = axes.figure.bbox
+        assert sheet.x0 < box.x0 and box.x1 < sheet.x1 and box.y1 < sheet.y1, "nothing of it is cut off"
+        assert box.x0 - sheet.x0 == pytest.approx(sheet.x1 - box.x1), "in the middle"
     bars = [figure.axes[1] for title, figure in drawn if title.startswith(("Stress", "Error"))]
     assert [bar.get_xlim() for bar in bars] == [pytest.approx((-limit, limit)), pytest.approx((-reach, reach))]
