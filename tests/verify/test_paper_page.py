@@ -182,6 +182,9 @@ def test_measures_are_drawn_over_the_number_of_points(
             values = [100 * getattr(t, measure) if t else np.nan for t in trials]
             assert list(one.get_xdata()) == [2, 8] and np.allclose(one.get_ydata(), values, equal_nan=True)
     assert axes.get_yscale() == "log"
+    highest = max(float(np.nanmax(one.get_ydata())) for one in axes.lines)
+    top = axes.transAxes.inverted().transform(axes.transData.transform((2.0, highest)))[1]
+    assert 0.75 < top < 0.9, "above it there is room for the names"
 
 
 def test_a_sweep_is_stronger_with_more_points(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -342,3 +342,8 @@ def test_threads_are_those_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -
     assert run_of.threads() == 3 and run_of.environment()["threads a run"] == "3"
     monkeypatch.delenv("OMP_NUM_THREADS")
     assert run_of.threads() == os.cpu_count() and run_of.environment()["threads a run"] == "as many as cores"
+
+
+def test_a_package_that_is_not_installed_has_no_version() -> None:
+    assert run_of._version("no-such-package-at-all") == ""
+    assert "numpy" in run_of.versions() and "no-such-package-at-all" not in run_of.versions()
