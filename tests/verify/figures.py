@@ -29,6 +29,8 @@ class Drawn(list[tuple[str, Figure]]):
         self.append((title, figure))
         found = unreadable(figure)
         assert not found, f"{title}: {found}"
+        width, height = figure.get_size_inches()
+        assert height < 1.02 * width, f"{title}: higher than wide"
         return f"<svg>{key}</svg>"
 
     def axes(self, words: str, number: int = 0) -> Axes:

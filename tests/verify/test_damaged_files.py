@@ -348,3 +348,17 @@ def test_a_table_with_another_cell_is_damaged(before: str, after: str, why: str,
     with pytest.raises(Damaged) as said:
         read_table(path, Line)
     assert str(said.value) == f"{path}: must be as debond has written it, got: {why}" and said.value.path == path
+
+
+def test_a_method_that_no_ladder_has_is_damage(tmp_path: Path) -> None:
+    path = made_up_studies.cost(tmp_path / "cost") / "cost.csv"
+    path.write_text(path.read_text().replace("dolfinx,1", "dolfinx,7"))
+    with pytest.raises(Refusal, match="cost.csv: must be as debond has written it, got: the method 'dolfinx' of degre"):
+        named([path.parent])
+
+
+def test_a_verdict_lies_in_the_folder_of_its_case_and_basis(tmp_path: Path) -> None:
+    folder = made_up_studies.hard(tmp_path / "hard") / "coarse-czm2"
+    (folder / "nurbs").rename(folder / "lagrange")
+    with pytest.raises(Refusal, match="got: the verdict of coarse-czm2 on nurbs"):
+        named([tmp_path / "hard"])

@@ -7,14 +7,16 @@ from pathlib import Path
 from types import SimpleNamespace
 from unittest.mock import ANY
 
+import made_up_studies
 import pytest
 from test_hard import FAKE, stub
 
-from verify.hard import one
+from verify.hard import one, suite
 from verify.hard.cases import CASES
 from verify.methods import Unsuitable
 from verify.plain import Damaged
 from verify.schema import Scene
+from verify.sweep import Done
 
 
 def test_what_is_tried_is_what_the_page_tells() -> None:
@@ -59,3 +61,14 @@ def test_a_verdict_counts_with_the_runs_that_it_is_about(tmp_path: Path, monkeyp
     (tmp_path / "a" / "evidence.csv").write_text("no curve")
     with pytest.raises(Damaged, match="evidence.csv"):
         one.read_cell(tmp_path)
+
+
+def test_what_a_process_leaves_is_its_verdict_or_why_there_is_none(tmp_path: Path) -> None:
+    case = CASES["coarse-czm2"]
+    lost = suite._cell(case, "nurbs", Done(suite.task(case, "nurbs"), tmp_path, "failed: signal 9"))
+    assert (lost.verdict, lost.why, lost.passed) == (None, "failed: signal 9", False)
+    made_up_studies.hard(tmp_path)
+    found = suite._cell(case, "nurbs", Done(suite.task(case, "nurbs"), tmp_path / "coarse-czm2" / "nurbs"))
+    assert found.passed and (found.verdict.case, found.verdict.basis) == ("coarse-czm2", "nurbs")
+    bad = suite._cell(case, "tspline", Done(suite.task(case, "tspline"), tmp_path / "coarse-czm2" / "tspline"))
+    assert bad.verdict is not None and not bad.passed

@@ -121,6 +121,8 @@ def test_every_strength_must_come_closer_to_fracture_mechanics() -> None:
     assert failing("toward-lefm", off_the_limit({**nearer, names[3]: 0.031})) == {("monotone", "all")}
     at_rest = off_the_limit({**nearer, names[2]: 1e-3, names[3]: 1.9e-3, names[4]: 1e-3})
     assert failing("toward-lefm", at_rest) == set(), "closer than 0.2 % is the same"
+    leaving = off_the_limit({**nearer, names[2]: 1e-3, names[3]: 3e-3, names[4]: 1e-3})
+    assert judged("toward-lefm", leaving)["monotone", "all"].value == pytest.approx(3.0 / 2.0), "and further is not"
     before = {}
     for name, trial in off_the_limit(nearer).items():
         d, P = trial.result.opening, trial.result.load

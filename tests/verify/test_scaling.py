@@ -225,6 +225,7 @@ def test_what_is_expected_lies_between_its_assumptions(two_cores: None) -> None:
         assert one.seconds == pytest.approx((EACH * one.dofs,) * 2, rel=1e-6) and one.dofs == 20_000 * one.ranks
     slowly = Study(SCENE, made_up_rows(0.9), (), 4166, LOAD)
     low, high = slowly.larger()[0].seconds
+    assert slowly.larger()[0].shared == pytest.approx((low / 64, high / 64))
     last = slowly.ladder("dolfinx")[-1]
     assert low == pytest.approx(EACH * 1.28e6**0.9, rel=1e-6), "as the fit goes on"
     assert high == pytest.approx(last.iteration * 1.28e6 / last.dofs), "nothing grows more slowly than N for ever"
