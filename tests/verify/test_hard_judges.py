@@ -357,3 +357,26 @@ def test_what_the_judges_allow(monkeypatch: pytest.MonkeyPatch) -> None:
         for (check, _), given in judged(name, world(name, make=made.get(name, made_up))).items():
             found.setdefault(check, set()).add(given.tolerance)
         assert found == wanted, name
+
+
+def test_the_units_of_a_curve_are_no_part_of_it() -> None:
+    """Openings and loads of a thousandth, and of a 25.4th, are those of the scene in millimetres and newtons."""
+    sizes = {"n-mm": (1.0, 1.0), "n-m": (1.0, 1e-3), "kn-in": (1e-3, 1.0 / 25.4)}
+    base = made_up(CASES["units"].variants()[0].scene)
+
+    def told(force: float, length: float) -> Result:
+        return times(times(base, length, "opening"), force, "load")
+
+    trials = {v.name: Trial(v, told(*sizes[v.name])) for v in CASES["units"].variants()}
+    good = judged("units", trials)
+    assert {subject for _, subject in good} == {"n-m", "kn-in"} and all(one.value < 1e-12 for one in good.values())
+    for name in ("n-m", "kn-in"):
+        off = {**trials, name: replace(trials[name], result=times(trials[name].result, 1.0 + 1e-8))}
+        assert failing("units", off) == {("same-curve", name)}
+
+
+@pytest.mark.parametrize(("name", "wrong"), [("pose", "moved"), ("noise", "noise-7")])
+def test_what_changes_no_curve_is_held_against_the_plain_one(name: str, wrong: str) -> None:
+    assert all(check.value < 1e-12 for check in judged(name, world(name)).values())
+    assert ("same-curve", "plain") not in judged(name, world(name))
+    assert failing(name, world(name, only(wrong, 1.0 + 2e-8))) == {("same-curve", wrong)}

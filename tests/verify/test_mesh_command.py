@@ -276,3 +276,10 @@ def test_continuity_is_told_from_the_smoothest_on() -> None:
     assert _sets(report) == "; side sets a (3 sides), b (2 sides)"
     assert _sets({**report, "chains": {}}) == "; side sets a (3 sides, no chain), b (2 sides, no chain)"
     assert _sets({"sets": [], "chains": {}}) == ""
+
+
+def test_a_picture_that_fails_for_want_of_something_else_is_an_error(tmp_path, monkeypatch):
+    """Only what is optional may be missing."""
+    monkeypatch.setitem(sys.modules, "verify.mesh_drawing", None)
+    with pytest.raises(ModuleNotFoundError, match="verify.mesh_drawing"):
+        main(["mesh", str(small(tmp_path)), "--out", str(tmp_path / "a.svg")])
