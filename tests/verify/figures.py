@@ -48,6 +48,9 @@ def legend(figure: Figure) -> list[str]:
 #: Points: least and largest size of letters, of the widths of lines, of marks.
 LETTERS, WIDTHS, MARKS = (6.0, 8.5), (0.2, 5.5), (1.5, 8.0)
 
+#: What is drawn fills so much of the width and the height of its axes; a third where several share their scales.
+FILLED = 0.55
+
 
 def unreadable(figure: Figure) -> list[str]:
     """What a reader could not make out: cut off, on top of something else, too small, too large, out of view."""
@@ -71,7 +74,7 @@ def unreadable(figure: Figure) -> list[str]:
         if _meet(one.get_window_extent(renderer), other.get_window_extent(renderer)):
             found.append(f"axes {i} on axes {j}")
     for axes in figure.axes:
-        found += _lines(axes)
+        found += [*_lines(axes), *_empty(axes, FILLED if len(figure.axes) == 1 else 0.35 * FILLED)]
         if (scale := getattr(axes, "_colorbar", None)) is not None and scale.outline.get_visible():
             found.append("a frame around the scale of colours")
         bars = [bar for group in axes.containers if isinstance(group, BarContainer) for bar in group]
@@ -110,6 +113,17 @@ def _lines(axes: Axes) -> Iterator[str]:
             seen = (points >= (x[0], y[0])) & (points <= (x[1], y[1]))
             if not seen.all(axis=1).any():
                 yield f"line {name} out of view"
+
+
+def _empty(axes: Axes, least: float) -> Iterator[str]:
+    """Axes of which what is drawn fills only a small part, either way."""
+    if not axes.axison or not axes.has_data() or hasattr(axes, "_colorbar"):
+        return
+    box = axes.dataLim.transformed(axes.transData).transformed(axes.transAxes.inverted())
+    for way, (low, high) in {"width": (box.x0, box.x1), "height": (box.y0, box.y1)}.items():
+        filled = min(high, 1.0) - max(low, 0.0)
+        if high > low and filled < least:
+            yield f"{filled:.0%} of the {way} of the axes are filled"
 
 
 def _meet(here: Bbox, there: Bbox) -> bool:

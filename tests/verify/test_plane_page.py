@@ -106,6 +106,8 @@ def test_errors_are_drawn_over_the_unknowns_a_direction(study: PlaneStudy, monke
         slope = slopes[0] if order == 4 else slopes[1]
         assert slope.get_xdata() == pytest.approx(n[1:]) and slope.get_ydata() == pytest.approx(values[1:])
     assert [t.get_text() for t in axes.texts] == ["4", "3"]
+    for text, name, order in zip(axes.texts, ("displacement", "energy"), (4, 3), strict=True):
+        assert text.xy == pytest.approx((n[1], getattr(study.levels[-1].errors, name) * (n[-1] / n[1]) ** order))
     assert axes.get_xscale() == axes.get_yscale() == "log"
     assert not [*axes.xaxis.get_minorticklocs(), *axes.yaxis.get_minorticklocs()], "every tick has its number"
 
