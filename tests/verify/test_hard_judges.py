@@ -17,7 +17,7 @@ from verify.hard.cases import CASES
 from verify.hard.interfaces import variation
 from verify.methods import solve
 from verify.result import Result, Snapshot, steps_from_rows
-from verify.scene import Scene
+from verify.scene import Scene, load_scene
 from verify.verdict import Check
 
 Change = Callable[[str, Result], Result]
@@ -380,3 +380,25 @@ def test_what_changes_no_curve_is_held_against_the_plain_one(name: str, wrong: s
     assert all(check.value < 1e-12 for check in judged(name, world(name)).values())
     assert ("same-curve", "plain") not in judged(name, world(name))
     assert failing(name, world(name, only(wrong, 1.0 + 2e-8))) == {("same-curve", wrong)}
+
+
+def test_without_the_opening_at_the_tip_nothing_is_said_of_contact() -> None:
+    def bare(scene: Scene) -> Result:
+        result = back_and_forth(scene)
+        return replace(result, steps={name: c for name, c in result.steps.items() if name != "tip_opening"})
+
+    good = judged("unload-reload", world("unload-reload", make=bare))
+    assert {name for name, _ in good} == {"secant", "return", "same-envelope"}
+    assert all(check.passed for check in good.values())
+
+
+def test_a_path_is_drawn_with_points_between_its_steps_where_its_slopes_are_known() -> None:
+    pytest.importorskip("matplotlib")
+    from verify.hard.page import _path
+
+    few, many = made_up(load_scene("dcb-czm1")), steps_from_rows(fake_rows(3.0, 700))
+    x, y = _path(replace(few, steps=steps_from_rows(fake_rows(3.0, 20))))
+    assert len(x) == 20 * (600 // 21) + 1 and y == pytest.approx(2.0 * x * np.exp(-x), abs=1e-3)
+    assert len(_path(replace(few, steps=many))[0]) == 701
+    bare = {"opening": few.opening[:20], "load": few.load[:20]}
+    assert np.array_equal(_path(Result("nurbs", bare)), list(bare.values()))

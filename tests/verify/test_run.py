@@ -347,3 +347,16 @@ def test_threads_are_those_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -
 def test_a_package_that_is_not_installed_has_no_version() -> None:
     assert run_of._version("no-such-package-at-all") == ""
     assert "numpy" in run_of.versions() and "no-such-package-at-all" not in run_of.versions()
+
+
+def test_a_rank_that_fails_says_which_it_is_and_ends_at_once(monkeypatch, capsys: pytest.CaptureFixture) -> None:
+    """Without waiting for the others, which wait for it."""
+    ended: list[int] = []
+    monkeypatch.setattr(run_of.os, "_exit", ended.append)
+    monkeypatch.setattr(run_of, "mpi_rank", lambda: 3)
+
+    def broken(scene: Scene, method: str, on_step: Callable | None) -> Result:
+        raise ArithmeticError("no luck")
+
+    run_of._silent(load_scene("dcb-czm1"), "dolfinx", broken)
+    assert ended == [1] and capsys.readouterr().err.strip().endswith("rank 3: ArithmeticError: no luck")

@@ -342,3 +342,10 @@ def test_cores_are_those_that_a_process_may_use(monkeypatch: pytest.MonkeyPatch)
     assert ranks_of.cores() == 16
     monkeypatch.setattr(ranks_of.os, "cpu_count", lambda: None)
     assert ranks_of.cores() == 1
+
+
+def test_of_one_code_nothing_is_said_of_many_ranks(two_cores: None) -> None:
+    alone = tuple(one for one in made_up_rows() if one.method == "nurbs")
+    study = Study(SCENE, alone, (), 0, LOAD)
+    assert (study.larger(), study.expected(), study.shared, study.waiting) == ([], [], [], 0.0)
+    assert study.summary()["load_average"] == [0.25, 0.75] and list(study.growth) == ["nurbs"]
