@@ -191,3 +191,9 @@ def test_a_disc_is_what_curves_of_one_radius_enclose() -> None:
     assert _radius(disc.replace("C -2 -1.1 -1.1 -2 0 -2 ", "L 0 -2 ")) == 0.0, "a side is straight"
     assert _radius(disc.replace("2 0 C 2", "2.5 0 C 2")) == 0.0, "no disc"
     assert _radius("M 0 -2 C 1.1 -2 2 -1.1 2 z") == 0.0, "a curve has three points"
+
+
+@pytest.mark.parametrize(("edge", "size"), [({"markeredgewidth": 0.0}, 4.0), ({"markeredgewidth": 1.5}, 5.5)])
+def test_a_dot_is_as_large_as_its_disc_and_its_edge(edge: dict, size: float) -> None:
+    svg, _ = drawn({"marker": "o", "markersize": 4.0, "color": "#123456", **edge})
+    assert float(re.search(r"stroke-width: ([\d.]+)", svg)[1]) == pytest.approx(size, abs=0.02)
