@@ -360,3 +360,20 @@ def test_a_rank_that_fails_says_which_it_is_and_ends_at_once(monkeypatch, capsys
 
     run_of._silent(load_scene("dcb-czm1"), "dolfinx", broken)
     assert ended == [1] and capsys.readouterr().err.strip().endswith("rank 3: ArithmeticError: no luck")
+
+
+def test_what_was_done_before_an_error_is_the_result(scene: Scene, tmp_path: Path) -> None:
+    """Of a solver that tells all its steps in one and the same row."""
+
+    def solver(scene: Scene, method: str, on_step: Callable) -> Result:
+        row = dict.fromkeys(CURVE_COLUMNS, 0.0)
+        for i in range(4):
+            on_step(row)
+            row["opening"], row["load"] = i + 1.0, [2.0, 3.0, 1.0, 9.0][i]
+        raise ArithmeticError("no luck")
+
+    result, _ = run(scene, "nurbs", tmp_path, solver=solver)
+    assert result.opening.tolist() == [0.0, 1.0, 2.0, 3.0] and result.load.tolist() == [0.0, 2.0, 3.0, 1.0]
+    written = json.loads((tmp_path / "result.json").read_text())
+    assert (written["steps"], written["peak_load"], written["peak_opening"]) == (3, 3.0, 2.0)
+    assert "ArithmeticError: no luck" in written["status"]
