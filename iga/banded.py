@@ -100,16 +100,11 @@ class Band:
         if factors is None:
             return float("inf")
 
-        def solve(b: np.ndarray, transposed: int) -> np.ndarray:
+        def solve(b: np.ndarray, transposed: bool) -> np.ndarray:
             return dgbtrs(factors.lu, self.k, self.k, b, factors.pivots, trans=transposed)[0]
 
         inverse = LinearOperator(
-            (self.n, self.n),
-            matvec=lambda b: solve(b, 0),
-            rmatvec=lambda b: solve(b, 1),
-            matmat=lambda b: solve(b, 0),
-            rmatmat=lambda b: solve(b, 1),
-            dtype=float,
+            (self.n, self.n), matvec=lambda b: solve(b, False), rmatvec=lambda b: solve(b, True), dtype=float
         )
         return norm * float(onenormest(inverse))
 

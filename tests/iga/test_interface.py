@@ -222,3 +222,18 @@ def test_partners_that_stay_are_searched_for_once(monkeypatch):
     probe = build(replace(PROBLEM, kinematics="linear")).probe
     monkeypatch.setattr("iga.interface.nearest_samples", lambda *given: pytest.fail("searched for again"))
     assert probe.at_rest is not None and np.array_equal(probe.pairing.c_q, probe.at_rest.pairing.c_q)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_surfaces_touch_that_are_apart_by_less_than_a_billionth_of_the_model(unit):
+    """In whatever units its length of 6 is told; what is further apart has the gap that it has."""
+    lengths = {"length": 6.0 * unit, "arm_thickness": 0.5 * unit, "precrack": 2.0 * unit}
+    interface = build(replace(PROBLEM, **lengths)).system.interface
+    upper = interface.P_AI[:, 1] > 1e-6 * unit
+    upper[np.unique(interface.conn_qa)] = True
+    for part, touches in ((0.5e-9, True), (2e-9, False)):
+        P_AI = interface.P_AI + part * 6.0 * unit * upper[:, None] * np.array([0.0, 1.0])
+        apart_qi = replace(interface, P_AI=P_AI).home.apart_qi
+        assert np.all(apart_qi == 0.0) == touches
+        if not touches:
+            assert np.abs(apart_qi[:, 1]) == pytest.approx(part * 6.0 * unit, rel=1e-3)

@@ -15,6 +15,7 @@ from iga.newton import (
     DEFAULT,
     PATIENT,
     SLACK,
+    Newton,
     _holds,
     _hopeless,
     _met,
@@ -191,3 +192,19 @@ def test_a_search_that_finds_nothing_ends():
     """The work jumps over zero: bisection and false position close in on the place, a given number of times."""
     (_, _, _), asked = along(lambda s: -1.0 if s < 0.3 else 1.0, -1.0)
     assert len(asked) == 13 and abs(asked[-1] - 0.3) < 0.02
+
+
+def test_what_rounding_leaves_counts_in_parts_of_the_forces_in_play(monkeypatch):
+    """Where there are none, the tolerance alone does."""
+    monkeypatch.setattr(iga.newton, "rounding", lambda system, u_d, response: 3e-9)
+    for scale, floor in ((0.0, 1e-12), (2.0, 1.5e-9), (1e6, 1e-12)):
+        trial, response = SimpleNamespace(u_d=np.zeros(2)), SimpleNamespace(scale=scale)
+        assert iga.newton._floor(None, trial, response, Newton(tolerance=1e-12)) == pytest.approx(floor)
+
+
+@pytest.mark.parametrize("name", ["factorise", "correction"])
+def test_without_a_tangent_or_a_load_that_is_felt_there_is_no_equilibrium(name, peak, monkeypatch):
+    system, before, _ = peak
+    monkeypatch.setattr(iga.newton, name, lambda *given: None)
+    target = 1.01 * before.opening
+    assert equilibrium(system, before.state, opening_control(system), target, 0.01, DEFAULT, untimed) is None

@@ -297,3 +297,19 @@ def same(one: TMesh, other: TMesh) -> bool:
     pairs = ((one.knots_i, other.knots_i), (one.knots_j, other.knots_j))
     edges = ((one.across_ij, other.across_ij), (one.up_ij, other.up_ij))
     return all(np.array_equal(a, b) for a, b in pairs + edges)
+
+
+@pytest.mark.parametrize("near", ["vertical", "horizontal"])
+@pytest.mark.parametrize("down", [False, True])
+@pytest.mark.parametrize("left", [False, True])
+def test_of_two_lines_that_meet_the_one_with_the_shorter_way_goes_on(near, down, left):
+    """Lines across the near one are an eighth apart, those across the other a quarter; it ends on the near one."""
+    fine, wide = np.linspace(0.0, 1.0, 9), np.linspace(0.0, 1.0, 5)
+    grid = tensor_grid(*((wide, fine) if near == "vertical" else (fine, wide)))
+    far = "horizontal" if near == "vertical" else "vertical"
+    at, other = (0.4 if left else 0.6), (0.5625 if down else 0.4375)
+    short = with_line(grid, near, at, (0.625, 1.0) if down else (0.0, 0.375))
+    both = with_line(short, far, other, (0.5, 1.0) if left else (0.0, 0.5))
+    longer = with_line(both, near, at, (0.375, 1.0) if down else (0.0, 0.625))
+    assert not both.suitable
+    assert same(made_suitable(both), with_line(longer, far, other, (at, 1.0) if left else (0.0, at)))

@@ -16,19 +16,28 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+#: Points: least and largest size of letters, of the widths of lines, of marks.
+LETTERS, WIDTHS, MARKS = (6.0, 8.5), (0.2, 5.5), (1.5, 8.0)
+
+#: What is drawn fills so much of the width and the height of its axes; a third where several share their scales.
+FILLED = 0.55
+
 
 class Drawn(list[tuple[str, Figure]]):
     """Title and figure of all drawings of some modules, in the order in which they were made."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, *modules: ModuleType) -> None:
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *modules: ModuleType, filled: float = FILLED) -> None:
         super().__init__()
+        self._filled = filled
         for module in modules:
             monkeypatch.setattr(module, "to_svg", self._keep)
 
     def _keep(self, figure: Figure, key: str, title: str, *more: float, **options: float) -> str:
         self.append((title, figure))
-        found = unreadable(figure)
+        found = unreadable(figure, self._filled)
         assert not found, f"{title}: {found}"
+        width, height = figure.get_size_inches()
+        assert height < 1.02 * width, f"{title}: higher than wide"
         return f"<svg>{key}</svg>"
 
     def axes(self, words: str, number: int = 0) -> Axes:
@@ -43,11 +52,7 @@ def legend(figure: Figure) -> list[str]:
     return [text.get_text() for one in legends for text in one.get_texts()]
 
 
-#: Points: least and largest size of letters, of the widths of lines, of marks.
-LETTERS, WIDTHS, MARKS = (6.0, 8.5), (0.2, 5.5), (1.5, 8.0)
-
-
-def unreadable(figure: Figure) -> list[str]:
+def unreadable(figure: Figure, filled: float = FILLED) -> list[str]:
     """What a reader could not make out: cut off, on top of something else, too small, too large, out of view."""
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
@@ -69,7 +74,7 @@ def unreadable(figure: Figure) -> list[str]:
         if _meet(one.get_window_extent(renderer), other.get_window_extent(renderer)):
             found.append(f"axes {i} on axes {j}")
     for axes in figure.axes:
-        found += _lines(axes)
+        found += [*_lines(axes), *_empty(axes, filled if len(figure.axes) == 1 else 0.35 * filled)]
         if (scale := getattr(axes, "_colorbar", None)) is not None and scale.outline.get_visible():
             found.append("a frame around the scale of colours")
         bars = [bar for group in axes.containers if isinstance(group, BarContainer) for bar in group]
@@ -108,6 +113,17 @@ def _lines(axes: Axes) -> Iterator[str]:
             seen = (points >= (x[0], y[0])) & (points <= (x[1], y[1]))
             if not seen.all(axis=1).any():
                 yield f"line {name} out of view"
+
+
+def _empty(axes: Axes, least: float) -> Iterator[str]:
+    """Axes of which what is drawn fills only a small part, either way."""
+    if not axes.axison or not axes.has_data() or hasattr(axes, "_colorbar"):
+        return
+    box = axes.dataLim.transformed(axes.transData).transformed(axes.transAxes.inverted())
+    for way, (low, high) in {"width": (box.x0, box.x1), "height": (box.y0, box.y1)}.items():
+        filled = min(high, 1.0) - max(low, 0.0)
+        if high > low and filled < least:
+            yield f"{filled:.0%} of the {way} of the axes are filled"
 
 
 def _meet(here: Bbox, there: Bbox) -> bool:

@@ -263,3 +263,41 @@ def test_a_reader_that_leaves_is_no_error() -> None:
     line = f"{shlex.join(PROGRAM)} scenes | true"
     ended = subprocess.run(["bash", "-c", line], capture_output=True, text=True, env=ENVIRONMENT)
     assert ended.stderr == ""
+
+
+#: command line -> what its options are where they are not told
+UNSAID = {
+    "verify": {
+        "scenes": [], "out": Path("debond-report"), "full": False, "curves": [], "opening": None, "load": None,
+        "opening_scale": 1.0, "load_scale": 1.0, "format": "html", "include": [], "scheduler": None, "dry_run": False,
+    },
+    "solve S": {
+        "method": None, "dofs": None, "accuracy": None, "overrides": [], "out": None, "fields": False, "frames": 30,
+    },
+    "cost S": {"overrides": [], "out": Path("debond-cost"), "dry_run": False},
+    "effects S": {"method": "nurbs", "overrides": [], "out": Path("debond-effects"), "scheduler": None},
+    "scaling S": {"overrides": [], "out": Path("debond-scaling"), "dry_run": False},
+    "hard": {"names": [], "out": Path("debond-hard"), "scheduler": None, "dry_run": False},
+    "compare A B": {
+        "a": Path("A"), "b": Path("B"), "opening_a": None, "load_a": None, "opening_scale_a": 1.0, "load_scale_b": 1.0,
+        "load_scale_a": 1.0, "opening_scale_b": 1.0, "end": None, "begin": None, "at": [], "curve_tol": None,
+        "peak_tol": None, "energy_tol": None, "out": None,
+    },
+    "export S --format vtu": {"format": "vtu", "elements": None, "layers": None, "overrides": [], "out": None},
+    "mesh F": {"file": Path("F"), "out": None, "json": False, "control": False},
+    "scenes": {"scenes": []},
+    "test": {"rest": []},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("words", UNSAID)
+def test_what_is_not_told_is_as_the_help_says(words: str) -> None:
+    found = vars(parsed(parser(), words.split()))
+    assert {name: found[name] for name in UNSAID[words]} == UNSAID[words]
+    assert found["command"].__name__ == words.split()[0]
+    assert found.get("jobs", os.cpu_count()) == os.cpu_count(), "as many runs at a time as there are cores"
+
+
+@pytest.mark.parametrize("words", ["solve dcb-czm1 --meth nurbs", "verify --sched here", "doctor --hel"])
+def test_options_are_told_in_full(words: str, capsys: pytest.CaptureFixture) -> None:
+    assert exit_code(words.split()) == 2 and "is no option" in capsys.readouterr().err

@@ -213,3 +213,16 @@ def test_words_name_every_broken_tolerance():
     lines = table(found, [(1.0, 1.05, 1.0)], judged)
     assert [line.split("  ")[0] for line in lines if "FAILS" in line] == ["curve error", "energy"]
     assert any(line.startswith("load at 1 ") and line.endswith("+5 %") for line in lines)
+
+
+def test_where_a_comparison_begins_changes_no_wave() -> None:
+    """It is that of the whole curves, whose length and height it is counted by."""
+    d = np.linspace(0.0, 3.0, 601)
+    load = d * np.exp(-d)
+    waved = load * (1.0 + 0.02 * np.sin(40.0 * d))
+    whole = compare((d, waved), (d, load))
+    assert whole.excess_variation > 0.0
+    for begin in (0.5, 2.0):
+        later = compare((d, waved), (d, load), begin=begin)
+        assert (later.oscillation_rms, later.excess_variation) == (whole.oscillation_rms, whole.excess_variation)
+        assert later.begin == begin and later.curve_error != whole.curve_error

@@ -194,3 +194,14 @@ def test_no_content_of_a_file_ends_in_a_traceback(a: bytes, b: bytes, files: Pat
     said = capsys.readouterr()
     assert code in (0, 1, 2)
     assert (code == 2) == (said.out == "") and (code == 0 or said.err.startswith("debond: "))
+
+
+def test_a_page_that_cannot_be_made_for_want_of_something_else_is_an_error(tmp_path: Path, monkeypatch) -> None:
+    """What is missing is named; only what is optional may be."""
+    pytest.importorskip("jinja2")
+    monkeypatch.setitem(sys.modules, "verify.report.comparison", None)
+    words = [str(EXAMPLE / "abaqus.csv"), str(EXAMPLE / "abaqus.csv"), "--opening-a", "U2", "--load-a", "RF2"]
+    words += ["--opening-b", "U2", "--load-b", "RF2", "--opening-scale-a", "-2", "--opening-scale-b", "-2"]
+    words += ["--load-scale-a", "-1e3", "--load-scale-b", "-1e3", "--out", str(tmp_path)]
+    with pytest.raises(ModuleNotFoundError, match="verify.report.comparison"):
+        main(["compare", *words])

@@ -105,3 +105,8 @@ def test_refuses_sizes_that_are_none_or_the_same(size):
 def test_refuses_two_meshes():
     with pytest.raises(ValueError, match="at least three"):
         assess((1.0, 2.0), (1.0, 1.1))
+
+
+def test_no_order_fits_differences_that_no_power_has():
+    """A mesh a little coarser changes much, one that is much coarser next to nothing more."""
+    assert np.isnan(observed_order((1.0, 1.1, 4.0), (1.0, 2.0, 2.0 + 1e-6)))

@@ -15,7 +15,7 @@ from made_up_costs import NURBS, SCENE, a_row, against, made_up, outcome
 from verify.cost.findings import cheapest, growth, of_equal_steps, orders, pareto, table
 from verify.cost.ladder import Try
 from verify.cost.nonzeros import nonzeros
-from verify.cost.reference import distance, reference
+from verify.cost.reference import _index, distance, reference
 from verify.cost.row import Row, errors, read_csv, row, traction_error
 from verify.cost.study import Study
 from verify.folder import write_csv
@@ -196,3 +196,9 @@ def test_entries_of_the_tangent_are_those_that_forces_depend_on(name: str, dofs:
         count += np.count_nonzero(np.abs(ahead - behind) > 1e-9 * np.max(np.abs(ahead - behind)))
     assert count / columns.size == pytest.approx(nonzeros(scene, "nurbs") / system.n_dof, rel=0.15)
     assert nonzeros(scene, "beam") == 0
+
+
+def test_one_number_that_does_not_converge_is_as_uncertain_as_it_differs() -> None:
+    """Three times the largest difference of the finest from the others, over the finest; finest last."""
+    assert _index((4.0, 2.0, 1.0), (2.2, 1.7, 2.0)) == pytest.approx(3.0 * 0.3 / 2.0)
+    assert _index((4.0, 2.0, 1.0), (1.5, 2.1, -2.0)) == pytest.approx(3.0 * 4.1 / 2.0)

@@ -17,6 +17,7 @@ from verify.cost import reference as reference_of
 from verify.cost import study as study_of
 from verify.cost.findings import LEVELS, cheapest
 from verify.cost.ladder import BEAM, FAMILIES, RATIO, Family, Try, ladder, ladders
+from verify.cost.reference import reference_jobs
 from verify.cost.row import Row, read_csv
 from verify.cost.study import climb
 from verify.jobs import Job, Outcome
@@ -190,3 +191,33 @@ def test_a_small_study_for_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     assert main(command) == 0
     assert read_csv(tmp_path / "cost.csv") == rows
     assert not re.search(r"\b1 of", capsys.readouterr().err), "a run is made again"
+
+
+def test_families_are_the_methods_with_the_degrees_that_they_have() -> None:
+    """T-splines are cubic; the higher the degree, the fewer elements a process zone begins with."""
+    degrees: dict[str, list[int]] = {}
+    for one in FAMILIES:
+        degrees.setdefault(one.method, []).append(one.degree)
+    assert degrees == {
+        "tspline": [3], "tspline-adaptive": [3], "nurbs": [2, 3, 4], "lagrange": [2, 3, 4], "dolfinx": [1, 2, 3, 4]
+    }  # fmt: skip
+    for method in degrees:
+        first = [one.first for one in FAMILIES if one.method == method]
+        assert first == sorted(first, reverse=True) and 0.5 <= first[-1] <= first[0] <= 4.0
+    assert len({one.name for one in FAMILIES}) == len(FAMILIES) and (BEAM.name, BEAM.degree) == ("beam", 0)
+
+
+def test_the_reference_is_cubic_whatever_code_it_is_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And of one arm where both are alike."""
+    monkeypatch.setattr("verify.cost.reference.dolfinx_installed", lambda: True)
+    own, other = reference_jobs("dcb-czm1", load_scene("dcb-czm1"), ())
+    assert {job.method for job in own} == {"nurbs"} and {job.method for job in other} == {"dolfinx"}
+    assert {job.solved.discretization.degree for job in own} == {3} == {job.solved.dolfinx.degree for job in other}
+    sizes = [job.solved.discretization.dofs for job in own]
+    assert sizes == sorted(sizes) and len(own) == 3 and len(other) == 2
+    assert all(job.solved.effects.symmetry is True for job in own)
+    assert all(job.variant.startswith("reference/") for job in (*own, *other))
+    strip, _ = reference_jobs("peel-60", load_scene("peel-60"), ())
+    assert not any("symmetry" in key for job in strip for key in job.overrides)
+    monkeypatch.setattr("verify.cost.reference.dolfinx_installed", lambda: False)
+    assert reference_jobs("dcb-czm1", load_scene("dcb-czm1"), ())[1] == ()

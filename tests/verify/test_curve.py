@@ -198,3 +198,13 @@ def test_oscillation_sees_the_wave_and_not_the_offset():
     assert found["excess_variation"] > 0.1
     flat = oscillation((d, 0.9 * smooth(d)), (d, smooth(d)))
     assert flat["rms"] == pytest.approx(0.0, abs=1e-12) and flat["excess_variation"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_dense_curve_leaves_a_kink_along_a_parabola():
+    """Third differences of a parabola vanish, and it ends along the tangent that is known; other steps are cubics."""
+    d, P, slope, heading = [0.0, 1.0, 0.5], [0.0, 1.0, 0.2], [2.0, 0.5, 1.2], [1.0, 1.0, -1.0]
+    x, y = dense(d, P, slope, heading, per_step=50)
+    for values in (x, y):
+        back, there = values[50:], values[:51]
+        assert np.abs(np.diff(back, 3)).max() < 1e-12 < 1e-9 < np.abs(np.diff(there, 3)).max()
+    assert (y[-1] - y[-2]) / (x[-1] - x[-2]) == pytest.approx(1.2, rel=0.02)

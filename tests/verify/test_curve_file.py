@@ -202,3 +202,9 @@ def test_what_is_written_is_read(points, separator, comma, header, file) -> None
     )
     np.testing.assert_array_equal(d, [point[0] for point in points])
     np.testing.assert_array_equal(P, [point[2] for point in points])
+
+
+def test_a_cell_longer_than_any_is_a_cell() -> None:
+    """Of more than 128 kB, which is more than a reader of CSV takes."""
+    long = 200_000 * "9"
+    assert Dialect(";", False).cells(f"1;{long};2;") == ["1", long, "2"]

@@ -6,6 +6,7 @@ import io
 import json
 import shutil
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import made_up_studies
@@ -22,7 +23,7 @@ from verify.cost import accuracy
 from verify.folder import _append, damage, read_fields, read_result, write_fields
 from verify.included import found_in, named
 from verify.jobs import Job, Outcome, run_all
-from verify.plain import Damaged, read_json
+from verify.plain import Damaged, read_json, read_table
 from verify.refusal import Refusal
 from verify.result import Result
 from verify.scene import load_scene
@@ -311,3 +312,53 @@ def test_of_a_row_that_does_not_fit_on_the_disk_nothing_is_left(tmp_path: Path) 
             _append(stream, ("a", "b"), {"a": 1.0 / 3.0, "b": 2.0})
     assert raised.value.filename == str(tmp_path / "curve.csv") and raised.value.errno == 28
     assert (tmp_path / "curve.csv").read_text() == "1.5,2\n"
+
+
+@dataclass(frozen=True)
+class Line:
+    name: str
+    count: int
+    size: float
+    good: bool
+
+
+TABLE = "name,count,size,good\na,3,0.5,True\nb,4,nan,False\n"
+
+
+def test_a_table_is_read_as_it_was_written(tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text(TABLE)
+    first, second = read_table(path, Line)
+    assert first == Line("a", 3, 0.5, True) and (second.count, second.good) == (4, False) and np.isnan(second.size)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "why"),
+    [
+        ("3", "three", "invalid literal for int() with base 10: 'three'"),
+        ("0.5", "half", "could not convert string to float: 'half'"),
+        ("True", "yes", "a cell 'yes'"),
+        ("name,count", "count,name", "the columns count, name, size, good"),
+        (TABLE, "", "the columns of an empty file"),
+    ],
+)
+def test_a_table_with_another_cell_is_damaged(before: str, after: str, why: str, tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text(TABLE.replace(before, after, 1))
+    with pytest.raises(Damaged) as said:
+        read_table(path, Line)
+    assert str(said.value) == f"{path}: must be as debond has written it, got: {why}" and said.value.path == path
+
+
+def test_a_method_that_no_ladder_has_is_damage(tmp_path: Path) -> None:
+    path = made_up_studies.cost(tmp_path / "cost") / "cost.csv"
+    path.write_text(path.read_text().replace("dolfinx,1", "dolfinx,7"))
+    with pytest.raises(Refusal, match="cost.csv: must be as debond has written it, got: the method 'dolfinx' of degre"):
+        named([path.parent])
+
+
+def test_a_verdict_lies_in_the_folder_of_its_case_and_basis(tmp_path: Path) -> None:
+    folder = made_up_studies.hard(tmp_path / "hard") / "coarse-czm2"
+    (folder / "nurbs").rename(folder / "lagrange")
+    with pytest.raises(Refusal, match="got: the verdict of coarse-czm2 on nurbs"):
+        named([tmp_path / "hard"])

@@ -65,12 +65,14 @@ def dimensions(axes: Axes) -> dict[str, tuple[float, float]]:
 
 
 def inside(axes: Axes) -> bool:
-    """Every line, body and foot of a text is on the paper."""
+    """Every line, body and foot of a text is on the paper, of which no more than half an inch is empty at any edge."""
     points = [np.column_stack(line.get_data()) for line in axes.lines]
     points += [p.get_path().transformed(p.get_patch_transform()).vertices for p in axes.patches]
     points += [np.array([t.get_position()]) for t in axes.texts]
     low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
-    return bool(np.all((np.concatenate(points) >= low) & (np.concatenate(points) <= high)))
+    edges, (width, height) = axes.figure.get_tightbbox(), axes.figure.get_size_inches()
+    empty = max(edges.x0, edges.y0, width - edges.x1, height - edges.y1)
+    return bool(np.all((np.concatenate(points) >= low) & (np.concatenate(points) <= high))) and empty < 0.5
 
 
 @pytest.mark.parametrize("overrides", [(), ("specimen.arm_thickness=1.5",), ("specimen.precrack=9.0",)])

@@ -227,3 +227,10 @@ def test_a_small_study_for_real(tmp_path: Path, capsys: pytest.CaptureFixture) -
     assert main(command) == 0
     assert (tmp_path / "effects.csv").read_text() == before
     assert "20 of 20" not in capsys.readouterr().err.replace("at hand", "")
+
+
+def test_what_cannot_be_run_here_is_left_out_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("verify.switches.plan.left_out", lambda job: "not run: too large")
+    plan = planned("dcb-czm1", SCENE, "nurbs")
+    assert plan.pairs == () and len(plan.reasons) == 5
+    assert all(reason.endswith(": left out: not run: too large") for reason in plan.reasons)

@@ -204,3 +204,9 @@ def test_a_small_study_for_real(monkeypatch):
     for words in ("A longer bond", "clamped plate", "one propagation branch", "never falls below", "as printed"):
         assert verdict(study, words) == "confirmed", words
     assert verdict(study, "NURBS are closer") == "not tested"
+
+
+def test_of_a_run_that_stopped_no_zone_is_counted() -> None:
+    case = PeelCase("nurbs", "peel-60")
+    stopped = Trial(case, made_up("peel-60", status="stopped: here"), "stopped: here")
+    assert np.isnan(peel.zone(SCENES["peel-60"], stopped))

@@ -7,14 +7,17 @@ from pathlib import Path
 from types import SimpleNamespace
 from unittest.mock import ANY
 
+import made_up_studies
 import pytest
 from test_hard import FAKE, stub
 
-from verify.hard import one
+from verify.hard import one, suite
 from verify.hard.cases import CASES
 from verify.methods import Unsuitable
 from verify.plain import Damaged
+from verify.scene import load_scene
 from verify.schema import Scene
+from verify.sweep import Done
 
 
 def test_what_is_tried_is_what_the_page_tells() -> None:
@@ -59,3 +62,50 @@ def test_a_verdict_counts_with_the_runs_that_it_is_about(tmp_path: Path, monkeyp
     (tmp_path / "a" / "evidence.csv").write_text("no curve")
     with pytest.raises(Damaged, match="evidence.csv"):
         one.read_cell(tmp_path)
+
+
+def test_what_a_process_leaves_is_its_verdict_or_why_there_is_none(tmp_path: Path) -> None:
+    case = CASES["coarse-czm2"]
+    lost = suite._cell(case, "nurbs", Done(suite.task(case, "nurbs"), tmp_path, "failed: signal 9"))
+    assert (lost.verdict, lost.why, lost.passed) == (None, "failed: signal 9", False)
+    made_up_studies.hard(tmp_path)
+    found = suite._cell(case, "nurbs", Done(suite.task(case, "nurbs"), tmp_path / "coarse-czm2" / "nurbs"))
+    assert found.passed and (found.verdict.case, found.verdict.basis) == ("coarse-czm2", "nurbs")
+    bad = suite._cell(case, "tspline", Done(suite.task(case, "tspline"), tmp_path / "coarse-czm2" / "tspline"))
+    assert bad.verdict is not None and not bad.passed
+
+
+def test_units_of_a_case_are_those_that_it_names() -> None:
+    """One specimen in newtons and millimetres, as it is, in newtons and metres, in kilonewtons and inches."""
+    plain, metres, inches = (case.scene for case in CASES["units"].variants())
+    assert plain == load_scene("dcb-czm1", ["discretization.dofs=280"]).model_copy(update={"units": plain.units})
+    assert [case.units for case in (plain, metres, inches)] == ["N, mm, MPa", "N, m, Pa", "kN, in, kN/in2"]
+    for case, force, length in ((metres, 1.0, 1e-3), (inches, 1e-3, 1.0 / 25.4)):
+        found = (case.specimen.precrack, case.specimen.width, case.load.opening[0], case.material.poisson)
+        assert found == pytest.approx((4.0 * length, length, 3.0 * length, plain.material.poisson))
+        assert case.material.young == pytest.approx(plain.material.young * force / length**2)
+        assert case.interface.strength == pytest.approx(4.0 * force / length**2)
+        assert case.interface.toughness == pytest.approx(0.1 * force / length)
+        assert case.interface.penalty == pytest.approx(plain.interface.penalty * force / length**3)
+        assert case.interface.ductility == plain.interface.ductility
+
+
+def test_a_case_is_moved_turned_and_mirrored_one_by_one_and_all_at_once() -> None:
+    poses = {case.name: case.scene.pose for case in CASES["pose"].variants()}
+    told = {name: (pose.angle, pose.mirror, tuple(pose.shift)) for name, pose in poses.items()}
+    far = (1e4, 1e4)
+    assert told == {
+        "plain": (0.0, False, (0.0, 0.0)),
+        "rotated": (37.0, False, (0.0, 0.0)),
+        "mirrored": (0.0, True, (0.0, 0.0)),
+        "moved": (0.0, False, far),
+        "all": (37.0, True, far),
+    }
+
+
+def test_noise_is_a_little_of_every_number_and_never_the_same() -> None:
+    plain, *noisy = (case.scene for case in CASES["noise"].variants())
+    youngs = [case.material.young / plain.material.young - 1.0 for case in noisy]
+    assert len(noisy) == 20 and len(set(youngs)) > 10 and 0.0 < max(map(abs, youngs)) < 1.3e-14
+    assert all(case.interface.strength == pytest.approx(4.0, rel=1.1e-14) for case in noisy)
+    assert {case.discretization.degree for case in noisy} == {plain.discretization.degree}

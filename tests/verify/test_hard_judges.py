@@ -17,7 +17,7 @@ from verify.hard.cases import CASES
 from verify.hard.interfaces import variation
 from verify.methods import solve
 from verify.result import Result, Snapshot, steps_from_rows
-from verify.scene import Scene
+from verify.scene import Scene, load_scene
 from verify.verdict import Check
 
 Change = Callable[[str, Result], Result]
@@ -121,6 +121,8 @@ def test_every_strength_must_come_closer_to_fracture_mechanics() -> None:
     assert failing("toward-lefm", off_the_limit({**nearer, names[3]: 0.031})) == {("monotone", "all")}
     at_rest = off_the_limit({**nearer, names[2]: 1e-3, names[3]: 1.9e-3, names[4]: 1e-3})
     assert failing("toward-lefm", at_rest) == set(), "closer than 0.2 % is the same"
+    leaving = off_the_limit({**nearer, names[2]: 1e-3, names[3]: 3e-3, names[4]: 1e-3})
+    assert judged("toward-lefm", leaving)["monotone", "all"].value == pytest.approx(3.0 / 2.0), "and further is not"
     before = {}
     for name, trial in off_the_limit(nearer).items():
         d, P = trial.result.opening, trial.result.load
@@ -355,3 +357,48 @@ def test_what_the_judges_allow(monkeypatch: pytest.MonkeyPatch) -> None:
         for (check, _), given in judged(name, world(name, make=made.get(name, made_up))).items():
             found.setdefault(check, set()).add(given.tolerance)
         assert found == wanted, name
+
+
+def test_the_units_of_a_curve_are_no_part_of_it() -> None:
+    """Openings and loads of a thousandth, and of a 25.4th, are those of the scene in millimetres and newtons."""
+    sizes = {"n-mm": (1.0, 1.0), "n-m": (1.0, 1e-3), "kn-in": (1e-3, 1.0 / 25.4)}
+    base = made_up(CASES["units"].variants()[0].scene)
+
+    def told(force: float, length: float) -> Result:
+        return times(times(base, length, "opening"), force, "load")
+
+    trials = {v.name: Trial(v, told(*sizes[v.name])) for v in CASES["units"].variants()}
+    good = judged("units", trials)
+    assert {subject for _, subject in good} == {"n-m", "kn-in"} and all(one.value < 1e-12 for one in good.values())
+    for name in ("n-m", "kn-in"):
+        off = {**trials, name: replace(trials[name], result=times(trials[name].result, 1.0 + 1e-8))}
+        assert failing("units", off) == {("same-curve", name)}
+
+
+@pytest.mark.parametrize(("name", "wrong"), [("pose", "moved"), ("noise", "noise-7")])
+def test_what_changes_no_curve_is_held_against_the_plain_one(name: str, wrong: str) -> None:
+    assert all(check.value < 1e-12 for check in judged(name, world(name)).values())
+    assert ("same-curve", "plain") not in judged(name, world(name))
+    assert failing(name, world(name, only(wrong, 1.0 + 2e-8))) == {("same-curve", wrong)}
+
+
+def test_without_the_opening_at_the_tip_nothing_is_said_of_contact() -> None:
+    def bare(scene: Scene) -> Result:
+        result = back_and_forth(scene)
+        return replace(result, steps={name: c for name, c in result.steps.items() if name != "tip_opening"})
+
+    good = judged("unload-reload", world("unload-reload", make=bare))
+    assert {name for name, _ in good} == {"secant", "return", "same-envelope"}
+    assert all(check.passed for check in good.values())
+
+
+def test_a_path_is_drawn_with_points_between_its_steps_where_its_slopes_are_known() -> None:
+    pytest.importorskip("matplotlib")
+    from verify.hard.page import _path
+
+    few, many = made_up(load_scene("dcb-czm1")), steps_from_rows(fake_rows(3.0, 700))
+    x, y = _path(replace(few, steps=steps_from_rows(fake_rows(3.0, 20))))
+    assert len(x) == 20 * (600 // 21) + 1 and y == pytest.approx(2.0 * x * np.exp(-x), abs=1e-3)
+    assert len(_path(replace(few, steps=many))[0]) == 701
+    bare = {"opening": few.opening[:20], "load": few.load[:20]}
+    assert np.array_equal(_path(Result("nurbs", bare)), list(bare.values()))

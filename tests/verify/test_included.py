@@ -19,6 +19,7 @@ from verify import report  # noqa: E402
 from verify.cli import main  # noqa: E402
 from verify.included import found_in, named  # noqa: E402
 from verify.refusal import Refusal  # noqa: E402
+from verify.report.included import _reference  # noqa: E402
 from verify.report.markdown import code, plain, table  # noqa: E402
 
 
@@ -129,3 +130,14 @@ def test_markdown_texts_stay_texts() -> None:
     assert plain("# no &lt; ~~x") == r"\# no \&lt; \~~x"
     assert code("a `b` c") == "``a `b` c``" and code("`x") == "`` `x ``"
     assert table(["a", "b"], [["1", "longer"]]) == ["| a   | b      |", "| --- | ------ |", "| 1   | longer |"]
+
+
+def test_a_reference_without_another_code_says_so() -> None:
+    known = {"label": "cubic NURBS", "dofs": 9000, "uncertainty": {"curve": 0.0002}}
+    alone = known | {"other_code": "", "other_code_apart": None}
+    assert _reference(alone) == (
+        "Reference: cubic NURBS, 9000 unknowns, uncertainty 0.020%; no other code was at hand."
+    )
+    held = known | {"other_code": "DOLFINx", "other_code_apart": 0.0003}
+    assert _reference(held).endswith("uncertainty 0.020%; DOLFINx is 0.030% away.")
+    assert "uncertainty unknown" in _reference(held | {"uncertainty": {"curve": None}})

@@ -215,3 +215,18 @@ def test_refuses_theories_of_the_other_specimen(arms, theory):
 
 def test_theory_of_a_strip_follows_the_kinematics():
     assert STRIP.named_theory == "simple" and replace(STRIP, kinematics="finite").named_theory == "elastica"
+
+
+def test_a_factor_that_rounding_keeps_from_settling_is_taken() -> None:
+    """Two neighbours of a fixed point that follow each other for ever; further apart than 1e-12 they are none."""
+    from itertools import cycle
+
+    from verify.lefm import _fixed_point
+
+    for apart, settles in ((1e-14, True), (1e-9, False)):
+        values = cycle((2.0, 2.0 * (1.0 + apart)))
+        if settles:
+            assert _fixed_point(lambda _, v=values: next(v), 3.0) == pytest.approx(2.0, rel=1e-13)
+        else:
+            with pytest.raises(ValueError, match="load.opening: too large for the factors F and N"):
+                _fixed_point(lambda _, v=values: next(v), 3.0)

@@ -43,6 +43,7 @@ def test_tilt_slip_and_pull_are_those_of_the_surfaces(snapshot):
     assert found.gap * LAW.g_open == pytest.approx(gap - (gap * np.cos(TILT) - SLIP * np.sin(TILT)), rel=1e-12)
     rise = 1.5 * (np.sqrt(1 + np.tan(TILT) ** 2) - 1) / np.tan(TILT) * LENGTH  # integral of 1.5 sin(turn)
     assert found.pull == pytest.approx(2.0 * rise / LOAD, rel=1e-5)
+    assert left_out((replace(snapshot, load=0.0),), LAW, LOADED_AT).pull == 0.0, "no part of no load"
 
 
 def test_only_what_pulls_counts_and_the_worst_field_is_told(snapshot):

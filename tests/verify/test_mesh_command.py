@@ -276,3 +276,20 @@ def test_continuity_is_told_from_the_smoothest_on() -> None:
     assert _sets(report) == "; side sets a (3 sides), b (2 sides)"
     assert _sets({**report, "chains": {}}) == "; side sets a (3 sides, no chain), b (2 sides, no chain)"
     assert _sets({"sets": [], "chains": {}}) == ""
+
+
+def test_a_picture_that_fails_for_want_of_something_else_is_an_error(tmp_path, monkeypatch):
+    """Only what is optional may be missing."""
+    monkeypatch.setitem(sys.modules, "verify.mesh_drawing", None)
+    with pytest.raises(ModuleNotFoundError, match="verify.mesh_drawing"):
+        main(["mesh", str(small(tmp_path)), "--out", str(tmp_path / "a.svg")])
+
+
+def test_of_a_mesh_that_is_flat_somewhere_continuity_is_not_told(monkeypatch):
+    def flat(*given):
+        raise np.linalg.LinAlgError("singular")
+
+    facts = MeshFacts(nurbs_rectangle(*[open_knots(np.array([0.0, 1.0]), 2)] * 2))
+    assert facts.continuity == {"broken": 0, "C0": 0, "C1": 0, "C2": 0}
+    monkeypatch.setattr(mesh_facts, "jumps", flat)
+    assert MeshFacts(facts.mesh).continuity is None

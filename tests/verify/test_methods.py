@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import MISSING, fields
+
 import numpy as np
 import pytest
 
@@ -10,12 +12,15 @@ from verify.methods import METHODS, least_dofs, solve
 from verify.problems import (
     SNAPSHOT_FRACTIONS,
     axial_modulus,
+    beam_problem,
     counted_steps,
+    dolfinx_problem,
     elastic_constants,
     iga_problem,
+    lefm_problem,
     problem_keys,
 )
-from verify.scene import load_scene
+from verify.scene import load_scene, parse_scene
 
 
 @pytest.mark.parametrize("plane", ["stress", "strain"])
@@ -120,3 +125,28 @@ def test_an_error_of_dolfinx_comes_out_with_whose_it_is(monkeypatch: pytest.Monk
         with pytest.raises(kind, match="no luck") as caught:
             methods._dolfinx(scene, "dolfinx", None, None)
         assert getattr(caught.value, "whose", None) == ("that of no luck" if told else None)
+
+
+BARE = {
+    "dcb": {"length": 14.0, "arm_thickness": 0.2, "precrack": 4.0},
+    "peel": {
+        "strip_length": 150.0, "strip_thickness": 2.0, "substrate_length": 120.0, "substrate_thickness": 10.0,
+        "bond_length": 60.0,
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", BARE)
+def test_what_is_not_told_is_the_same_for_a_solver_and_for_a_scene(kind: str) -> None:
+    """But for the snapshots, and for theories that are linear by themselves."""
+    stiff = {"young": 120e3, "poisson": 0.2}
+    bodies = {"material": stiff} if kind == "dcb" else {"strip": stiff, "substrate": stiff}
+    raw = {"specimen": {"kind": kind, **BARE[kind]}, **bodies, "interface": {"strength": 4.0, "toughness": 0.1}}
+    scene = parse_scene({**raw, "load": {"opening": 1.0}})
+    problems = [iga_problem(scene, "nurbs")[1], dolfinx_problem(scene), beam_problem(scene)]
+    problems += [lefm_problem(scene)] if kind == "dcb" else []
+    for problem in problems:
+        known = {field.name: field.default for field in fields(problem) if field.default is not MISSING}
+        for name in {"snapshot_openings", "opening", "substrate"} | ({"kinematics"} if "points" in known else set()):
+            known.pop(name, None)
+        assert {name: getattr(problem, name) for name in known} == known, type(problem)

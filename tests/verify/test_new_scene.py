@@ -210,3 +210,37 @@ def test_what_is_next_to_nothing_is_a_sign_wide(width: int) -> None:
     assert "|-| 0.014" in short[-2]
     strip = sketch(load_scene("peel-60", ["specimen.bond_length=0.15"]), width)
     assert max(one.count(":") for one in strip) == 1
+
+
+PICTURES = {
+    "dcb-czm1": """
+  ^ opening 3
+  +----------------------------------------+
+  |                                        |  0.2 thick
+  +----------------------------------------+
+              :::::::::::::::::::::::::::::   bond
+  +----------------------------------------+
+  |                                        |  0.2 thick
+  +----------------------------------------+
+  v
+  |<--- 4 --->|
+  |<----------------- 14 ----------------->|""",
+    "peel-60": """
+                               opening 6.5 ^
+  +----------------------------------------+
+  |                                        |  2 thick
+  +----------------------------------------+
+   ::::::::::::::::  bond
+  +--------------------------------+
+  |                                |  10 thick
+  +--------------------------------+
+   ////////////////////////////////  fixed
+  |<----- 60 ----->|
+  |<------------ 120 ------------->|
+  |<---------------- 150 ----------------->|""",
+}
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_a_specimen_is_drawn_as_it_is_held_and_pulled(name: str) -> None:
+    assert "\n".join(["", *sketch(load_scene(name), 60)]) == PICTURES[name]

@@ -279,3 +279,12 @@ def test_a_run_is_drawn_from_its_first_step_on(rows, drawable):
     assert np.isfinite(replace(whole, result=short).peak_load) == drawable
     assert distance(whole, whole) == 0.0 and np.isnan(distance(whole, None)) and np.isnan(distance(None, whole))
     assert np.isnan(distance(whole, replace(whole, result=replace(whole.result, status="stopped: here"))))
+
+
+def test_zones_that_count_are_those_of_the_first_law_on_the_coarse_mesh() -> None:
+    """Those of the stronger law and of the fine mesh are other ones."""
+    study = world()
+    elsewhere = {(b, law, d): 2.0 if (law, d) == ("dcb-czm1", 280) else 99.0 for b, law, d in study.zones}
+    known = statements.statements(replace(study, zones=elsewhere))
+    (found,) = [one for one in known if "resolve the process zone" in one.text]
+    assert found.verdict == "confirmed" and [one.value for one in found.comparisons] == [2.0, 2.0, 2.0]

@@ -182,6 +182,9 @@ def test_measures_are_drawn_over_the_number_of_points(
             values = [100 * getattr(t, measure) if t else np.nan for t in trials]
             assert list(one.get_xdata()) == [2, 8] and np.allclose(one.get_ydata(), values, equal_nan=True)
     assert axes.get_yscale() == "log"
+    highest = max(float(np.nanmax(one.get_ydata())) for one in axes.lines)
+    top = axes.transAxes.inverted().transform(axes.transData.transform((2.0, highest)))[1]
+    assert 0.75 < top < 0.9, "above it there is room for the names"
 
 
 def test_a_sweep_is_stronger_with_more_points(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -270,3 +273,17 @@ def test_without_runs_there_is_nothing_but_the_reason() -> None:
     empty = Study({}, (), {}, {}, {})
     found = paper_section.section(empty, "figures")
     assert found.left_out and found.figures == () == found.runs and found.example == ""
+
+
+def test_below_figure_9_nothing_is_told_of_runs_that_are_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = nine.world()
+    Drawn(monkeypatch, peel_figures)
+    others = tuple(t for t in whole.trials if t.case.basis != "nurbs")
+    unknown = tuple(replace(t, error=np.nan) for t in whole.trials if t.case.basis == "nurbs")
+    case = PeelCase("nurbs", "peel-80")
+    stopped = Trial(case, nine.made_up(case.bond, status="stopped: at once"), "stopped: at once")
+    for trials in ((*others, stopped), others + unknown):
+        panels = peel_figures.figures(replace(whole, trials=trials), "nine")[0].panels
+        told = {panel.caption.split(".")[0]: panel.caption for panel in panels}
+        assert told[METHOD_NAMES["nurbs"]] == f"{METHOD_NAMES['nurbs']}. "
+        assert "from the converged curves, oscillation" in told[METHOD_NAMES["tspline"]]

@@ -306,3 +306,10 @@ def test_a_layer_that_hardly_contracts_is_coupled_by_a_hundredth(part: float) ->
         assert k + g * q**2 == pytest.approx(K, rel=1e-12) and k > 0.0
         share = g / (K / (thickness**-2 + q**2))
         assert (share == pytest.approx(0.01, rel=1e-9)) == least and share >= 0.01 * (1.0 - 1e-9)
+
+
+@pytest.mark.parametrize(("substrate", "edge"), [(120.0, 15.0), (149.0, 0.5), (150.0, 0.0), (170.0, 0.0)])
+def test_a_substrate_ends_where_it_ends_and_not_beyond_the_loaded_end(substrate: float, edge: float) -> None:
+    """In thicknesses of the strip, 2, from the loaded end of its length of 150."""
+    ends = model(replace(B120, substrate=replace(PEEL, length=substrate))).ends
+    assert (ends.edge, ends.precrack, ends.length) == pytest.approx((edge, 15.0, 75.0))

@@ -174,3 +174,12 @@ def test_all_hold_for_a_real_peel(method: str) -> None:
     result = solve(scene, method)
     assert {check.name for check in run_checks(scene, result)} == ALWAYS
     assert failed(scene, result) == set()
+
+
+def test_identities_of_a_peel_may_be_off_by_so_much(scene: Scene) -> None:
+    """Balances by rounding, energies and the growth of the crack by what the mesh leaves."""
+    found = {check.name: check.tolerance for check in run_checks(scene, made_up(scene))}
+    balances = {"interface-force", "moment-balance", "clamp-moment", "lengthwise", "reactions"}
+    of_the_mesh = {"j-integral": 0.005, "growth-load": 0.005, "growth-angle": 0.01, "energy-ledger": 0.005}
+    assert {name for name, tolerance in found.items() if tolerance == 1e-8} == balances
+    assert {name: found[name] for name in of_the_mesh} == of_the_mesh and found["completed"] == 1e-9

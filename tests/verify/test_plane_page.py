@@ -106,6 +106,8 @@ def test_errors_are_drawn_over_the_unknowns_a_direction(study: PlaneStudy, monke
         slope = slopes[0] if order == 4 else slopes[1]
         assert slope.get_xdata() == pytest.approx(n[1:]) and slope.get_ydata() == pytest.approx(values[1:])
     assert [t.get_text() for t in axes.texts] == ["4", "3"]
+    for text, name, order in zip(axes.texts, ("displacement", "energy"), (4, 3), strict=True):
+        assert text.xy == pytest.approx((n[1], getattr(study.levels[-1].errors, name) * (n[-1] / n[1]) ** order))
     assert axes.get_xscale() == axes.get_yscale() == "log"
     assert not [*axes.xaxis.get_minorticklocs(), *axes.yaxis.get_minorticklocs()], "every tick has its number"
 
@@ -125,5 +127,8 @@ def test_stress_and_its_error_are_painted_to_scale(study: PlaneStudy, monkeypatc
     for axes, *_ in painted:
         box = axes.get_window_extent()
         assert box.width / box.height == pytest.approx((x[1] - x[0]) / (y[1] - y[0]))
+        sheet = axes.figure.bbox
+        assert sheet.x0 < box.x0 and box.x1 < sheet.x1 and box.y1 < sheet.y1, "nothing of it is cut off"
+        assert box.x0 - sheet.x0 == pytest.approx(sheet.x1 - box.x1), "in the middle"
     bars = [figure.axes[1] for title, figure in drawn if title.startswith(("Stress", "Error"))]
     assert [bar.get_xlim() for bar in bars] == [pytest.approx((-limit, limit)), pytest.approx((-reach, reach))]

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -280,3 +281,11 @@ def test_a_row_without_a_load_is_a_fault_and_so_is_a_judge_that_fails(monkeypatc
         plugins.solve(load_scene(LINEAR), "mine", lambda row: None)
     with pytest.raises(methods.NotRun, match="not run: plug-in mine of fakecode 1.0: ZeroDivisionError"):
         plugins.require(load_scene(LINEAR), "mine")
+
+
+def test_a_module_that_nobody_can_find_has_no_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert plugins._files("no_such_module_at_all") == []
+    made = ModuleType("made_while_running")  # has no specification, which is an error to who asks for it
+    made.__spec__ = None
+    monkeypatch.setitem(sys.modules, "made_while_running", made)
+    assert plugins._files("made_while_running") == []

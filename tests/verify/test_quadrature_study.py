@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from verify import quadrature_study
 from verify.quadrature_study import DUCTILITIES, RULES, Study, Trial, excess_variation, finding, study
-from verify.result import Snapshot
+from verify.result import Result, Snapshot
 from verify.scene import load_scene
 
 
@@ -111,3 +112,20 @@ def test_rules_that_are_drawn_or_spoken_of_are_among_those_that_are_tried() -> N
     points = {rule: [n for name, n in RULES if name == rule] for rule in ("gauss", "lobatto", "lumped")}
     assert points == {"gauss": [2, 4, 8], "lobatto": [2, 4, 8], "lumped": [None]}
     assert list(DUCTILITIES) == sorted(DUCTILITIES) and DUCTILITIES[0] == load_scene("dcb-czm1").interface.ductility
+
+
+def test_a_solver_that_raises_is_a_finding(monkeypatch):
+    def lost(scene, method):
+        raise ArithmeticError("no mesh")
+
+    monkeypatch.setattr(quadrature_study, "solve", lost)
+    said = quadrature_study._trial("nurbs", "gauss", 2, 50.0, ())
+    assert said.status == "failed: ArithmeticError: no mesh" and said.profile is None and np.isnan(said.oscillation)
+    assert (said.method, said.rule, said.points, said.ductility) == ("nurbs", "gauss", 2, 50.0)
+
+
+def test_without_a_field_there_is_no_oscillation(monkeypatch):
+    steps = {"opening": np.zeros(1), "load": np.zeros(1)}
+    monkeypatch.setattr(quadrature_study, "solve", lambda scene, method: Result(method, steps, status="stopped: here"))
+    said = quadrature_study._trial("nurbs", "lumped", None, 50.0, ())
+    assert np.isnan(said.oscillation) and said.profile is None and said.status == "stopped: here"

@@ -342,3 +342,38 @@ def test_threads_are_those_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -
     assert run_of.threads() == 3 and run_of.environment()["threads a run"] == "3"
     monkeypatch.delenv("OMP_NUM_THREADS")
     assert run_of.threads() == os.cpu_count() and run_of.environment()["threads a run"] == "as many as cores"
+
+
+def test_a_package_that_is_not_installed_has_no_version() -> None:
+    assert run_of._version("no-such-package-at-all") == ""
+    assert "numpy" in run_of.versions() and "no-such-package-at-all" not in run_of.versions()
+
+
+def test_a_rank_that_fails_says_which_it_is_and_ends_at_once(monkeypatch, capsys: pytest.CaptureFixture) -> None:
+    """Without waiting for the others, which wait for it."""
+    ended: list[int] = []
+    monkeypatch.setattr(run_of.os, "_exit", ended.append)
+    monkeypatch.setattr(run_of, "mpi_rank", lambda: 3)
+
+    def broken(scene: Scene, method: str, on_step: Callable | None) -> Result:
+        raise ArithmeticError("no luck")
+
+    run_of._silent(load_scene("dcb-czm1"), "dolfinx", broken)
+    assert ended == [1] and capsys.readouterr().err.strip().endswith("rank 3: ArithmeticError: no luck")
+
+
+def test_what_was_done_before_an_error_is_the_result(scene: Scene, tmp_path: Path) -> None:
+    """Of a solver that tells all its steps in one and the same row."""
+
+    def solver(scene: Scene, method: str, on_step: Callable) -> Result:
+        row = dict.fromkeys(CURVE_COLUMNS, 0.0)
+        for i in range(4):
+            on_step(row)
+            row["opening"], row["load"] = i + 1.0, [2.0, 3.0, 1.0, 9.0][i]
+        raise ArithmeticError("no luck")
+
+    result, _ = run(scene, "nurbs", tmp_path, solver=solver)
+    assert result.opening.tolist() == [0.0, 1.0, 2.0, 3.0] and result.load.tolist() == [0.0, 2.0, 3.0, 1.0]
+    written = json.loads((tmp_path / "result.json").read_text())
+    assert (written["steps"], written["peak_load"], written["peak_opening"]) == (3, 3.0, 2.0)
+    assert "ArithmeticError: no luck" in written["status"]

@@ -31,6 +31,9 @@ SCENE = load_scene("dcb-czm1")
 #: Seconds of an iteration for every unknown, megabytes of the program and for every unknown, of the made-up runs.
 EACH, PROGRAM, MB = 1e-5, 90.0, 0.01
 
+#: Load average before and after.
+LOAD = (0.25, 0.75)
+
 
 @pytest.fixture
 def two_cores(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -179,7 +182,7 @@ def test_a_row_is_an_iteration_without_what_is_paid_once(two_cores: None) -> Non
 
 
 def test_growth_with_and_without_the_memory_of_the_program(two_cores: None) -> None:
-    study = Study(SCENE, made_up_rows(1.2), (), 4166)
+    study = Study(SCENE, made_up_rows(1.2), (), 4166, LOAD)
     for fits in study.growth.values():
         assert fits["iteration"].exponent == pytest.approx(1.2) == fits["factor"].exponent
         assert fits["model_memory_mb"].exponent == pytest.approx(1.0, abs=0.03)
@@ -195,20 +198,20 @@ def test_two_ranks_that_share_the_assembly_alone(two_cores: None) -> None:
     assert few.speed_up["iteration"] < most.speed_up["iteration"], "the waiting weighs more on the smaller size"
     assert most.efficiency == most.speed_up["iteration"] / 2
     known = whatever_the_size(rows)
-    assert known[2] - known[1] == pytest.approx(0.01) == Study(SCENE, rows, (), 4166).waiting
+    assert known[2] - known[1] == pytest.approx(0.01) == Study(SCENE, rows, (), 4166, LOAD).waiting
 
 
 def test_doubtful_times_are_told(two_cores: None) -> None:
     rows = made_up_rows()
-    assert Study(SCENE, rows, (), 4166).busy == []
+    assert Study(SCENE, rows, (), 4166, LOAD).busy == []
     slow = [replace(one, iteration=3 * one.iteration, spread=1.5) if one.ranks > 1 else one for one in rows]
-    differ, slower = Study(SCENE, tuple(slow), (), 4166).busy
+    differ, slower = Study(SCENE, tuple(slow), (), 4166, LOAD).busy
     assert slower.startswith("More ranks were slower than one")
     assert differ.startswith("Equal runs differ by up to 1.5 x")
 
 
 def test_what_is_expected_lies_between_its_assumptions(two_cores: None) -> None:
-    study = Study(SCENE, made_up_rows(), (), 4166)
+    study = Study(SCENE, made_up_rows(), (), 4166, LOAD)
     for one in study.expected():
         cut = 1.0 + 2.0 * one.ranks / 4166
         assert one.speed_up["assembly"] == pytest.approx((one.ranks / cut, one.ranks / cut)), "never above its best"
@@ -220,8 +223,9 @@ def test_what_is_expected_lies_between_its_assumptions(two_cores: None) -> None:
     assert slow.seconds[1] - study.expected()[0].seconds[1] == pytest.approx(6 * 0.99), "six stages of messages"
     for one in study.larger():
         assert one.seconds == pytest.approx((EACH * one.dofs,) * 2, rel=1e-6) and one.dofs == 20_000 * one.ranks
-    slowly = Study(SCENE, made_up_rows(0.9), (), 4166)
+    slowly = Study(SCENE, made_up_rows(0.9), (), 4166, LOAD)
     low, high = slowly.larger()[0].seconds
+    assert slowly.larger()[0].shared == pytest.approx((low / 64, high / 64))
     last = slowly.ladder("dolfinx")[-1]
     assert low == pytest.approx(EACH * 1.28e6**0.9, rel=1e-6), "as the fit goes on"
     assert high == pytest.approx(last.iteration * 1.28e6 / last.dofs), "nothing grows more slowly than N for ever"
@@ -338,3 +342,10 @@ def test_cores_are_those_that_a_process_may_use(monkeypatch: pytest.MonkeyPatch)
     assert ranks_of.cores() == 16
     monkeypatch.setattr(ranks_of.os, "cpu_count", lambda: None)
     assert ranks_of.cores() == 1
+
+
+def test_of_one_code_nothing_is_said_of_many_ranks(two_cores: None) -> None:
+    alone = tuple(one for one in made_up_rows() if one.method == "nurbs")
+    study = Study(SCENE, alone, (), 0, LOAD)
+    assert (study.larger(), study.expected(), study.shared, study.waiting) == ([], [], [], 0.0)
+    assert study.summary()["load_average"] == [0.25, 0.75] and list(study.growth) == ["nurbs"]

@@ -340,3 +340,17 @@ def test_no_override_raises_anything_but_a_scene_error(text: str) -> None:
         load_scene("dcb-czm1", [text])
     except SceneError:
         pass
+
+
+@pytest.mark.parametrize("specimen", ['"a.iga"', '{kind = "dcb", mesh = 5}'])
+def test_what_names_no_mesh_file_is_refused_for_what_it_is(specimen: str, tmp_path: Path) -> None:
+    (tmp_path / "my.toml").write_text(f"specimen = {specimen}\n")
+    with pytest.raises(SceneError, match="specimen.*must be"):
+        load_scene(str(tmp_path / "my.toml"))
+
+
+def test_a_name_that_no_file_can_have_is_not_below_any_folder(tmp_path: Path) -> None:
+    text = MINIMAL.replace("length = 14", 'mesh = "a\\u0000b.iga"\nlength = 14')
+    (tmp_path / "my.toml").write_text(text)
+    with pytest.raises(SceneError, match="specimen.mesh: must name files in the folder of the scene or below it"):
+        load_scene(str(tmp_path / "my.toml"))

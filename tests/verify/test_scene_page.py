@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from scipy.interpolate import CubicHermiteSpline  # noqa: E402
 from verify.curve import PROPAGATION, curve_error, oscillation, peak  # noqa: E402
 from verify.methods import DOLFINX_MISSING  # noqa: E402
 from verify.report import cost, curves  # noqa: E402
+from verify.report import section as section_of  # noqa: E402
 from verify.report.agreement import path  # noqa: E402
 from verify.report.entry import entries  # noqa: E402
 from verify.report.section import RunRow, Section, section  # noqa: E402
@@ -385,3 +387,12 @@ def test_j_is_drawn_over_the_toughness_and_enlarged_where_it_has_settled(report:
     assert 0.6 < start < 1.0 and end == 3.0 and low < 0.995 and high > 1.005 and (low + high) == pytest.approx(2.0)
     settled = J[entry.result.opening >= start]
     assert np.all((low < settled) & (settled < high))
+
+
+def test_a_run_without_a_converged_step_has_a_note() -> None:
+    run = SimpleNamespace(result=made_up("nurbs", 0.0, 1.0, 100, 10), left_out="")
+    entry = SimpleNamespace(label="NURBS", run=run, complete=True, agreement=None, is_reference=False)
+    lost = SimpleNamespace(label="beam", run=SimpleNamespace(result=None, left_out=""), is_reference=True)
+    assert section_of._notes([entry, lost]) == ["NURBS: there is no converged step to show", "beam: not run"]
+    (_, said) = section_of._notes([entry])
+    assert said == "No distance between curves: neither the DOLFINx nor the beam curve is complete"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.colors import to_rgb  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
+from verify import report  # noqa: E402
 from verify.report.style import (  # noqa: E402
     HALF,
     METHOD_NAMES,
@@ -148,3 +150,13 @@ def test_a_label_longer_than_its_axis_is_broken_into_lines() -> None:
         assert axes.yaxis.label.get_window_extent().height <= axes.get_window_extent().height
         drawn = figure.get_tightbbox()
         assert drawn.x0 < 0.0 and sheet.x0 == pytest.approx(drawn.x0 - 0.04) and sheet.x1 >= HALF
+
+
+def test_a_page_is_dark_on_screens_of_those_who_want_it_and_light_elsewhere(tmp_path: Path) -> None:
+    pytest.importorskip("jinja2")
+    report.write((), tmp_path / "report.html", {})
+    text = (tmp_path / "report.html").read_text()
+    inks = [PALETTE["ink"][dark] for dark in (0, 1)]
+    assert f":root {{ --ink: {inks[0]};" in text
+    assert f"@media screen and (prefers-color-scheme: dark) {{ :root {{ --ink: {inks[1]};" in text
+    assert "{{" not in text and "{%" not in text

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import re
 
 import numpy as np
@@ -11,9 +13,10 @@ pytest.importorskip("matplotlib")
 
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
+from PIL import Image  # noqa: E402
 
 from verify.report.style import STRESS_MAP, to_svg  # noqa: E402
-from verify.report.svg import short_numbers, with_classes  # noqa: E402
+from verify.report.svg import _radius, short_numbers, with_classes  # noqa: E402
 
 #: Colours and limits of figures, of which one colour comes once.
 LOOKS = (("#123456", (0.0, 1.0)), ("#123456", (0.0, 1.1)), ("#abcdef", (0.0, 1.2)))
@@ -137,12 +140,6 @@ def test_scattered_points_have_their_own_colours() -> None:
 
 def test_figures_say_nothing_in_vain_and_their_images_keep_every_pixel() -> None:
     """Groups that say nothing, rotations by nothing: gone. Images lose bytes and no colour."""
-    import base64
-    import io
-
-    from matplotlib.figure import Figure
-    from PIL import Image
-
     values = np.random.default_rng(1).integers(0, 200, (60, 200)) / 199.0
     pixels = STRESS_MAP(values)
     pixels[:9, :, 3] = 0.0
@@ -175,3 +172,28 @@ def test_a_page_says_a_style_once() -> None:
     styles = re.findall(r' style="([^"]*)"', "".join(plots))
     assert len(styles) == len(set(styles)) == 1 and "#abcdef" in styles[0] and rules
     assert with_classes(bar + bar) == bar + bar
+
+
+def test_an_image_of_too_many_colours_stays_what_it_was() -> None:
+    figure = Figure(figsize=(4.0, 2.0))
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    pixels = np.random.default_rng(1).random((40, 40, 3))
+    axes.imshow(pixels, interpolation="none")
+    svg = to_svg(figure, "key", "title")
+    with Image.open(io.BytesIO(base64.b64decode(re.search(r"base64,([^\"]*)", svg)[1]))) as image:
+        colours = np.unique(np.asarray(image.convert("RGB")).reshape(-1, 3), axis=0)
+        assert image.mode != "P" and len(colours) > 256
+
+
+def test_a_disc_is_what_curves_of_one_radius_enclose() -> None:
+    disc = "M 0 -2 C 1.1 -2 2 -1.1 2 0 C 2 1.1 1.1 2 0 2 C -1.1 2 -2 1.1 -2 0 C -2 -1.1 -1.1 -2 0 -2 z"
+    assert _radius(disc) == pytest.approx(2.0)
+    assert _radius(disc.replace("C -2 -1.1 -1.1 -2 0 -2 ", "L 0 -2 ")) == 0.0, "a side is straight"
+    assert _radius(disc.replace("2 0 C 2", "2.5 0 C 2")) == 0.0, "no disc"
+    assert _radius("M 0 -2 C 1.1 -2 2 -1.1 2 z") == 0.0, "a curve has three points"
+
+
+@pytest.mark.parametrize(("edge", "size"), [({"markeredgewidth": 0.0}, 4.0), ({"markeredgewidth": 1.5}, 5.5)])
+def test_a_dot_is_as_large_as_its_disc_and_its_edge(edge: dict, size: float) -> None:
+    svg, _ = drawn({"marker": "o", "markersize": 4.0, "color": "#123456", **edge})
+    assert float(re.search(r"stroke-width: ([\d.]+)", svg)[1]) == pytest.approx(size, abs=0.02)

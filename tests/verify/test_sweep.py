@@ -17,11 +17,12 @@ import pytest
 from verify.estimate import steps
 from verify.fingerprint import digest, fingerprint, source
 from verify.jobs import Job
+from verify.plain import Damaged
 from verify.pools import pool
 from verify.progress import duration
 from verify.scene import load_scene
 from verify.store import NAME, Store, link, opened
-from verify.sweep import FOLDER, Done, Task, _next, listed, sweep
+from verify.sweep import FOLDER, Done, Task, _at_once, _damage, _next, _submitted, _why, listed, sweep
 
 PROJECT = Path(__file__).resolve().parents[2]
 
@@ -386,3 +387,30 @@ def test_the_hash_tells_what_a_result_rests_on(monkeypatch: pytest.MonkeyPatch) 
 def test_durations_read_well() -> None:
     words = [duration(s) for s in (0.25, 8.24, 42.0, 200.0, 7500.0)]
     assert words == ["0.25 s", "8.2 s", "42 s", "3 min 20 s", "2 h 5 min"]
+
+
+def test_what_reads_a_run_names_the_file_that_is_damaged(tmp_path: Path, marks: Path) -> None:
+    """Where its reader takes it, it is whole as far as its proof goes, and is not done again."""
+
+    def reader(folder: Path) -> None:
+        raise Damaged(folder / "curve.csv", "no numbers")
+
+    done = [task("a", "ends", marks)]
+    list(sweep(done, tmp_path, Fading(9), "test", lambda done: done.why))
+    (again,) = sweep([replace(done[0], read=lambda folder: None)], tmp_path, Fading(9), "test", lambda done: "")
+    assert again.at_hand and len(started(marks, "a")) == 1
+    assert _damage(done[0], Store(tmp_path / NAME)) == ""
+    assert _damage(replace(done[0], read=reader), Store(tmp_path / NAME)) == "curve.csv"
+
+
+def test_of_a_pool_that_does_not_answer_nothing_runs_at_once() -> None:
+    assert _at_once(Fading(0)) == 0 and _at_once(Fading(3)) > 0
+
+
+def test_a_pool_that_takes_no_task_has_lost_it(tmp_path: Path) -> None:
+    class Gone:
+        def submit(self, *given: object) -> Future:
+            raise ConnectionError("the cluster is gone")
+
+    lost = _submitted(Task("a", "a", (), "proof"), Store(tmp_path), Gone())
+    assert _why(lost) == "failed: ConnectionError: the cluster is gone"

@@ -40,7 +40,7 @@ class Study:
     rows: tuple[Row, ...]
     reasons: tuple[str, ...]
     columns: int
-    load: tuple[float, float] = (0.0, 0.0)
+    load: tuple[float, float]
 
     @property
     def complete(self) -> bool:
