@@ -67,10 +67,9 @@ def condensed(system: System) -> Condensed | None:
 
     It pays as long as a dense matrix of the interface is less work than a banded one of the whole.
     """
-    interface = system.interface
-    if system.kinematics != "linear":
+    interface, rest = system.interface, system.interface.at_rest
+    if system.kinematics != "linear" or rest is None:
         return None
-    rest = interface.at_rest
     B_rd, kept_qd, weight_qd = _rows(system, rest)
     n_r = B_rd.shape[0]
     if not _pays(system, n_r):

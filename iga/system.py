@@ -92,12 +92,12 @@ class System:
     @cached_property
     def reference_dof_qd(self) -> np.ndarray:
         """Unknowns that each interface point touches before anything moves."""
-        interface, master = self.interface, self.interface.master
+        interface, master, pairing = self.interface, self.interface.master, self.interface.pairing
         if interface.at_rest is not None:
             return interface.at_rest.dof_qd
-        if master is None:
+        if master is None or pairing is None:
             return dofs(interface.known_conn_qa)
-        return dofs(np.concatenate([interface.conn_qa, master.conn_ca[interface.pairing.c_q]], axis=1))
+        return dofs(np.concatenate([interface.conn_qa, master.conn_ca[pairing.c_q]], axis=1))
 
     @cached_property
     def loaded(self) -> np.ndarray:
