@@ -25,7 +25,7 @@ def relative(conn_ea: np.ndarray, u_Ai: np.ndarray) -> np.ndarray:
 
     The rest of the motion is rigid; left in, its rounding would be multiplied by the stiffness of the element.
     """
-    u_eai = u_Ai[conn_ea]
+    u_eai = u_Ai.take(conn_ea, axis=0)  # several times faster than indexing
     return u_eai - u_eai[:, :1]
 
 

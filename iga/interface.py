@@ -107,7 +107,7 @@ class Interface:
 
     def at_slave(self, v_Ai: np.ndarray) -> np.ndarray:
         """A field of the control points (n_A, 2) at the slave points (n_q, 2)."""
-        return (self.N_qa[:, None] @ v_Ai[self.conn_qa])[:, 0]
+        return (self.N_qa[:, None] @ v_Ai.take(self.conn_qa, axis=0))[:, 0]
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ class Contact:
         """Rates (n_q, ...) of the gaps, or of some of them, when the displacements change by v_d (n_dof, ...)."""
         if self.full_qd is not None:
             return self.full_qd[q] @ v_d
-        G_qd, v_qd = self.V_qrd[q, 0], v_d[self.dof_qd[q]]
+        G_qd, v_qd = self.V_qrd[q, 0], v_d.take(self.dof_qd[q], axis=0)
         return np.sum(G_qd * v_qd, axis=1) if v_d.ndim == 1 else (G_qd[:, None] @ v_qd)[:, 0]
 
     def rows(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
@@ -169,7 +169,7 @@ def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Con
     pairing = closest_points(master, x_qi, y_AI, guess)
     there = partner(master, pairing, x_qi, y_AI)
     conn_qa, D_qa, n_qi = _between(interface, there)
-    g_q = np.sum((_slid(interface, there.c_q, there.M_qb) + _jump(D_qa, u_Ai[conn_qa])) * n_qi, -1)
+    g_q = np.sum((_slid(interface, there.c_q, there.M_qb) + _jump(D_qa, u_Ai.take(conn_qa, axis=0))) * n_qi, -1)
     moving_qa = np.concatenate([np.zeros_like(interface.N_qa), there.dM_qb], axis=1)
     V_qrd = np.stack([_along(D_qa, n_qi), _along(D_qa, there.t_qi), _along(moving_qa, n_qi)], axis=1)
     m_q, kappa_q = np.sum(there.t_qi**2, -1), np.sum(n_qi * there.t_xi_qi, -1)
@@ -253,7 +253,7 @@ def rounding(interface: Interface, u_d: np.ndarray, stiffness_q: np.ndarray | No
 
 def dofs(conn_qa: np.ndarray) -> np.ndarray:
     """Degrees of freedom (..., 2 n_a) of control points (..., n_a), numbered 2A + i."""
-    return (2 * conn_qa[..., None] + np.arange(2)).reshape(*conn_qa.shape[:-1], -1)
+    return np.stack([2 * conn_qa, 2 * conn_qa + 1], axis=-1).reshape(*conn_qa.shape[:-1], -1)
 
 
 def _known(interface: Interface, u_d: np.ndarray) -> Contact:
@@ -266,7 +266,7 @@ def _known(interface: Interface, u_d: np.ndarray) -> Contact:
 
 def _between(interface: Interface, there: Partner) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Control points of both sides, their functions, slave minus master (n_q, n_a + n_b), and the master's normals."""
-    conn_qa = np.concatenate([interface.conn_qa, interface.master.conn_ca[there.c_q]], axis=1)
+    conn_qa = np.concatenate([interface.conn_qa, interface.master.conn_ca.take(there.c_q, axis=0)], axis=1)
     D_qa = np.concatenate([interface.N_qa, -there.M_qb], axis=1)
     return conn_qa, D_qa, normal(there.t_qi, interface.master.outward)
 
@@ -284,7 +284,7 @@ def _slid(interface: Interface, c_q: np.ndarray, M_qb: np.ndarray) -> np.ndarray
 
     That it is nothing at home is no matter of rounding: bodies that touch before anything moves have no gap.
     """
-    home, X_qbi = interface.home, interface.local_AI[interface.master.conn_ca[c_q]]
+    home, X_qbi = interface.home, interface.local_AI.take(interface.master.conn_ca.take(c_q, axis=0), axis=0)
     origin_qi, same = X_qbi[:, -1], c_q == home.c_q
     moved_qi = (np.where(same[:, None], home.N_qb - M_qb, -M_qb)[:, None] @ (X_qbi - origin_qi[:, None]))[:, 0]
     return moved_qi + np.where(same[:, None], 0.0, home.Y_qi - origin_qi) + home.apart_qi
@@ -292,4 +292,7 @@ def _slid(interface: Interface, c_q: np.ndarray, M_qb: np.ndarray) -> np.ndarray
 
 def _along(N_qa: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
     """Rows (n_q, 2 n_a) ``N_qa v_qi`` over the degrees of freedom."""
-    return (N_qa[:, :, None] * v_qi[:, None, :]).reshape(len(N_qa), -1)
+    rows_qai = np.empty((*N_qa.shape, 2))
+    for i in range(2):  # a product over pairs would take four times as long
+        np.multiply(N_qa, v_qi[:, i : i + 1], out=rows_qai[..., i])
+    return rows_qai.reshape(len(N_qa), -1)

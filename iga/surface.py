@@ -51,10 +51,10 @@ class Surface:
         Of the sides c_q (n_q,) alone where they are told: (n_q, p + 1, 2).
         """
         if c_q is None:
-            return self.C_cab.swapaxes(1, 2) @ x_AI[self.conn_ca]
+            return self.C_cab.swapaxes(1, 2) @ x_AI.take(self.conn_ca, axis=0)
         if len(c_q) > self.sides:
             return self.bezier_points(x_AI)[c_q]
-        return self.C_cab[c_q].swapaxes(1, 2) @ x_AI[self.conn_ca[c_q]]
+        return self.C_cab.take(c_q, axis=0).swapaxes(1, 2) @ x_AI.take(self.conn_ca.take(c_q, axis=0), axis=0)
 
     def coefficients(self, c_q: np.ndarray, xi_q: np.ndarray, orders: int) -> tuple[np.ndarray, ...]:
         """Rational Bernstein values and derivatives (n_q, p + 1) at xi_q on the sides c_q, up to the order asked for.
@@ -79,7 +79,7 @@ class Surface:
 
     def functions(self, c_q: np.ndarray, r_qb: np.ndarray) -> np.ndarray:
         """Basis functions (n_q, p + 1), in the order of ``conn_ca[c_q]``, from coefficients r_qb on the sides c_q."""
-        return (self.C_cab[c_q] @ r_qb[..., None])[..., 0]
+        return (self.C_cab.take(c_q, axis=0) @ r_qb[..., None])[..., 0]
 
 
 def surface(mesh: Mesh, chain: Chain, first: int) -> Surface:
