@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf, dpbtrs
@@ -51,16 +52,26 @@ class Band:
         i, j = self.place_d[row], self.place_d[column]
         return int(np.max(np.abs(i - j)[(i >= 0) & (j >= 0)], initial=0))
 
+    @cached_property
+    def dof_n(self) -> np.ndarray:
+        """The degree of freedom (n,) of each equation."""
+        free = np.flatnonzero(self.place_d >= 0)
+        return free[np.argsort(self.place_d[free])]
+
+    @cached_property
+    def fixed_f(self) -> np.ndarray:
+        """The degrees of freedom without an equation."""
+        return np.flatnonzero(self.place_d < 0)
+
     def gather(self, v_d: np.ndarray) -> np.ndarray:
         """Equations (n, ...) from degrees of freedom (n_dof, ...)."""
-        out = np.empty((self.n, *v_d.shape[1:]))
-        free = self.place_d >= 0
-        out[self.place_d[free]] = v_d[free]
-        return out
+        return v_d.take(self.dof_n, axis=0)
 
     def spread(self, v: np.ndarray) -> np.ndarray:
         """Degrees of freedom from equations, zero where fixed."""
-        return np.where((self.place_d >= 0).reshape(-1, *[1] * (v.ndim - 1)), v[self.place_d], 0.0)
+        v_d = np.ascontiguousarray(v).take(self.place_d, axis=0)
+        v_d[self.fixed_f] = 0.0
+        return v_d
 
     def reaching(self, row: np.ndarray, column: np.ndarray) -> Band:
         """Itself, or wider where entries need it."""
