@@ -18,7 +18,7 @@ FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.125, 1.0, 1.0 / 4096
 #: Steps chosen by accuracy: the first and the largest one in parts of the programme, and by how much of the peak the
 #: load may leave the tangent of a step, if nothing else is asked for.
 FIRST, LARGEST, BEND = 1.0 / 30.0, 0.25, 0.005
-#: How often in a row a step chosen by accuracy may fail, but for each one since that did not.
+#: How often steps chosen by accuracy may fail; every one that converges makes up for one that has failed.
 SPARED = 3
 #: Fewer steps than these would not draw the curve: what is asked for is then a least number of steps. How long they are
 #: once one that was chosen by accuracy has failed, in such parts of the programme.
