@@ -117,7 +117,10 @@ def _lines(axes: Axes) -> Iterator[str]:
 
 def _empty(axes: Axes, least: float) -> Iterator[str]:
     """Axes of which what is drawn fills only a small part, either way."""
-    if not axes.axison or not axes.has_data() or hasattr(axes, "_colorbar"):
+    if not axes.axison or hasattr(axes, "_colorbar"):
+        return
+    if not axes.has_data():
+        yield "axes in which nothing is drawn"
         return
     box = axes.dataLim.transformed(axes.transData).transformed(axes.transAxes.inverted())
     for way, (low, high) in {"width": (box.x0, box.x1), "height": (box.y0, box.y1)}.items():
