@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from itertools import combinations
 from types import ModuleType
@@ -75,6 +76,13 @@ def unreadable(figure: Figure, filled: float = FILLED) -> list[str]:
             found.append(f"axes {i} on axes {j}")
     for axes in figure.axes:
         found += [*_lines(axes), *_empty(axes, filled if len(figure.axes) == 1 else 0.35 * filled)]
+        named = axes.get_legend_handles_labels()[1]
+        if named and axes.get_legend() is None and not figure.legends and width > 4.0:  # others share that of a row
+            found.append("names without a legend")
+        for axis in (axes.xaxis, axes.yaxis) if len(figure.axes) == 1 and axes.axison else ():
+            numbers = [text for text in axis.get_ticklabels() if re.fullmatch(r"[−\d.]+", text.get_text())]
+            if numbers and not axis.label.get_text():
+                found.append("numbers of which nobody says what they are")
         if (scale := getattr(axes, "_colorbar", None)) is not None and scale.outline.get_visible():
             found.append("a frame around the scale of colours")
         bars = [bar for group in axes.containers if isinstance(group, BarContainer) for bar in group]
