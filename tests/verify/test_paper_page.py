@@ -302,3 +302,17 @@ def test_deviations_of_figure_9_are_those_of_its_runs(monkeypatch: pytest.Monkey
             ((x, off),) = [np.transpose(points) for points in of_colour(axes, colour(line(basis).colour))]
             assert off == pytest.approx(100 * bump, abs=1e-6) and x[-1] == pytest.approx(6.5)
         assert axes.get_xlabel() == "displacement (mm)" and len(axes.patches) == 1
+
+
+def test_groups_of_figures_say_what_they_show(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    Drawn(monkeypatch, paper_figures)
+    groups = paper_figures.figures(study, "figures")
+    assert [group.title for group in groups] == [
+        "Figure 6: load against opening with 280 unknowns",
+        "Figure 7: load against opening with 1956 unknowns",
+        "Apart from the converged curve with 1956 unknowns",
+        "Figure 8: 2 to 8 interface points, 280 unknowns",
+        "Error and oscillation against the number of points",
+    ]
+    assert [len(group.panels) for group in groups] == [6, 6, 2, 6, 4]
+    assert all(group.note.endswith(".") for group in groups)
