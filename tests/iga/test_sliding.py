@@ -142,7 +142,11 @@ def test_a_point_lets_go_between_a_tenth_and_three_tenths_of_a_side_beyond_the_e
     """Held whole before, not at all after, half in the middle; its rate is that of the logarithm of its share."""
     over = np.array([-1.0, 0.0, 0.1, 0.15, 0.2, 0.25, 0.3, 2.0])
     share, rate = _share(over)
-    assert share[:3].tolist() == [1.0, 1.0, 1.0] and share[-2:] == pytest.approx([0.0, 0.0]) and share[4] == pytest.approx(0.5)
+    assert (
+        share[:3].tolist() == [1.0, 1.0, 1.0]
+        and share[-2:] == pytest.approx([0.0, 0.0])
+        and share[4] == pytest.approx(0.5)
+    )
     assert share[3] + share[5] == pytest.approx(1.0) and np.all(np.diff(share[2:7]) < 0.0)
     inside, h = np.linspace(0.11, 0.29, 19), 1e-6
     quotient = (np.log(_share(inside + h)[0]) - np.log(_share(inside - h)[0])) / (2.0 * h)
