@@ -12,7 +12,7 @@ import numpy as np
 
 from iga.bernstein import tensor
 from iga.extraction import ElementBlock, Mesh, one_sided
-from iga.tmesh import DEGREE, FRAME, TMesh, counting, neighbours, painted, require_suitable
+from iga.tmesh import DEGREE, FRAME, TMesh, counting, neighbours, require_suitable
 
 _AT_ONCE = 2048  # elements whose pieces stay in the cache
 
@@ -90,9 +90,7 @@ def greville(mesh: TMesh) -> np.ndarray:
 def bezier_elements(mesh: TMesh) -> np.ndarray:
     """Index boxes (n_e, 4) i0, i1, j0, j1 of the faces with area, extensions drawn in; i runs fastest.
 
-    Raises
-    ------
-    ValueError : a face that is no rectangle.
+    A T-mesh whose lines end on other lines has no faces but rectangles.
     """
     return _faces(mesh, *mesh.extended())
 
@@ -131,26 +129,9 @@ def _faces(mesh: TMesh, across: np.ndarray, up: np.ndarray) -> np.ndarray:
     corner = np.argwhere((up[:-1] & across[:, :-1]).T)[:, ::-1]
     i, j = corner.T
     end_i, end_j = neighbours(up, i, j, 1)[:, 2], neighbours(across.T, j, i, 1)[:, 2]
-    _check_rectangles(across, up, i, end_i, j, end_j)
     box = np.stack([i, end_i, j, end_j], -1) + FRAME
     has_area = (mesh.knots_i[box[:, 1]] > mesh.knots_i[box[:, 0]]) & (mesh.knots_j[box[:, 3]] > mesh.knots_j[box[:, 2]])
     return box[has_area]
-
-
-def _check_rectangles(
-    across: np.ndarray, up: np.ndarray, i0: np.ndarray, i1: np.ndarray, j0: np.ndarray, j1: np.ndarray
-) -> None:
-    """Boxes that start at every lower left corner have all cells between them, and their sides are all edges."""
-    cells = int(np.sum((i1 - i0) * (j1 - j0)))
-    shape = up.shape[0], across.shape[1]
-    left = painted(np.stack([j0, j1, i0], -1), shape[::-1]).T
-    bottom = painted(np.stack([i0, i1, j0], -1), shape)
-    if (
-        cells != (up.shape[0] - 1) * up.shape[1]
-        or np.any(left[:-1] != up[:-1])
-        or np.any(bottom[:, :-1] != across[:, :-1])
-    ):
-        raise ValueError("the T-mesh has a face that is no rectangle")
 
 
 def _supported(mesh: TMesh, box_ek: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,18 @@ from hypothesis import strategies as st
 from specimens import PAPER, E
 from test_peel import PEEL
 
-from iga.arms import COARSENING, FEW, LEAST_COARSENING, arm_meshes, coarsening, crack_path, lead, tmeshes, zone_length
+from iga.arms import (
+    COARSENING,
+    FEW,
+    LEAST_COARSENING,
+    arm_meshes,
+    coarsening,
+    crack_path,
+    division,
+    lead,
+    tmeshes,
+    zone_length,
+)
 from iga.dcb import build, solve
 from iga.peel_meshes import tmeshes as peel_tmeshes
 from iga.surface import surface
@@ -250,3 +261,12 @@ def test_what_no_mesh_can_be_made_of_is_refused():
             arm_meshes(replace(CZM1, basis=basis, dofs=60))
     with pytest.raises(ValueError, match="needs at least"):
         build(replace(CZM1, basis="tspline", dofs=60))
+
+
+def test_where_few_elements_are_on_the_path_there_are_no_more_elsewhere():
+    """Up to seven; from eight on as many as their length asks for."""
+    late = replace(PAPER, precrack=10.0, opening=(0.5,))
+    (before, _, beyond), _ = division(late, 7)
+    assert (before, beyond) == (7, 7)
+    (before, _, beyond), places = division(late, 8)
+    assert before > 8 and beyond > 8 and places[0] == 0.0 and places[-1] == late.length

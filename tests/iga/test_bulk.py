@@ -175,3 +175,8 @@ def test_convergence_rate_of_a_manufactured_solution(kind, degree, levels, level
     assert orders[0] == degree + 1
     assert np.all(rates > orders[0] - 0.35)
     assert errors[-1] < level
+
+
+def test_a_matrix_that_all_share_cannot_be_changed():
+    with pytest.raises(ValueError, match="read-only"):
+        isotropic(120e3, 0.2, "stress")[0, 0] = 0.0

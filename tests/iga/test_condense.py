@@ -1,6 +1,7 @@
 """A linear bulk condensed onto the interface, against the same system in all its unknowns."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from specimens import PAPER
 from test_peel import PEEL
 
 import iga.condense
+import iga.interface
 from iga import dcb, peel
 from iga.condense import condensed
 from iga.path import follow
@@ -126,3 +128,25 @@ def test_without_damage_nothing_bends_and_one_step_goes_to_its_begin():
     assert first.state.k_q.max() == pytest.approx(law.g_max, rel=1e-2) and first.tangent.growing_q.any()
     line = 0.5 * first.opening * first.state.load
     assert first.external_work == pytest.approx(line, rel=1e-10) == pytest.approx(first.energies.stored, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["twins", "mirror", "unlike", "peel", "posed"])
+def test_a_rigid_motion_asks_for_no_force(name):
+    """Of what is kept of it, to the last digit of the stiffness: more would be lost of the balance of forces."""
+    system = solver(CASES[name]).build(CASES[name]).system
+    small = condensed(system).system
+    rest = iga.interface.contact(system.interface, np.zeros(system.n_dof), system.interface.pairing)
+    B_rd, _, _ = iga.condense._rows(system, rest)
+    rigid_rm, _ = np.linalg.qr(B_rd @ iga.condense._mechanisms(system))
+    assert rigid_rm.shape[1] == 2 and np.array_equal(small.bulk_dd, small.bulk_dd.T)
+    assert np.abs(small.bulk_dd @ rigid_rm).max() < 5e-16 * np.abs(small.bulk_dd).max()
+
+
+@pytest.mark.parametrize(("kept", "pays"), [(24, True), (25, False)])
+@pytest.mark.parametrize("told", ["elements", "band"])
+def test_dense_equations_pay_where_they_are_less_work_than_the_band(kept, pays, told):
+    """2/3 n^3 operations against 4 n k^2, of 100 unknowns in a band of 5; one element may tell enough."""
+    few = 6 if told == "elements" else 2
+    system = SimpleNamespace(element_dofs=(np.zeros((3, few)), np.zeros((1, 2))), free_d=np.ones(100, dtype=bool))
+    system.band = SimpleNamespace(n=100, k=5 if told == "band" else 0)
+    assert iga.condense._pays(system, kept) == pays

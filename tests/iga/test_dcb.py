@@ -1,6 +1,7 @@
 """The double cantilever beam as a whole: identities at every step, invariances, and how Newton converges."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from iga.cohesive import BilinearLaw
 from iga.control import opening_control
 from iga.dcb import build, solve
 from iga.newton import DEFAULT, Newton, equilibrium
+from iga.observe import reach
 from iga.path import Point, follow
 from iga.system import untimed
 
@@ -251,3 +253,25 @@ def test_a_mesh_that_cannot_be_made_is_refused():
         solve(replace(SHORT, dofs=40))
     with pytest.raises(ValueError, match="basis"):
         solve(replace(SHORT, basis="fourier"))
+
+
+@pytest.mark.parametrize(
+    ("k", "place"),
+    [
+        ((0.0, 0.0, 0.0, 0.0), 4.0),
+        ((2.0, 1.5, 0.5, 0.0), 4.4),
+        ((2.0, 1.0, 0.5, 0.0), 4.3),
+        ((0.2, 1.5, 0.5, 0.0), 4.4),
+        ((2.0, 2.0, 2.0, 1.25), 4.7),
+        ((1.0, 0.0, 0.0, 0.0), 4.1),
+    ],
+)
+def test_the_foremost_place_of_an_opening_lies_between_points(k, place):
+    """Linear between the last point that has come to it and the next; where none has, at the tip."""
+    order = np.array([2, 0, 3, 1])
+    k_q = np.empty(4)
+    k_q[order] = k
+    specimen = SimpleNamespace(ordered=(np.array([4.1, 4.3, 4.5, 4.7]), order), free_length=4.0)
+    assert reach(specimen, k_q, 1.0) == pytest.approx(place)
+    specimen.free_length = 4.6
+    assert reach(specimen, k_q, 1.0) == pytest.approx(max(place, 4.6)), "never behind the tip"

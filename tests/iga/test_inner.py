@@ -151,3 +151,17 @@ def test_points_of_one_element_span_no_more_than_its_functions(rng):
     assert np.allclose(vectors_dr @ parts_rm, rows_dm, rtol=0, atol=1e-12 * np.abs(rows_dm).max())
     few = inner._spanned(rows_dm[:, :3])
     assert np.array_equal(few[0] @ few[1], rows_dm[:, :3])
+
+
+@pytest.mark.parametrize(("off", "agrees"), [(0.9e-12, True), (1.1e-12, False), (-1.1e-12, False)])
+def test_tractions_agree_with_the_law_to_a_part_of_the_largest(off, agrees):
+    """Of a traction of 5, all of which the tangent knows but for what it is off by."""
+    touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), np.array([[0]]), np.ones((1, 1, 1)))
+    spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm[:1]]))
+    plain_d, known = np.array([1.0, *np.zeros(inner.MOST + 1)]), (np.full(1, 5.0), np.zeros(1))
+
+    def law(g_q):
+        return np.full(1, 5.0 * (1.0 + off)), np.zeros(1)
+
+    found = inner.settled_step(SimpleNamespace(dA_q=np.ones(1)), touch, law, known, plain_d, spring)
+    assert (found[0] == 1.0) == agrees and found[0] == pytest.approx(1.0, abs=1e-11)

@@ -8,6 +8,7 @@ import pytest
 from specimens import PAPER
 
 import iga.newton
+import iga.system
 from iga.control import gap_control, load_control, opening_control
 from iga.dcb import build
 from iga.grading import rectangle
@@ -208,3 +209,27 @@ def test_without_a_tangent_or_a_load_that_is_felt_there_is_no_equilibrium(name, 
     monkeypatch.setattr(iga.newton, name, lambda *given: None)
     target = 1.01 * before.opening
     assert equilibrium(system, before.state, opening_control(system), target, 0.01, DEFAULT, untimed) is None
+
+
+def test_a_gap_worth_no_force_leaves_contact_as_it_was():
+    """Its sign is rounding: 1e-13 of the forces in play, 100, by the stiffer of penalty and law on an area of 0.5."""
+    g_q = np.array([1.9e-12, -1.9e-12, 2.1e-12, -2.1e-12, 0.0])
+    before_q = np.array([True, False, True, False, True])
+    for law in (SimpleNamespace(penalty=10.0, stiffness=2.0), SimpleNamespace(penalty=2.0, stiffness=10.0)):
+        system = SimpleNamespace(interface=SimpleNamespace(law=law, dA_q=np.full(5, 0.5)))
+        touch, trial = SimpleNamespace(g_q=g_q), SimpleNamespace(closed_q=before_q)
+        assert iga.system._closed(system, touch, trial, 100.0).tolist() == [True, False, False, True, True]
+
+
+def test_of_a_condensed_bulk_forces_that_rounding_hides_are_none():
+    """Moved as a whole it exerts none, and the scale is what its unknowns hold against each other, 6e6, times
+    ten roundings over the least tolerance.
+    """
+    small = replace(build(CZM1).system, bulk_dd=3e6 * np.array([[1.0, -1.0], [-1.0, 1.0]]))
+    u_d, held, eps = np.ones(2), 6e6, np.finfo(float).eps
+    forces_d, scale, stored, _ = iga.system._condensed_bulk(small, u_d)
+    assert not forces_d.any() and stored == 0.0 and scale == pytest.approx(10.0 * eps / 5e-12 * held)
+    assert iga.system.rounding(small, u_d, None) == pytest.approx(10.0 * eps * held)
+    stretched_d = np.array([0.0, 2.0])
+    forces_d, scale, stored, _ = iga.system._condensed_bulk(small, stretched_d)
+    assert forces_d.tolist() == [-6e6, 6e6] and scale == pytest.approx(6e6 * np.sqrt(2.0)) and stored == 6e6

@@ -1,6 +1,7 @@
 """The path as a whole: snap-backs, separation, unloading, closing; ledger, steps, and what rounding does to it."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -362,3 +363,88 @@ def test_rounding_of_the_input_is_not_amplified(basis, kinematics, rng):
         moved.append(float(np.max(np.abs(other - plain) / np.max(np.abs(plain), axis=1, keepdims=True))))
     print(f"{basis}, {kinematics}: {len(points)} points moved by {max(moved):.1e}")
     assert 0.0 < max(moved) < 1e-8
+
+
+@pytest.mark.parametrize(
+    ("broken", "load", "d_load", "slope", "separated"),
+    [
+        (0.6, 0.0, -1.0, -5.0, True),
+        (0.6, 0.9e-3, -1.0, -5.0, True),
+        (0.6, -0.9e-3, -1.0, -5.0, True),
+        (0.6, 1.1e-3, -1.0, -5.0, False),
+        (0.5, 0.0, -1.0, -5.0, False),
+        (0.6, 0.0, 0.5, 5.0, False),
+        (0.6, 0.0, 0.5, 0.9e-3 / 3.0, True),
+        (0.6, 0.0, 0.5, -0.9e-3 / 3.0, True),
+        (0.6, 0.0, 0.5, 1.1e-3 / 3.0, False),
+    ],
+)
+@pytest.mark.parametrize("bonded", [False, True])
+def test_what_has_come_apart_carries_nothing_and_will_not(broken, load, d_load, slope, separated, bonded):
+    """More than half of the bond broken, no load, and none that the path brings over its reach of 3; the peak is 1."""
+    k_q = np.where(np.arange(10) < 10 * broken, 2.0, 1.9)
+    bonded_q, area_q = None, np.ones(10)
+    if bonded:  # as many points that only touch count for nothing
+        k_q, area_q, bonded_q = np.append(k_q, np.zeros(10)), np.ones(20), np.arange(20) < 10
+    interface = SimpleNamespace(dA_q=area_q, bonded_q=bonded_q, law=SimpleNamespace(g_u=2.0))
+    tangent = SimpleNamespace(d_load=d_load)
+    point = SimpleNamespace(state=SimpleNamespace(k_q=k_q, load=load), tangent=tangent, slope=slope)
+    assert iga.path._separated(SimpleNamespace(interface=interface), point, 3.0, 1.0) == separated
+
+
+@pytest.mark.parametrize(
+    ("programme", "way"),
+    [
+        ((3.0,), (3.0,)),
+        ((1.5, -0.1, 3.0), (1.5, 0.0, -0.1, 0.0, 3.0)),
+        ((1.5, 0.0, -0.1), (1.5, 0.0, -0.1)),
+        ((-1.0, -2.0), (-1.0, -2.0)),
+    ],
+)
+def test_a_programme_stops_wherever_it_passes_through_zero(programme, way):
+    assert iga.path.by_way_of_zero(programme) == way
+
+
+def test_bodies_that_nothing_holds_are_refused(monkeypatch):
+    monkeypatch.setattr(iga.path, "_departing", lambda *given: None)
+    with pytest.raises(ValueError, match="singular: the supports or the interface do not hold the bodies"):
+        next(follow(build(CZM1).system, (1.0,), 10))
+
+
+def test_a_new_mesh_that_nothing_can_be_solved_on_ends_the_path(monkeypatch):
+    system, departing, asked = build(replace(CZM1, kinematics="linear")).system, iga.path._departing, []
+
+    def once(*given):
+        asked.append(given)
+        return departing(*given) if len(asked) == 1 else None
+
+    monkeypatch.setattr(iga.path, "_departing", once)
+    *points, end = follow(system, (0.1,), 50, renew=lambda point: (system, point.state))
+    assert end.status == "stopped: the new mesh at opening 0.1 has a singular tangent" and len(points) == 2
+
+
+def test_a_path_that_leaps_however_short_the_step_is_told_what_to_do(monkeypatch):
+    monkeypatch.setattr(iga.path, "leaks", lambda system, before, after, most: before.opening > 0.0)
+    problem = replace(CZM1, kinematics="linear", opening=(0.1,))
+    _, points, end = run(problem, 50)
+    assert end.status.startswith(f"stopped: the energy jumps at opening {points[-1].opening:.6g}, however short")
+    assert "discretization.dofs" in end.status and "tspline, nurbs" in end.status and end.rejected > 12
+
+
+def test_contact_too_stiff_to_be_found_is_searched_for_from_softer_on(monkeypatch):
+    """Ever stiffer, each search from what the last one found but with the history of the first, the last as stiff."""
+    system, asked = build(CZM1).system, []
+
+    def search(tried, trial, control, opening, change, newton, phase):
+        asked.append((tried.interface.law.penalty / system.interface.law.penalty, trial.load, trial.k_q is history))
+        if len(asked) in (1, 3):
+            return None
+        return SimpleNamespace(state=replace(trial, load=10.0 * len(asked), k_q=None))
+
+    monkeypatch.setattr(iga.path, "equilibrium", search)
+    start = system.start()
+    history = start.k_q
+    found = iga.path._touching(system, start, 0.1, 0.1, lambda name: None)
+    parts, loads_before, same = zip(*asked, strict=True)
+    assert parts == pytest.approx((1.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)) and all(same)
+    assert loads_before == (0.0, 0.0, 20.0, 20.0, 40.0, 50.0, 60.0, 70.0) and found.state.load == 80.0

@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from iga.cohesive import BilinearLaw
+from iga.partner import _share
 from iga.work import _hermite, _left_rate, slid_off, step_work, straight_work
 
 LAW = BilinearLaw(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0)
@@ -135,3 +136,19 @@ def test_work_up_to_where_damage_begins_knows_nothing_of_what_comes_then() -> No
     a, b = point(0.0, 0.0, 1.0, 2.0), point(0.5, 1.0, 1.0, 1.2)
     a.tangent.growing_q, b.tangent.arrival = np.array([False]), 2.0
     assert straight_work(a, b) == pytest.approx(0.25, rel=1e-15)
+
+
+def test_a_point_lets_go_between_a_tenth_and_three_tenths_of_a_side_beyond_the_end() -> None:
+    """Held whole before, not at all after, half in the middle; its rate is that of the logarithm of its share."""
+    over = np.array([-1.0, 0.0, 0.1, 0.15, 0.2, 0.25, 0.3, 2.0])
+    share, rate = _share(over)
+    assert (
+        share[:3].tolist() == [1.0, 1.0, 1.0]
+        and share[-2:] == pytest.approx([0.0, 0.0])
+        and share[4] == pytest.approx(0.5)
+    )
+    assert share[3] + share[5] == pytest.approx(1.0) and np.all(np.diff(share[2:7]) < 0.0)
+    inside, h = np.linspace(0.11, 0.29, 19), 1e-6
+    quotient = (np.log(_share(inside + h)[0]) - np.log(_share(inside - h)[0])) / (2.0 * h)
+    assert _share(inside)[1] == pytest.approx(quotient, rel=1e-6)
+    assert np.abs(rate[[0, 1, 2, 6, 7]]).max() < 1e-12

@@ -165,3 +165,9 @@ def test_functions_that_do_not_sum_to_one_are_divided_by_their_sum(rng):
         found, plain = block_basis(heavy, doubled, *rule), block_basis(mesh, block, *rule)
         for name in ("N_eqa", "dN_eqaI", "dV_eq", "X_eqI"):
             assert getattr(found, name) == pytest.approx(getattr(plain, name), rel=1e-12, abs=1e-12), name
+
+
+def test_points_and_weights_that_all_share_cannot_be_changed():
+    for shared in gauss(3):
+        with pytest.raises(ValueError, match="read-only"):
+            shared[0] = 0.0

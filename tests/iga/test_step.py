@@ -1,6 +1,7 @@
 """What is foreseen of a step, before its equilibrium is sought."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,8 +10,10 @@ from specimens import PAPER
 import iga.path
 import iga.step
 from iga.dcb import build
+from iga.newton import DEFAULT
+from iga.pace import paced
 from iga.path import follow
-from iga.step import foresee
+from iga.step import Foreseen, advance, foresee
 
 
 @pytest.fixture(scope="module")
@@ -72,3 +75,52 @@ def test_a_front_that_does_not_grow_does_not_leap(asked, monkeypatch):
     still = replace(point, tangent=replace(point.tangent, growing_q=np.zeros_like(point.tangent.growing_q)))
     moved = [foreseen((system, one, *rest), 0.9, monkeypatch)[1] for one in (point, still)]
     assert len(moved[0]) == 1 and moved[1] == []
+
+
+def made(asked, monkeypatch, **changed):
+    """The step as the path makes it, with some of what it is made of changed."""
+    system, point, step, _, known, phase = asked
+    pace = paced(np.array([1.0]), 20)
+    ahead = foresee(system, point, step, pace.by_kinks and not step.exact, known, phase)
+    with monkeypatch.context() as patch:
+        for name, value in changed.items():
+            patch.setattr(iga.step, name, value)
+        return advance(system, point, step, ahead, 1.0, pace, DEFAULT, phase)
+
+
+@pytest.mark.parametrize("lost", ["equilibrium", "tangent"])
+def test_a_step_without_equilibrium_or_tangent_is_none(asked, lost, monkeypatch):
+    nothing = {lost: lambda *given, **more: None}
+    if lost == "equilibrium":
+        nothing["_landed"] = lambda *given: (None, None)
+    assert made(asked, monkeypatch, **nothing) == (None, None)
+    assert made(asked, monkeypatch)[0] is not None
+
+
+def test_what_stands_still_leads_nowhere(asked, monkeypatch):
+    """A control that neither displacements nor the load change."""
+    system, point, step, *rest = asked
+    still = replace(step, control=lambda state, response: (0.0, np.zeros(system.n_dof), 0.0))
+    pace = paced(np.array([1.0]), 20)
+    given = Foreseen(point.state, True)
+    assert advance(system, point, still, given, 1.0, pace, DEFAULT, rest[-1]) == (None, None)
+
+
+def test_what_slides_off_is_spent(asked, monkeypatch):
+    _, point, *_ = asked
+    plain, _ = made(asked, monkeypatch)
+    slid, _ = made(asked, monkeypatch, slid_off=lambda *given: 0.25)
+    assert slid.state.slid == point.state.slid + 0.25 and plain.state.slid == point.state.slid
+    assert slid.energies.dissipated == pytest.approx(plain.energies.dissipated + 0.25, rel=1e-12)
+    assert slid.external_work == plain.external_work and slid.energies.stored == plain.energies.stored
+
+
+@pytest.mark.parametrize(("gap", "lands"), [(0.9, False), (1.0, True), (1.1, True)])
+def test_a_landing_short_of_its_kink_is_none(asked, gap, lands, monkeypatch):
+    system, point, *_, phase = asked
+    place = SimpleNamespace(q=3, target=1.05, least=1.0, kink="kink")
+    contact = SimpleNamespace(g_q=np.full(system.interface.points, gap))
+    found = SimpleNamespace(response=SimpleNamespace(contact=contact))
+    monkeypatch.setattr(iga.step, "equilibrium", lambda *given: found)
+    expected = (found, "kink") if lands else (None, None)
+    assert iga.step._landed(system, point, point.state, place, DEFAULT, phase) == expected

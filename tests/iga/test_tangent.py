@@ -165,3 +165,11 @@ def test_a_reversible_law_goes_back_on_its_own_curve():
     for out, again in (there, back):
         assert again.state.load == pytest.approx(out.state.load, rel=1e-9)
         assert again.heading == -1.0 and again.slope == pytest.approx(out.slope, rel=1e-6)
+
+
+def test_of_a_matrix_that_is_singular_there_is_no_tangent(monkeypatch):
+    system = build(PAPER).system
+    start = system.start()
+    response = respond(system, start, decide=False)
+    monkeypatch.setattr("iga.tangent.factorise", lambda *given: None)
+    assert tangent(system, start, response, 1.0, untimed) is None

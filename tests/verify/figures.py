@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from itertools import combinations
 from types import ModuleType
@@ -75,6 +76,13 @@ def unreadable(figure: Figure, filled: float = FILLED) -> list[str]:
             found.append(f"axes {i} on axes {j}")
     for axes in figure.axes:
         found += [*_lines(axes), *_empty(axes, filled if len(figure.axes) == 1 else 0.35 * filled)]
+        named = axes.get_legend_handles_labels()[1]
+        if named and axes.get_legend() is None and not figure.legends and width > 4.0:  # others share that of a row
+            found.append("names without a legend")
+        for axis in (axes.xaxis, axes.yaxis) if len(figure.axes) == 1 and axes.axison else ():
+            numbers = [text for text in axis.get_ticklabels() if re.fullmatch(r"[−\d.]+", text.get_text())]
+            if numbers and not axis.label.get_text():
+                found.append("numbers of which nobody says what they are")
         if (scale := getattr(axes, "_colorbar", None)) is not None and scale.outline.get_visible():
             found.append("a frame around the scale of colours")
         bars = [bar for group in axes.containers if isinstance(group, BarContainer) for bar in group]
@@ -117,7 +125,10 @@ def _lines(axes: Axes) -> Iterator[str]:
 
 def _empty(axes: Axes, least: float) -> Iterator[str]:
     """Axes of which what is drawn fills only a small part, either way."""
-    if not axes.axison or not axes.has_data() or hasattr(axes, "_colorbar"):
+    if not axes.axison or hasattr(axes, "_colorbar"):
+        return
+    if not axes.has_data():
+        yield "axes in which nothing is drawn"
         return
     box = axes.dataLim.transformed(axes.transData).transformed(axes.transAxes.inverted())
     for way, (low, high) in {"width": (box.x0, box.x1), "height": (box.y0, box.y1)}.items():

@@ -205,3 +205,21 @@ def test_a_page_that_cannot_be_made_for_want_of_something_else_is_an_error(tmp_p
     words += ["--load-scale-a", "-1e3", "--load-scale-b", "-1e3", "--out", str(tmp_path)]
     with pytest.raises(ModuleNotFoundError, match="verify.report.comparison"):
         main(["compare", *words])
+
+
+def test_it_says_where_it_has_written(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    (tmp_path / "a.csv").write_text("opening,load\n0,0\n1,2\n3,1\n")
+    words = ["compare", str(tmp_path / "a.csv"), str(tmp_path / "a.csv")]
+    assert main(words) == 0 and "written" not in capsys.readouterr().out
+    assert main([*words, "--out", str(tmp_path / "out")]) == 0
+    assert f"written: {tmp_path / 'out'}\n" in capsys.readouterr().out
+    assert (tmp_path / "out" / "comparison.json").exists()
+
+
+def test_a_place_to_write_to_is_made_or_refused(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    (tmp_path / "a.csv").write_text("opening,load\n0,0\n1,2\n3,1\n")
+    words = ["compare", str(tmp_path / "a.csv"), str(tmp_path / "a.csv"), "--out"]
+    assert main([*words, str(tmp_path / "some" / "where")]) == 0
+    assert (tmp_path / "some" / "where" / "comparison.json").exists()
+    assert main([*words, str(tmp_path / "a.csv")]) == 2
+    assert "--out: must be a folder that can be written to" in capsys.readouterr().err

@@ -18,7 +18,7 @@ from made_up_runs import scene_report  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.textpath import TextPath  # noqa: E402
 
-from verify.report import fields, opening, paint, style, undeformed  # noqa: E402
+from verify.report import fields, meshes, opening, paint, style, undeformed  # noqa: E402
 from verify.report.entry import entries  # noqa: E402
 from verify.report.fields import process_zone, shared_snapshots, traction  # noqa: E402
 from verify.report.opening import frames  # noqa: E402
@@ -260,3 +260,21 @@ def test_the_longest_side_on_the_bond_in_the_zone_counts() -> None:
     assert undeformed.bond_element(both, (4.1, 4.9)) == pytest.approx(2.0)
     apart = replace(one, X_euvi=boxes(np.linspace(0.0, 14.0, 8), 0.1, 0.2))
     assert np.isnan(undeformed.bond_element(apart, (4.1, 4.9)))
+
+
+def test_deformed_meshes_have_one_scale_that_is_told(found: list, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, scene = Drawn(monkeypatch, meshes), scene_report().scene
+    group = shared_snapshots(found)[1]
+    caption = meshes.deformed(scene, group, "key").caption
+    (_, figure), painted = drawn[0], [(e, s) for e, s in group if np.size(s.stress_euv)]
+    *pairs, bar = figure.axes
+    limit = bar.get_xlim()[1]
+    largest = max(float(np.abs(s.stress_euv).max()) for _, s in painted)
+    assert bar.get_xlim()[0] == -limit and 0.95 * largest < limit <= largest
+    assert f"to ± {limit:.3g}\u00a0MPa;" in caption and bar.get_xlabel() == "Cauchy stress along the specimen (MPa)"
+    assert len(pairs) == 2 * len(painted) and len({axes.get_xlim() for axes in pairs[::2]}) == 1
+    for axes, (entry, snapshot) in zip(pairs[::2], painted, strict=True):
+        assert axes.get_title(loc="left") == f"{entry.label}, opening {snapshot.opening:.3g}\u00a0mm"
+    assert [axes.get_xlabel() for axes in pairs[-2:]] == ["position (mm)", "position, enlarged (mm)"]
+    bare = [(e, replace(s, stress_euv=np.zeros((0, 1, 1)))) for e, s in group]
+    assert meshes.deformed(scene, bare, "key") is None

@@ -281,6 +281,7 @@ def test_an_under_resolved_zone_is_announced_and_every_point_paid_for() -> None:
     assert law.dissipated(np.array([2 * law.g_open]))[0] == pytest.approx(0.1)
     dear = world("under-resolved", only("strength-20", 1.05, "external_work"), run)
     assert failing("under-resolved", dear) == {("crack-cost", "strength-20")}
+    assert {check.tolerance for (name, _), check in good.items() if name == "crack-cost"} == {0.02}
     fine = {n: replace(t, variant=replace(t.variant, scene=CASES["toward-lefm"].variants()[0].scene))
             for n, t in trials.items()}  # fmt: skip
     assert ("warned", "strength-10") in failing("under-resolved", fine)

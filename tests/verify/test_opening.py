@@ -15,7 +15,7 @@ from made_up_runs import scene_report  # noqa: E402
 from verify.report import opening  # noqa: E402
 from verify.report.entry import entries  # noqa: E402
 from verify.report.fields import shared_snapshots  # noqa: E402
-from verify.report.layout import HIGHEST, LOWEST, WHOLE  # noqa: E402
+from verify.report.layout import HIGHEST, LOWEST, WHOLE, frame  # noqa: E402
 from verify.result import Snapshot  # noqa: E402
 
 
@@ -44,7 +44,7 @@ def test_however_far_arms_open_their_picture_is_neither_too_low_nor_too_high(rea
     X_euvi = np.array([[[[0.0, -reach], [0.0, reach]], [[14.0, 0.0], [14.0, 0.0]]]])
     nothing = np.zeros(0)
     shown = Snapshot(1.0, 0.1, nothing, nothing, nothing, nothing, X_euvi, 0.0 * X_euvi, np.zeros((1, 2, 2)))
-    (left, right), (low, high) = opening._frame(scene, [shown])
+    (left, right), (low, high) = frame(scene, [shown])
     assert left < 0.0 and right > 14.0 and low < -reach and high > reach
     inches = WHOLE * (high - low) / (right - left)
     assert LOWEST * (1.0 - 1e-9) <= inches <= HIGHEST * (1.0 + 1e-9)

@@ -287,3 +287,32 @@ def test_below_figure_9_nothing_is_told_of_runs_that_are_none(monkeypatch: pytes
         told = {panel.caption.split(".")[0]: panel.caption for panel in panels}
         assert told[METHOD_NAMES["nurbs"]] == f"{METHOD_NAMES['nurbs']}. "
         assert "from the converged curves, oscillation" in told[METHOD_NAMES["tspline"]]
+
+
+def test_deviations_of_figure_9_are_those_of_its_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Over the whole programme, in per cent, of every basis, and about the uncertainty of what is converged."""
+    bumps = {"tspline": 0.001, "nurbs": -0.003, "lagrange": 0.006}
+    study = nine.world(lambda case: {"bump": bumps[case.basis]})
+    drawn = Drawn(monkeypatch, peel_figures)
+    panels = peel_figures.figures(study, "nine")[1].panels
+    assert [panel.caption for panel in panels] == [f"Bond {bond.removeprefix('peel-')}\u00a0mm." for bond in BONDS]
+    for bond in BONDS:
+        axes = drawn.axes(f"Deviation of the load from the converged curve, {bond}")
+        for basis, bump in bumps.items():
+            ((x, off),) = [np.transpose(points) for points in of_colour(axes, colour(line(basis).colour))]
+            assert off == pytest.approx(100 * bump, abs=1e-6) and x[-1] == pytest.approx(6.5)
+        assert axes.get_xlabel() == "displacement (mm)" and len(axes.patches) == 1
+
+
+def test_groups_of_figures_say_what_they_show(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    Drawn(monkeypatch, paper_figures)
+    groups = paper_figures.figures(study, "figures")
+    assert [group.title for group in groups] == [
+        "Figure 6: load against opening with 280 unknowns",
+        "Figure 7: load against opening with 1956 unknowns",
+        "Apart from the converged curve with 1956 unknowns",
+        "Figure 8: 2 to 8 interface points, 280 unknowns",
+        "Error and oscillation against the number of points",
+    ]
+    assert [len(group.panels) for group in groups] == [6, 6, 2, 6, 4]
+    assert all(group.note.endswith(".") for group in groups)

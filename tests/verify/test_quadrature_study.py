@@ -33,6 +33,7 @@ def found() -> Study:
 
 def test_lumping_cures_splines_on_a_stiff_interface_and_nothing_is_ill_on_a_soft_one(found):
     assert all(trial.status == "complete" for trial in found.trials) and len(found.trials) == 12
+    assert found.scene.interface.ductility == 12.5, "that of the softest interface stands for all"
     assert all(trial.oscillation < 0.02 for trial in found.trials if trial.ductility == 12.5)
     stiff = {rule: found.of("nurbs", rule, n, 50_000.0) for rule, n in (("gauss", 2), ("lobatto", 4), ("lumped", None))}
     assert stiff["gauss"].oscillation > 1.0 and stiff["lobatto"].oscillation > 1.0

@@ -41,6 +41,8 @@ if ending == "dies":
 (folder / "proof").write_text(name)
 sys.exit(1 if ending == "fails" else 0)
 """
+#: Says why it has nothing to show, and ends as if all were well.
+SILENT = "import sys; print('nothing to do'); sys.exit(0)"
 
 #: An engine in a process of its own, which can be killed: python -c ENGINE OUT MARKS SCHEDULER NAME:ENDING ...
 ENGINE = """
@@ -414,3 +416,9 @@ def test_a_pool_that_takes_no_task_has_lost_it(tmp_path: Path) -> None:
 
     lost = _submitted(Task("a", "a", (), "proof"), Store(tmp_path), Gone())
     assert _why(lost) == "failed: ConnectionError: the cluster is gone"
+
+
+def test_a_run_without_its_proof_has_failed_however_it_ends(tmp_path: Path, marks: Path) -> None:
+    (marks / "silent.py").write_text(SILENT)
+    (done,) = runs([Task("scene/a", digest("a"), ("silent", FOLDER), "proof")], tmp_path, 1)
+    assert done.why == "failed: nothing to do" and not (tmp_path / "scene" / "a" / "proof").exists()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
@@ -41,6 +42,17 @@ def rows(count: int, height: float, below: float) -> tuple[Figure, list[tuple[Ax
         close.locator_params(nbins=4)
         pairs.append((whole, close))
     return figure, pairs
+
+
+def frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[Limits, Limits]:
+    """Limits along and across that all snapshots fit into, to scale; grown one way where a row would be too low or too
+    high."""
+    x_ni = np.concatenate([(np.asarray(s.X_euvi) + np.asarray(s.u_euvi)).reshape(-1, 2) for s in snapshots])
+    pad = 0.01 * scene.specimen.extent
+    left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
+    height = max(2.06 * float(np.abs(x_ni[:, 1]).max()) + pad, LOWEST / WHOLE * (right - left))
+    right = max(right, left + WHOLE / HIGHEST * height)
+    return (left, right), (-height / 2, height / 2)
 
 
 def zoom(scene: Scene, snapshots: Sequence[Snapshot], height: float) -> tuple[Limits, Limits]:

@@ -11,8 +11,8 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from verify.report.entry import Entry
-from verify.report.layout import HIGHEST, LEFT, LOWEST, WHOLE, mark, rows, zoom
-from verify.report.paint import Limits, paint
+from verify.report.layout import LEFT, WHOLE, frame, mark, rows, zoom
+from verify.report.paint import paint
 from verify.report.style import STRESS_MAP, WIDE, Panel, colour, drawing, to_svg
 from verify.report.text import Units, axis, quantity
 from verify.result import Snapshot
@@ -28,7 +28,7 @@ def deformed(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str) ->
         return None
     units = Units.of(scene.units)
     limit = max(float(np.nanpercentile(np.abs(s.stress_euv), 99.7)) for _, s in group) or 1.0
-    x, y = _frame(scene, group)
+    x, y = frame(scene, [snapshot for _, snapshot in group])
     height = WHOLE * (y[1] - y[0]) / (x[1] - x[0])
     part = zoom(scene, [snapshot for _, snapshot in group], height)
     with drawing():
@@ -58,13 +58,3 @@ def _scale(figure: Figure, limit: float, label: str) -> None:
     bar = figure.colorbar(ScalarMappable(Normalize(-limit, limit), STRESS_MAP), cax=place, orientation="horizontal")
     bar.set_label(label)
     bar.outline.set_visible(False)
-
-
-def _frame(scene: Scene, group: Sequence[tuple[Entry, Snapshot]]) -> tuple[Limits, Limits]:
-    """Limits of the full view; grown in one direction where the row would be too low or too high at true scale."""
-    x_ni = np.concatenate([(np.asarray(s.X_euvi) + np.asarray(s.u_euvi)).reshape(-1, 2) for _, s in group])
-    pad = 0.01 * scene.specimen.extent
-    left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
-    height = max(2.06 * float(np.abs(x_ni[:, 1]).max()) + pad, LOWEST / WHOLE * (right - left))
-    right = max(right, left + WHOLE / HIGHEST * height)
-    return (left, right), (-height / 2, height / 2)

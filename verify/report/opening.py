@@ -17,7 +17,7 @@ from matplotlib.transforms import Bbox
 from verify.report.agreement import path
 from verify.report.entry import Entry
 from verify.report.fields import process_zone
-from verify.report.layout import CLOSE, GAP, HIGHEST, LEFT, LOWEST, WHOLE
+from verify.report.layout import CLOSE, GAP, LEFT, WHOLE, frame
 from verify.report.paint import Limits, paint
 from verify.report.style import WIDE, Panel, colour, drawing, sheet_of, to_svg
 from verify.report.text import Units, axis, number, quantity
@@ -76,10 +76,10 @@ def frames(
     alone = [[(leader, snapshot)] for snapshot in others]
     shown = sorted([*shown, *((group, group[0]) for group in alone)], key=lambda one: one[1][1].opening)
     limit = max(float(np.nanpercentile(np.abs(s.stress_euv), 99.7)) for _, (_, s) in shown) or 1.0
-    frame = _frame(scene, [snapshot for _, (_, snapshot) in shown])
+    limits = frame(scene, [snapshot for _, (_, snapshot) in shown])
     strength = scene.interface.strength
     least = min(float(np.nanmin(snapshot.traction_q, initial=0.0)) for group, _ in shown for _, snapshot in group)
-    scales = Scales(limit, *frame, (1.1 * max(least, -3.0 * strength) - 0.1 * strength, 1.2 * strength))
+    scales = Scales(limit, *limits, (1.1 * max(least, -3.0 * strength) - 0.1 * strength, 1.2 * strength))
     with drawing():
         pictures = [_picture(scene, group, lead, drawn, scales) for group, lead in shown]
         sheet = Bbox.union([sheet_of(picture) for picture in pictures])
@@ -185,13 +185,3 @@ def _said(scene: Scene, snapshot: Snapshot) -> str:
     if zone is None:
         return f"{text}, bond intact"
     return f"{text}, process zone {number(zone[0], 3)} to {quantity(zone[1], units.length, 3)} from the loaded end"
-
-
-def _frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[Limits, Limits]:
-    """Limits that all frames fit into, to scale, neither too low nor too high."""
-    x_ni = np.concatenate([(np.asarray(s.X_euvi) + np.asarray(s.u_euvi)).reshape(-1, 2) for s in snapshots])
-    pad = 0.01 * scene.specimen.extent
-    left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
-    height = max(2.06 * float(np.abs(x_ni[:, 1]).max()) + pad, LOWEST / WHOLE * (right - left))
-    right = max(right, left + WHOLE / HIGHEST * height)
-    return (left, right), (-height / 2, height / 2)
