@@ -121,7 +121,7 @@ class MeshFacts:
     @cached_property
     def continuity(self) -> dict[str, int] | None:
         """How many inner edges the functions cross with jumps, C0, C1 and C2 or more; None for a folded mesh."""
-        if self.folded or self.smallest_jacobian[1] <= FLAT:
+        if self.smallest_jacobian[1] <= FLAT:
             return None
         _, other, t = self.sides.opposite
         try:
