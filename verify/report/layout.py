@@ -45,8 +45,7 @@ def rows(count: int, height: float, below: float) -> tuple[Figure, list[tuple[Ax
 
 
 def frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[Limits, Limits]:
-    """Limits along and across that all snapshots fit into, to scale; grown one way where a row would be too low or too
-    high."""
+    """Limits along and across that all snapshots fit into, to scale, grown where a row would be too low or too high."""
     x_ni = np.concatenate([(np.asarray(s.X_euvi) + np.asarray(s.u_euvi)).reshape(-1, 2) for s in snapshots])
     pad = 0.01 * scene.specimen.extent
     left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
