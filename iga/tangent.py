@@ -84,8 +84,9 @@ def tangent(
     inverse: Inverse | None
     for attempt in range(ATTEMPTS):
         if attempt > 0 or turning:
-            # a history larger by a rounding is enough to be on the secant
+            # a history larger by a rounding is enough to be on the secant, a smaller one to be on the envelope
             k_q = np.where(soft_q & ~growing_q, state.k_q * (1.0 + 1e-12), state.k_q)
+            k_q = np.where(growing_q, np.minimum(k_q, g_q) * (1.0 - 1e-12), k_q)
             with phase("assembly"):
                 response = respond(system, replace(state, k_q=k_q, closed_q=closed_q), decide=False)
         inverse = None  # before the next one is made

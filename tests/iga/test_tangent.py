@@ -155,6 +155,18 @@ def test_at_a_turning_point_the_way_back_is_the_difference_quotient():
     assert np.array_equal(near.response.k_q, top.state.k_q), "damage grows on the way back"
 
 
+@pytest.mark.parametrize("by", [-1.0, 1.0, 8.0])
+def test_where_a_path_sets_out_again_rounding_of_the_history_does_not_matter(by):
+    """A point that softens goes on along the envelope, though its gap is a last digit below its history."""
+    system = build(replace(PAPER, dofs=400)).system
+    top = next(p for p in points_of(system, (1.0,)) if np.sum(p.tangent.growing_q) >= 2)
+    k_q = top.state.k_q * (1.0 + by * np.finfo(float).eps)
+    state = replace(top.state, k_q=k_q)
+    again = tangent(system, state, respond(system, state, decide=False), 1.0, untimed, turning=True)[0]
+    assert again.agreed and np.array_equal(again.growing_q, top.tangent.growing_q)
+    assert again.slope == pytest.approx(top.tangent.slope, rel=1e-6)
+
+
 def test_a_reversible_law_goes_back_on_its_own_curve():
     system = build(replace(PAPER, dofs=800, irreversible=False)).system
     stops = (0.3, 0.6, 0.8, 0.6, 0.3)
