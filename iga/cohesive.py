@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -48,7 +49,7 @@ class TractionLaw(ABC):
     def work(self, k: np.ndarray) -> np.ndarray:
         """Integral of the envelope from 0 to k >= 0; G_Ic from g_u on."""
 
-    @property
+    @cached_property
     def g_max(self) -> float:
         """Opening at the strength, where damage begins."""
         return 2.0 * self.toughness / self.strength / self.ductility
@@ -58,7 +59,7 @@ class TractionLaw(ABC):
         """Openings at which the slope of the envelope jumps, rising, from g_max to g_u, and these where it does not."""
         return self.g_max, self.g_u
 
-    @property
+    @cached_property
     def stiffness(self) -> float:
         """Initial slope p_max / g_max."""
         return self.strength / self.g_max
@@ -96,7 +97,8 @@ class TractionLaw(ABC):
         -------
         p, dp_dg, k_new : (...,) each.
         """
-        closed = (g < 0.0 if closed is None else closed) & self.contact
+        closed = g < 0.0 if closed is None else closed
+        closed = closed if self.contact else np.zeros_like(closed)
         k_new = np.maximum(k, g) if self.irreversible else np.maximum(g, 0.0)
         secant = self.secant(k_new)
         softening = (g >= k_new) & (g > self.g_max) & (g < self.g_u)
@@ -120,15 +122,14 @@ class TractionLaw(ABC):
 class BilinearLaw(TractionLaw):
     """Softening along a line (Dimitri, De Lorenzis, Zavarise 2013, sec. 2); ``ductility`` is g_u / g_max."""
 
-    @property
+    @cached_property
     def g_u(self) -> float:
         """Opening at which the traction vanishes, 2 G_Ic / p_max."""
         return 2.0 * self.toughness / self.strength
 
     def envelope(self, k: np.ndarray) -> np.ndarray:
         """Traction on first loading to the opening k >= 0."""
-        softening = self.strength * (self.g_u - k) / (self.g_u - self.g_max)
-        return np.where(k <= self.g_max, self.stiffness * k, np.maximum(softening, 0.0))
+        return np.minimum(self.stiffness * k, np.maximum(self.softening(k) * (k - self.g_u), 0.0))
 
     def softening(self, k: np.ndarray) -> float:
         """Slope of the line."""

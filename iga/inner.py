@@ -93,7 +93,7 @@ def settled_step(
         if not (guessed or leaving_q.any()):
             return plain_d - steps_dr @ z_r
         leaving_q[points] = False
-        new = np.flatnonzero(leaving_q)
+        new = leaving_q.nonzero()[0]
         if new.size:
             if points.size + new.size > SHARING * most:
                 return None
@@ -105,7 +105,8 @@ def settled_step(
             felt_mr = touch.rates(steps_dr[:-1], points)
         # of the tractions only what the pulls feel is unknown: z = P w
         slope, w = (dp_q - dp0_q)[points], w_q[points]
-        matrix_rr = (parts_rm * slope) @ felt_mr
+        bent = slope.nonzero()[0]
+        matrix_rr = (parts_rm[:, bent] * slope[bent]) @ felt_mr[bent]
         matrix_rr.flat[:: len(matrix_rr) + 1] += 1.0
         if len(matrix_rr):  # a guess may have all points on their tangents
             _, _, z_r, failed = dgesv(matrix_rr, parts_rm @ (w + slope * (g0_q - g_q)[points]))

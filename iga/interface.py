@@ -132,7 +132,7 @@ class Contact:
     fading_q: np.ndarray | None = None
     full_qd: np.ndarray | None = None
 
-    @property
+    @cached_property
     def on_q(self) -> np.ndarray:
         """Points (n_q,) that face the master; the others are free."""
         return self.share_q > 0.0
@@ -196,8 +196,9 @@ def traction(
     gaps to be tried in place of those of the contact.
     """
     p, dp, k_new = interface.law.traction(contact.g_q if g_q is None else g_q, k_q, closed_q)
-    holds_q = holding(interface, contact)
-    carries_q = np.where(holds_q | (closed_q & interface.law.contact), contact.share_q, 0.0)
+    holds_q, carries_q = holding(interface, contact), contact.share_q
+    if interface.bonded_q is not None:
+        carries_q = np.where(holds_q | (closed_q & interface.law.contact), carries_q, 0.0)
     return carries_q * p, carries_q * dp, np.where(holds_q, k_new, k_q)
 
 
