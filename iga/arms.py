@@ -6,6 +6,7 @@ that it divides the process zone as often as possible; elements up to `coarsenin
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -175,11 +176,14 @@ def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
     if q > 2 and min(path for path, _ in both) <= FEW:
         q = 2
         both = chosen(q)
-    meshes = []
-    for arm, bottom in zip(both, (0.0, -problem.arm_thickness), strict=True):
-        through = bottom + problem.arm_thickness * np.linspace(0.0, 1.0, 2)
-        meshes.append(rectangle(basis, (p, q), _breaks(*division(problem, *arm)), through))
-    return tuple(meshes)
+    through = problem.arm_thickness * np.linspace(0.0, 1.0, 2)
+
+    @cache
+    def drawn(arm: Arm) -> Mesh:
+        return rectangle(basis, (p, q), _breaks(*division(problem, *arm)), through)
+
+    upper, lower = (drawn(arm) for arm in both)
+    return upper, replace(lower, P_AI=lower.P_AI - [0.0, lower.P_AI[-1, 1]])  # its top on Y = 0, to the last digit
 
 
 def arm_tmeshes(problem: Problem, strips: tuple[Strip, ...]) -> tuple[TMesh, ...]:

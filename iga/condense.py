@@ -17,7 +17,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import null_space
 from scipy.sparse import coo_array, csc_array, csr_array
-from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import splu
 
 from iga.interface import Contact, Interface, forces
@@ -199,14 +198,16 @@ def _bulk_forces(system: System, U_dr: np.ndarray) -> np.ndarray:
 
 
 def _bodies(system: System) -> tuple[int, np.ndarray]:
-    """How many bodies there are, each of elements that share control points, and the one of each unknown (n_dof,)."""
-    near, far = (
-        np.concatenate([A.ravel() for A in parts])
-        for parts in zip(*(np.broadcast_arrays(A[:, :1], A) for A in system.connectivity), strict=True)
-    )
-    shape = (system.n_dof // 2,) * 2
-    number, body_A = connected_components(coo_array((np.ones(far.size), (near, far)), shape=shape), directed=False)
-    return number, np.repeat(body_A, 2)
+    """How many bodies there are and the one of each unknown (n_dof,).
+
+    Bodies are numbered one after the other: one ends where no element reaches from a control point to later ones.
+    """
+    here = np.zeros(system.n_dof // 2 + 1, dtype=int)
+    for conn_ea in system.connectivity:
+        np.add.at(here, conn_ea.min(1), 1)
+        np.subtract.at(here, conn_ea.max(1), 1)
+    ends = np.cumsum(here)[:-1] == 0
+    return int(ends.sum()), np.repeat(np.cumsum(ends) - ends, 2)
 
 
 def _saddle(system: System, B_rd: coo_array, free: np.ndarray) -> csc_array:
