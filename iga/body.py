@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -32,12 +31,13 @@ class Body:
         """Its control points."""
         return slice(self.first, self.first + len(self.mesh.P_AI))
 
-    @cached_property
-    def sampled(self) -> tuple[BlockBasis, ...]:
-        """Bases of the blocks on a grid of points an element, for pictures; numbered as in the mesh."""
+    @property
+    def sampled(self) -> tuple[Solid, ...]:
+        """The blocks on a grid of points an element, for pictures."""
         t, s = np.meshgrid(*[np.linspace(0.0, 1.0, SAMPLES + 1)] * 2, indexing="ij")
         points_q = np.stack([s.ravel(), t.ravel()], -1)
-        return tuple(block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)
+        grids = (block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)
+        return tuple(Solid(_numbered(basis, self.first), self.D) for basis in grids)
 
     def face(self, name: str) -> tuple[BlockBasis, ...]:
         """Basis on the sides of one of the mesh's chains, made when it is first asked for.

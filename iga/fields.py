@@ -8,6 +8,7 @@ from iga.body import SAMPLES
 from iga.bulk import gradient
 from iga.kinematics import cauchy_stress
 from iga.path import Point
+from iga.solid import Solid
 from iga.specimen import Specimen
 
 
@@ -21,7 +22,7 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
     system, state, response = specimen.system, point.state, point.response
     interface = system.interface
     (s, order), bonded_q = specimen.ordered, True if interface.bonded_q is None else interface.bonded_q
-    grids = [_grids(specimen, number, state.u_d) for number in range(len(specimen.bodies))]
+    grids = [_grid(specimen, solid, state.u_d.reshape(-1, 2)) for solid in specimen.sampled]
     X, u, stress = (np.concatenate([grid[i] for grid in grids]) for i in range(3))
     return {
         "opening": point.opening,
@@ -49,14 +50,10 @@ def _tmesh(specimen: Specimen) -> dict[str, np.ndarray]:
     }
 
 
-def _grids(specimen: Specimen, number: int, u_d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    body, pose = specimen.bodies[number], specimen.pose
-    u_Ai, along_ij, parts = u_d.reshape(-1, 2)[body.points], np.outer(pose.axes_kI[0], pose.axes_kI[0]), []
-    for basis in body.sampled:
-        u_eqi = basis.N_eqa @ u_Ai[basis.conn_ea]
-        sigma = cauchy_stress(body.D, gradient(basis, u_Ai), specimen.system.kinematics)
-        stress_eq = np.tensordot(along_ij, sigma, axes=2)
-        parts.append((pose.own(basis.X_eqI), pose.components(u_eqi), stress_eq))
-    shape = (-1, SAMPLES + 1, SAMPLES + 1)
-    X, u, stress = (np.concatenate([part[i] for part in parts]) for i in range(3))
-    return X.reshape(*shape, 2), u.reshape(*shape, 2), stress.reshape(shape)
+def _grid(specimen: Specimen, solid: Solid, u_Ai: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    basis, pose, shape = solid.basis, specimen.pose, (-1, SAMPLES + 1, SAMPLES + 1)
+    u_eqi = basis.N_eqa @ u_Ai[basis.conn_ea]
+    sigma = cauchy_stress(solid.D, gradient(basis, u_Ai), specimen.system.kinematics)
+    stress_eq = np.tensordot(np.outer(pose.axes_kI[0], pose.axes_kI[0]), sigma, axes=2)
+    X_eqI, u_eqi = pose.own(basis.X_eqI), pose.components(u_eqi)
+    return X_eqI.reshape(*shape, 2), u_eqi.reshape(*shape, 2), stress_eq.reshape(shape)

@@ -66,6 +66,11 @@ class Specimen:
         )
 
     @cached_property
+    def sampled(self) -> tuple[Solid, ...]:
+        """All blocks on a grid of points an element, for pictures."""
+        return joined([solid for body in self.bodies for solid in body.sampled])
+
+    @cached_property
     def face_row(self) -> np.ndarray:
         """Row (n_dof,) of the mean displacement of the upper body's loaded face along the specimen."""
         return mean_row(self.bodies[0].face(self.loaded[0]), self.pose.axes_kI[0], self.system.n_dof)
