@@ -78,31 +78,30 @@ def settled_step(
     """
     (p0_q, dp0_q), g0_q = tangents, touch.g_q + touch.rates(plain_d[:-1])
     n_dof, most = plain_d.size - 1, ENTRIES // plain_d.size
-    most, few = most if n_dof <= SMALL else min(MOST, most), n_dof <= MOST  # few: for all of them, from the start
-    points = np.arange(g0_q.size if few else 0)
-    parts_rm = touch.rows(points, n_dof) * interface.dA_q[points] if few else np.zeros((0, 0))
-    steps_dr = system.solve(np.eye(n_dof)) if few else np.zeros((plain_d.size, 0))
-    felt_mr, w_m, z_r = touch.rates(steps_dr[:-1], points), np.zeros(points.size), np.zeros(len(parts_rm))
+    most, every = most if n_dof <= SMALL else min(MOST, most), n_dof <= MOST  # every: for all points, from the start
+    points = np.arange(g0_q.size if every else 0)
+    parts_rm = touch.rows(points, n_dof) * interface.dA_q[points] if every else np.zeros((0, 0))
+    steps_dr = system.solve(np.eye(n_dof)) if every else np.zeros((plain_d.size, 0))
+    felt_mr, told_q, z_r = touch.rates(steps_dr[:-1], points), np.zeros(g0_q.size), np.zeros(len(parts_rm))
     g_q, guessed = (g0_q, False) if guess_q is None else (guess_q, True)
     for correction in range(1, CORRECTIONS + 1):
         p_q, dp_q = law(g_q)
         w_q = p_q - p0_q - dp0_q * (g_q - touch.g_q)
-        left_q = w_q.copy()
-        left_q[points] -= w_m
-        leaving_q = np.abs(left_q) > AGREED * np.abs(p_q).max()
-        if not (guessed or leaving_q.any()):
+        left_q, nothing = np.abs(w_q - told_q), AGREED * np.abs(p_q).max()
+        if not guessed and left_q.max() <= nothing:
             return plain_d - steps_dr @ z_r
-        leaving_q[points] = False
-        new = leaving_q.nonzero()[0]
-        if new.size:
-            if points.size + new.size > SHARING * most:
-                return None
-            pulls_dr, more_rm = _spanned(touch.rows(new, n_dof) * interface.dA_q[new])
-            if parts_rm.shape[0] + pulls_dr.shape[1] > most:
-                return None
-            points, parts_rm = np.append(points, new), _beside(parts_rm, more_rm)
-            steps_dr = np.concatenate([steps_dr, system.solve(pulls_dr)], axis=1)
-            felt_mr = touch.rates(steps_dr[:-1], points)
+        if not every:
+            left_q[points] = 0.0
+            new = (left_q > nothing).nonzero()[0]
+            if new.size:
+                if points.size + new.size > SHARING * most:
+                    return None
+                pulls_dr, more_rm = _spanned(touch.rows(new, n_dof) * interface.dA_q[new])
+                if parts_rm.shape[0] + pulls_dr.shape[1] > most:
+                    return None
+                points, parts_rm = np.append(points, new), _beside(parts_rm, more_rm)
+                steps_dr = np.concatenate([steps_dr, system.solve(pulls_dr)], axis=1)
+                felt_mr = touch.rates(steps_dr[:-1], points)
         # of the tractions only what the pulls feel is unknown: z = P w
         slope, w = (dp_q - dp0_q)[points], w_q[points]
         bent = slope.nonzero()[0]
@@ -113,7 +112,7 @@ def settled_step(
             if failed:  # just as soft as the specimen is stiff
                 return None
         next_q = g0_q - touch.rates(steps_dr[:-1] @ z_r)
-        w_m, guessed = w + slope * (next_q - g_q)[points], correction % ROUND == 0
+        told_q[points], guessed = w + slope * (next_q - g_q)[points], correction % ROUND == 0
         g_q = 0.5 * (g_q + next_q) if guessed else next_q
     return None
 

@@ -160,7 +160,7 @@ class System:
         The last answer is kept: the points change sides seldom.
         """
         kept = self.__dict__.get("_pattern")
-        if kept is None or not np.array_equal(kept.dof_qd, dof_qd):
+        if kept is None or not (kept.dof_qd is dof_qd or np.array_equal(kept.dof_qd, dof_qd)):
             conns = () if self.kinematics == "linear" else self.connectivity
             kept = pattern_of(self.band, dof_qd, self.spring_entries[:2], self.loaded, conns, kept)
             self.__dict__["_pattern"] = kept
@@ -270,8 +270,11 @@ def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np
 
 def _pattern(system: System, response: Response) -> Pattern:
     """An open crack asks for no entries in the matrix, however far it has moved."""
+    touched_qd, reference_qd = response.contact.dof_qd, system.reference_dof_qd
+    if touched_qd is reference_qd:  # partners stay
+        return system.pattern(reference_qd)
     carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
-    return system.pattern(np.where(carries_q[:, None], response.contact.dof_qd, system.reference_dof_qd))
+    return system.pattern(np.where(carries_q[:, None], touched_qd, reference_qd))
 
 
 def _bulk_stiffness(system: System, gradients: Sequence[np.ndarray]) -> list[np.ndarray]:
