@@ -138,7 +138,7 @@ class BilinearLaw(TractionLaw):
     def work(self, k: np.ndarray) -> np.ndarray:
         """Integral of the envelope from 0 to k >= 0; G_Ic from g_u on."""
         rising = 0.5 * self.stiffness * np.minimum(k, self.g_max) ** 2
-        k = np.clip(k, self.g_max, self.g_u)
+        k = np.minimum(np.maximum(k, self.g_max), self.g_u)
         return rising + 0.5 * (self.strength + self.envelope(k)) * (k - self.g_max)
 
 

@@ -76,13 +76,15 @@ def condensed(system: System) -> Condensed | None:
     free = np.flatnonzero(system.free_d)
     # rows as large as the stiffness: else the forces lose half of their digits to it
     size = max(float(np.abs(K).max()) for K in system.linear_matrices)
+    saddle, place = _saddle(system, size * B_rd)
     try:
-        lu = splu(_saddle(system, size * B_rd, free))
+        lu = splu(saddle, permc_spec="NATURAL")
     except RuntimeError:  # rows that say the same twice
         return None
-    U_dr = np.zeros((system.n_dof, n_r))
-    found = lu.solve(np.concatenate([np.zeros((free.size, n_r)), size * np.eye(n_r)]))
-    U_dr[free], S_rr = found[: free.size], -size * found[free.size :]
+    held, given_r, U_dr = place[system.n_dof :], np.zeros((saddle.shape[0], n_r)), np.zeros((system.n_dof, n_r))
+    given_r[held, np.arange(n_r)] = size
+    found = lu.solve(given_r)
+    U_dr[free], S_rr = found[place[free]], -size * found[held]
     # rigid motions ask for no force: said once more, rounding of the solution does not come into the balance of forces
     rigid_dm = _mechanisms(system)
     y_rm, triangle = np.linalg.qr(B_rd @ rigid_dm)
@@ -210,21 +212,28 @@ def _bodies(system: System) -> tuple[int, np.ndarray]:
     return int(ends.sum()), np.repeat(np.cumsum(ends) - ends, 2)
 
 
-def _saddle(system: System, B_rd: coo_array, free: np.ndarray) -> csc_array:
-    """``[K B'; B 0]`` over the free unknowns and the multipliers, K with its springs."""
-    n, springs_rd = free.size + B_rd.shape[0], system.springs_rd
-    place = np.full(system.n_dof, -1, dtype=np.int32)
-    place[free] = np.arange(free.size)
+def _saddle(system: System, B_rd: coo_array) -> tuple[csc_array, np.ndarray]:
+    """``[K B'; B 0]`` over the free unknowns and the multipliers, K with its springs; and the equation of each of both.
+
+    All are numbered along the specimen, each multiplier after what its row holds: that fills in less than orders that
+    know nothing of the pivots (at 6,500 equations of T-splines a third of the entries, and 15 times faster).
+    """
+    n_dof, springs_rd, (row, column) = system.n_dof, system.springs_rd, B_rd.coords
+    x_m = np.concatenate([system.x_d, np.full(B_rd.shape[0], -np.inf)])
+    np.maximum.at(x_m, n_dof + row, system.x_d[column])
+    there = np.concatenate([np.flatnonzero(system.free_d), np.arange(n_dof, x_m.size)])
+    place = np.full(x_m.size, -1, dtype=np.int32)
+    place[there[np.argsort(x_m[there], kind="stable")]] = np.arange(there.size)
     held = np.flatnonzero(springs_rd.any(axis=0))
     blocks = [*zip(system.element_dofs, system.linear_matrices, strict=True)]
     blocks.append((held[None], (springs_rd[:, held].T @ (system.spring_r[:, None] * springs_rd[:, held]))[None]))
-    row, column = (free.size + B_rd.coords[0]).astype(np.int32), place[B_rd.coords[1]]
+    row, column = place[n_dof + row], place[column]
     entries = [(row, column, B_rd.data), (column, row, B_rd.data)]
     for d, K in blocks:
         at = place[d]
         entries.append((*(np.broadcast_to(v, K.shape).ravel() for v in (at[:, :, None], at[:, None])), K.ravel()))
     i, j, values = (np.concatenate(parts) for parts in zip(*entries, strict=True))
-    if free.size < system.n_dof:
-        there = (i >= 0) & (j >= 0)
-        i, j, values = i[there], j[there], values[there]
-    return coo_array((values, (i, j)), shape=(n, n)).tocsc()
+    if there.size < x_m.size:
+        free = (i >= 0) & (j >= 0)
+        i, j, values = i[free], j[free], values[free]
+    return coo_array((values, (i, j)), shape=(there.size,) * 2).tocsc(), place

@@ -104,8 +104,8 @@ class Pace:
             return self
         moved = end.opening - start.opening
         bend = abs(end.state.load - start.state.load - start.slope * moved) / (self.bend * peak)
-        grown = abs(moved) * float(np.clip(bend**-0.5 if bend > 0.0 else 2.0, 0.5, 2.0))
-        step = float(np.clip(grown, SMALLEST * self.largest, self.largest))
+        grown = abs(moved) * max(min(bend**-0.5, 2.0), 0.5) if bend > 0.0 else 2.0 * abs(moved)
+        step = min(max(grown, SMALLEST * self.largest), self.largest)
         return replace(self, step=step, spared=min(self.spared + 1, SPARED))
 
 
