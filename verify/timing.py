@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import resource
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from time import perf_counter
 
 #: Phases in the order of a run.
@@ -55,6 +57,16 @@ class Stopwatch:
 
 
 def peak_memory_mb() -> float:
-    """Largest resident size of this process so far, in megabytes (1e6 bytes)."""
-    unit = 1 if sys.platform == "darwin" else 1024  # getrusage(2): bytes there, kilobytes elsewhere
+    """Largest resident size of this process so far, in megabytes (1e6 bytes).
+
+    On Linux getrusage(2) counts in what the process that started this one had then, however much; proc(5) does not.
+    """
+    try:
+        status = Path("/proc/self/status").read_text()
+    except OSError:
+        status = ""
+    own = re.search(r"^VmHWM:\s*(\d+) kB$", status, re.MULTILINE)
+    if own:
+        return int(own[1]) * 1024 / 1e6
+    unit = 1 if sys.platform == "darwin" else 1024  # bytes there, kilobytes elsewhere
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6

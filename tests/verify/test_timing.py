@@ -1,0 +1,40 @@
+"""How much memory a process took."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from verify import timing
+from verify.timing import peak_memory_mb
+
+#: Size of an array that is held here, in megabytes.
+HELD = 200.0
+
+
+def test_the_peak_is_this_process_s_own() -> None:
+    """Not that of the one that started it, which a process inherits in ru_maxrss."""
+    held = np.ones(int(HELD * 1e6) // 8)
+    asked = [sys.executable, "-c", "from verify.timing import peak_memory_mb; print(peak_memory_mb())"]
+    said = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
+    assert 1.0 < float(said) < HELD < held.nbytes / 1e6 + 1.0 <= peak_memory_mb() + 1.0
+
+
+def test_the_peak_stays_when_memory_is_freed() -> None:
+    before = peak_memory_mb()
+    np.ones(int((before + HELD) * 1e6) // 8)
+    assert peak_memory_mb() >= before + HELD
+
+
+def test_without_proc_the_peak_is_that_of_getrusage(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(_path: object) -> str:
+        raise FileNotFoundError
+
+    monkeypatch.setattr(timing.Path, "read_text", missing)
+    known = timing.resource.getrusage(timing.resource.RUSAGE_SELF).ru_maxrss
+    for platform, unit in (("linux", 1024), ("darwin", 1)):
+        monkeypatch.setattr(timing.sys, "platform", platform)
+        assert peak_memory_mb() == pytest.approx(known * unit / 1e6, rel=0.01)
