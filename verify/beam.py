@@ -16,15 +16,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import nan
 
 import numpy as np
 
 from verify.arm import SHEAR_CORRECTION, Arm
 from verify.equilibrium import Model, intact
-from verify.front import SEPARATED, Pace, follow
+from verify.front import SEPARATED, UNEQUAL, Pace, follow
 from verify.law import Bilinear
 from verify.layer import Layer
-from verify.rows import Units, row, snapshot
+from verify.rows import Units, row, snapshot, unloaded
 from verify.strip import Strip
 from verify.zones import Ends, Foundation
 
@@ -120,6 +121,9 @@ def solve(problem: BeamProblem, on_step: Callable[[Mapping[str, float]], None] |
     """
     m, end, units = model(problem), problem.end, Units.of(problem)
     first = intact(m)
+    if first is None:
+        status = f"stopped: the zones of contact of the undamaged arm were not found; {UNEQUAL}"
+        return Solution((unloaded(m, units, nan),), status, ())
     rows, snapshots, wanted = [row(units, m, first, None)], [], sorted(problem.snapshot_openings)
     pace = Pace(units.deflection(end), units.reference_load, 2.0 / problem.points)
     path, status, rejected = follow(m, first, pace), "", 0

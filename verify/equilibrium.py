@@ -15,6 +15,10 @@ TOLERANCE = 1e-11
 ELSEWHERE = 1e-7
 MAX_ITERATIONS = 40
 
+#: The same where nothing shorter can be tried: contact much softer or stiffer than the bond has far waves that move on
+#: by a little each time (up to 75 iterations were seen).
+PATIENT = 200
+
 
 @dataclass(frozen=True)
 class Model:
@@ -65,17 +69,17 @@ def controlled(m: Model, y: np.ndarray, at: float) -> tuple[float, np.ndarray]:
     return float(y[V]), np.eye(m.arm.states)[V]
 
 
-def settle(m: Model, guess: Field, zones: Zones, control: Control) -> State | None:
-    """Newton on the states and on the ends of the zones, or None where it does not converge."""
+def settle(m: Model, guess: Field, zones: Zones, control: Control, most: int = MAX_ITERATIONS) -> State | None:
+    """Newton on the states and on the ends of the zones, or None where it does not converge in ``most`` iterations."""
     with np.errstate(over="ignore", invalid="ignore"):
         try:
-            return _newton(m, guess, zones, control)
-        except np.linalg.LinAlgError:
+            return _newton(m, guess, zones, control, most)
+        except (np.linalg.LinAlgError, ValueError):  # singular, or beyond all numbers
             return None
 
 
-def _newton(m: Model, field: Field, zones: Zones, control: Control) -> State | None:
-    for iteration in range(1, MAX_ITERATIONS + 1):
+def _newton(m: Model, field: Field, zones: Zones, control: Control, most: int) -> State | None:
+    for iteration in range(1, most + 1):
         x, kind = mesh(m.arm, m.base, zones, peak_force(field))
         field = field.on(x)
         linear = linearise(field, *m.arm.rates(field.stage, m.base.on[kind][:, None]))
@@ -115,21 +119,21 @@ def resettle(m: Model, state: State, guess: Field, control: Control) -> State | 
     return settle(m, guess, find(m.arm, m.base, guess, state.kind, m.ends, control.front), control)
 
 
-def intact(m: Model) -> State:
-    """The elastic state in which the end of the precrack is about to be damaged, for linear kinematics.
+def intact(m: Model) -> State | None:
+    """The elastic state in which the end of the precrack is about to be damaged, for linear kinematics; or None.
 
-    The penalty is raised tenfold a time, from the stiffness of the open side, so that the zones of contact are found
-    however stiff it is.
+    The penalty goes tenfold a time from the stiffness of the open side to its own, so that the zones of contact are
+    found however stiff or soft it is.
     """
     elastic, penalty = m.base.k[[ELASTIC, CONTACT]]
-    n = max(0, int(np.ceil(np.log10(penalty / elastic)))) if penalty > elastic else 0
+    n = int(np.ceil(abs(np.log10(penalty / elastic)))) if penalty > 0.0 else 0
     field = Field.zero(np.array([0.0, m.ends.length]), m.arm.states)
     precrack, zones = m.ends.precrack, m.ends.untouched()
     for stiffness in np.geomspace(elastic, penalty, n + 1) if n else [penalty]:
         part = replace(m, arm=m.arm.linear(), base=m.base.closing(stiffness))
-        found = settle(part, field, zones, Control(precrack, m.base.v_peak, precrack))
+        found = settle(part, field, zones, Control(precrack, m.base.v_peak, precrack), PATIENT)
         if found is None:
-            raise ArithmeticError("the zones of contact of the undamaged arm were not found")
+            return None
         state = found
         field, zones = state.field, find(part.arm, part.base, state.field, state.kind, m.ends, precrack)
     return state

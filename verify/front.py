@@ -19,6 +19,9 @@ SMALLEST_STEP = 1e-7
 #: down to this part of the largest and falls on as it opens: a strip goes on turning about its last bit for long.
 LITTLE = 1e-3
 
+#: What is amiss where the undamaged arm has no solution that can be found.
+UNEQUAL = "the bond is far stiffer or softer than the arm (interface.strength, ductility, penalty)"
+
 #: How a path ends that has come there.
 SEPARATED = "separated"
 
@@ -51,8 +54,11 @@ class Pace:
 def follow(m: Model, elastic: State, pace: Pace) -> Iterator[State | str | None]:
     """The converged states in order, None for a step that was halved, and at last how it ended."""
     state = elastic
-    for state in _undamaged(m, elastic, pace):
-        yield state
+    for found in _undamaged(m, elastic, pace):
+        yield found
+        if isinstance(found, str):
+            return
+        state = found
     largest, peak = np.inf, 0.0
     while not _reached(state, pace):
         load, bond = -state.field.node[0, FORCE], m.ends.length - m.ends.precrack
@@ -83,8 +89,8 @@ def _reached(state: State, pace: Pace) -> bool:
     return bool(state.field.node[0, V] >= pace.end * (1.0 - 1e-12))
 
 
-def _undamaged(m: Model, elastic: State, pace: Pace) -> Iterator[State]:
-    """Elastic states up to the onset of damage, or to the end of the programme."""
+def _undamaged(m: Model, elastic: State, pace: Pace) -> Iterator[State | str]:
+    """Elastic states up to the onset of damage, or to the end of the programme, or to where one is not found."""
     n = int(np.ceil(np.hypot(*pace.rate(elastic.field)) / pace.stride)) + 3
     state = elastic
     for share in np.linspace(0.0, 1.0, n + 1)[1:]:
@@ -94,7 +100,8 @@ def _undamaged(m: Model, elastic: State, pace: Pace) -> Iterator[State]:
         if found is not None and found.field.node[0, V] > pace.end:
             found = resettle(m, found, found.field, Control(0.0, pace.end, m.ends.precrack))
         if found is None:
-            raise ArithmeticError("the undamaged arm was not solved")
+            yield f"stopped: the undamaged arm was not solved; {UNEQUAL}"
+            return
         state = found
         yield state
         if _reached(state, pace):

@@ -61,7 +61,7 @@ def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None
     """
     slope = float(-state.tangent.node[0, FORCE] / (units.arms * units.h * state.tangent.node[0, V])) * units.force
     if before is None:
-        return _unloaded(m, units, slope)
+        return unloaded(m, units, slope)
     field, kind, h = state.field, state.kind, units.h
     first = field.node[0]
     rate = float(m.arm.rates(first, np.zeros(3))[0][V])
@@ -92,7 +92,8 @@ def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None
     }
 
 
-def _unloaded(m: Model, units: Units, slope: float) -> dict[str, float]:
+def unloaded(m: Model, units: Units, slope: float) -> dict[str, float]:
+    """The row of the specimen before it is loaded, with the slope of its path there."""
     names = (
         "opening",
         "load",

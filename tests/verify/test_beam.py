@@ -9,7 +9,7 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from verify import front
+from verify import equilibrium, front
 from verify.arm import Arm
 from verify.beam import BeamProblem, solve
 from verify.curve import curve_error, hermite, load_at, peak
@@ -279,6 +279,7 @@ def test_width_scales_the_load():
         {"penalty": 1e2},
         {"penalty": 1e6},
         {"penalty": 1e8},
+        {"strength": 17783.0},
         {"arm_thickness": 0.014},
         {"precrack": 0.3},
         {"kinematics": "finite", "strength": 40.0},
@@ -290,6 +291,13 @@ def test_hard_cases_complete(changes):
     problem = replace(SHORT, **changes)
     assert solved(problem).status == "complete" and ledger_error(problem) < 1e-5
     assert steps(problem)["opening"][-1] == pytest.approx(1.0, rel=1e-12)
+
+
+def test_an_arm_whose_zones_are_not_found_stops_with_what_to_change(monkeypatch):
+    monkeypatch.setattr(equilibrium, "settle", lambda *given: None)
+    found = solve(SHORT)
+    assert found.status.startswith("stopped: the zones of contact of the undamaged arm were not found")
+    assert "interface.strength" in found.status and len(found.rows) == 1 and found.rows[0]["load"] == 0.0
 
 
 def test_penalty_no_longer_matters_when_it_is_stiff():
