@@ -210,12 +210,9 @@ def _best(rows: Mapping[Try, Row], within: float = 1.0, late: float = 0.0) -> li
     chosen: dict[Try, None] = {}
     for level, error in LEVELS.items():
         for method, best in cheapest(list(rows.values()), level).of_method.items():
-            close = (
-                one
-                for one, found in rows.items()
-                if found.method == method and found.curve_error <= error and found.seconds <= within * best.seconds + late
-            )
-            chosen |= dict.fromkeys(close)
+            most = within * best.seconds + late
+            close = (one for one, found in rows.items() if found.method == method and found.seconds <= most)
+            chosen |= dict.fromkeys(one for one in close if rows[one].curve_error <= error)
     return list(chosen)
 
 
