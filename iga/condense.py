@@ -29,6 +29,8 @@ STRAIGHT = 1e-12
 ALIKE = 1e-12
 #: Part of a rigid motion below which a spring does not feel it.
 RESISTED = 1e-9
+#: Times as stiff as the stiffest element no specimen is: rows say the same twice but for rounding.
+TWICE = 1e9
 #: Work of a dense LU over that of a banded one, for matrices of equal size: n^3 2/3 against 4 n k^2.
 DENSE, BANDED = 2.0 / 3.0, 4.0
 
@@ -85,6 +87,8 @@ def condensed(system: System) -> Condensed | None:
     given_r[held, np.arange(n_r)] = size
     found = lu.solve(given_r)
     U_dr[free], S_rr = found[place[free]], -size * found[held]
+    if not np.abs(S_rr).max() < TWICE * size:  # the same, but for rounding
+        return None
     # rigid motions ask for no force: said once more, rounding of the solution does not come into the balance of forces
     rigid_dm = _mechanisms(system)
     y_rm, triangle = np.linalg.qr(B_rd @ rigid_dm)

@@ -11,7 +11,7 @@ from test_peel import PEEL
 import iga.condense
 import iga.interface
 from iga import dcb, peel
-from iga.condense import condensed
+from iga.condense import _rows, condensed
 from iga.path import follow
 from iga.point import End
 from iga.system import respond
@@ -80,6 +80,21 @@ def test_the_whole_is_in_equilibrium_where_the_condensed_system_is(name):
         assert np.linalg.norm(residual_d) < 1e-8 * answer.scale
         assert np.abs(answer.p_q - found.response.p_q).max() < 1e-6 * problem.strength
         assert whole.load_d @ found.state.u_d == pytest.approx(point.opening, rel=1e-9)
+
+
+PAIRS = {"cubic": BEAM, "quadratic": replace(BEAM, degree=2, dofs=504), "peel": STRIP}
+
+
+@pytest.mark.parametrize("problem", PAIRS.values(), ids=PAIRS)
+def test_an_opening_that_a_gap_tells_already_is_not_condensed(problem):
+    """Two rows say the same, exactly or but for rounding: then the stiffness of what is kept has no bound."""
+    system = solver(problem).build(problem).system
+    rows, small = _rows(system, system.interface.at_rest)[0].tocsr(), condensed(system)
+    stiffest = max(np.abs(K).max() for K in system.linear_matrices)
+    assert np.abs(small.system.bulk_dd).max() < 1e2 * stiffest
+    for row in (0, 7, 15):
+        same = np.asarray(rows[[row]].todense()).ravel()
+        assert condensed(replace(system, load_d=same)) is None
 
 
 def test_a_bulk_that_moves_far_or_has_too_many_partners_is_not_condensed():

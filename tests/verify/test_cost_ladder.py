@@ -186,7 +186,7 @@ def test_a_small_study_for_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     assert found["cheapest"]["0.3%"]["method"] in ("nurbs", "tspline")
     assert all(one.nonzeros > 0 for one in rows if one.measured and one.method != "beam")
     best = found["cheapest"]["1%"]["run"]
-    assert next(one.times for one in rows if one.run == best) == 3
+    assert next(one.times for one in rows if one.run == best) == study_of.TIMES
     capsys.readouterr()
     assert main(command) == 0
     assert read_csv(tmp_path / "cost.csv") == rows
