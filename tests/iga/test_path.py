@@ -1,5 +1,6 @@
 """The path as a whole: snap-backs, separation, unloading, closing; ledger, steps, and what rounding does to it."""
 
+import dataclasses
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -13,6 +14,7 @@ from specimens import PAPER
 import iga.inner
 import iga.path
 import iga.work
+from iga.cohesive import BilinearLaw
 from iga.dcb import build
 from iga.newton import DEFAULT, Newton, residual_norm
 from iga.pace import SPARED
@@ -255,6 +257,25 @@ def test_no_step_leaks_energy(basis, strength, kinematics, steps, monkeypatch):
     loose = leak()
     print(f"largest leak {guarded:.1e}, were it let pass {loose:.1e}")
     assert guarded <= iga.work.LEAK < loose
+
+
+class Rounded(BilinearLaw):
+    """The bilinear law, its energy off in the last digit, so that what is not damaged dissipates by rounding."""
+
+    def work(self, k):
+        return super().work(k) * (1.0 + 4e-16)
+
+
+def test_rounding_in_the_energies_does_not_refuse_the_step_on_which_damage_begins():
+    system = build(CZM1).system
+    law = system.interface.law
+    off = replace(system, interface=replace(system.interface, law=Rounded(**dataclasses.asdict(law))))
+    ends = {}
+    for name, tried in (("exact", system), ("off", off)):
+        *points, ends[name] = follow(tried, (0.8,), 40)
+        print(f"{name}: {len(points)} points, {ends[name].rejected} rejected")
+    assert points[1].energies.dissipated > 0.0 and points[-1].energies.dissipated > 0.1  # by rounding, and in truth
+    assert ends["off"] == ends["exact"] == End("complete", 0)
 
 
 @pytest.mark.slow

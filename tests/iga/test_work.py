@@ -48,6 +48,8 @@ LEAKS = [
     pytest.param(0.0, 0.0, 1e-6, 1e-12, True, id="nothing dissipated and energy gone"),
     pytest.param(0.0, 0.0, 1e-6, 2e-6, False, id="nothing dissipated, no more gone than rounding leaves"),
     pytest.param(0.0, 1e-5, 1e-6, 1e-12, False, id="damage has just begun"),
+    pytest.param(1e-17, 1e-5, 1e-6, 1e-12, False, id="damage has just begun, and rounding had left energy before"),
+    pytest.param(0.0, 1e-17, 1e-6, 1e-12, True, id="no damage, whatever rounding leaves"),
     pytest.param(1e-5, 2e-5, 1e-6, 1e-12, True, id="a twentieth of all that is dissipated"),
     pytest.param(1e-4, 5e-4, 4.9e-7, 1e-12, False, id="less than a thousandth of the little that is dissipated"),
     pytest.param(1e-4, 5e-4, 5.1e-7, 1e-12, True, id="more than a thousandth of the little that is dissipated"),
@@ -65,12 +67,12 @@ def test_what_a_step_may_leak(before, after, leak, left_over, refused):
         SimpleNamespace(
             external_work=work,
             energies=Energies(work - spent, 0.0, 0.0, spent),
-            state=SimpleNamespace(u_d=np.array([0.0, 2.0 * work])),
+            state=SimpleNamespace(u_d=np.array([0.0, 2.0 * work]), k_q=np.array([0.5, 2.0 if spent > 1e-15 else 0.9])),
         )
         for work, spent in ((0.0, before), (1.0, after))
     )
     for reversible in (False, True):
-        law = SimpleNamespace(irreversible=not reversible)
+        law = SimpleNamespace(irreversible=not reversible, g_max=1.0)
         system = SimpleNamespace(interface=SimpleNamespace(law=law))
         off = replace(end.energies, bulk=end.energies.bulk - leak)
         response = SimpleNamespace(scale=5.0)
