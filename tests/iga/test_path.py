@@ -452,6 +452,33 @@ def test_a_path_that_leaps_however_short_the_step_is_told_what_to_do(monkeypatch
     assert "discretization.dofs" in end.status and "tspline, nurbs" in end.status and end.rejected > 12
 
 
+@pytest.mark.parametrize(("steps", "again"), [(None, True), (60, False)])
+def test_a_shorter_step_is_foreseen_with_the_law_and_a_careful_one_along_the_tangent(steps, again, monkeypatch):
+    """What the tangent was read from is read once more where steps are chosen by accuracy; it is the same."""
+    known, refused, foresee, leaks = [], [], iga.path.foresee, iga.path.leaks
+
+    def recorded(*given):
+        known.append(given[4])
+        return foresee(*given)
+
+    def once(system, before, after, most):
+        refuse = not refused and after.tangent.growing_q.any()
+        if refuse:
+            refused.append(len(known) - 1)
+        return refuse or leaks(system, before, after, most)
+
+    monkeypatch.setattr(iga.path, "foresee", recorded)
+    monkeypatch.setattr(iga.path, "leaks", once)
+    _, points, end = run(replace(CZM1, kinematics="linear", opening=(0.5,)), steps)
+    (at,) = refused
+    first, second = known[at], known[at + 1]
+    assert end.rejected >= 1 and first is not None and (second is not None) == again
+    if again:
+        b_d = np.arange(1.0, first.response.internal_d.size + 1.0)[:, None]
+        x_d = first.inverse.solve(b_d)
+        assert np.abs(second.inverse.solve(b_d) - x_d).max() < 1e-9 * np.abs(x_d).max()
+
+
 def test_contact_too_stiff_to_be_found_is_searched_for_from_softer_on(monkeypatch):
     """Ever stiffer, each search from what the last one found but with the history of the first, the last as stiff."""
     system, asked = build(CZM1).system, []
