@@ -19,7 +19,7 @@ from iga.work import slid_off, step_work, straight_work
 #: An opening that is this part of the one before is none.
 HOME = 1e-9
 #: The front leaps where it opens by more than this part of g_u: gaps then travel rather than grow along the tangent.
-LEAP = 0.5
+LEAP = 0.1
 
 
 @dataclass(frozen=True)
