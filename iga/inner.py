@@ -22,9 +22,10 @@ from scipy.linalg.lapack import dgesv
 from iga.interface import Contact, Interface
 from iga.inverse import Inverse
 
-#: Corrections of the gaps, after how many of them one goes half way, as they may go round in circles on a law that
-#: softens, and how far tractions may be from the law, in parts of the largest.
-CORRECTIONS, ROUND, AGREED = 40, 8, 1e-12
+#: Corrections of the gaps; after how many of them every other one goes half way as long as so large a part of the
+#: traction is left, as they may go round in circles on a law that softens; and how far tractions may be from the law,
+#: in parts of the largest.
+CORRECTIONS, ROUND, LARGE, AGREED = 40, 6, 0.1, 1e-12
 #: Solutions that this may take, two tangents or so, each of which is worth 25 to 40 of them; unknowns up to which
 #: tangents are so little work that any number may be taken; numbers in all solutions, which are more work to move about
 #: than a tangent where there are more; and points that share a solution.
@@ -80,39 +81,43 @@ def settled_step(
     n_dof, most = plain_d.size - 1, ENTRIES // plain_d.size
     most, every = most if n_dof <= SMALL else min(MOST, most), n_dof <= MOST  # every: for all points, from the start
     points = np.arange(g0_q.size if every else 0)
-    parts_rm = touch.rows(points, n_dof) * interface.dA_q[points] if every else np.zeros((0, 0))
+    at = slice(None) if every else points
+    parts_mr = touch.rows(points, n_dof).T * interface.dA_q[points, None] if every else np.zeros((0, 0))
     steps_dr = system.solve(np.eye(n_dof)) if every else np.zeros((plain_d.size, 0))
-    felt_mr, told_q, z_r = touch.rates(steps_dr[:-1], points), np.zeros(g0_q.size), np.zeros(len(parts_rm))
+    felt_mr, told_q, z_r = touch.rates(steps_dr[:-1], at), np.zeros(g0_q.size), np.zeros(parts_mr.shape[1])
     g_q, guessed = (g0_q, False) if guess_q is None else (guess_q, True)
     for correction in range(1, CORRECTIONS + 1):
         p_q, dp_q = law(g_q)
-        w_q = p_q - p0_q - dp0_q * (g_q - touch.g_q)
-        left_q, nothing = np.abs(w_q - told_q), AGREED * np.abs(p_q).max()
-        if not guessed and left_q.max() <= nothing:
+        w_q, slope_q = p_q - p0_q - dp0_q * (g_q - touch.g_q), dp_q - dp0_q
+        left_q, largest = np.abs(w_q - told_q), np.abs(p_q).max()
+        left = left_q.max()
+        if not guessed and left <= AGREED * largest:
             return plain_d - steps_dr @ z_r
         if not every:
             left_q[points] = 0.0
-            new = (left_q > nothing).nonzero()[0]
+            new = (left_q > AGREED * largest).nonzero()[0]
             if new.size:
                 if points.size + new.size > SHARING * most:
                     return None
                 pulls_dr, more_rm = _spanned(touch.rows(new, n_dof) * interface.dA_q[new])
-                if parts_rm.shape[0] + pulls_dr.shape[1] > most:
+                if parts_mr.shape[1] + pulls_dr.shape[1] > most:
                     return None
-                points, parts_rm = np.append(points, new), _beside(parts_rm, more_rm)
-                steps_dr = np.concatenate([steps_dr, system.solve(pulls_dr)], axis=1)
+                points, parts_mr = np.append(points, new), _beside(parts_mr, more_rm.T)
+                steps_dr, at = np.concatenate([steps_dr, system.solve(pulls_dr)], axis=1), points
                 felt_mr = touch.rates(steps_dr[:-1], points)
         # of the tractions only what the pulls feel is unknown: z = P w
-        slope, w = (dp_q - dp0_q)[points], w_q[points]
+        slope, w = slope_q[at], w_q[at]
         bent = slope.nonzero()[0]
-        matrix_rr = (parts_rm[:, bent] * slope[bent]) @ felt_mr[bent]
-        matrix_rr.flat[:: len(matrix_rr) + 1] += 1.0
-        if len(matrix_rr):  # a guess may have all points on their tangents
-            _, _, z_r, failed = dgesv(matrix_rr, parts_rm @ (w + slope * (g0_q - g_q)[points]))
+        transposed_rr = felt_mr[bent].T @ (slope[bent, None] * parts_mr[bent])
+        transposed_rr.flat[:: len(transposed_rr) + 1] += 1.0
+        if len(transposed_rr):  # a guess may have all points on their tangents
+            pull_r = (w + slope * (g0_q - g_q)[at]) @ parts_mr
+            _, _, z_r, failed = dgesv(transposed_rr.T, pull_r, overwrite_a=True, overwrite_b=True)
             if failed:  # just as soft as the specimen is stiff
                 return None
-        next_q = g0_q - touch.rates(steps_dr[:-1] @ z_r)
-        told_q[points], guessed = w + slope * (next_q - g_q)[points], correction % ROUND == 0
+        next_q = g0_q - (felt_mr @ z_r if every else touch.rates(steps_dr[:-1] @ z_r))
+        told_q[at] = w + slope * (next_q - g_q)[at]
+        guessed = not guessed and correction >= ROUND and left > LARGE * largest
         g_q = 0.5 * (g_q + next_q) if guessed else next_q
     return None
 
