@@ -129,12 +129,14 @@ class BilinearLaw(TractionLaw):
 
     def envelope(self, k: np.ndarray) -> np.ndarray:
         """Traction on first loading to the opening k >= 0."""
-        softening = self.strength * (self.g_u - k) / (self.g_u - self.g_max)
-        # the lower one of both would do, but for the last digit of the secant of an undamaged point
-        return np.where(k <= self.g_max, self.stiffness * k, np.maximum(softening, 0.0))
+        return np.minimum(self.stiffness * k, np.maximum(self.softening(k) * (k - self.g_u), 0.0))
 
     def softening(self, k: np.ndarray) -> float:
         """Slope of the line."""
+        return self._slope
+
+    @cached_property
+    def _slope(self) -> float:
         return -self.strength / (self.g_u - self.g_max)
 
     def work(self, k: np.ndarray) -> np.ndarray:
