@@ -61,7 +61,8 @@ def finite_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
 
 def small_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Linear kinematics: the same with E replaced by the symmetric gradient and no geometric stiffness."""
-    E_v = np.stack([H[0, 0], H[1, 1], H[0, 1] + H[1, 0]])
+    E_v = np.empty((3, *H.shape[2:]))
+    E_v[0], E_v[1], E_v[2] = H[0, 0], H[1, 1], H[0, 1] + H[1, 0]
     S_v = (D @ E_v.reshape(3, -1)).reshape(E_v.shape)
     return S_v[np.array(VOIGT)], 0.5 * (S_v * E_v).sum(0)
 

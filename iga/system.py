@@ -137,6 +137,11 @@ class System:
         return element_sums(self.connectivity, self.band) @ element_values(self.unloaded_stiffness)
 
     @cached_property
+    def bulk_squares_d(self) -> np.ndarray:
+        """Sums (n_dof,) of the squares of the columns of a condensed stiffness."""
+        return np.sum(np.asarray(self.bulk_dd) ** 2, axis=0)
+
+    @cached_property
     def spring_entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rows, columns and values that the springs add to the lower half of the tangent."""
         return spring_entries(self.springs_rd, self.spring_r)
@@ -210,13 +215,13 @@ def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, fl
 def _condensed_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
     """A force that rounding hides is none: the scale is at least that for which `Newton` would ask no more."""
     internal_d = system.bulk_dd @ u_d
-    scale = max(float(np.linalg.norm(internal_d)), HIDDEN * _held(system, u_d))
+    scale = max(float(internal_d @ internal_d) ** 0.5, HIDDEN * _held(system, u_d))
     return internal_d, scale, 0.5 * float(u_d @ internal_d), ()
 
 
 def _held(system: System, u_d: np.ndarray) -> float:
     """Norm of the forces that the unknowns hold against each other."""
-    return float(np.linalg.norm(system.bulk_dd * u_d))
+    return float(system.bulk_squares_d @ u_d**2) ** 0.5
 
 
 def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.ndarray:
