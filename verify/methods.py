@@ -158,9 +158,9 @@ def least_dofs(method: str, degree: int) -> int:
 
 def _iga(scene: Scene, method: str, on_step: OnStep, on_frame: OnFrame | None) -> Result:
     solver, problem = iga_problem(scene, method)
-    watch = Stopwatch()
     if problem.steps is None and not _smooth(scene, method):
         problem = replace(problem, steps=STEPS)
+    watch = Stopwatch()
     return _result(method, solver.solve(problem, on_step, watch.phase, on_frame), watch)
 
 
