@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -15,25 +16,33 @@ from iga.surface import Surface, surface
 
 #: Intervals between samples along each direction of an element.
 SAMPLES = 3
+#: Part of a body's size by which it may differ from another one moved, by rounding.
+ALIKE = 1e-14
 
 
 @dataclass(frozen=True)
 class Body:
-    """A mesh in place whose control points are numbered from ``first`` on in the whole model."""
+    """A mesh in place whose control points are numbered from ``first`` on in the whole model.
+
+    A body that is another one moved tells this one as its ``original``, whose bases it takes over.
+    """
 
     mesh: Mesh
     first: int
     solids: tuple[Solid, ...]
     D: np.ndarray
+    original: Body | None = None
 
     @property
     def points(self) -> slice:
         """Its control points."""
         return slice(self.first, self.first + len(self.mesh.P_AI))
 
-    @property
+    @cached_property
     def sampled(self) -> tuple[Solid, ...]:
         """The blocks on a grid of points an element, for pictures."""
+        if self.original is not None:
+            return tuple(Solid(self._moved(solid.basis), self.D) for solid in self.original.sampled)
         t, s = np.meshgrid(*[np.linspace(0.0, 1.0, SAMPLES + 1)] * 2, indexing="ij")
         points_q = np.stack([s.ravel(), t.ravel()], -1)
         grids = (block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)
@@ -45,11 +54,18 @@ class Body:
         The ends "left" and "right" are told as they were before the specimen was put in place.
         """
         made = self.__dict__.setdefault("_faces", {})
-        if name not in made:
+        if name not in made and self.original is not None:
+            made[name] = tuple(self._moved(basis) for basis in self.original.face(name))
+        elif name not in made:
             through = gauss(max(block.degrees[1] for block in self.mesh.blocks) + 1)
             sides = chain_basis(self.mesh, self.mesh.chains[name], *through)
             made[name] = tuple(_numbered(basis, self.first) for basis in sides)
         return made[name]
+
+    def _moved(self, basis: BlockBasis) -> BlockBasis:
+        """A basis of the original here: functions and gradients do not know where they are."""
+        by = self.mesh.P_AI[0] - self.original.mesh.P_AI[0]
+        return replace(basis, conn_ea=basis.conn_ea + (self.first - self.original.first), X_eqI=basis.X_eqI + by)
 
     def surface(self, name: str) -> Surface:
         """The surface of one of the mesh's chains, made when it is first asked for."""
@@ -67,11 +83,26 @@ def bodies(
     ``smooth`` says that the basis is more than continuous along the specimen: then p Gauss points that way (two at
     least) keep the order (Ciarlet 1978, sec. 4.1); on C^0 elements they would leave spurious modes.
     """
-    first = np.cumsum([0] + [len(mesh.P_AI) for mesh in meshes])
-    return tuple(
-        _body(pose.placed(mesh), int(start), pose.turned(D), width, smooth)
-        for mesh, start, D in zip(meshes, first[:-1], elasticity, strict=True)
-    )
+    made: list[Body] = []
+    for number, (mesh, D) in enumerate(zip(meshes, elasticity, strict=True)):
+        first = sum(len(body.mesh.P_AI) for body in made)
+        same = (other for other in range(number) if elasticity[other] is D and _alike(meshes[other], mesh))
+        other = next(same, None)
+        if other is None:
+            made.append(_body(pose.placed(mesh), first, pose.turned(D), width, smooth))
+        else:
+            original = made[other]
+            bare = Body(pose.placed(mesh), first, (), original.D, original)
+            made.append(replace(bare, solids=tuple(Solid(bare._moved(s.basis), s.D) for s in original.solids)))
+    return tuple(made)
+
+
+def _alike(a: Mesh, b: Mesh) -> bool:
+    """Whether two meshes are one, moved: they share what they are made of."""
+    if a.blocks is not b.blocks or a.chains is not b.chains or a.w_A is not b.w_A:
+        return False
+    apart_AI = b.P_AI - a.P_AI
+    return bool(np.abs(apart_AI - apart_AI[0]).max() <= ALIKE * np.ptp(a.P_AI, axis=0).max())
 
 
 def _body(mesh: Mesh, first: int, D: np.ndarray, width: float, smooth: bool) -> Body:

@@ -22,7 +22,8 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
     system, state, response = specimen.system, point.state, point.response
     interface = system.interface
     (s, order), bonded_q = specimen.ordered, True if interface.bonded_q is None else interface.bonded_q
-    grids = [_grid(specimen, solid, state.u_d.reshape(-1, 2)) for solid in specimen.sampled]
+    u_Ai, sampled = state.u_d.reshape(-1, 2), zip(specimen.sampled, specimen.sampled_places, strict=True)
+    grids = [_grid(specimen, solid, X_eqi, u_Ai) for solid, X_eqi in sampled]
     X, u, stress = (np.concatenate([grid[i] for grid in grids]) for i in range(3))
     return {
         "opening": point.opening,
@@ -50,10 +51,11 @@ def _tmesh(specimen: Specimen) -> dict[str, np.ndarray]:
     }
 
 
-def _grid(specimen: Specimen, solid: Solid, u_Ai: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _grid(
+    specimen: Specimen, solid: Solid, X_eqi: np.ndarray, u_Ai: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     basis, pose, shape = solid.basis, specimen.pose, (-1, SAMPLES + 1, SAMPLES + 1)
-    u_eqi = basis.N_eqa @ u_Ai[basis.conn_ea]
+    u_eqi = pose.components(basis.N_eqa @ u_Ai.take(basis.conn_ea, axis=0))
     sigma = cauchy_stress(solid.D, gradient(basis, u_Ai), specimen.system.kinematics)
-    stress_eq = np.tensordot(np.outer(pose.axes_kI[0], pose.axes_kI[0]), sigma, axes=2)
-    X_eqI, u_eqi = pose.own(basis.X_eqI), pose.components(u_eqi)
-    return X_eqI.reshape(*shape, 2), u_eqi.reshape(*shape, 2), stress_eq.reshape(shape)
+    stress = np.outer(pose.axes_kI[0], pose.axes_kI[0]).ravel() @ sigma.reshape(4, -1)
+    return X_eqi.reshape(*shape, 2), u_eqi.reshape(*shape, 2), stress.reshape(shape)

@@ -144,6 +144,10 @@ class Contact:
         G_qd, v_qd = self.V_qrd[q, 0], v_d.take(self.dof_qd[q], axis=0)
         return np.sum(G_qd * v_qd, axis=1) if v_d.ndim == 1 else (G_qd[:, None] @ v_qd)[:, 0]
 
+    def gaps(self, u_d: np.ndarray) -> np.ndarray:
+        """Gaps (n_q,) after displacements u_d (n_dof,) from here, where the rows hold for good."""
+        return self.g_q + self.rates(u_d)
+
     def rows(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
         """Gradients (n_dof, n_m) of the gaps at some points."""
         if self.full_qd is not None:
@@ -160,7 +164,7 @@ class Contact:
 def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Contact:
     """Gaps in the configuration u_d (2 n_A,), searching from the pairing ``guess``."""
     if interface.at_rest is not None:
-        return replace(interface.at_rest, g_q=interface.at_rest.g_q + interface.at_rest.rates(u_d))
+        return replace(interface.at_rest, g_q=interface.at_rest.gaps(u_d))
     if interface.master is None:
         return _known(interface, u_d)
     master, u_Ai = interface.master, u_d.reshape(-1, 2)

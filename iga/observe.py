@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from iga.bulk import energy, gradient
+from iga.bulk import energy, gradient, relative
 from iga.interface import contact
 from iga.kinematics import KINEMATICS
 from iga.path import Point
@@ -65,16 +65,24 @@ def reach(specimen: Specimen, k_q: np.ndarray, limit: float) -> float:
 
 def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
     """Gaps at the tip of the bond and at its far end."""
-    start, met = specimen.probe.pairing, point.response.contact.pairing
-    if start is not None and met is not None and specimen.probe.at_rest is None:
-        start = met[specimen.beside_probe]
-    g_q = contact(specimen.probe, point.state.u_d, start).g_q
+    probe, met = specimen.probe, point.response.contact.pairing
+    if probe.at_rest is not None:
+        g_q = probe.at_rest.gaps(point.state.u_d)
+    else:
+        start = probe.pairing if probe.pairing is None or met is None else met[specimen.beside_probe]
+        g_q = contact(probe, point.state.u_d, start).g_q
     return float(g_q[0]), float(g_q[-1])
 
 
 def face_energy(specimen: Specimen, u_d: np.ndarray) -> float:
     """Strain energy on the end faces as the J-integral counts it, per unit width."""
-    stress, u_Ai = KINEMATICS[specimen.system.kinematics].stress, u_d.reshape(-1, 2)
+    kinematics, u_Ai, doubled = specimen.system.kinematics, u_d.reshape(-1, 2), 0.0
+    if kinematics == "linear":
+        for side, K in zip(specimen.energy_sides, specimen.energy_matrices, strict=True):
+            u_ed = relative(side.basis.conn_ea, u_Ai).reshape(len(K), -1, 1)
+            doubled += float(np.sum(u_ed * (K @ u_ed)))
+        return 0.5 * doubled
+    stress = KINEMATICS[kinematics].stress
     return sum(energy(side.basis, stress(side.D, gradient(side.basis, u_Ai))[1]) for side in specimen.energy_sides)
 
 

@@ -8,8 +8,10 @@ from functools import cached_property
 import numpy as np
 
 from iga.body import Body, mean_row, slope_row
+from iga.bulk import element_stiffness, full_matrices, gradient
 from iga.extraction import Mesh
 from iga.interface import Interface
+from iga.kinematics import KINEMATICS
 from iga.pose import Pose
 from iga.solid import Solid, joined
 from iga.system import System
@@ -66,9 +68,23 @@ class Specimen:
         )
 
     @cached_property
+    def energy_matrices(self) -> tuple[np.ndarray, ...]:
+        """Their stiffness (n_e, 2 n_a, 2 n_a), the sign with it, before anything moves; linear: for good."""
+        moduli, at_rest = KINEMATICS[self.system.kinematics].moduli, np.zeros((self.system.n_dof // 2, 2))
+        return tuple(
+            full_matrices(element_stiffness(side.basis, moduli(side.D, gradient(side.basis, at_rest))))
+            for side in self.energy_sides
+        )
+
+    @cached_property
     def sampled(self) -> tuple[Solid, ...]:
         """All blocks on a grid of points an element, for pictures."""
         return joined([solid for body in self.bodies for solid in body.sampled])
+
+    @cached_property
+    def sampled_places(self) -> tuple[np.ndarray, ...]:
+        """Where these points lie, (n_e, n_q, 2), in the specimen's own frame."""
+        return tuple(self.pose.own(solid.basis.X_eqI) for solid in self.sampled)
 
     @cached_property
     def face_row(self) -> np.ndarray:

@@ -95,10 +95,10 @@ def tangent(
             return None
         with phase("solve"):
             found = _along(system, response, inverse, direction, growing_q, kink)
-        least = NO_RATE * float(np.max(np.abs(found.rate_q), initial=0.0))
+        least = NO_RATE * float(np.abs(found.rate_q).max(initial=0.0))
         agreeing_q = soft_q & (found.rate_q > np.where(growing_q, -least, least)) if law.irreversible else soft_q
         touching_q = np.where(flat_q & turning, found.rate_q < 0.0, closed_q)
-        if np.array_equal(agreeing_q, growing_q) and np.array_equal(touching_q, closed_q):
+        if (agreeing_q == growing_q).all() and (touching_q == closed_q).all():
             return replace(found, agreed=True), Linearised(response, inverse)
         if attempt == 0 and turning:
             with phase("solve"):

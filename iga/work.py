@@ -113,10 +113,11 @@ def leaks(system: System, start: Point, end: Point, most: float) -> bool:
     most = max(most, abs(end.external_work))
     leak = abs(end.external_work - start.external_work - (end.energies.total - start.energies.total))
     left_over = end.residuals[-1] * end.response.scale if end.residuals else 0.0
-    leak -= left_over * float(np.linalg.norm(end.state.u_d - start.state.u_d))
+    moved_d = end.state.u_d - start.state.u_d
+    leak -= left_over * float(moved_d @ moved_d) ** 0.5
     law, after = system.interface.law, end.energies.dissipated
     # by the histories: of points without damage the energies say no more than rounding leaves of them
-    begun = bool(np.any(end.state.k_q > law.g_max)) and not np.any(start.state.k_q > law.g_max)
+    begun = start.state.k_q.max() <= law.g_max < end.state.k_q.max()
     if after >= LEAK * most or begun or not law.irreversible:
         return leak > LEAK * most
     return leak > max(LEAK_OF_DISSIPATED * after, LEAK_OF_ELASTIC * most)

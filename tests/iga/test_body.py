@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
+import iga.body
 from iga.basis import block_basis
 from iga.body import Body
 from iga.bulk import gradient
 from iga.dcb import build
 from iga.extraction import Mesh
 from iga.kinematics import KINEMATICS
+from iga.observe import face_energy
 from iga.quadrature import gauss, square
 
 LENGTH, THICKNESS = PAPER.length, PAPER.arm_thickness
@@ -76,3 +78,37 @@ def test_smooth_elements_need_a_point_less_along_the_specimen_and_keep_the_order
 def test_smooth_linear_elements_keep_two_points() -> None:
     assert along(upper(basis="nurbs", degree=1)) == {2} and along(upper(basis="nurbs", degree=2)) == {2}
     assert along(upper(basis="lagrange", degree=1)) == {2} and along(upper(basis="lagrange", degree=2)) == {3}
+
+
+ALIKE = [
+    pytest.param({}, True, id="two equal arms"),
+    pytest.param({"basis": "lagrange", "angle": 37.0, "shift": (3.0, -2.0)}, True, id="turned and moved"),
+    pytest.param({"mirror": True}, True, id="mirrored"),
+    pytest.param({"mismatch": 1.4}, False, id="other elements"),
+    pytest.param({"basis": "tspline"}, False, id="finer towards the other arm"),
+]
+
+
+@pytest.mark.parametrize(("changes", "alike"), ALIKE)
+def test_a_body_that_is_another_one_moved_has_the_bases_that_it_would_make_itself(changes, alike, monkeypatch):
+    problem = replace(PAPER, **({"basis": "nurbs", "dofs": 480} | changes))
+    _, lower = build(problem).bodies
+    assert (lower.original is not None) == alike
+    monkeypatch.setattr(iga.body, "_alike", lambda *_: False)
+    _, own = build(problem).bodies
+    pairs = [(a.basis, b.basis) for a, b in zip(lower.solids + lower.sampled, own.solids + own.sampled, strict=True)]
+    for name in ("left", "right", "top"):
+        pairs += zip(lower.face(name), own.face(name), strict=True)
+    for taken, made in pairs:
+        assert np.array_equal(taken.conn_ea, made.conn_ea)
+        for field in ("N_eqa", "dN_eqaI", "dV_eq", "X_eqI"):
+            a, b = getattr(taken, field), getattr(made, field)
+            assert np.abs(a - b).max() <= 1e-13 * np.abs(b).max()
+
+
+def test_the_energy_of_an_end_in_small_strains_is_that_of_its_stresses(rng) -> None:
+    specimen = build(replace(PAPER, basis="nurbs", kinematics="linear"))
+    u_d, law = rng.normal(size=specimen.system.n_dof), KINEMATICS["linear"]
+    ends = [(side, gradient(side.basis, u_d.reshape(-1, 2))) for side in specimen.energy_sides]
+    by_stress = sum(float(np.sum(law.stress(side.D, H)[1] * side.basis.dV_eq)) for side, H in ends)
+    assert face_energy(specimen, u_d) == pytest.approx(by_stress, rel=1e-12) and by_stress > 0.0
