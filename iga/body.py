@@ -42,7 +42,7 @@ class Body:
     def sampled(self) -> tuple[Solid, ...]:
         """The blocks on a grid of points an element, for pictures."""
         if self.original is not None:
-            return tuple(Solid(self._moved(solid.basis), self.D) for solid in self.original.sampled)
+            return tuple(Solid(self._like(self.original, solid.basis), self.D) for solid in self.original.sampled)
         t, s = np.meshgrid(*[np.linspace(0.0, 1.0, SAMPLES + 1)] * 2, indexing="ij")
         points_q = np.stack([s.ravel(), t.ravel()], -1)
         grids = (block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)
@@ -55,17 +55,17 @@ class Body:
         """
         made = self.__dict__.setdefault("_faces", {})
         if name not in made and self.original is not None:
-            made[name] = tuple(self._moved(basis) for basis in self.original.face(name))
+            made[name] = tuple(self._like(self.original, basis) for basis in self.original.face(name))
         elif name not in made:
             through = gauss(max(block.degrees[1] for block in self.mesh.blocks) + 1)
             sides = chain_basis(self.mesh, self.mesh.chains[name], *through)
             made[name] = tuple(_numbered(basis, self.first) for basis in sides)
         return made[name]
 
-    def _moved(self, basis: BlockBasis) -> BlockBasis:
+    def _like(self, original: Body, basis: BlockBasis) -> BlockBasis:
         """A basis of the original here: functions and gradients do not know where they are."""
-        by = self.mesh.P_AI[0] - self.original.mesh.P_AI[0]
-        return replace(basis, conn_ea=basis.conn_ea + (self.first - self.original.first), X_eqI=basis.X_eqI + by)
+        by = self.mesh.P_AI[0] - original.mesh.P_AI[0]
+        return replace(basis, conn_ea=basis.conn_ea + (self.first - original.first), X_eqI=basis.X_eqI + by)
 
     def surface(self, name: str) -> Surface:
         """The surface of one of the mesh's chains, made when it is first asked for."""
@@ -93,7 +93,7 @@ def bodies(
         else:
             original = made[other]
             bare = Body(pose.placed(mesh), first, (), original.D, original)
-            made.append(replace(bare, solids=tuple(Solid(bare._moved(s.basis), s.D) for s in original.solids)))
+            made.append(replace(bare, solids=tuple(Solid(bare._like(original, s.basis), s.D) for s in original.solids)))
     return tuple(made)
 
 
