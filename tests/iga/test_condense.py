@@ -85,9 +85,11 @@ def test_the_whole_is_in_equilibrium_where_the_condensed_system_is(name):
 PAIRS = {"cubic": BEAM, "quadratic": replace(BEAM, degree=2, dofs=504), "peel": STRIP}
 
 
+@pytest.mark.parametrize("narrow", [np.inf, 0.0], ids=["banded", "sparse"])
 @pytest.mark.parametrize("problem", PAIRS.values(), ids=PAIRS)
-def test_an_opening_that_a_gap_tells_already_is_not_condensed(problem):
+def test_an_opening_that_a_gap_tells_already_is_not_condensed(problem, narrow, monkeypatch):
     """Two rows say the same, exactly or but for rounding: then the stiffness of what is kept has no bound."""
+    monkeypatch.setattr(iga.condense, "NARROW", narrow)
     system = solver(problem).build(problem).system
     rows, small = _rows(system, system.interface.at_rest)[0].tocsr(), condensed(system)
     stiffest = max(np.abs(K).max() for K in system.linear_matrices)
@@ -165,3 +167,14 @@ def test_dense_equations_pay_where_they_are_less_work_than_the_band(kept, pays, 
     system = SimpleNamespace(element_dofs=(np.zeros((3, few)), np.zeros((1, 2))), free_d=np.ones(100, dtype=bool))
     system.band = SimpleNamespace(n=100, k=5 if told == "band" else 0)
     assert iga.condense._pays(system, kept) == pays
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_banded_and_a_sparse_factorisation_give_one_stiffness(name, monkeypatch):
+    system, found = solver(CASES[name]).build(CASES[name]).system, []
+    for narrow in (np.inf, 0.0):
+        monkeypatch.setattr(iga.condense, "NARROW", narrow)
+        found.append(condensed(system))
+    banded, sparse = (one.system.bulk_dd for one in found)
+    assert np.abs(banded - sparse).max() < 1e-11 * np.abs(sparse).max()
+    assert np.abs(found[0].U_dr - found[1].U_dr).max() < 1e-7 * np.abs(found[1].U_dr).max()
