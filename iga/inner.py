@@ -108,7 +108,8 @@ def settled_step(
         # of the tractions only what the pulls feel is unknown: z = P w
         slope, w = slope_q[at], w_q[at]
         bent = slope.nonzero()[0]
-        transposed_rr = felt_mr[bent].T @ (slope[bent, None] * parts_mr[bent])
+        felt, parts = (v_mr.take(bent, axis=0) for v_mr in (felt_mr, parts_mr))  # twice as fast as indexing
+        transposed_rr = felt.T @ (slope[bent, None] * parts)
         transposed_rr.flat[:: len(transposed_rr) + 1] += 1.0
         if len(transposed_rr):  # a guess may have all points on their tangents
             pull_r = (w + slope * (g0_q - g_q)[at]) @ parts_mr

@@ -137,6 +137,11 @@ class Contact:
         """Points (n_q,) that face the master; the others are free."""
         return self.share_q > 0.0
 
+    @cached_property
+    def whole(self) -> bool:
+        """Whether all of every point faces the master."""
+        return bool((self.share_q == 1.0).all())
+
     def rates(self, v_d: np.ndarray, q: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Rates (n_q, ...) of the gaps, or of some of them, when the displacements change by v_d (n_dof, ...)."""
         if self.full_qd is not None:
@@ -200,6 +205,8 @@ def traction(
     gaps to be tried in place of those of the contact.
     """
     p, dp, k_new = interface.law.traction(contact.g_q if g_q is None else g_q, k_q, closed_q)
+    if interface.bonded_q is None and contact.whole:
+        return p, dp, k_new
     holds_q, carries_q = holding(interface, contact), contact.share_q
     if interface.bonded_q is not None:
         carries_q = np.where(holds_q | (closed_q & interface.law.contact), carries_q, 0.0)

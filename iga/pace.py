@@ -131,7 +131,7 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
     """
     law, path = system.interface.law, point.tangent
     left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
-    grows, event = bool(np.any(path.growing_q)), None
+    grows, event = bool(path.growing_q.any()), None
     if direction > 0.0 and (pace.careful or not grows):
         touch = point.response.contact
         k_q = np.where(holding(system.interface, touch), point.state.k_q, law.g_u)  # no kink for the others
