@@ -67,12 +67,14 @@ def closes(programme: Sequence[float]) -> bool:
     return any(after < before for before, after in zip((0.0, *programme), programme, strict=False))
 
 
-def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float]) -> Interface:
-    """Points at the two ends of the bond, in the order of ``extent``."""
+def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float], interface: Interface) -> Interface:
+    """Points at the two ends of the bond, in the order of ``extent``; they meet the master beside the bond's own."""
     c = _bonded_sides(problem, bodies, extent)
     X_ck = _ends(problem, bodies)[c]
     at = np.array([np.argmin(np.abs(X_ck - X)) for X in extent])
     found = _interface(problem, bodies, c[at // 2], at % 2.0, np.full(2, 0.5))
+    if interface.pairing is not None:
+        found = replace(found, near=interface.pairing[interface.beside(found.X_qi)])
     return settled(found) if stays(problem) else found
 
 

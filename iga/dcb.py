@@ -87,7 +87,7 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
             energy_faces=tuple((number, "left", 1.0) for number in range(len(arms))),
             upper_is_slave=slave_number(problem, arms) == 0,
             copies=copies,
-            probe=probe(problem, arms, extent),
+            probe=probe(problem, arms, extent, system.interface),
             path=(problem.precrack, _end_of_path(problem, window)),
             tmeshes=drawn,
         )

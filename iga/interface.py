@@ -51,7 +51,8 @@ class Interface:
     search is done (linear kinematics, see `settled`): its rows hold for good, and gaps change in proportion.
 
     ``bonded_q`` (n_q,) is False for points that only touch: nothing holds them, and they have no history. All are
-    bonded where it is left out.
+    bonded where it is left out. ``near`` is where its points nearly meet the master in the reference configuration, if
+    that is known.
     """
 
     N_qa: np.ndarray
@@ -65,6 +66,7 @@ class Interface:
     twin_qa: np.ndarray | None = None
     bonded_q: np.ndarray | None = None
     at_rest: Contact | None = None
+    near: Pairing | None = None
 
     @property
     def points(self) -> int:
@@ -88,7 +90,7 @@ class Interface:
         if self.at_rest is not None:
             return self.at_rest.pairing
         X_qi = self.at_slave(self.local_AI)
-        start = nearest_samples(self.master, X_qi, self.local_AI)
+        start = self.near or nearest_samples(self.master, X_qi, self.local_AI)
         return closest_points(self.master, X_qi, self.local_AI, start)
 
     @cached_property
@@ -104,6 +106,10 @@ class Interface:
         apart_qi = self.at_slave(self.local_AI) - Y_qi
         touching = np.linalg.norm(apart_qi, axis=1) < TOUCHING * np.ptp(self.local_AI, axis=0).max()
         return Home(there.c_q, there.M_qb, Y_qi, np.where(touching[:, None], 0.0, apart_qi))
+
+    def beside(self, X_mi: np.ndarray) -> np.ndarray:
+        """Its points (n_m,) next to some places (n_m, 2)."""
+        return np.array([np.argmin(np.linalg.norm(self.X_qi - X_i, axis=1)) for X_i in X_mi])
 
     def at_slave(self, v_Ai: np.ndarray) -> np.ndarray:
         """A field of the control points (n_A, 2) at the slave points (n_q, 2)."""

@@ -80,7 +80,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             energy_faces=((0, "right", 1.0), (1, "right", 1.0), (0, "left", -1.0), (1, "left", -1.0)),
             upper_is_slave=slave_number(problem, pair) == 0,
             copies=1.0,
-            probe=probe(problem, pair, extent),
+            probe=probe(problem, pair, extent, system.interface),
             path=(problem.strip_length - problem.bond_length, problem.strip_length),
             tmeshes=drawn,
         )

@@ -94,8 +94,7 @@ class Specimen:
     @cached_property
     def beside_probe(self) -> np.ndarray:
         """Points of the interface next to those of the probe, which meet the master close by."""
-        X_qi = self.system.interface.X_qi
-        return np.array([np.argmin(np.linalg.norm(X_qi - X_i, axis=1)) for X_i in self.probe.X_qi])
+        return self.system.interface.beside(self.probe.X_qi)
 
     @cached_property
     def ordered(self) -> tuple[np.ndarray, np.ndarray]:
