@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -38,11 +37,9 @@ class Body:
         """Its control points."""
         return slice(self.first, self.first + len(self.mesh.P_AI))
 
-    @cached_property
+    @property
     def sampled(self) -> tuple[Solid, ...]:
         """The blocks on a grid of points an element, for pictures."""
-        if self.original is not None:
-            return tuple(Solid(self._like(self.original, solid.basis), self.D) for solid in self.original.sampled)
         t, s = np.meshgrid(*[np.linspace(0.0, 1.0, SAMPLES + 1)] * 2, indexing="ij")
         points_q = np.stack([s.ravel(), t.ravel()], -1)
         grids = (block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)

@@ -76,6 +76,7 @@ def follow(
                 foreseen = foresee(system, point, asked, False, None, phase)
                 reached, known = advance(system, point, asked, foreseen, direction, pace, newton, phase)
             if reached is None or leaks(system, point, reached, most):
+                known = None  # before the next one is made
                 rejected, pace = rejected + 1, pace.slower()
                 known = _once_more(system, point, direction, phase) if pace.by_kinks else None
                 if pace.exhausted:
