@@ -30,7 +30,7 @@ Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
 STRAIGHT = 1e-12
 #: Part of the largest function by which those of two control points that face each other may differ, by rounding.
 ALIKE = 1e-12
-#: Part of a rigid motion below which a spring does not feel it.
+#: Part of a rigid motion below which a spring or a row does not feel it.
 RESISTED = 1e-9
 #: Times as stiff as the stiffest element no specimen is: rows say the same twice but for rounding.
 TWICE = 1e9
@@ -93,8 +93,11 @@ def condensed(system: System) -> Condensed | None:
     U_dr[free], S_rr = found[place[free]], -size * found[held]
     if not np.abs(S_rr).max() < TWICE * size:  # the same, but for rounding
         return None
-    # rigid motions ask for no force: said once more, rounding of the solution does not come into the balance of forces
-    rigid_dm = _mechanisms(system)
+    # rigid motions ask for no force: said once more, rounding of the solution does not come into the balance of forces,
+    # neither by those that no spring resists nor by those that no row feels
+    motions_dm = _rigid_motions(system)
+    rigid_dm = _without(system.springs_rd, motions_dm)
+    U_dr -= _resting(system, _without(B_rd, motions_dm), U_dr)
     y_rm, triangle = np.linalg.qr(B_rd @ rigid_dm)
     U_dr += (np.linalg.solve(triangle.T, rigid_dm.T).T - U_dr @ y_rm) @ y_rm.T
     S_rr -= y_rm @ (y_rm.T @ S_rr)
@@ -185,15 +188,26 @@ def _along(A: np.ndarray, n_i: np.ndarray) -> list[tuple[np.ndarray, np.ndarray,
     return [(row, 2 * A + i, np.full(A.size, n_i[i])) for i in range(2)]
 
 
-def _mechanisms(system: System) -> np.ndarray:
-    """Motions (n_dof, n_m) that neither bulk nor springs resist: rigid ones of the bodies that no support holds."""
+def _without(rows_rd: np.ndarray | coo_array, motions_dm: np.ndarray) -> np.ndarray:
+    """Of some motions (n_dof, n_m) those that rows (n_r, n_dof) do not feel."""
+    return motions_dm @ null_space(rows_rd @ motions_dm, rcond=RESISTED)
+
+
+def _resting(system: System, unfelt_dm: np.ndarray, U_dr: np.ndarray) -> np.ndarray:
+    """Motions (n_dof, n_r) that the springs resist although no row feels them: nothing is there to hold against."""
+    stretched_rm = system.spring_r[:, None] ** 0.5 * (system.springs_rd @ unfelt_dm)
+    stretch_rr = system.spring_r[:, None] ** 0.5 * (system.springs_rd @ U_dr)
+    return unfelt_dm @ np.linalg.lstsq(stretched_rm, stretch_rr, rcond=RESISTED)[0]
+
+
+def _rigid_motions(system: System) -> np.ndarray:
+    """Those (n_dof, n_m) of the bodies that no support holds."""
     bodies, body_d = _bodies(system)
     x_Ai = system.interface.local_AI - system.interface.local_AI.mean(0)
     turn_d = np.stack([-x_Ai[:, 1], x_Ai[:, 0]], -1).ravel() / np.ptp(x_Ai, axis=0).max()
     rigid_dm = np.stack([np.tile([1.0, 0.0], len(x_Ai)), np.tile([0.0, 1.0], len(x_Ai)), turn_d], -1)
     loose = [body for body in range(bodies) if system.free_d[body_d == body].all()]
-    all_dm = np.concatenate([rigid_dm * (body_d == body)[:, None] for body in loose], axis=1)
-    return all_dm @ null_space(system.springs_rd @ all_dm, rcond=RESISTED)
+    return np.concatenate([rigid_dm * (body_d == body)[:, None] for body in loose], axis=1)
 
 
 def _bulk_forces(system: System, U_dr: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from test_peel import PEEL
 import iga.condense
 import iga.interface
 from iga import dcb, peel
-from iga.condense import _rows, condensed
+from iga.condense import _rigid_motions, _rows, _without, condensed
 from iga.path import follow
 from iga.point import End
 from iga.system import respond
@@ -154,7 +154,7 @@ def test_a_rigid_motion_asks_for_no_force(name):
     small = condensed(system).system
     rest = iga.interface.contact(system.interface, np.zeros(system.n_dof), system.interface.pairing)
     B_rd, _, _ = iga.condense._rows(system, rest)
-    rigid_rm, _ = np.linalg.qr(B_rd @ iga.condense._mechanisms(system))
+    rigid_rm, _ = np.linalg.qr(B_rd @ _without(system.springs_rd, _rigid_motions(system)))
     assert rigid_rm.shape[1] == 2 and np.array_equal(small.bulk_dd, small.bulk_dd.T)
     assert np.abs(small.bulk_dd @ rigid_rm).max() < 5e-16 * np.abs(small.bulk_dd).max()
 
@@ -177,3 +177,16 @@ def test_a_banded_and_a_sparse_factorisation_give_one_stiffness(name, monkeypatc
         found.append(condensed(system))
     banded, sparse = (one.system.bulk_dd for one in found)
     assert np.abs(banded - sparse).max() < 1e-11 * np.abs(sparse).max()
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_springs_hold_nothing_that_no_row_feels(name):
+    """A whole that floats is in balance by itself, to the last digits of its forces and not of its stiffness."""
+    system = solver(CASES[name]).build(CASES[name]).system
+    small = condensed(system)
+    rows = _rows(system, system.interface.at_rest)[0]
+    unfelt_dm = _without(rows, _rigid_motions(system))
+    assert unfelt_dm.shape[1] > 0
+    held_rm = system.spring_r[:, None] * (system.springs_rd @ small.U_dr)
+    on_motions = np.abs((system.springs_rd @ unfelt_dm).T @ held_rm).max()
+    assert on_motions < 1e-13 * np.abs(small.system.bulk_dd).max()
