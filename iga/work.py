@@ -16,6 +16,8 @@ SLIDING = 16
 #: of the path does by more. As long as less than that is dissipated it is no measure; then a part of what is, or, where
 #: that is next to nothing, of the work.
 LEAK, LEAK_OF_DISSIPATED, LEAK_OF_ELASTIC = 1e-3, 1e-3, 1e-7
+#: Part of the work below which nothing is dissipated: rounding alone leaves points without damage some.
+ROUNDED = 1e-13
 
 
 def _cubics(s: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -115,9 +117,8 @@ def leaks(system: System, start: Point, end: Point, most: float) -> bool:
     left_over = end.residuals[-1] * end.response.scale if end.residuals else 0.0
     moved_d = end.state.u_d - start.state.u_d
     leak -= left_over * float(moved_d @ moved_d) ** 0.5
-    law, after = system.interface.law, end.energies.dissipated
-    # by the histories: of points without damage the energies say no more than rounding leaves of them
-    begun = start.state.k_q.max() <= law.g_max < end.state.k_q.max()
-    if after >= LEAK * most or begun or not law.irreversible:
+    before, after = start.energies.dissipated, end.energies.dissipated
+    begun = before <= ROUNDED * most < after
+    if after >= LEAK * most or begun or not system.interface.law.irreversible:
         return leak > LEAK * most
     return leak > max(LEAK_OF_DISSIPATED * after, LEAK_OF_ELASTIC * most)
