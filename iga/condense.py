@@ -35,7 +35,7 @@ RESISTED = 1e-9
 #: Times as stiff as the stiffest element no specimen is: rows say the same twice but for rounding.
 TWICE = 1e9
 #: Equations times half bandwidth squared up to which a banded LU takes less time than a sparse one (measured: half the
-#: time at 500 equations, the same at 2,000 or 4,000, twice at 6,000, of splines and Lagrange elements).
+#: time at 500 equations, two thirds of it or all at 2,000 to 4,000, twice at 6,000, of splines and Lagrange elements).
 NARROW = 1e7
 #: Work of a dense LU over that of a banded one, for matrices of equal size: n^3 2/3 against 4 n k^2.
 DENSE, BANDED = 2.0 / 3.0, 4.0

@@ -67,12 +67,12 @@ def test_what_a_step_may_leak(before, after, leak, left_over, refused):
         SimpleNamespace(
             external_work=work,
             energies=Energies(work - spent, 0.0, 0.0, spent),
-            state=SimpleNamespace(u_d=np.array([0.0, 2.0 * work]), k_q=np.array([0.5, 2.0 if spent > 1e-15 else 0.9])),
+            state=SimpleNamespace(u_d=np.array([0.0, 2.0 * work])),
         )
         for work, spent in ((0.0, before), (1.0, after))
     )
     for reversible in (False, True):
-        law = SimpleNamespace(irreversible=not reversible, g_max=1.0)
+        law = SimpleNamespace(irreversible=not reversible)
         system = SimpleNamespace(interface=SimpleNamespace(law=law))
         off = replace(end.energies, bulk=end.energies.bulk - leak)
         response = SimpleNamespace(scale=5.0)
