@@ -242,7 +242,8 @@ def made(problem, dofs):
 @pytest.mark.parametrize("problem", [CZM1, PEEL], ids=["arms", "peel"])
 def test_meshes_of_fifty_thousand_unknowns_take_seconds_and_grow_with_their_size(problem):
     sizes = (6_250, 12_500, 25_000, 50_000)
-    seconds, found = np.transpose([min(made(problem, dofs) for _ in range(3)) for dofs in sizes])
+    turns = np.array([[made(problem, dofs) for dofs in sizes] for _ in range(7)])  # a slow spell meets every size
+    seconds, found = turns.min(axis=0).T
     exponent = np.polyfit(np.log(found), np.log(seconds), 1)[0]
     print(f"seconds {seconds.round(2)}, exponent {exponent:.2f}")
     assert np.all(np.abs(found / sizes - 1.0) < 0.02)
