@@ -1,0 +1,98 @@
+"""How many steps draw a curve: few points and their slopes against many."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from paths import CZM1, column, curve, decided, ledger, loads, run
+
+from iga.dcb import build
+from iga.newton import DEFAULT
+from iga.pace import SPARED
+from iga.path import follow
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("strength", [4.0, 6.0])
+def test_ledger_and_iterations_of_the_paper_s_specimens(strength):
+    system, points, end = run(replace(CZM1, strength=strength, dofs=1956))
+    gap, iterations = ledger(system, points), np.mean([p.iterations for p in points[1:]])
+    print(f"strength {strength}: ledger {gap:.1e}, {iterations:.2f} iterations a step, {len(points) - 1} steps")
+    assert end.status == "complete" and gap < 1e-3 and iterations <= 5.0
+
+
+@pytest.mark.slow
+def test_five_steps_and_two_thousand_draw_one_curve():
+    """So weak an interface that its zone is long and the curve smooth: few points and their slopes draw it."""
+    problem = replace(CZM1, kinematics="linear", dofs=800, strength=1.0)
+    (_, few, end), (_, many, _) = run(problem, 5), run(problem, 2000)
+    assert end.status == "complete" and np.all(column(many, "heading") > 0.0)
+    opening = np.linspace(0.0, 3.0, 401)[1:]
+    difference = curve(few, opening) - curve(many, opening)
+    worst = float(np.linalg.norm(difference) / np.linalg.norm(curve(many, opening)))
+    print(f"{len(few) - 1} and {len(many) - 1} steps: curves within {worst:.2e}")
+    assert len(many) > 1900 and len(few) < 100 and worst < 2e-3
+
+
+def test_the_points_of_few_steps_lie_on_the_curve_of_many():
+    problem = replace(CZM1, kinematics="linear", dofs=800, opening=(1.5,))
+    (_, few, end), (_, many, _) = run(problem, 5), run(problem, 1000)
+    assert end.status == "complete" and np.all(column(many, "heading") > 0.0)
+    worst = float(np.max(np.abs(curve(many, column(few, "opening")) - loads(few)))) / max(loads(many))
+    print(f"{len(few) - 1} steps, points off the curve of {len(many) - 1} steps by {worst:.1e} of the peak")
+    assert worst < 1e-3
+
+
+#: Basis, strength, unknowns: neighbouring meshes, whose quadrature points break elsewhere along the curve.
+MANY_ARCS = [
+    ("nurbs", 4.0, 1900),
+    ("nurbs", 4.0, 1956),
+    ("nurbs", 4.0, 2040),
+    ("nurbs", 6.0, 1956),
+    ("tspline", 4.0, 1956),
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("basis", "strength", "dofs"), MANY_ARCS)
+def test_steps_chosen_by_accuracy_are_few_and_draw_the_curve(basis, strength, dofs):
+    problem = replace(CZM1, basis=basis, strength=strength, dofs=dofs)
+    (_, few, end), (_, many, _) = run(problem, None), run(problem, 150)
+    opening = np.linspace(0.0, 3.0, 401)[1:]
+    reference = np.interp(opening, column(many, "opening"), loads(many))
+    error = float(np.linalg.norm(curve(few, opening) - reference) / np.linalg.norm(reference))
+    print(f"{len(few) - 1} steps instead of {len(many) - 1}: curve within {error:.2e}")
+    assert end.status == "complete" and len(few) - 1 <= 40 and error < 1e-3
+
+
+@pytest.mark.parametrize("kinematics", ["linear", "finite"])
+@pytest.mark.parametrize("basis", ["nurbs", "lagrange"])
+def test_steps_chosen_by_accuracy_end_in_balance(basis, kinematics):
+    system, points, end = run(replace(CZM1, basis=basis, kinematics=kinematics, dofs=800), None)
+    residuals = [decided(system, a, b) for a, b in zip(points[:-1], points[1:], strict=True)]
+    print(f"{basis}, {kinematics}: residual with contact by the signs of the gaps {max(residuals):.1e}")
+    assert end.status == "complete" and max(residuals) <= DEFAULT.settle
+
+
+def test_the_further_steps_may_leave_their_tangents_the_fewer_there_are():
+    system = build(replace(CZM1, dofs=800, interface_points=4)).system
+    taken = []
+    for bend in (0.003, 0.03):
+        *points, end = follow(system, (2.0,), None, bend=bend)
+        away = [
+            abs(b.state.load - a.state.load - a.slope * (b.opening - a.opening))
+            for a, b in zip(points, points[1:], strict=False)
+        ]
+        peak = max(loads(points))
+        assert end.status == "complete" and np.median(away) < bend * peak
+        taken.append(len(points) - 1)
+    print(f"{taken} steps")
+    assert taken[1] < 0.7 * taken[0]
+
+
+def test_failures_now_and_then_do_not_make_a_path_count_its_steps():
+    """A coarse mesh, whose load goes up and down with its points: some steps fail, and few are needed all the same."""
+    system = build(replace(CZM1, basis="nurbs", degree=2, dofs=300, interface_points=4)).system
+    *points, end = follow(system, (3.0,), None, bend=0.05)
+    print(f"{len(points) - 1} steps, {end.rejected} rejected")
+    assert end.status == "complete" and end.rejected > SPARED and len(points) <= 40
