@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -18,34 +17,22 @@ POLYNOMIAL = 1e-13
 class BlockBasis:
     """Basis of one block of elements at the same parametric points of each.
 
-    ``N_eqa`` (n_e, n_q, n_a), ``dN_eqaI`` (n_e, n_q, n_a, 2) reference gradients, ``dV_eq`` (n_e, n_q) volume (or, on
+    ``N_eqa`` (n_e, n_q, n_a), ``dN_eqIa`` (n_e, n_q, 2, n_a) reference gradients, ``dV_eq`` (n_e, n_q) volume (or, on
     a side, length) that each point stands for, ``X_eqI`` (n_e, n_q, 2) reference positions, ``conn_ea`` (n_e, n_a)
     control points.
     """
 
     conn_ea: np.ndarray
     N_eqa: np.ndarray
-    dN_eqaI: np.ndarray
+    dN_eqIa: np.ndarray
     dV_eq: np.ndarray
     X_eqI: np.ndarray
 
-    @cached_property
+    @property
     def dN_e_qI_a(self) -> np.ndarray:
-        """Gradients as the left factor (n_e, 2 n_q, n_a) of one matrix product an element, with its displacements."""
-        n_e, n_q, n_a, _ = self.dN_eqaI.shape
-        return np.ascontiguousarray(self.dN_eqaI.swapaxes(2, 3)).reshape(n_e, n_q * 2, n_a)
-
-    @cached_property
-    def dNdV_ea_qI(self) -> np.ndarray:
-        """Gradients times volume as the left factor (n_e, n_a, 2 n_q) of one product an element, with stresses."""
-        n_e, n_q, n_a, _ = self.dN_eqaI.shape
-        dNdV_eqaI = self.dN_eqaI * self.dV_eq[..., None, None]
-        return np.ascontiguousarray(dNdV_eqaI.transpose(0, 2, 1, 3)).reshape(n_e, n_a, n_q * 2)
-
-    @cached_property
-    def dN_eqJb(self) -> np.ndarray:
-        """Gradients as the right factor (n_e, n_q, 2, n_a) of one small product a point."""
-        return np.ascontiguousarray(self.dN_eqaI.swapaxes(2, 3))
+        """Gradients (n_e, 2 n_q, n_a) as a factor of one matrix product an element."""
+        n_e, n_q, _, n_a = self.dN_eqIa.shape
+        return self.dN_eqIa.reshape(n_e, 2 * n_q, n_a)
 
 
 def block_basis(
@@ -86,11 +73,12 @@ def _mapped(mesh: Mesh, block: ElementBlock, points_q: np.ndarray) -> tuple[Bloc
         raise ValueError(
             f"element {int(np.argmin(det.min(1)))} is turned inside out: its smallest Jacobian is {det.min():.3g}"
         )
-    dN_eqaI, (dN_s, dN_t) = np.empty((*N_eqa.shape, 2)), dN_seqa
-    dN_eqaI[..., 0] = (J11 / det)[..., None] * dN_s - (J10 / det)[..., None] * dN_t
-    dN_eqaI[..., 1] = (J00 / det)[..., None] * dN_t - (J01 / det)[..., None] * dN_s
+    (n_e, n_q, n_a), (dN_s, dN_t) = N_eqa.shape, dN_seqa
+    dN_eqIa = np.empty((n_e, n_q, 2, n_a))
+    dN_eqIa[:, :, 0] = (J11 / det)[..., None] * dN_s - (J10 / det)[..., None] * dN_t
+    dN_eqIa[:, :, 1] = (J00 / det)[..., None] * dN_t - (J01 / det)[..., None] * dN_s
     J_eqIs = np.stack([J00, J01, J10, J11], -1).reshape(*det.shape, 2, 2)
-    return BlockBasis(block.conn_ea, N_eqa, dN_eqaI, det, N_eqa @ P_eaI), J_eqIs
+    return BlockBasis(block.conn_ea, N_eqa, dN_eqIa, det, N_eqa @ P_eaI), J_eqIs
 
 
 def _rational(

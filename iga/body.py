@@ -132,7 +132,7 @@ def slope_row(face: tuple[BlockBasis, ...], along_I: np.ndarray, across_i: np.nd
     """Row (n_dof,) that gives the mean slope of a face: displacement across by coordinate along."""
     row_Ai = np.zeros((n_dof // 2, 2))
     for basis in face:
-        weights_ea = np.einsum("eqaI,eq,I->ea", basis.dN_eqaI, basis.dV_eq, along_I)
+        weights_ea = np.einsum("eqIa,eq,I->ea", basis.dN_eqIa, basis.dV_eq, along_I)
         np.add.at(row_Ai, basis.conn_ea, weights_ea[..., None] * across_i)
     return row_Ai.ravel() / face_length(face)
 

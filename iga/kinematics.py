@@ -1,7 +1,8 @@
 """From displacement gradient to first Piola-Kirchhoff stress, its tangent, and stored energy, for every point at once.
 
 Both kinematics speak the same language, so that one assembler serves them: ``P_iI = dW/dH_iI`` and ``A_iIjJ =
-dP_iI/dH_jJ``. Components come first in all arrays: each of the few operations then runs over all points in a row.
+dP_iI/dH_jJ``. Components come first in all arrays: each of the few operations then runs over all points in a row. The
+moduli alone have them last, as the factors of many small products: ``A_IpJ`` for the `PAIRS` p = (i, j).
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from itertools import product
 
 import numpy as np
 
+#: Pairs (i, j) of displacement components whose moduli tell all: those of (1, 0) are the transpose of (0, 1).
+PAIRS = ((0, 0), (0, 1), (1, 1))
 #: Voigt number of the components (I, J) of a symmetric tensor, order 11, 22, 12.
 VOIGT = ((0, 2), (2, 1))
 
@@ -26,7 +29,7 @@ def elasticity_tensor(D: np.ndarray) -> np.ndarray:
 class Kinematics:
     """Of a displacement gradient H_iI (2, 2, ...) and an elasticity matrix D (3, 3) [stress]:
 
-    ``stress`` answers P (2, 2, ...) and the stored energy per reference volume W (...,), ``moduli`` A (2, 2, 2, 2, ...)
+    ``stress`` answers P (2, 2, ...) and the stored energy per reference volume W (...,), ``moduli`` A (..., 2, 3, 2)
     """
 
     stress: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -46,17 +49,14 @@ def finite_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 
 def finite_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
-    """``A_iIjJ = delta_ij S_IJ + L_v,iI D_vw L_w,jJ`` with ``L_v,iI = dE_v/dH_iI``."""
+    """``A_iIjJ = delta_ij S_IJ + F_iK C_IKJL F_jL``, by one matrix product from S and the products of F."""
     F, S_v = _deformation(H), _svk(D, H)[0]
-    DL = _stress_rates(D, F)
-    A = np.empty((2, 2, 2, 2, *H.shape[2:]))
-    for i, I, j, J in product(range(2), repeat=4):
-        if (i, I) <= (j, J):
-            A[i, I, j, J] = F[i, I] * DL[j][J][I] + F[i, 1 - I] * DL[j][J][2]
-            if i == j:
-                A[i, I, j, J] += S_v[VOIGT[I][J]]
-            A[j, J, i, I] = A[i, I, j, J]
-    return A
+    parts = np.empty((15, *H.shape[2:]))
+    for n, ((i, j), K, L) in enumerate(product(PAIRS, range(2), range(2))):
+        np.multiply(F[i, K], F[j, L], out=parts[n])
+    parts[12:] = S_v
+    A = parts.reshape(15, -1).T @ _moduli_of_parts(D)
+    return A.reshape(*H.shape[2:], 2, 3, 2)
 
 
 def small_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -69,8 +69,13 @@ def small_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def small_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
     """The elasticity tensor everywhere."""
-    C = elasticity_tensor(D)
-    return np.broadcast_to(C.reshape(*C.shape, *[1] * (H.ndim - 2)), C.shape + H.shape[2:])
+    return np.broadcast_to(of_pairs(elasticity_tensor(D)), (*H.shape[2:], 2, 3, 2))
+
+
+def of_pairs(A_iIjJ: np.ndarray) -> np.ndarray:
+    """``A_IpJ`` (2, 3, 2) of moduli (2, 2, 2, 2)."""
+    i, j = np.array(PAIRS).T
+    return A_iIjJ[i, :, j].swapaxes(0, 1)
 
 
 def cauchy_stress(D: np.ndarray, H: np.ndarray, kinematics: str) -> np.ndarray:
@@ -107,9 +112,13 @@ def _svk(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return S_v, 0.5 * (S_v * E_v).sum(0)
 
 
-def _stress_rates(D: np.ndarray, F: np.ndarray) -> list[list[list[np.ndarray]]]:
-    """``D_vw L_w,jJ`` as [j][J][v]: with L, only the direct strain J and the shear strain answer to H_jJ."""
-    return [[[D[v, J] * F[j, J] + D[v, 2] * F[j, 1 - J] for v in range(3)] for J in range(2)] for j in range(2)]
+def _moduli_of_parts(D: np.ndarray) -> np.ndarray:
+    """What the products ``F_iK F_jL`` of the `PAIRS` (3, K, L), and S_v after them, are worth in ``A_IpJ`` (15, 12)."""
+    C_IKJL, pairs = elasticity_tensor(D), np.eye(3)
+    of_products = np.einsum("IKJL,po->pKLIoJ", C_IKJL, pairs).reshape(12, 12)
+    same = np.array([i == j for i, j in PAIRS], dtype=float)
+    of_stress = np.einsum("vIJ,p->vIpJ", np.eye(3)[:, np.array(VOIGT)], same).reshape(3, 12)
+    return np.concatenate([of_products, of_stress])
 
 
 KINEMATICS = {

@@ -18,7 +18,7 @@ from iga.basis import BlockBasis, block_basis
 from iga.bezier import homogeneous
 from iga.bulk import all_values, element_stiffness, stiffness_entries
 from iga.extraction import Chain, Mesh
-from iga.kinematics import elasticity_tensor
+from iga.kinematics import elasticity_tensor, of_pairs
 from iga.quadrature import gauss, square
 from iga.sides import living, side_points
 
@@ -55,8 +55,8 @@ def bulk_bases(mesh: Mesh, more: int = 0) -> tuple[BlockBasis, ...]:
 
 def stiffness(mesh: Mesh, D: np.ndarray) -> csc_array:
     """Stiffness matrix (2 n_A, 2 n_A) for an elasticity matrix D (3, 3) [stress], per unit of width."""
-    bases, C = bulk_bases(mesh), elasticity_tensor(D)
-    parts = [element_stiffness(b, np.broadcast_to(C[..., None, None], (2, 2, 2, 2, *b.dV_eq.shape))) for b in bases]
+    bases, A_IpJ = bulk_bases(mesh), of_pairs(elasticity_tensor(D))
+    parts = [element_stiffness(b, np.broadcast_to(A_IpJ, (*b.dV_eq.shape, *A_IpJ.shape))) for b in bases]
     entries = [stiffness_entries(b.conn_ea) for b in bases]
     row, column = (np.concatenate([e[k].ravel() for e in entries]) for k in (0, 1))
     n = 2 * len(mesh.P_AI)

@@ -101,7 +101,7 @@ def test_a_body_that_is_another_one_moved_has_the_bases_that_it_would_make_itsel
         pairs += zip(lower.face(name), own.face(name), strict=True)
     for taken, made in pairs:
         assert np.array_equal(taken.conn_ea, made.conn_ea)
-        for field in ("N_eqa", "dN_eqaI", "dV_eq", "X_eqI"):
+        for field in ("N_eqa", "dN_eqIa", "dV_eq", "X_eqI"):
             a, b = getattr(taken, field), getattr(made, field)
             assert np.abs(a - b).max() <= 1e-13 * np.abs(b).max()
 

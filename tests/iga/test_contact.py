@@ -41,7 +41,7 @@ def patch(basis: str, degree: int, points: int, slave: int, lower: int = 8) -> t
     for mesh in meshes:
         u_Ai = found.u_d.reshape(-1, 2)[first : first + len(mesh.P_AI)]
         for bulk in bulk_bases(mesh):
-            grad = np.einsum("eqaI,eai->eqiI", bulk.dN_eqaI, u_Ai[bulk.conn_ea])
+            grad = np.einsum("eqIa,eai->eqiI", bulk.dN_eqIa, u_Ai[bulk.conn_ea])
             worst = max(worst, np.abs(np.einsum("ijkl,eqkl->eqij", C, grad) - exact).max())
         first += len(mesh.P_AI)
     return float(np.abs(found.p_q - 1.0).max()), float(worst)

@@ -123,7 +123,7 @@ def test_area_and_arc_length_of_an_annulus_are_exact(refine):
     (side,) = chain_basis(mesh, mesh.chains["top"], *gauss(12))
     assert abs(side.dV_eq.sum() - np.pi) < 1e-12
     assert np.max(np.abs(basis.N_eqa.sum(-1) - 1.0)) < 1e-14
-    assert np.max(np.abs(basis.dN_eqaI.sum(2))) < 1e-12
+    assert np.max(np.abs(basis.dN_eqIa.sum(3))) < 1e-12
 
 
 @settings(max_examples=20, deadline=None)
@@ -132,7 +132,7 @@ def test_rectangles_reproduce_linear_fields(kv_s, kv_t):
     mesh = nurbs_rectangle(kv_s, kv_t)
     (block,) = mesh.blocks
     basis = block_basis(mesh, block, *square(gauss(2), gauss(2)))
-    gradient = np.einsum("eqaI,eai->eqIi", basis.dN_eqaI, mesh.P_AI[basis.conn_ea])
+    gradient = np.einsum("eqIa,eai->eqIi", basis.dN_eqIa, mesh.P_AI[basis.conn_ea])
     assert np.max(np.abs(gradient - np.eye(2))) < 1e-10
     size = np.ptp(kv_s.knots) * np.ptp(kv_t.knots)
     assert abs(basis.dV_eq.sum() / size - 1.0) < 1e-12
@@ -163,7 +163,7 @@ def test_functions_that_do_not_sum_to_one_are_divided_by_their_sum(rng):
     for weight in (1.0, b, 1.0 / a):
         heavy = replace(mesh, w_A=weight * mesh.w_A)
         found, plain = block_basis(heavy, doubled, *rule), block_basis(mesh, block, *rule)
-        for name in ("N_eqa", "dN_eqaI", "dV_eq", "X_eqI"):
+        for name in ("N_eqa", "dN_eqIa", "dV_eq", "X_eqI"):
             assert getattr(found, name) == pytest.approx(getattr(plain, name), rel=1e-12, abs=1e-12), name
 
 

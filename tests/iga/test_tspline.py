@@ -99,7 +99,7 @@ def test_rectangles_have_their_area_and_reproduce_linear_fields(mesh):
     area = 0.0
     for block in body.blocks:
         basis = block_basis(body, block, *square(gauss(2), gauss(2)))
-        gradient = np.einsum("eqaI,eai->eqIi", basis.dN_eqaI, body.P_AI[basis.conn_ea])
+        gradient = np.einsum("eqIa,eai->eqIi", basis.dN_eqIa, body.P_AI[basis.conn_ea])
         assert np.abs(gradient - np.eye(2)).max() < 1e-10
         area += basis.dV_eq.sum()
     assert area == pytest.approx(np.ptp(mesh.knots_i) * np.ptp(mesh.knots_j), rel=1e-12)
