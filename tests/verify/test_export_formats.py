@@ -74,8 +74,8 @@ def test_abaqus_holds_mesh_law_and_steps(scene: str, degree: int, plane: str, so
     )
     assert (strength, toughness) == (law.strength, law.toughness)
     assert strength / float(traction[0]) == pytest.approx(2 * toughness / strength / law.ductility)  # g_max
-    opening, *sliding = map(float, traction)  # which costs nothing, and does no damage
-    assert len(sliding) == 2 and all(0.0 < K <= 1e-5 * opening for K in sliding)
+    opening, *sliding = map(float, traction)  # costs nothing, is no mechanism, and does no damage
+    assert len(sliding) == 2 and all(1e-8 * opening <= K <= 1e-5 * opening for K in sliding)
     assert all(float(p) >= 1e5 * strength for p in of_bond[1][2][0][1:])
 
     sets = {
