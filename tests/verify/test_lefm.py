@@ -49,6 +49,14 @@ def test_work_and_slope_belong_to_the_load(theory):
     assert np.abs(np.diff(s["external_work"]) - work)[one_branch].max() < 1e-10 * s["external_work"][-1]
 
 
+def test_the_step_on_which_the_crack_begins_to_grow_closes_the_ledger():
+    """By the slope of growth at its start; the slope of loading would leave a hundred times as much open."""
+    s = steps(replace(DCB, theory="factors", points=75))
+    gap = s["external_work"] - s["stored_energy"] - s["dissipated_energy"]
+    first = np.flatnonzero(s["dissipated_energy"] > 1e-9)[0]
+    assert abs(gap[first] - gap[first - 1]) < 2e-6 * s["external_work"][-1]
+
+
 @pytest.mark.parametrize("theory", ["simple", "corrected", "elastica"])
 def test_j_is_the_toughness_while_the_crack_grows(theory):
     s = steps(replace(DCB, theory=theory))

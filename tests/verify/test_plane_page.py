@@ -132,3 +132,4 @@ def test_stress_and_its_error_are_painted_to_scale(study: PlaneStudy, monkeypatc
         assert box.x0 - sheet.x0 == pytest.approx(sheet.x1 - box.x1), "in the middle"
     bars = [figure.axes[1] for title, figure in drawn if title.startswith(("Stress", "Error"))]
     assert [bar.get_xlim() for bar in bars] == [pytest.approx((-limit, limit)), pytest.approx((-reach, reach))]
+    assert [bar.get_xlabel() for bar in bars] == ["stress xx", "stress xx less the exact one"]
