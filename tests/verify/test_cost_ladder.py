@@ -7,6 +7,7 @@ import re
 from dataclasses import replace
 from math import inf, nan
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from made_up_costs import NURBS, SCENE, a_row, made_up
@@ -221,3 +222,19 @@ def test_the_reference_is_cubic_whatever_code_it_is_of(monkeypatch: pytest.Monke
     assert not any("symmetry" in key for job in strip for key in job.overrides)
     monkeypatch.setattr("verify.cost.reference.dolfinx_installed", lambda: False)
     assert reference_jobs("dcb-czm1", load_scene("dcb-czm1"), ())[1] == ()
+
+
+def test_entries_are_counted_where_a_run_that_is_measured_does_not_tell_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[str, str]] = []
+
+    def count(scene: str, method: str) -> int:
+        asked.append((scene, method))
+        return 123
+
+    monkeypatch.setattr(study_of, "nonzeros", count)
+    told, untold, failed = (replace(a_row("nurbs", error, 1.0), nonzeros=0) for error in (1e-3, 2e-3, nan))
+    rows = {"told": replace(told, nonzeros=7), "untold": untold, "failed": failed}
+    job = SimpleNamespace(job=SimpleNamespace(solved="the scene", method="nurbs"))
+    runner = SimpleNamespace(rows=rows, found=dict.fromkeys(rows, job))
+    counted = list(study_of._counted(runner))
+    assert [one.nonzeros for one in counted] == [7, 123, 0] and asked == [("the scene", "nurbs")]
