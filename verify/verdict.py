@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 if TYPE_CHECKING:
     from verify.result import Result
     from verify.scene import Scene
 
 Kind = Literal["exact", "analytical", "cross-code", "regression"]
+
+#: ``holds``: within the tolerance. ``broken``: a fault of the code that is judged. ``unresolved``: the check cannot
+#: judge, because a mesh or the reference is too coarse for its tolerance.
+State = Literal["holds", "broken", "unresolved"]
 
 
 @dataclass(frozen=True)
@@ -26,10 +31,18 @@ class Check:
     tolerance: float
     kind: Kind
     meaning: str  # one sentence for the reader of the report
+    uncertainty: float = 0.0  # discretisation error of the reference, relative as the value is
+    unresolved: str = ""  # why the check cannot judge, and what would resolve it; empty where it can
+
+    @property
+    def state(self) -> State:
+        if self.unresolved:
+            return "unresolved"
+        return "holds" if abs(self.value) <= self.tolerance else "broken"  # NaN is broken
 
     @property
     def passed(self) -> bool:
-        return bool(abs(self.value) <= self.tolerance)  # NaN fails
+        return self.state == "holds"
 
 
 @dataclass(frozen=True)
@@ -60,11 +73,23 @@ class SceneReport:
     checks: tuple[Check, ...]
     remarks: tuple[str, ...] = ()
 
-    @property
-    def passed(self) -> bool:
-        return all(check.passed for check in self.checks)
-
     def judged(self, check: Check) -> tuple[Run, ...]:
         """The runs that a check is about, the one that it judges first; none for what is no run of this scene."""
         named = {run.name: run for run in self.runs}
         return tuple(named[name] for name in check.subject.split(" / ") if name in named)
+
+
+@dataclass(frozen=True)
+class Counts:
+    """How many checks there are, and how many in each state."""
+
+    total: int
+    held: int
+    broken: int
+    unresolved: int
+
+
+def counted(checks: Iterable[Check]) -> Counts:
+    """The checks by their state."""
+    states = [check.state for check in checks]
+    return Counts(len(states), *(states.count(state) for state in get_args(State)))

@@ -14,7 +14,7 @@ from verify.run import run
 from verify.scene import load_scene
 from verify.store import Store
 from verify.sweep import FOLDER, Done
-from verify.verdict import Check, Run, SceneReport
+from verify.verdict import Check, Counts, Run, SceneReport, counted
 
 SCENE = load_scene("dcb-czm1")
 JOB = Job("my scene.toml", SCENE, "nurbs", "coarse", ("discretization.dofs=600", "load.opening=2"))
@@ -99,10 +99,12 @@ def test_a_result_that_cannot_be_kept_is_an_error_and_not_lost(tmp_path: Path) -
     assert store.failed("a").stat().st_mode & 0o777 == 0o755, "as readable as any folder"
 
 
-def test_a_report_passes_where_every_check_does() -> None:
+def test_a_check_holds_is_broken_or_cannot_judge() -> None:
     good, bad = (Check("ledger", "a / nurbs", value, 0.01, "exact", "") for value in (-0.01, 0.011))
     runs = tuple(Run(name, "nurbs", None, folder=f"scene/{name}" if name == "a" else "") for name in ("a", "b"))
     whole = SceneReport(SCENE, runs, (good, good))
-    assert whole.passed and not replace(whole, checks=(good, bad)).passed and SceneReport(SCENE, (), ()).passed
+    coarse = replace(bad, unresolved="three elements in the process zone resolve it")
+    assert [check.state for check in (good, bad, coarse)] == ["holds", "broken", "unresolved"] and not coarse.passed
+    assert counted((good, good, bad, coarse)) == Counts(4, held=2, broken=1, unresolved=1)
     assert whole.judged(good) == runs and whole.judged(replace(good, subject="nurbs / other / a")) == runs[::-1]
     assert not replace(good, value=float("nan")).passed
