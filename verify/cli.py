@@ -130,6 +130,9 @@ def _verify_options(sub: Parser) -> None:
     )
     sub.add_argument("--full", action="store_true", help=finer)
     _with_options(sub)
+    must = "exit 1 unless this method has run on every scene, for instance where DOLFINx may be missing; repeatable"
+    sub.add_argument("--require", action="append", default=[], metavar="METHOD", help=must)
+    sub.add_argument("--strict", action="store_true", help="exit 1 where anything could not be judged")
     beside = "md writes report.md beside report.html: its numbers, for a terminal or a forge"
     sub.add_argument("--format", choices=("html", "md"), default="html", help=beside)
     shown = "show what debond cost, effects, scaling or hard wrote there; folders in --out are found without it"

@@ -124,6 +124,17 @@ def left_out(job: Job) -> str:
     return ""
 
 
+def is_missing(job: Job) -> bool:
+    """Whether this machine lacks the method of a job that it is made for."""
+    try:
+        require(job.solved, job.method)
+    except NotRun:
+        return True
+    except Refusal:
+        pass
+    return False
+
+
 def outcome(job: Job, done: Done) -> Outcome:
     """What became of a job; one that failed with a result has that, and says itself why it stopped."""
     if not (done.folder / "result.json").exists():

@@ -28,7 +28,7 @@ from verify.say import say
 from verify.scene import Scene
 from verify.store import alone_in
 from verify.timing import PHASES, peak_memory_mb
-from verify.verdict import Check
+from verify.verdict import Check, of_state
 
 Solver = Callable[[Scene, str, Callable[[Mapping[str, float]], None] | None], Result]
 Row = Mapping[str, float]
@@ -241,7 +241,7 @@ def summary(scene: Scene, result: Result, checks: tuple[Check, ...]) -> dict[str
 
 
 def _verdict(check: Check) -> dict[str, Any]:
-    return {"value": check.value, "tolerance": check.tolerance, "kind": check.kind, "passed": check.passed}
+    return {"value": check.value, "tolerance": check.tolerance, "kind": check.kind, **of_state(check)}
 
 
 def _stopped(method: str, rows: list[Row], why: str) -> Result:

@@ -15,12 +15,13 @@ def say(text: str) -> None:
     print(f"debond: {text}", file=sys.stderr, flush=True)
 
 
-def write_page(module: str, *what: object) -> None:
-    """Call ``write`` of a module; without the packages that a page needs the numbers are still worth having."""
+def write_page(module: str, *what: object) -> bool:
+    """Call ``write`` of a module; False where a package that pages need is missing: the numbers stand without."""
     try:
         write = import_module(module).write
     except ModuleNotFoundError as error:
         say(f"no report: {error.name} is missing; pip install 'debond[report]'")
-        return
+        return False
     with telling("report", PAGE_SECONDS):
         write(*what)
+    return True

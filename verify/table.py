@@ -8,16 +8,16 @@ from verify.verdict import Check, SceneReport
 
 
 def check_table(checks: Iterable[Check], scene: str = "") -> list[str]:
-    """One line a check: verdict, kind, name, subject, value against tolerance."""
-    return [
-        f"{'ok  ' if c.passed else 'FAIL'} {scene:{18 if scene else 0}} {c.kind:11} {c.name:16} {c.subject:20} "
-        f"{c.value:9.2e} (<= {c.tolerance:.1e})".replace("   (", " (")
-        for c in checks
-    ]
+    """One line a check: state, kind, name, subject, value against tolerance; the reason of an unresolved one."""
+    lines = []
+    for c in checks:
+        line = f"{c.state:10} {scene:{18 if scene else 0}} {c.kind:11} {c.name:16} {c.subject:20} {c.value:9.2e} "
+        lines.append(f"{line}(<= {c.tolerance:.1e}){f': {c.unresolved}' if c.unresolved else ''}")
+    return lines
 
 
 def overview(reports: Iterable[SceneReport]) -> list[str]:
-    """A table for every scene: one line a check, one column a run; ! marks what fails."""
+    """A table for every scene: one line a check, one column a run; ! marks what is broken, ? what is unresolved."""
     lines: list[str] = []
     for report in reports:
         runs = list(dict.fromkeys(_run(check) for check in report.checks))
@@ -35,8 +35,8 @@ def overview(reports: Iterable[SceneReport]) -> list[str]:
     return lines
 
 
-def failures(checks: Sequence[tuple[str, Check]]) -> list[str]:
-    """What fails, in full."""
+def not_held(checks: Sequence[tuple[str, Check]]) -> list[str]:
+    """The checks that are broken or unresolved, in full."""
     return [line for scene, check in checks if not check.passed for line in check_table([check], scene)]
 
 
@@ -45,10 +45,14 @@ def _run(check: Check) -> str:
     return check.subject.split(" / ")[0]
 
 
-def _used(check: Check) -> tuple[bool, float]:
-    """What orders checks from well within to far beyond their tolerances; NaN fails."""
-    return not check.passed, abs(check.value) / check.tolerance if check.tolerance else 0.0
+#: Marks of the states in a table, and their order: the last one is shown where a cell stands for several checks.
+MARKS = {"holds": " ", "unresolved": "?", "broken": "!"}
+
+
+def _used(check: Check) -> tuple[int, float]:
+    """Orders checks from well within to far beyond their tolerances."""
+    return list(MARKS).index(check.state), abs(check.value) / check.tolerance if check.tolerance else 0.0
 
 
 def _cell(check: Check) -> str:
-    return f"{abs(check.value):.1e}{' ' if check.passed else '!'}"
+    return f"{abs(check.value):.1e}{MARKS[check.state]}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 if TYPE_CHECKING:
     from verify.result import Result
@@ -45,6 +45,16 @@ class Check:
         return self.state == "holds"
 
 
+def of_state(check: Check) -> dict[str, Any]:
+    """What JSON files say of the state of a check; ``unresolved`` and ``uncertainty`` only where there is one."""
+    said: dict[str, Any] = {"passed": check.passed, "state": check.state}
+    if check.unresolved:
+        said["unresolved"] = check.unresolved
+    if check.uncertainty:
+        said["uncertainty"] = check.uncertainty
+    return said
+
+
 @dataclass(frozen=True)
 class Run:
     """One method on one scene: a result, or the reason why there is none."""
@@ -57,6 +67,7 @@ class Run:
     command: str = ""  # repeats this run
     scene: Scene | None = None  # as this run had it; that of the report where left out
     key: str = ""  # hash of what the result rests on (`verify.fingerprint`)
+    missing: bool = False  # left out because this machine lacks the method
 
     @property
     def name(self) -> str:

@@ -2,43 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, get_args
 
 from verify.folder import write_json
+from verify.judgement import Judgement
 from verify.run import machine, threads, versions
-from verify.verdict import Check, Kind, SceneReport
+from verify.verdict import Check, Kind, SceneReport, counted, of_state
 
 NAME = "verdict.json"
 
 
-def write(
-    out: Path, reports: Sequence[SceneReport], others: Iterable[tuple[str, Check]], included: Sequence[str] = ()
-) -> None:
+def write(out: Path, reports: Sequence[SceneReport], judgement: Judgement, included: Sequence[str] = ()) -> None:
     """Write ``out``/verdict.json.
 
     Parameters
     ----------
-    others : checks that stand on no scene, each with the name of what they judge
     included : folders of studies that the report shows; they take no part in the verdict
     """
-    write_json(out / NAME, content(reports, others, included))
+    write_json(out / NAME, content(reports, judgement, included))
 
 
-def content(
-    reports: Sequence[SceneReport], others: Iterable[tuple[str, Check]], included: Sequence[str] = ()
-) -> dict[str, Any]:
+def content(reports: Sequence[SceneReport], judgement: Judgement, included: Sequence[str] = ()) -> dict[str, Any]:
     """What the file holds. A value that is no number, as of a run that ended without one, becomes null."""
-    found: list[tuple[str, Check, SceneReport | None]] = [
-        (report.scene.name, check, report) for report in reports for check in report.checks
-    ]
-    found += [(name, check, None) for name, check in others]
-    checks = [check for _, check, _ in found]
+    checks = [check for _, check in judgement.checks]
+    of_scene = {report.scene.name: report for report in reports}
     return {
-        "passed": all(check.passed for check in checks),
+        "passed": judgement.passed,
         "counts": _counts(checks) | {"of_kind": {kind: _counts(_of(kind, checks)) for kind in get_args(Kind)}},
-        "checks": [_check(*one) for one in found],
+        "checks": [_check(name, check, of_scene.get(name)) for name, check in judgement.checks],
+        "not_judged": [asdict(gap) for gap in judgement.gaps],
         "runs": [_run(report, run) for report in reports for run in report.runs],
         "remarks": {report.scene.name: list(report.remarks) for report in reports if report.remarks},
         "included": list(included),
@@ -53,8 +48,8 @@ def _of(kind: str, checks: Sequence[Check]) -> list[Check]:
 
 
 def _counts(checks: Sequence[Check]) -> dict[str, int]:
-    failed = sum(not check.passed for check in checks)
-    return {"checks": len(checks), "passed": len(checks) - failed, "failed": failed}
+    found = counted(checks)
+    return {"checks": found.total, "passed": found.held, "failed": found.broken, "unresolved": found.unresolved}
 
 
 def _check(scene: str, check: Check, report: SceneReport | None) -> dict[str, Any]:
@@ -67,7 +62,7 @@ def _check(scene: str, check: Check, report: SceneReport | None) -> dict[str, An
         "value": check.value,
         "tolerance": check.tolerance,
         "kind": check.kind,
-        "passed": check.passed,
+        **of_state(check),
         "run": runs[0].folder if runs else None,
         "against": runs[1].folder if len(runs) > 1 else None,
         "meaning": check.meaning,

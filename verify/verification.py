@@ -12,7 +12,8 @@ from verify.checks import run_checks
 from verify.crosschecks import cross_checks, remarks
 from verify.foreign import Curve, joined
 from verify.included import Included, found_in
-from verify.jobs import Job, Outcome, dry_run, run_all
+from verify.jobs import Job, Outcome, dry_run, is_missing, run_all
+from verify.judgement import NO_DEMANDS, Demands, judged
 from verify.mesh_sequences import sequences
 from verify.methods import WITH_DOFS, known_methods
 from verify.paper import peel, peel_statements, statements
@@ -26,9 +27,9 @@ from verify.plane_study import study as plane_study
 from verify.progress import telling
 from verify.quadrature_study import finding, study
 from verify.run import environment
-from verify.say import write_page
+from verify.say import say, write_page
 from verify.scene import Scene
-from verify.table import check_table, failures, overview
+from verify.table import check_table, not_held, overview
 from verify.verdict import Check, Run, SceneReport
 
 NAMES = {
@@ -57,8 +58,11 @@ def verify(
     included: Sequence[Included] = (),
     text: bool = False,
     curves: Sequence[Curve] = (),
+    demands: Demands = NO_DEMANDS,
 ) -> bool:
-    """Run everything, write ``out``/verdict.json and report.html, print the checks; whether all of them hold.
+    """Run everything, write ``out``/verdict.json and report.html, print the checks; whether the verification passes.
+
+    It passes where no check is broken and nothing is left out that ``demands`` ask for.
 
     Parameters
     ----------
@@ -85,21 +89,22 @@ def verify(
     studies = tuple({(study.command, study.folder.resolve()): study for study in (*found_in(out), *included)}.values())
     others = [(found.name, check) for found in planes for check in found.checks]
     others += [("plane elasticity", check) for check in rate_checks(bases)]
-    verdict_file.write(out, reports, others, [os.path.relpath(study.folder, out) for study in studies])
+    judgement = judged(reports, others, demands)
+    verdict_file.write(out, reports, judgement, [os.path.relpath(study.folder, out) for study in studies])
     what = (reports, page, environment(), quadrature, paper, planes, bases, peels, studies, text)
-    write_page("verify.report.page", *what)
-    checks = [*((report.scene.name, check) for report in reports for check in report.checks), *others]
+    written = write_page("verify.report.page", *what)
     tables = [line for found in planes for line in [*plane_lines(found), *check_table(found.checks), ""]]
-    print("\n".join([*overview(reports), *tables, *convergence(reports), *failures(checks)]))
+    print("\n".join([*overview(reports), *tables, *convergence(reports), *not_held(judgement.checks)]))
     if quadrature is not None:
         print(finding(quadrature))
     if paper is not None:
         print("\n".join(lines("Figures 6 to 8", paper.left_out, statements.statements(paper))))
     if peels is not None:
         print("\n".join(lines("Figure 9", peels.left_out, peel_statements.statements(peels))))
-    passed = sum(check.passed for _, check in checks)
-    print(f"{passed} of {len(checks)} checks hold: {page}")
-    return passed == len(checks)
+    for gap in judgement.lacking:
+        say(f"{gap.scene}: {gap.check or gap.subject} must have been judged: {gap.why}")
+    print(f"{judgement.in_short()}: {page if written else out / verdict_file.NAME}")
+    return judgement.passed
 
 
 def would_run(scenes: Sequence[tuple[str, Scene]], out: Path, jobs: int, full: bool = False) -> list[str]:
@@ -165,4 +170,5 @@ def _as_run(outcome: Outcome, out: Path) -> Run:
     label = f"{name}, {most}{result.dofs} unknowns" if result is not None and result.dofs else name
     folder, done = str(job.folder(out).relative_to(out)), result is not None or outcome.failed
     command = shlex.join(["debond", *job.command(out)])
-    return Run(label, job.method, result, outcome.left_out, folder, command, scene, job.task().key if done else "")
+    key, missing = job.task().key if done else "", not done and is_missing(job)
+    return Run(label, job.method, result, outcome.left_out, folder, command, scene, key, missing)

@@ -71,7 +71,7 @@ def test_a_file_becomes_a_method_of_the_report(
     assert main(["verify", LINEAR, "--out", "out", "--jobs", "1", "--with", "off.csv", *AS]) == 1
     said = capsys.readouterr()
     assert "2 of 2 runs are at hand" in said.err
-    assert re.search(rf"FAIL {LINEAR} +analytical +beam-curve +off / beam +2\.0\de-02", said.out)
+    assert re.search(rf"broken +{LINEAR} +analytical +beam-curve +off / beam +2\.0\de-02", said.out)
     assert sorted(path for path in (folder / "out" / NAME).iterdir() if path.is_dir()) == before
     assert [path.stat().st_mtime_ns for path in before] == times, "nothing was computed anew"
 
@@ -80,7 +80,7 @@ def test_a_curve_that_ends_too_early_fails(folder: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(verification, "write_page", lambda *what: None)
     only(monkeypatch, "lefm")
     assert main(["verify", LINEAR, "--out", "out", "--jobs", "1", "--with", "mine=short.csv", *AS]) == 1
-    assert re.search(r"FAIL .* cross-code +end +mine +3\.3\de-01", capsys.readouterr().out)
+    assert re.search(r"broken .* cross-code +end +mine +3\.3\de-01", capsys.readouterr().out)
 
 
 def test_every_code_that_is_there_judges(beam: Result) -> None:

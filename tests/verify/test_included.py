@@ -118,7 +118,7 @@ def test_markdown_says_what_the_page_says(out: Path) -> None:
     assert "[nurbs / dolfinx](<./dcb-czm1/nurbs/>)" in text
     assert "hash `0123456789abcdef0123`; `debond solve dcb-czm1 --method nurbs --fields`" in text
     assert "### Convergence" in text and "in the asymptotic range, observed order 1.05" in text
-    assert "## Hard cases" in text and "| ✓ holds, 1.5\u00a0s" in text and "✗ **fails**" in text
+    assert "## Hard cases" in text and "| ✓ holds, 1.5\u00a0s" in text and "✗ **broken**" in text
     page = (out / "report.html").read_text()
     assert 'class="methods convergence"' in page and page.count("observed order 1.05") == text.count("order 1.05")
 

@@ -110,7 +110,7 @@ def test_verify_takes_files_and_counts_their_checks(written, tmp_path, monkeypat
     assert page.count("✓ holds") >= 3 and "dcb-czm1" not in page
     monkeypatch.setattr(plane_study, "PATCH_TOLERANCE", 0.0)
     assert main(["verify", path, "--out", str(out)]) == FAILED
-    assert "FAIL triangle" in capsys.readouterr().out
+    assert "broken     triangle" in capsys.readouterr().out
     assert 'href="#plane-1-checks">triangle</a>' in (out / "report.html").read_text()
 
 

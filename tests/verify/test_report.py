@@ -183,9 +183,9 @@ def test_failing_check_is_marked(tmp_path: Path) -> None:
     bad = Check("peak", "nurbs / dolfinx", 0.07, 0.005, "cross-code", "Two codes find the same peak.")
     lost = Check("curve", "lagrange / beam", float("nan"), 0.02, "analytical", "The load follows that of a beam.")
     text, parsed = page(tmp_path, replace(given, checks=(*given.checks, bad, lost)))
-    assert "2 of 8 checks fail" in parsed.text and parsed.text.count("✗ fails") == 2 + 1  # rows, overview
+    assert "2 broken of 8 checks" in parsed.text and parsed.text.count("✗ broken") == 2 + 2 + 1  # list, rows, overview
     assert "peak of nurbs / dolfinx, value 0.07, tolerance 0.005" in parsed.text
-    assert "no value" in parsed.text and len(re.findall(r'<tr class="failed', text)) == 2
+    assert "no value" in parsed.text and len(re.findall(r'<tr class="broken', text)) == 2
 
 
 def test_says_why_dolfinx_is_missing_and_compares_with_the_beam(tmp_path: Path) -> None:

@@ -90,7 +90,7 @@ def test_result_json_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
     about = json.loads((tmp_path / "result.json").read_text())
     assert set(about) == RESULT_KEYS
     assert list(about["seconds"]) == SECONDS_KEYS
-    assert all(set(check) == {"value", "tolerance", "kind", "passed"} for check in about["checks"].values())
+    assert all(set(check) == {"value", "tolerance", "kind", "passed", "state"} for check in about["checks"].values())
     assert about["steps"] == 5 and about["newton_iterations"] == 10
     assert about["peak_load"] == 6.0 and about["peak_opening"] == 3.0
     assert about["status"] == "complete" and about["ending"] == "" and about["condition"] == 0.0

@@ -18,7 +18,7 @@ from verify.report import markdown  # noqa: E402
 from verify.report.section import Section, section  # noqa: E402
 from verify.report.summary import Summary, headline, summarise  # noqa: E402
 from verify.report.text import percent  # noqa: E402
-from verify.verdict import Check, Run, SceneReport  # noqa: E402
+from verify.verdict import Check, Counts, Run, SceneReport  # noqa: E402
 
 FAILS = Check("j-integral", "lagrange", 0.02, 0.005, "exact", "J is the area under the traction law.")
 
@@ -53,25 +53,26 @@ def summary(scenes: tuple[Section, ...]) -> Summary:
 @pytest.mark.parametrize(
     ("counts", "words"),
     [
-        ((0, 0, 1), "No check was made on 1 scene"),
-        ((0, 0, 0), "No check was made on 0 scenes"),
-        ((1, 0, 1), "The one check holds on 1 scene"),
-        ((2, 0, 2), "All 2 checks hold on 2 scenes"),
-        ((2, 1, 2), "1 of 2 checks fails on 2 scenes"),
-        ((5, 2, 1, 1), "2 of 5 checks fail on 1 scene and 1 plane problem"),
-        ((5, 0, 0, 2), "All 5 checks hold on 2 plane problems"),
+        ((0, 0, 0, 1), "No check was made on 1 scene"),
+        ((0, 0, 0, 0), "No check was made on 0 scenes"),
+        ((1, 0, 0, 1), "The one check holds on 1 scene"),
+        ((2, 0, 0, 2), "All 2 checks hold on 2 scenes"),
+        ((1, 1, 0, 2), "1 broken of 2 checks on 2 scenes"),
+        ((2, 2, 1, 1, 1), "2 broken and 1 unresolved of 5 checks on 1 scene and 1 plane problem"),
+        ((5, 0, 0, 0, 2), "All 5 checks hold on 2 plane problems"),
     ],
 )
 def test_the_verdict_is_one_line(counts: tuple[int, ...], words: str) -> None:
-    assert headline(*counts) == words
+    held, broken, unresolved, *places = counts
+    assert headline(Counts(held + broken + unresolved, held, broken, unresolved), *places) == words
 
 
 def test_counts_and_failures_are_of_all_scenes_and_plane_problems(
     scenes: tuple[Section, ...], summary: Summary
 ) -> None:
-    assert summary.headline == "1 of 8 checks fails on 2 scenes" and summary.tone == "bad"
-    assert summary.failures == (("two", "second", FAILS),)
-    assert {t.kind: (t.total, t.failed) for t in summary.tallies} == {
+    assert summary.headline == "1 broken of 8 checks on 2 scenes" and summary.tone == "bad"
+    assert summary.not_held == (("two", "second", FAILS),)
+    assert {t.kind: (t.counts.total, t.counts.broken) for t in summary.tallies} == {
         "exact": (6, 1), "analytical": (1, 0), "cross-code": (1, 0), "regression": (0, 0),
     }  # fmt: skip
     assert summarise(scenes[:1]).tone == "good" and summarise(()).tone == "none"
@@ -79,8 +80,8 @@ def test_counts_and_failures_are_of_all_scenes_and_plane_problems(
         anchor="plane", name="ring", sentence="ring: it holds.", checks=(replace(FAILS, name="rate"),)
     )
     both = summarise(scenes[:1], (plane,))
-    assert both.headline == "1 of 7 checks fails on 1 scene and 1 plane problem"
-    assert [(anchor, name) for anchor, name, _ in both.failures] == [("plane", "ring")]
+    assert both.headline == "1 broken of 7 checks on 1 scene and 1 plane problem"
+    assert [(anchor, name) for anchor, name, _ in both.not_held] == [("plane", "ring")]
     assert (both.sentences[-1].text, both.sentences[-1].target) == ("ring: it holds.", "plane")
 
 
@@ -166,7 +167,7 @@ def test_markdown_has_the_numbers_of_the_page(scenes: tuple[Section, ...], summa
     lines = markdown.lines(summary, scenes, (plane,), rates, (), ENVIRONMENT)
     text = "\n".join(lines)
     assert lines[2] == f"**{summary.headline}.**"
-    assert "- second: j-integral of lagrange, value 0.02, tolerance 0.005 (exact)" in lines
+    assert "- second: broken: j-integral of lagrange, value 0.02, tolerance 0.005 (exact)" in lines
     assert all(f"- {way}" in text.replace("\\", "") for way in (*summary.missing, *summary.ways))
     overview, kinds, *rest = tables(lines)
     assert overview[0] == ["Scene", *(column.name for column in summary.columns), "Checks"]
@@ -184,7 +185,7 @@ def test_markdown_has_the_numbers_of_the_page(scenes: tuple[Section, ...], summa
     assert missing[1:] == [DOLFINX_MISSING, *[""] * 6]
     judged = [rows for rows in rest if rows[0][0] == "Kind"]
     assert [len(rows) - 1 for rows in judged] == [6, 2, 1] and text.count("No check was made.") == 1
-    assert judged[1][2][2:] == ["[lagrange](<./second/lagrange/>)", "0.02", "0.005", "✗ **fails**"]
+    assert judged[1][2][2:] == ["[lagrange](<./second/lagrange/>)", "0.02", "0.005", "✗ **broken**"]
     assert judged[2][1][2] == "ring" and judged[0][1][-1] == "✓ holds"
     assert "## a ring" in lines and "rates: as expected." in lines
     assert tables(lines)[-1][1:] == [[name, value] for name, value in ENVIRONMENT.items()]
@@ -227,7 +228,7 @@ def test_markdown_of_a_study_tells_its_page_and_its_age(summary: Summary) -> Non
     )
     bases = {"a": "A", "b": "B", "c": "C", "d": "D"}
     (rows,) = [rows for rows in tables(said(hard=(case,), bases=bases)) if rows[0][0] == "Case"]
-    assert rows == [["Case", *"ABCD"], ["slender", "✓ holds, 3.5\u00a0s", "✗ **fails**, 3.5\u00a0s", "signal 9", "–"]]
+    assert rows == [["Case", *"ABCD"], ["slender", "✓ holds, 3.5\u00a0s", "✗ **broken**, 3.5\u00a0s", "signal 9", "–"]]
 
 
 def test_without_a_reference_no_distance_is_told() -> None:

@@ -12,11 +12,12 @@ from made_up_runs import scene_report
 from verify import verdict_file, verification
 from verify.cli import main
 from verify.jobs import Job
+from verify.judgement import NO_DEMANDS, judged
 from verify.verdict import Check
 
 
 def written(out: Path, *reports, others=(), included=()) -> dict:
-    verdict_file.write(out, reports, others, included)
+    verdict_file.write(out, reports, judged(reports, others, NO_DEMANDS), included)
     return json.loads((out / "verdict.json").read_text())
 
 
@@ -34,6 +35,7 @@ def test_every_check_names_its_scene_method_and_run(tmp_path: Path) -> None:
         "tolerance": 3e-3,
         "kind": "cross-code",
         "passed": True,
+        "state": "holds",
         "run": "dcb-czm1/nurbs",
         "against": "dcb-czm1/dolfinx",
         "meaning": "Two codes draw the same curve.",
@@ -50,8 +52,8 @@ def test_counts_by_kind_and_a_single_failure_fails(tmp_path: Path) -> None:
     assert found["passed"] is False
     counts = found["counts"]
     assert (counts["checks"], counts["passed"], counts["failed"]) == (8, 7, 1)
-    assert counts["of_kind"]["exact"] == {"checks": 6, "passed": 5, "failed": 1}
-    assert counts["of_kind"]["regression"] == {"checks": 0, "passed": 0, "failed": 0}
+    assert counts["of_kind"]["exact"] == {"checks": 6, "passed": 5, "failed": 1, "unresolved": 0}
+    assert counts["of_kind"]["regression"] == {"checks": 0, "passed": 0, "failed": 0, "unresolved": 0}
     assert found["checks"][6]["value"] is None and not found["checks"][6]["passed"]  # JSON has no NaN
     assert found["checks"][7] | {"scene": "plate", "run": None, "method": None} == found["checks"][7]
     assert found["included"] == ["cost"]

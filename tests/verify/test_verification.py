@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -17,6 +18,7 @@ from verify import methods, sweep, verification
 from verify.cli import main
 from verify.crosschecks import cross_checks
 from verify.jobs import Job, Outcome
+from verify.judgement import Demands
 from verify.plugins import plugins
 from verify.result import Result
 from verify.scene import Scene, load_scene
@@ -30,7 +32,7 @@ LINEAR = "dcb-czm1-linear"
 def reports(monkeypatch: pytest.MonkeyPatch) -> list[SceneReport]:
     """What the report would have been written from."""
     seen: list[SceneReport] = []
-    monkeypatch.setattr(verification, "write_page", lambda module, reports, *others: seen.extend(reports))
+    monkeypatch.setattr(verification, "write_page", lambda module, reports, *others: not seen.extend(reports))
     return seen
 
 
@@ -82,7 +84,7 @@ def test_a_crash_costs_one_run_and_fails(
     assert report.runs[0].result is None and report.runs[0].left_out.startswith("failed: ")
     assert report.runs[1].result is not None
     assert [(check.name, check.subject) for check in report.checks if not check.passed] == [("completed", "nurbs")]
-    assert "FAIL" in capsys.readouterr().out
+    assert "broken" in capsys.readouterr().out
 
 
 def test_a_killed_process_is_named_by_its_signal(
@@ -119,7 +121,14 @@ def test_without_dolfinx_its_rows_say_so_and_nothing_fails(
     only(monkeypatch, Job(LINEAR, scene, "dolfinx", "dolfinx"), Job(LINEAR, scene, "lefm", "lefm"))
     assert verify([(LINEAR, scene)], tmp_path, jobs=1)
     assert reports[0].runs[0].left_out == "not run: DOLFINx is not installed"
-    assert "not run: DOLFINx is not installed" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "not run: DOLFINx is not installed" in said
+    assert f"; not judged: dolfinx (DOLFINx is not installed) on {LINEAR}: " in said.splitlines()[-1]
+    assert json.loads((tmp_path / "verdict.json").read_text())["not_judged"][0]["subject"] == "dolfinx"
+    assert verify([(LINEAR, scene)], tmp_path, jobs=1, demands=Demands(required=("lefm",)))
+    for demands in (Demands(required=("dolfinx",)), Demands(strict=True)):
+        assert not verify([(LINEAR, scene)], tmp_path, jobs=1, demands=demands)
+        assert "dolfinx must have been judged: DOLFINx is not installed" in capsys.readouterr().err
 
 
 def test_a_scene_that_a_method_is_not_made_for_is_no_failure(

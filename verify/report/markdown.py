@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from verify.report.text import number, seconds
+from verify.verdict import Counts
 
 if TYPE_CHECKING:
     from verify.report.entry import Entry
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 
 #: What would be markup where it stands; an angle bracket before a space or a digit is none.
 _SPECIAL = re.compile(r"[\\`*\[\]|]|<(?=[A-Za-z/!?])|&(?=#?\w+;)|~(?=~)|^[>#+-]|(?<!\w)_|_(?!\w)")
+
+
+#: A state as a cell of a table.
+VERDICTS = {"holds": "✓ holds", "broken": "✗ **broken**", "unresolved": "? unresolved"}
 
 
 def lines(
@@ -72,26 +77,31 @@ def _summary(summary: Summary) -> Iterator[str]:
     if summary.missing:
         yield from ("", "Not run, stopped early, or neglected:", "")
         yield from (f"- {plain(text)}" for text in (*summary.missing, *summary.ways))
-    if summary.failures:
-        yield from ("", "Checks that fail:", "")
-        yield from (f"- {plain(name)}: {_in_words(check)}" for _, name, check in summary.failures)
+    if summary.not_held:
+        yield from ("", "Checks that are broken or unresolved:", "")
+        yield from (f"- {plain(name)}: {_in_words(check)}" for _, name, check in summary.not_held)
     if summary.rows:
         heads = ["Scene", *(plain(column.name) for column in summary.columns), "Checks"]
         caption = "Distance of the load curve to the reference (relative L2 over the opening), and wall time:"
         yield from ("", caption, "")
         yield from table(heads, [_overview(section, cells) for section, cells in summary.rows])
-    rows = [[t.kind, f"{t.total - t.failed} of {t.total}" if t.total else "none", t.meaning] for t in summary.tallies]
+    rows = [[t.kind, _held_of(t.counts), t.meaning] for t in summary.tallies]
     yield from ("", *table(["Kind of check", "Hold", "What it rests on"], rows))
 
 
 def _in_words(check: Check) -> str:
     value, tolerance = number(check.value), number(check.tolerance)
-    return f"{plain(check.name)} of {plain(check.subject)}, value {value}, tolerance {tolerance} ({check.kind})"
+    why = f": {plain(check.unresolved)}" if check.unresolved else ""
+    judged = f"{plain(check.name)} of {plain(check.subject)}, value {value}, tolerance {tolerance} ({check.kind})"
+    return f"{check.state}: {judged}{why}"
+
+
+def _held_of(counts: Counts) -> str:
+    return f"{counts.held} of {counts.total}" if counts.total else "none"
 
 
 def _overview(section: Section, cells: Sequence) -> list[str]:
-    total = len(section.report.checks)
-    held = f"{total - section.failed} of {total} hold" if total else "none"
+    held = f"{_held_of(section.counts)} hold" if section.counts.total else "none"
     shown = [plain(", ".join(filter(None, (cell.head, cell.tail)))) for cell in cells]
     return [plain(section.report.scene.name), *shown, held]
 
@@ -150,7 +160,7 @@ def _checks(found: Iterable[tuple[Check, Sequence | None]]) -> list[str]:
     rows = []
     for check, runs in found:
         link = f"[{plain(check.subject)}](<./{quote(runs[0].folder)}/>)" if runs else plain(check.subject)
-        verdict = "✓ holds" if check.passed else "✗ **fails**"
+        verdict = VERDICTS[check.state]
         rows.append([check.kind, plain(check.name), link, number(check.value), number(check.tolerance), verdict])
     if not rows:
         return ["No check was made."]
@@ -210,4 +220,4 @@ def _held(row: HardRow, basis: str) -> str:
     if cell.verdict is None:
         return plain(cell.why)
     took = seconds(sum(run.seconds for run in cell.verdict.runs))
-    return f"{'✓ holds' if cell.passed else '✗ **fails**'}, {took}"
+    return f"{VERDICTS['holds' if cell.passed else 'broken']}, {took}"

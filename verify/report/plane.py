@@ -14,7 +14,7 @@ from verify.report.paint import Limits, paint
 from verify.report.parts import plain
 from verify.report.style import STRESS_MAP, THIRD, Panel, colour, drawing, panel, to_svg
 from verify.report.text import number, power_of_ten
-from verify.verdict import Check
+from verify.verdict import Check, Counts, counted
 
 #: Inches: highest picture, margins, and the strip of the colour scale below.
 _HIGHEST, _MARGIN, _STRIP = 3.4, 0.05, 0.5
@@ -42,8 +42,8 @@ class PlaneSection:
     checks: tuple[Check, ...]
 
     @property
-    def failed(self) -> int:
-        return sum(not check.passed for check in self.checks)
+    def counts(self) -> Counts:
+        return counted(self.checks)
 
 
 def section(study: PlaneStudy, anchor: str) -> PlaneSection:

@@ -10,7 +10,7 @@ from verify.plane_rates import Convergence, rate_checks
 from verify.report.parts import plain
 from verify.report.style import HALF, Line, Panel, drawing, panel, to_svg
 from verify.report.text import number, power_of_ten
-from verify.verdict import Check
+from verify.verdict import Check, Counts, counted
 
 
 @dataclass(frozen=True)
@@ -25,8 +25,8 @@ class RatesSection:
     checks: tuple[Check, ...]
 
     @property
-    def failed(self) -> int:
-        return sum(not check.passed for check in self.checks)
+    def counts(self) -> Counts:
+        return counted(self.checks)
 
 
 def section(found: tuple[Convergence, ...], anchor: str) -> RatesSection:

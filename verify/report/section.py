@@ -26,7 +26,7 @@ from verify.report.entry import Entry, entries
 from verify.report.style import METHODS, Panel
 from verify.report.summary import KINDS, Tally, headline, tally
 from verify.report.text import NO_VALUE, Units, inputs, modelled, number, percent, quantity, seconds, sentence
-from verify.verdict import Check, Run, SceneReport
+from verify.verdict import Check, Counts, Run, SceneReport, counted
 
 if TYPE_CHECKING:
     from verify.scene import Scene
@@ -48,6 +48,7 @@ class CheckRow:
     value: str
     tolerance: str
     used: float  # share of the tolerance, 0 .. 1
+    uncertainty: str = ""  # of the reference
 
     @property
     def parts(self) -> tuple[tuple[str, Run | None], ...]:
@@ -109,8 +110,8 @@ class Section:
         return next((entry for entry in self.entries if entry.is_reference), None)
 
     @property
-    def failed(self) -> int:
-        return sum(not check.passed for check in self.report.checks)
+    def counts(self) -> Counts:
+        return counted(self.report.checks)
 
 
 def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
@@ -125,7 +126,7 @@ def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
         report=report,
         entries=found,
         sentence=sentence(report.scene),
-        headline=headline(len(checks), sum(not check.passed for check in checks), 1).removesuffix(" on 1 scene"),
+        headline=headline(counted(checks), 1).removesuffix(" on 1 scene"),
         inputs=tuple((k, tuple(row[1:] for row in g)) for k, g in groupby(inputs(report.scene), itemgetter(0))),
         specimen=draw_specimen(report.scene, f"{anchor}-specimen", _zone(groups)),
         frames=opening.frames(report.scene, [g for g in groups if g], drawn, f"{anchor}-frame", between),
@@ -197,7 +198,8 @@ def _check_groups(kind: str, report: SceneReport) -> tuple[CheckGroup, ...]:
     groups: dict[tuple[str, str], list[CheckRow]] = {}
     for c in report.checks:
         if c.kind == kind:
-            row = CheckRow(c, report.judged(c), number(c.value), number(c.tolerance), _used(c))
+            error = number(c.uncertainty, 2) if c.uncertainty else ""
+            row = CheckRow(c, report.judged(c), number(c.value), number(c.tolerance), _used(c), error)
             groups.setdefault((c.name, c.meaning), []).append(row)
     return tuple(CheckGroup(name, meaning, tuple(rows)) for (name, meaning), rows in groups.items())
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from verify.methods import DOLFINX_MISSING, DOLFINX_WAYS
 from verify.report.cost import total_seconds
 from verify.report.entry import Entry, rank
-from verify.report.text import percent, seconds, span
+from verify.report.text import percent, seconds, span, tone
+from verify.verdict import Counts, counted
 
 if TYPE_CHECKING:
     from verify.report.plane import PlaneSection
@@ -29,12 +30,11 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Tally:
-    """How many checks of one kind hold."""
+    """How many checks there are of one kind, and in which state."""
 
     kind: str
     meaning: str
-    total: int
-    failed: int
+    counts: Counts
 
 
 @dataclass(frozen=True)
@@ -72,43 +72,47 @@ class Summary:
     tallies: tuple[Tally, ...]
     columns: tuple[Column, ...]
     rows: tuple[tuple[Section, tuple[Cell, ...]], ...]
-    failures: tuple[tuple[str, str, Check], ...]  # anchor and name of the section
+    not_held: tuple[tuple[str, str, Check], ...]  # anchor and name of the section, broken or unresolved checks
 
 
 def summarise(sections: Sequence[Section], planes: Sequence[PlaneSection | RatesSection] = ()) -> Summary:
     """Everything above the first scene."""
     checks = [(s.anchor, s.report.scene.name, check) for s in sections for check in s.report.checks]
     checks += [(p.anchor, p.name, check) for p in planes for check in p.checks]
-    failures = tuple((anchor, name, check) for anchor, name, check in checks if not check.passed)
+    not_held = tuple((anchor, name, check) for anchor, name, check in checks if not check.passed)
+    counts = counted(check for _, _, check in checks)
     columns = _columns(sections)
     return Summary(
-        headline=headline(len(checks), len(failures), len(sections), len(planes)),
-        tone="none" if not checks else "bad" if failures else "good",
+        headline=headline(counts, len(sections), len(planes)),
+        tone=tone(counts),
         sentences=(*_sentences(sections), *(Sentence(p.sentence, p.anchor, "its numbers") for p in planes)),
         missing=tuple(_missing(sections)),
         ways=_ways(sections),
         tallies=tuple(tally(kind, [check for _, _, check in checks]) for kind in KINDS),
         columns=tuple(Column(method, name) for method, _, name in columns),
         rows=tuple((section, tuple(_cell(section, *column[:2]) for column in columns)) for section in sections),
-        failures=failures,
+        not_held=not_held,
     )
 
 
-def headline(total: int, failed: int, scenes: int, planes: int = 0) -> str:
+def headline(counts: Counts, scenes: int, planes: int = 0) -> str:
     """The verdict in one line."""
-    counts = [f"{scenes} scene{'s' if scenes != 1 else ''}"] if scenes or not planes else []
-    counts += [f"{planes} plane problem{'s' if planes != 1 else ''}"] if planes else []
-    where = f"on {' and '.join(counts)}"
+    total = counts.total
+    places = [f"{scenes} scene{'s' if scenes != 1 else ''}"] if scenes or not planes else []
+    places += [f"{planes} plane problem{'s' if planes != 1 else ''}"] if planes else []
+    where = f"on {' and '.join(places)}"
     if not total:
         return f"No check was made {where}"
-    if failed:
-        return f"{failed} of {total} checks {'fails' if failed == 1 else 'fail'} {where}"
+    if counts.broken or counts.unresolved:
+        words = {"broken": counts.broken, "unresolved": counts.unresolved}
+        found = " and ".join(f"{number} {state}" for state, number in words.items() if number)
+        return f"{found} of {total} checks {where}"
     return f"All {total} checks hold {where}" if total > 1 else f"The one check holds {where}"
 
 
 def tally(kind: str, checks: Sequence[Check]) -> Tally:
     of_kind = [check for check in checks if check.kind == kind]
-    return Tally(kind, KINDS[kind], len(of_kind), sum(not check.passed for check in of_kind))
+    return Tally(kind, KINDS[kind], counted(of_kind))
 
 
 def _nth(section: Section, method: str, repeat: int) -> Entry | None:

@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from verify.report.style import custom_properties
 from verify.report.svg import with_classes
-from verify.report.text import number
+from verify.report.text import number, tone
 
 _CSS = Path(__file__).with_name("page.css")
 
@@ -31,7 +31,7 @@ def rendered(package: str, template: str, filters: Mapping[str, Callable], /, **
         lstrip_blocks=True,
     )
     # drawings are made by this package, which has escaped their texts
-    jinja.filters |= {"svg": Markup, "number": number, **filters}
+    jinja.filters |= {"svg": Markup, "number": number, "tone": tone, **filters}
     page = jinja.get_template(template).render(
         light=Markup(custom_properties(dark=False)),
         dark=Markup(custom_properties(dark=True)),

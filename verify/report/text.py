@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from verify.scene import Scene
     from verify.schema import Discretization
     from verify.specimen import Dcb, Material, Peel
+    from verify.verdict import Counts
 
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 NO_VALUE = "no value"
@@ -223,3 +224,10 @@ def _moduli(material: Material, units: Units) -> list[tuple[str, float, str]]:
     )
     values = [(label, getattr(material, key, None), unit) for key, label, unit in names]
     return [row for row in values if row[1] is not None]
+
+
+def tone(counts: Counts) -> str:
+    """The class of a verdict in the style sheet: ``bad`` where a check is broken, ``open`` where one is unresolved."""
+    if not counts.total:
+        return "none"
+    return "bad" if counts.broken else "open" if counts.unresolved else "good"

@@ -1,0 +1,84 @@
+"""What a verification has judged, what it has not, and whether that is enough for the caller."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from verify.verdict import Check, SceneReport, counted
+
+
+@dataclass(frozen=True)
+class Demands:
+    """What must have been judged for a verification to pass, besides that nothing is broken.
+
+    Parameters
+    ----------
+    strict : no gap at all
+    required : methods that must have run on every scene
+    """
+
+    strict: bool = False
+    required: tuple[str, ...] = ()
+
+
+NO_DEMANDS = Demands()
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A run for which this machine lacks the method, or a check that is unresolved (``check`` is its name)."""
+
+    scene: str
+    subject: str
+    check: str
+    why: str
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """The checks of a verification with the scene or mesh of each, and the gaps between them."""
+
+    checks: tuple[tuple[str, Check], ...]
+    gaps: tuple[Gap, ...]
+    demands: Demands
+
+    @property
+    def lacking(self) -> tuple[Gap, ...]:
+        """The gaps that the caller does not allow."""
+        if self.demands.strict:
+            return self.gaps
+        return tuple(gap for gap in self.gaps if not gap.check and gap.subject in self.demands.required)
+
+    @property
+    def passed(self) -> bool:
+        return not self.lacking and not any(check.state == "broken" for _, check in self.checks)
+
+    def in_short(self) -> str:
+        """The last line of a verification."""
+        counts = counted(check for _, check in self.checks)
+        broken = f", {counts.broken} broken" if counts.broken else ""
+        gaps = "; not judged: " + "; ".join(_grouped(self.gaps)) if self.gaps else ""
+        return f"{counts.held} of {counts.total} checks hold{broken}{gaps}"
+
+
+def judged(reports: Sequence[SceneReport], others: Iterable[tuple[str, Check]], demands: Demands) -> Judgement:
+    """The judgement of all scenes, and of ``others``: checks of meshes and bases, each with the name of its subject."""
+    checks = [(report.scene.name, check) for report in reports for check in report.checks] + list(others)
+    gaps = [
+        Gap(report.scene.name, run.method, "", run.left_out.removeprefix("not run: "))
+        for report in reports
+        for run in report.runs
+        if run.missing
+    ]
+    gaps += [Gap(name, check.subject, check.name, check.unresolved) for name, check in checks if check.unresolved]
+    return Judgement(tuple(checks), tuple(gaps), demands)
+
+
+def _grouped(gaps: Iterable[Gap]) -> list[str]:
+    """Missing runs by method with their reason, unresolved checks by name with their number."""
+    scenes: dict[str, list[str]] = {}
+    for gap in gaps:
+        what = f"{gap.check} (unresolved)" if gap.check else f"{gap.subject} ({gap.why})"
+        scenes.setdefault(what, []).append(gap.scene)
+    return [f"{what} on {', '.join(dict.fromkeys(names))}" for what, names in scenes.items()]
