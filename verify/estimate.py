@@ -6,6 +6,7 @@ from verify.effects import crack_at_the_end, simulated
 from verify.methods import WITH_DOFS
 from verify.problems import counted_steps
 from verify.process_zone import bulk_length, slender_length
+from verify.reference_mesh import reference_mesh
 from verify.schema import Scene
 
 #: Seconds besides the steps, and seconds a step for a thousand unknowns, in proportion to them; with `dcb-czm1`, finite
@@ -47,5 +48,5 @@ def unknowns(scene: Scene, method: str) -> int:
         return scene.discretization.dofs // (2 if simulated(scene, method)["symmetry"] else 1)
     if method != "dolfinx":
         return 1000
-    p, n = scene.dolfinx.degree, scene.dolfinx.elements
-    return 4 * (p * n + 1) * (p + 1)
+    mesh = reference_mesh(scene)
+    return 4 * (mesh.degree * mesh.elements + 1) * (mesh.degree * mesh.layers + 1)

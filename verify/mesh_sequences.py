@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from verify.convergence import Convergence, assess
 from verify.cost.reference import dissipated
 from verify.crosschecks import peak_load
+from verify.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.verdict import Run, SceneReport
 
@@ -81,7 +82,7 @@ def _kind(run: Run) -> tuple[int, bool]:
     if run.scene is None:
         return 0, False
     mesh = run.scene.discretization
-    return (run.scene.dolfinx.degree, False) if run.method == "dolfinx" else (mesh.degree, mesh.adaptive)
+    return (reference_mesh(run.scene).degree, False) if run.method == "dolfinx" else (mesh.degree, mesh.adaptive)
 
 
 def _known(quantity: str, result: Result) -> bool:

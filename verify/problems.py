@@ -38,12 +38,14 @@ def dolfinx_problem(scene: Scene) -> Any:
     """The problem that `fem_reference` is given; DOLFINx itself is not asked for. ValueError where it refuses it."""
     from fem_reference import dcb, peel
     from fem_reference.material import Moduli
+    from verify.reference_mesh import reference_mesh
 
-    mesh = scene.dolfinx.model_dump()
+    mesh = reference_mesh(scene)
+    own = {"degree": mesh.degree, "elements": mesh.elements}
     if scene.specimen.kind == "peel":
         keys = {**_peel_keys(scene, Moduli), **_common_keys(scene, "dolfinx"), "steps": counted_steps(scene)}
-        return peel.Problem(**keys, **mesh)
-    return dcb.Problem(**problem_keys(scene, "dolfinx"), **mesh)
+        return peel.Problem(**keys, **own, strip_layers=mesh.layers)
+    return dcb.Problem(**problem_keys(scene, "dolfinx"), **own, elements_across=mesh.layers)
 
 
 def beam_problem(scene: Scene) -> BeamProblem:

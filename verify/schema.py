@@ -147,10 +147,21 @@ class Discretization(Section):
 class Dolfinx(Section):
     """How finely the DOLFINx model resolves the scene."""
 
-    degree: int = Field(default=2, ge=1, le=4)
-    """Degree of the Lagrange elements."""
+    degree: int | Literal["auto"] = "auto"
+    """Degree of the Lagrange elements, 1 to 4; "auto": 2, or 3 where one quadratic layer is too coarse."""
     elements: int = Field(default=112, ge=2, le=100_000)
     """Elements along the specimen."""
+    layers: int | Literal["auto"] = "auto"
+    """Elements through each arm, or through the strip, 1 to 100; "auto": as many as the geometry asks for."""
+
+    @field_validator("degree", "layers", mode="before")
+    @classmethod
+    def _counted_or_chosen(cls, value: object, info: ValidationInfo) -> object:
+        most = {"degree": 4, "layers": 100}[str(info.field_name)]
+        counted = isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= most
+        if not counted and value != "auto":
+            raise refuse(f'an integer >= 1 and <= {most}, or "auto"', ((), value))
+        return value
 
 
 def _as_tables(value: object) -> object:

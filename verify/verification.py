@@ -26,6 +26,7 @@ from verify.plane_study import lines as plane_lines
 from verify.plane_study import study as plane_study
 from verify.progress import telling
 from verify.quadrature_study import finding, study
+from verify.reference_mesh import reference_mesh
 from verify.run import environment
 from verify.say import say, write_page
 from verify.scene import Scene
@@ -163,7 +164,9 @@ def convergence(reports: Sequence[SceneReport]) -> list[str]:
 def _as_run(outcome: Outcome, out: Path) -> Run:
     job, result = outcome.job, outcome.result
     scene = job.solved
-    degree = {"dolfinx": scene.dolfinx.degree, **dict.fromkeys(WITH_DOFS, scene.discretization.degree)}.get(job.method)
+    degree = {"dolfinx": reference_mesh(scene).degree, **dict.fromkeys(WITH_DOFS, scene.discretization.degree)}.get(
+        job.method
+    )
     name = NAMES.get(job.method, job.method) + (f" p={degree}" if degree else "")
     adaptive = job.method == "tspline" and scene.discretization.adaptive
     name, most = (f"{name}, adaptive", "at most ") if adaptive else (name, "")

@@ -92,21 +92,27 @@ def scene_mesh(scene: Scene, layers: int | None = None) -> SceneMesh:
 
     Parameters
     ----------
-    layers : elements through each arm, or through the strip; default 1
+    layers : elements through each arm, or through the strip; default: as the DOLFINx model has them
 
     Raises
     ------
     Refusal : a degree above 2, fewer elements than the specimen has parts.
     """
-    degree, kind = scene.dolfinx.degree, scene.specimen.kind
+    kind = scene.specimen.kind
+    degree = scene.dolfinx.degree if scene.dolfinx.degree != "auto" else 2
     if degree > 2:
         raise Refusal(f"dolfinx.degree: must be 1 or 2 for export, got {degree}")
     try:
-        problem = dolfinx_problem(scene)
+        problem = dolfinx_problem(_of_degree(scene, degree))
         specimen = (replace(problem, **{LAYERS[kind]: layers}) if layers else problem).specimen()
     except ValueError as error:
         raise Refusal(f"dolfinx.{error}") from None
     return _meshed(specimen, degree, BODIES[kind])
+
+
+def _of_degree(scene: Scene, degree: int) -> Scene:
+    """The scene with this degree, which its layers are chosen for."""
+    return scene.model_copy(update={"dolfinx": scene.dolfinx.model_copy(update={"degree": degree})})
 
 
 def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMesh:

@@ -17,6 +17,7 @@ from verify.curve import PROPAGATION, Curve, load_at, peak
 from verify.jobs import Job, Outcome
 from verify.methods import WITH_DOFS, dolfinx_installed
 from verify.paper.study import Trial, Trials, left_out, limit, reference, trial
+from verify.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.scene import load_scene
 from verify.schema import Scene
@@ -96,7 +97,7 @@ def references(bond: str, scene: Scene) -> tuple[Job, Job]:
     """DOLFINx as the scene has it and with elements of half the length, or else NURBS with more unknowns."""
     if dolfinx_installed():
         n, variant = 2 * scene.dolfinx.elements, "figures/dolfinx-p{}-{}"
-        fine = variant.format(scene.dolfinx.degree, n)
+        fine = variant.format(reference_mesh(scene).degree, n)
         finer = Job(bond, scene, "dolfinx", fine, (f"dolfinx.elements={n}",), fields=False)
         return Job(bond, scene, "dolfinx", "dolfinx"), finer
     sizes = (times * scene.discretization.dofs for times in STAND_IN)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup, escape
 
 from verify.effects import simulated
+from verify.reference_mesh import reference_mesh
 from verify.specimen import MATERIALS
 
 if TYPE_CHECKING:
@@ -178,7 +179,7 @@ def modelled(scene: Scene, method: str) -> str:
 def inputs(scene: Scene) -> list[tuple[str, str, str]]:
     """Rows of the table of inputs: group, name, value."""
     units = Units.of(scene.units)
-    specimen, law, mesh = scene.specimen, scene.interface, scene.discretization
+    specimen, law, mesh, other = scene.specimen, scene.interface, scene.discretization, reference_mesh(scene)
     scale, bilinear = 2 * law.toughness / law.strength, law.law == "bilinear"
     rows = [
         *(
@@ -200,8 +201,9 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         ("isogeometric mesh", "degree", str(mesh.degree)),
         ("isogeometric mesh", "target unknowns", str(mesh.dofs)),
         ("isogeometric mesh", "interface points", _points(mesh)),
-        ("DOLFINx mesh", "degree", str(scene.dolfinx.degree)),
-        ("DOLFINx mesh", "elements along", str(scene.dolfinx.elements)),
+        ("DOLFINx mesh", "degree", str(other.degree)),
+        ("DOLFINx mesh", "elements along", str(other.elements)),
+        ("DOLFINx mesh", f"elements through the {'strip' if specimen.kind == 'peel' else 'arm'}", str(other.layers)),
     ]
     return rows
 

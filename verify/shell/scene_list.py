@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 
+from verify.reference_mesh import reference_mesh
 from verify.schema import Scene
 from verify.shell.sketch import sketch
 from verify.specimen import Isotropic, Material
@@ -25,7 +26,7 @@ def line(name: str, scene: Scene, width: int) -> str:
 
 def page(scene: Scene, width: int) -> str:
     """Drawing and key numbers."""
-    law, mesh = scene.interface, scene.discretization
+    law, mesh, other = scene.interface, scene.discretization, reference_mesh(scene)
     facts = {
         "specimen": f"{scene.specimen.kind}, plane {scene.specimen.plane}, width {scene.specimen.width:g}",
         **{
@@ -34,8 +35,8 @@ def page(scene: Scene, width: int) -> str:
         "interface": f"{law.law}, strength {law.strength:g}, toughness {law.toughness:g}, ductility {law.ductility:g}",
         "opening": " -> ".join(f"{opening:g}" for opening in scene.load.opening),
         "effects": ", ".join(_effect(name, getattr(scene.effects, name)) for name in type(scene.effects).model_fields),
-        "meshes": f"{mesh.dofs} unknowns of degree {mesh.degree}; DOLFINx {scene.dolfinx.elements} elements along, "
-        f"degree {scene.dolfinx.degree}",
+        "meshes": f"{mesh.dofs} unknowns of degree {mesh.degree}; DOLFINx {other.elements} elements along, "
+        f"{other.layers} through, degree {other.degree}",
         "published": "; ".join(f"{one.quantity}, {one.source}" for one in scene.published),
     }
     whole_words = textwrap.TextWrapper(
