@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curve import PROPAGATION, envelope, load_at, oscillation, peak
+from verify.curve import PROPAGATION, envelope, from_origin, load_at, oscillation, peak
 from verify.curve_file import CurveError
 from verify.verdict import Check
 
@@ -157,7 +157,7 @@ def checks(
 
 def _part(curve: Points, begin: float, end: float) -> Part:
     first, last = float(curve[0][0]), float(np.max(curve[0]))
-    d, P = _up_to(*_from_origin(*curve), end)
+    d, P = _up_to(*from_origin(*curve), end)
     if begin > 0.0:
         before, start = _up_to(d, P, begin)
         d, P = np.append(begin, d[len(before) - 1 :]), np.append(start[-1], P[len(before) - 1 :])
@@ -170,10 +170,6 @@ def _distance(load: np.ndarray, wanted: np.ndarray) -> float:
     """Relative L2 distance of the very samples that are shown: taken anew at openings over their range, one that falls
     on a vertical drop may come out on its other side."""
     return float(np.sqrt(np.sum((load - wanted) ** 2) / np.sum(wanted**2)))
-
-
-def _from_origin(d: np.ndarray, P: np.ndarray) -> Points:
-    return (np.append(0.0, d), np.append(0.0, P)) if d[0] > 0.0 else (d, P)
 
 
 def _up_to(d: np.ndarray, P: np.ndarray, end: float) -> Points:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from verify.curve import curve_error, dense, load_at, peak
+from verify.curve import curve_error, dense, from_origin, load_at, peak
 from verify.effects import simulated
+from verify.leg_checks import along_the_programme
 from verify.problems import elastic_constants
 from verify.published import Published
 from verify.result import Result
@@ -38,27 +39,40 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
     ----------
     results : method, or its name among several runs of one method ("dolfinx-p3") -> run
     """
-    end = max(scene.load.opening)
-    usable = {method: result for method, result in results.items() if result.load.size > 1 and end > 0}
+    usable = {method: result for method, result in results.items() if result.load.size > 1}
     kinematics = simulated(scene, "beam")["kinematics"]
     fine = ON_SUBSTRATE if scene.specimen.kind == "peel" else ANALYTICAL[kinematics]
     analytical = {**CROSS_CODE, **dict.fromkeys(CLOSE, fine)}
-    checks = []
+    checks: list[Check] = []
     for method, tolerance in analytical.items():
         if method in usable and "beam" in usable and squeeze(scene) < SQUEEZED:
-            error = distance(usable[method], usable["beam"], end)
-            meaning = "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening)."
-            checks.append(Check("beam-curve", f"{method} / beam", error, tolerance, "analytical", meaning))
+            checks.append(beam_check(scene, method, usable[method], usable["beam"], tolerance))
     for method, tolerance in CROSS_CODE.items():
         if method in usable and "dolfinx" in usable:
-            pair, other = f"{method} / dolfinx", usable["dolfinx"]
-            error = distance(usable[method], other, end)
-            meaning = "Two codes that share nothing draw the same curve (relative L2 of the load over the opening)."
-            checks.append(Check("curve", pair, error, tolerance, "cross-code", meaning))
-            ratio = peak_load(usable[method]) / peak_load(other) - 1
-            meaning = "Two codes that share nothing find the same peak load (relative difference)."
-            checks.append(Check("peak", pair, ratio, tolerance, "cross-code", meaning))
+            checks += pair_checks(scene, f"{method} / dolfinx", usable[method], usable["dolfinx"], tolerance)
     return (*checks, *published_checks(scene, usable))
+
+
+def pair_checks(scene: Scene, pair: str, a: Result, b: Result, tolerance: float) -> tuple[Check, ...]:
+    """Two codes that share nothing: curve, peak, the farthest point, and every leg of a programme that turns."""
+    programme = scene.load.opening
+    checks: list[Check] = []
+    if max(programme) > 0.0:
+        error = distance(a, b, max(programme))
+        meaning = "Two codes that share nothing draw the same curve (relative L2 of the load over the opening)."
+        checks.append(Check("curve", pair, error, tolerance, "cross-code", meaning))
+        ratio = peak_load(a) / peak_load(b) - 1
+        meaning = "Two codes that share nothing find the same peak load (relative difference)."
+        checks.append(Check("peak", pair, ratio, tolerance, "cross-code", meaning))
+    curves = (a.opening, a.load), (b.opening, b.load)
+    return (*checks, *along_the_programme(pair, *curves, programme, tolerance))
+
+
+def beam_check(scene: Scene, name: str, a: Result, beam: Result, tolerance: float) -> Check:
+    """A curve against that of a beam, which only opens."""
+    error = distance(a, beam, max(scene.load.opening))
+    meaning = "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening)."
+    return Check("beam-curve", f"{name} / beam", error, tolerance, "analytical", meaning)
 
 
 def squeeze(scene: Scene) -> float:
@@ -120,7 +134,7 @@ def published_meaning(known: Published) -> str:
 def distance(a: Result, b: Result, end: float) -> float:
     """Curve error of ``a`` against ``b``, of a run that stopped early up to where both have come."""
     end = min(end, float(a.opening.max()), float(b.opening.max()))
-    return curve_error((a.opening, a.load), (b.opening, b.load), end)
+    return curve_error(from_origin(a.opening, a.load), from_origin(b.opening, b.load), end)
 
 
 def peak_load(result: Result) -> float:

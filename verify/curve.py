@@ -38,6 +38,16 @@ def envelope(opening: ArrayLike, load: ArrayLike) -> tuple[np.ndarray, np.ndarra
     return np.append(d[:1], x), np.append(P[:1], y)
 
 
+def from_origin(opening: ArrayLike, load: ArrayLike, ahead: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    """The curve, joined to the origin by a straight line where it begins beyond 0.
+
+    ``ahead`` has the sign of the first goal. The specimen bears nothing at the origin, and what is left out between
+    shows as an error unless the curve is straight there.
+    """
+    d, P = np.asarray(opening, dtype=float), np.asarray(load, dtype=float)
+    return (np.append(0.0, d), np.append(0.0, P)) if d[0] * ahead > 0.0 else (d, P)
+
+
 def dense(
     opening: ArrayLike, load: ArrayLike, slope: ArrayLike, heading: ArrayLike, per_step: int = 10
 ) -> tuple[np.ndarray, np.ndarray]:

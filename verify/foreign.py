@@ -10,14 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
-from verify.compare import ROUNDING
 from verify.crosschecks import (
     ANALYTICAL,
     CROSS_CODE,
     ON_SUBSTRATE,
     SQUEEZED,
-    distance,
-    peak_load,
+    beam_check,
+    pair_checks,
     published_load,
     published_meaning,
     published_names,
@@ -25,6 +24,8 @@ from verify.crosschecks import (
 )
 from verify.curve_file import Reading, read_curve
 from verify.effects import simulated
+from verify.leg_checks import along_the_programme, turns_check
+from verify.legs import NEAR, only_opens, path
 from verify.magnitudes import LEAST, MOST
 from verify.methods import METHODS, known_methods
 from verify.refusal import Refusal
@@ -113,28 +114,27 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
     ----------
     results : the runs that are there, by method
     """
-    end = max(scene.load.opening)
-    if curve.load.size < 2 or end <= 0:
+    programme = scene.load.opening
+    if curve.load.size < 2:
         return ()
-    missing = max(0.0, 1.0 - float(curve.opening.max()) / end)
-    meaning = "The curve goes as far as the load programme opens the specimen (missing part of it)."
-    checks = [Check("end", name, missing, ROUNDING, "cross-code", meaning)]
+    checks: list[Check] = []
+    if max(programme) > 0.0:
+        missing = max(0.0, 1.0 - float(curve.opening.max()) / max(programme))
+        meaning = "The curve goes as far as the load programme opens the specimen (missing part of it)."
+        checks.append(Check("end", name, missing, NEAR, "cross-code", meaning))
+    if not only_opens(programme):
+        checks.append(turns_check(name, path((curve.opening, curve.load), programme)))
     usable = {method: result for method, result in results.items() if result.load.size > 1}
     for method, tolerance in CODES.items():
         if method in usable:
-            pair = f"{name} / {method}"
-            error = distance(curve, usable[method], end)
-            meaning = "Two codes that share nothing draw the same curve (relative L2 of the load over the opening)."
-            checks.append(Check("curve", pair, error, tolerance, "cross-code", meaning))
-            ratio = peak_load(curve) / peak_load(usable[method]) - 1
-            meaning = "Two codes that share nothing find the same peak load (relative difference)."
-            checks.append(Check("peak", pair, ratio, tolerance, "cross-code", meaning))
+            checks += pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
     if "beam" in usable and squeeze(scene) < SQUEEZED:
-        error = distance(curve, usable["beam"], end)
         fine = ANALYTICAL[simulated(scene, "beam")["kinematics"]]
         tolerance = ON_SUBSTRATE if scene.specimen.kind == "peel" else fine
-        meaning = "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening)."
-        checks.append(Check("beam-curve", f"{name} / beam", error, tolerance, "analytical", meaning))
+        beam = usable["beam"]
+        checks.append(beam_check(scene, name, curve, beam, tolerance))
+        curves = (curve.opening, curve.load), (beam.opening, beam.load)
+        checks += along_the_programme(f"{name} / beam", *curves, programme, tolerance, "analytical")
     for known_name, known in zip(published_names(scene), scene.published, strict=True):
         value = known.deviation(published_load(known, curve))
         checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))

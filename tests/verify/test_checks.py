@@ -141,8 +141,10 @@ def test_codes_are_held_against_beam_and_each_other(scene: Scene, beam: Result) 
         ("beam-curve", "lagrange / beam", "analytical", 0.02),
         ("curve", "nurbs / dolfinx", "cross-code", 0.005),
         ("peak", "nurbs / dolfinx", "cross-code", 0.005),
+        ("farthest-point", "nurbs / dolfinx", "cross-code", 0.02),
         ("curve", "lagrange / dolfinx", "cross-code", 0.02),
         ("peak", "lagrange / dolfinx", "cross-code", 0.02),
+        ("farthest-point", "lagrange / dolfinx", "cross-code", 0.08),
     }
     assert all(check.value == 0.0 for check in checks)
     results["nurbs"] = changed(results["nurbs"], "load", 1.01)

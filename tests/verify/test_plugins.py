@@ -216,7 +216,7 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
     only("beam", "wrong")
     assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
     failed = [(check.name, check.subject) for check in seen[-1].checks if not check.passed]
-    assert failed == [("beam-curve", "wrong / beam")]
+    assert failed == [("beam-curve", "wrong / beam"), ("farthest-point", "wrong / beam")]
 
 
 def test_nothing_is_imported_to_list_methods(package: Path) -> None:

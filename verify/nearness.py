@@ -1,0 +1,91 @@
+"""How far the points of a curve are from the graph of another one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from verify.curve import Curve, envelope
+
+#: The least opening and load that a distance is relative to, in parts of the largest ones: where a load passes through
+#: zero, or nothing is open yet, only the size of the whole curve is left as a measure.
+LEAST_OPENING, LEAST_LOAD = 0.02, 0.1
+
+#: Points that are looked at together.
+CHUNK = 64
+
+
+def distances_along_load(points: Curve, graph: Curve, size: tuple[float, float]) -> np.ndarray:
+    """|P - P_graph| (n,) at the opening of every point, relative to its own load; infinite where the graph has none.
+
+    The graph is taken as its envelope. ``size``: largest opening and load.
+    """
+    d, P = (np.asarray(values, dtype=float) for values in points)
+    x, y = envelope(*graph)
+    off = np.abs(P - np.interp(d, x, y)) / np.maximum(np.abs(P), LEAST_LOAD * size[1])
+    return np.where((d >= x[0]) & (d <= x[-1]), off, np.inf)
+
+
+def distances(points: Curve, graph: Curve, size: tuple[float, float], enough: float) -> np.ndarray:
+    """Distance (n,) of every point of a path from the graph of another one, in parts of its own opening and load.
+
+    ``min over (x, y) of the graph of max(|d - x| / max(|d|, least), |P - y| / max(|P|, least))``: a steep drop may lie
+    that much earlier or later, a load be that much larger or smaller. The graph has the path, with its snap-backs, its
+    envelope, with vertical drops, and the kinks that its chords may cut. Openings grow in the envelopes of both.
+
+    A point whose load alone is no more than ``enough`` off counts with that. Behind the first `CHUNK` of the farthest
+    points that are farther away the others count as 0: the verdict is the same.
+    """
+    d, P = (np.asarray(values, dtype=float) for values in points)
+    found = distances_along_load(points, graph, size)
+    far = np.flatnonzero(found > enough)
+    far = far[np.argsort(-found[far], kind="stable")]
+    starts, ends = _segments(graph)
+    scale = np.maximum(np.abs(d), LEAST_OPENING * size[0]), np.maximum(np.abs(P), LEAST_LOAD * size[1])
+    for first in range(0, len(far), CHUNK):
+        n = far[first : first + CHUNK]
+        found[n] = _to_segments(np.stack((d[n], P[n])), starts, ends, np.stack((scale[0][n], scale[1][n])))
+        if np.max(found[n]) > enough:
+            found[far[first + CHUNK :]] = 0.0
+            break
+    return found
+
+
+def _segments(graph: Curve) -> tuple[np.ndarray, np.ndarray]:
+    """Beginnings and ends (2, m) of the straight pieces of a path and of its envelope, and of its kinks."""
+    whole = np.stack([np.asarray(values, dtype=float) for values in graph])
+    start, tip, end = _kinks(whole)
+    parts = [(line[:, :-1], line[:, 1:]) for line in (whole, np.stack(envelope(*graph)))] + [(start, tip), (tip, end)]
+    starts, ends = zip(*parts, strict=True)
+    return np.hstack(starts), np.hstack(ends)
+
+
+def _kinks(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where the chords before and behind a chord would meet over it: its beginning, that point and its end (2, m).
+
+    A step over a kink, as at the end of a reloading or where faces begin to touch, cuts it; the chords on both sides
+    point at it.
+    """
+    before, here, after = points[:, 1:-2] - points[:, :-3], np.diff(points)[:, 1:-1], points[:, 3:] - points[:, 2:-1]
+    area = before[0] * after[1] - before[1] * after[0]
+    with np.errstate(all="ignore"):
+        on = (here[0] * after[1] - here[1] * after[0]) / area
+        back = (before[0] * here[1] - before[1] * here[0]) / area
+        tip = points[:, 1:-2] + on * before
+    meet = (area != 0.0) & (on > 0.0) & (back > 0.0) & (here[0] * before[0] > 0.0) & (here[0] * after[0] > 0.0)
+    meet &= np.all(np.isfinite(tip), axis=0)
+    return points[:, 1:-2][:, meet], tip[:, meet], points[:, 2:-1][:, meet]
+
+
+def _to_segments(points: np.ndarray, starts: np.ndarray, ends: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Distance (n,) in the larger one of both coordinates, each in parts of its ``scale`` (2, n).
+
+    On a segment that is largest of two absolute values of linear functions: least at an end, or where both are equal.
+    """
+    a, b = ((side[:, None, :] - points[:, :, None]) / scale[:, :, None] for side in (starts, ends))
+    best = np.minimum(np.max(np.abs(a), axis=0), np.max(np.abs(b), axis=0))
+    for sign in (1.0, -1.0):
+        f, g = a[0] - sign * a[1], b[0] - sign * b[1]
+        crosses = f * g < 0.0
+        t = f / np.where(crosses, f - g, 1.0)
+        best = np.where(crosses, np.minimum(best, np.abs(a[0] + t * (b[0] - a[0]))), best)
+    return np.min(best, axis=1)
