@@ -198,9 +198,8 @@ def _export_options(sub: Parser) -> None:
     _scene_argument(sub)
     sub.add_argument("--format", required=True, metavar="F", help="abaqus, gmsh, vtu or csv")
     sub.add_argument("--elements", type=positive, metavar="N", help="elements along the specimen, as dolfinx.elements")
-    sub.add_argument(
-        "--layers", type=positive, metavar="N", help="elements through each arm or the strip, as dolfinx.layers"
-    )
+    layers = "elements through each arm or the strip, as dolfinx.layers"
+    sub.add_argument("--layers", type=positive, metavar="N", help=layers)
     _set_option(sub)
     sub.add_argument("--out", type=Path, metavar="DIR", help="default: debond-export/SCENE-F")
 

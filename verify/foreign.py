@@ -17,6 +17,7 @@ from verify.crosschecks import (
     SQUEEZED,
     beam_check,
     pair_checks,
+    proven,
     published_load,
     published_meaning,
     published_names,
@@ -101,7 +102,7 @@ def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneRepo
         )
         for curve in curves
     ]
-    results = {run.method: run.result for run in reversed(report.runs) if run.result is not None}
+    results = {run.name: run.result for run in report.runs if run.result is not None}
     others = {run.method: run.result for run in (*report.runs, *runs) if run.method not in METHODS and run.result}
     checks = [check for name, other in others.items() for check in checks_of(report.scene, name, other, results)]
     return replace(report, runs=(*report.runs, *runs), checks=(*report.checks, *checks))
@@ -112,7 +113,7 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
 
     Parameters
     ----------
-    results : the runs that are there, by method
+    results : the runs that are there, by name
     """
     programme = scene.load.opening
     if curve.load.size < 2:
@@ -127,7 +128,8 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
     usable = {method: result for method, result in results.items() if result.load.size > 1}
     for method, tolerance in CODES.items():
         if method in usable:
-            checks += pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
+            pair = pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
+            checks += [proven(scene, check, usable) for check in pair]
     if "beam" in usable and squeeze(scene) < SQUEEZED:
         fine = ANALYTICAL[simulated(scene, "beam")["kinematics"]]
         tolerance = ON_SUBSTRATE if scene.specimen.kind == "peel" else fine

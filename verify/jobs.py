@@ -72,8 +72,9 @@ class Job:
         )
 
     def meant_for(self, check: Check) -> bool:
-        """On the coarse meshes of a sequence what rests on the J-integral measures the mesh and not the solver."""
-        coarse = [override.partition("=")[0] for override in self.overrides] == ["discretization.dofs"]
+        """On coarse meshes what rests on the J-integral measures the mesh and not the solver."""
+        keys = [override.partition("=")[0] for override in self.overrides]
+        coarse = keys == ["discretization.dofs"] or "dolfinx.layers" in keys
         return not (coarse and check.name in OF_THE_ZONE)
 
     def folder(self, out: Path) -> Path:

@@ -10,12 +10,14 @@ from pathlib import Path
 from verify import neglected, verdict_file
 from verify.checks import run_checks
 from verify.crosschecks import cross_checks, remarks
+from verify.effects import simulated
 from verify.foreign import Curve, joined
 from verify.included import Included, found_in
 from verify.jobs import Job, Outcome, dry_run, is_missing, run_all
 from verify.judgement import NO_DEMANDS, Demands, judged
 from verify.mesh_sequences import sequences
 from verify.methods import WITH_DOFS, known_methods
+from verify.odd_one_out import odd_one_out
 from verify.paper import peel, peel_statements, statements
 from verify.paper import plan as figures
 from verify.paper.comparison import lines
@@ -25,8 +27,9 @@ from verify.plane_study import Plate
 from verify.plane_study import lines as plane_lines
 from verify.plane_study import study as plane_study
 from verify.progress import telling
+from verify.proof import MATCHED, REFERENCE, SEARCHING, SECOND
 from verify.quadrature_study import finding, study
-from verify.reference_mesh import reference_mesh
+from verify.reference_mesh import reference_mesh, second_mesh
 from verify.run import environment
 from verify.say import say, write_page
 from verify.scene import Scene
@@ -126,6 +129,10 @@ def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
     """The runs of one scene."""
     for method in known_methods():
         yield Job(source, scene, method, method)
+    yield Job(source, scene, REFERENCE, SECOND, second_mesh(scene), fields=False)
+    effects = simulated(scene, SEARCHING)
+    if scene.specimen.kind == "dcb" and effects["kinematics"] == "finite" and effects["search"]:
+        yield Job(source, scene, SEARCHING, MATCHED, ("effects.search=false",), fields=False)
     if full and scene.specimen.kind == "dcb":
         yield figures.cubic(source, scene)
         yield Job(source, scene, "tspline", "tspline-adaptive", ADAPTIVE)
@@ -147,7 +154,8 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
             checks.append(Check("completed", outcome.job.variant, float("nan"), 1e-9, "exact", meaning))
     results = {o.job.variant: o.result for o in outcomes if o.result is not None}
     said = (*remarks(scene, results), *neglected.remarks(scene, results))
-    return SceneReport(scene, runs, (*checks, *cross_checks(scene, results)), said)
+    checks += cross_checks(scene, results)
+    return SceneReport(scene, runs, tuple(checks), (*said, *odd_one_out(scene, checks, results)))
 
 
 def convergence(reports: Sequence[SceneReport]) -> list[str]:
@@ -164,12 +172,12 @@ def convergence(reports: Sequence[SceneReport]) -> list[str]:
 def _as_run(outcome: Outcome, out: Path) -> Run:
     job, result = outcome.job, outcome.result
     scene = job.solved
-    degree = {"dolfinx": reference_mesh(scene).degree, **dict.fromkeys(WITH_DOFS, scene.discretization.degree)}.get(
-        job.method
-    )
+    degrees = {"dolfinx": reference_mesh(scene).degree, **dict.fromkeys(WITH_DOFS, scene.discretization.degree)}
+    degree = degrees.get(job.method)
     name = NAMES.get(job.method, job.method) + (f" p={degree}" if degree else "")
     adaptive = job.method == "tspline" and scene.discretization.adaptive
     name, most = (f"{name}, adaptive", "at most ") if adaptive else (name, "")
+    name += {SECOND: ", second mesh", MATCHED: ", pairs kept"}.get(job.variant, "")
     label = f"{name}, {most}{result.dofs} unknowns" if result is not None and result.dofs else name
     folder, done = str(job.folder(out).relative_to(out)), result is not None or outcome.failed
     command = shlex.join(["debond", *job.command(out)])

@@ -95,6 +95,7 @@ LIMITS = [
     ("discretization.bend", 1e-5, 0.2),
     ("dolfinx.degree", 1, 4),
     ("dolfinx.elements", 2, 100_000),
+    ("dolfinx.layers", 1, 100),
     ("pose.angle", -360.0, 360.0),
     ("load.opening", -0.4, 28.0),
 ]
@@ -122,7 +123,10 @@ def test_what_is_not_given_is_as_it_is_written() -> None:
     effects = {"kinematics": "finite", "contact": True, "irreversible": True, "symmetry": False, "search": True}
     found = scene.model_dump()
     assert found["discretization"] == mesh and found["effects"] == effects
-    assert found["dolfinx"] == {"degree": 2, "elements": 112} and found["interface"]["law"] == "bilinear"
+    assert (
+        found["dolfinx"] == {"degree": "auto", "elements": 112, "layers": "auto"}
+        and found["interface"]["law"] == "bilinear"
+    )
     assert found["pose"] == {"angle": 0.0, "mirror": False, "shift": (0.0, 0.0)} and found["published"] == ()
 
 

@@ -20,6 +20,7 @@ from verify.crosschecks import cross_checks
 from verify.jobs import Job, Outcome
 from verify.judgement import Demands
 from verify.plugins import plugins
+from verify.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.scene import Scene, load_scene
 from verify.verdict import Check, Run, SceneReport
@@ -47,10 +48,12 @@ def scene() -> Scene:
 
 def test_every_method_runs_on_every_scene(scene: Scene) -> None:
     assert [job.variant for job in planned(LINEAR, scene)] == [
-        "tspline", "nurbs", "lagrange", "dolfinx", "beam", "lefm", *plugins()
+        "tspline", "nurbs", "lagrange", "dolfinx", "beam", "lefm", *plugins(), "dolfinx-second"
     ]  # fmt: skip
+    finite = load_scene("dcb-czm1")
+    assert [job.variant for job in planned("dcb-czm1", finite)][-2:] == ["dolfinx-second", "nurbs-matched"]
     full = [job.variant for job in planned(LINEAR, scene, full=True)]
-    assert full[6 + len(plugins()) :] == ["dolfinx-p3", "tspline-adaptive", "nurbs-978", "nurbs-489"]
+    assert full[7 + len(plugins()) :] == ["dolfinx-p3", "tspline-adaptive", "nurbs-978", "nurbs-489"]
 
 
 def test_a_run_is_repeated_by_its_command(scene: Scene, tmp_path: Path) -> None:
@@ -166,16 +169,18 @@ def test_runs_are_named_and_kept_with_what_they_were_told(
     monkeypatch.setattr(verification, "run_all", lambda jobs, *how: [Outcome(job, None, "by nobody") for job in jobs])
     verify([(LINEAR, scene)], tmp_path, jobs=1)
     runs = reports[0].runs
-    assert [run.label for run in runs] == ["DOLFINx p=3", "T-spline p=3, adaptive", "NURBS p=3", "NURBS p=3"]
-    assert [run.scene.dolfinx.degree for run in runs] == [3, 2, 2, 2]
-    assert [run.scene.discretization.dofs for run in runs] == [1956, 700, 978, 489]
-    assert runs[1].scene.discretization.adaptive and not runs[2].scene.discretization.adaptive
+    assert [run.label for run in runs] == [
+        "DOLFINx p=2, second mesh", "DOLFINx p=3", "T-spline p=3, adaptive", "NURBS p=3", "NURBS p=3"
+    ]  # fmt: skip
+    assert [reference_mesh(run.scene).degree for run in runs] == [2, 3, 2, 2, 2]
+    assert [run.scene.discretization.dofs for run in runs] == [1956, 1956, 700, 978, 489]
+    assert runs[2].scene.discretization.adaptive and not runs[3].scene.discretization.adaptive
 
 
 def test_t_splines_that_follow_the_process_zone_are_held_against_both(scene: Scene) -> None:
     """Tolerances are those of the T-splines at rest: a curve 0.3 % off is too far from the beam, and no further."""
     x = np.linspace(0.0, 3.0, 50)
-    off = {"tspline-adaptive": 1.003, "tspline": 1.003, "beam": 1.0, "dolfinx": 1.0}
+    off = {"tspline-adaptive": 1.003, "tspline": 1.003, "beam": 1.0, "dolfinx": 1.0, "dolfinx-second": 1.0}
     results = {name: Result(name, {"opening": x, "load": factor * np.sqrt(x)}) for name, factor in off.items()}
     found = {(c.name, c.subject): c for c in cross_checks(scene, results)}
     for name in ("tspline", "tspline-adaptive"):

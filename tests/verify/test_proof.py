@@ -1,0 +1,98 @@
+"""A reference judges where it has proven itself on a second mesh; where curves disagree the odd one out is named."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+import pytest
+
+from verify.crosschecks import cross_checks
+from verify.odd_one_out import odd_one, odd_one_out
+from verify.proof import MATCHED, SECOND, held_against, proof
+from verify.reference_mesh import ReferenceMesh, reference_mesh, second_mesh, thickness_error
+from verify.result import Result
+from verify.scene import load_scene, parse_scene
+from verify.schema import Scene
+from verify.verdict import Check
+
+OPENING = np.linspace(0.0, 3.0, 60)
+
+
+def runs(**factors: float) -> dict[str, Result]:
+    """Curves that differ by factors; names with dashes are written with underscores."""
+    curve = np.minimum(OPENING, 1.0 / np.maximum(OPENING, 0.1))
+    named = {name.replace("_", "-"): factor for name, factor in factors.items()}
+    return {name: Result(name.split("-")[0], {"opening": OPENING, "load": f * curve}) for name, f in named.items()}
+
+
+def stocky(**dolfinx: object) -> Scene:
+    """An orthotropic arm with a0/h = 7, which one quadratic element misses by 2.3 %."""
+    return parse_scene({
+        "specimen": {"kind": "dcb", "length": 69.0, "arm_thickness": 4.07, "precrack": 28.9, "plane": "strain"},
+        "material": {"E1": 4000.0, "E2": 273.0, "G12": 139.0, "nu12": 0.001},
+        "interface": {"strength": 0.283, "toughness": 0.00288, "ductility": 2.4},
+        "load": {"opening": 0.465}, "effects": {"kinematics": "linear"}, "dolfinx": dolfinx,
+    })  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("value", "second", "state"),
+    [
+        (1.004, 1.0005, "holds"),
+        (1.006, 1.0005, "broken"),
+        (1.004, 1.004, "holds"),  # uncertain, but within the tolerance in any case
+        (1.006, 1.004, "unresolved"),
+        (1.02, 1.004, "broken"),  # beyond what the reference may be off
+        (1.001, 1.006, "unresolved"),  # two wrong curves agree as well
+    ],
+)
+def test_a_reference_judges_as_far_as_it_is_right_itself(value: float, second: float, state: str) -> None:
+    found = cross_checks(load_scene("dcb-czm1"), runs(nurbs=value, dolfinx=1.0, dolfinx_second=second))
+    curve = next(check for check in found if check.name == "curve")
+    assert curve.state == state and curve.uncertainty == pytest.approx(second - 1.0)
+    assert ("second mesh" in curve.unresolved) == (state == "unresolved")
+
+
+def test_a_reference_without_a_second_mesh_cannot_judge() -> None:
+    known = proof(runs(dolfinx=1.0), 3.0)
+    assert known.error.curve == inf
+    check = held_against(Check("curve", "nurbs / dolfinx", 0.001, 0.005, "cross-code", ""), known)
+    assert check.state == "unresolved" and "has not been solved on a second mesh" in check.unresolved
+
+
+def test_a_difference_of_models_is_named_and_equal_models_are_held_against_each_other() -> None:
+    scene = load_scene("dcb-czm1")
+    given = runs(nurbs=1.006, nurbs_matched=1.0001, dolfinx=1.0, dolfinx_second=1.0002)
+    found = {check.subject: check for check in cross_checks(scene, given) if check.name == "curve"}
+    assert found[f"{MATCHED} / dolfinx"].state == "holds" and found["nurbs / dolfinx"].state == "unresolved"
+    assert "difference of models of 0.0059" in found["nurbs / dolfinx"].unresolved
+    wrong = {**given, **runs(nurbs_matched=1.007)}
+    found = {check.subject: check for check in cross_checks(scene, wrong) if check.name == "curve"}
+    assert found[f"{MATCHED} / dolfinx"].state == "broken", "equal models have no excuse"
+
+
+def test_the_odd_one_out_is_whom_no_other_code_confirms() -> None:
+    said = odd_one(runs(nurbs=1.0, tspline=1.0005, dolfinx=1.023, dolfinx_second=1.001, beam=1.002), 3.0)
+    assert said.startswith("odd one out: dolfinx, 2.10% or more")
+    assert odd_one(runs(nurbs=1.03, tspline=1.0, dolfinx=1.0, beam=1.0), 3.0).startswith("odd one out: nurbs, 3.00%")
+    close = odd_one(runs(nurbs=1.006, dolfinx=1.0, beam=1.003), 3.0)
+    assert close.startswith("odd one out, though not by much: ")
+    coarse = odd_one(runs(lagrange=1.015, nurbs=1.0, dolfinx=1.0, mine=0.9), 3.0)
+    assert coarse.startswith("odd one out: mine, "), "Lagrange is within its own tolerance"
+
+
+def test_nothing_is_said_where_all_checks_of_pairs_hold() -> None:
+    scene, given = load_scene("dcb-czm1"), runs(nurbs=1.0, dolfinx=1.0, dolfinx_second=1.0)
+    assert odd_one_out(scene, cross_checks(scene, given), given) == ()
+    bad = {**given, **runs(nurbs=1.05)}
+    assert len(odd_one_out(scene, cross_checks(scene, bad), bad)) == 1
+
+
+def test_the_mesh_through_the_thickness_follows_the_geometry_and_a_scene_may_set_it() -> None:
+    assert reference_mesh(load_scene("dcb-czm1")) == ReferenceMesh(2, 112, 1)
+    assert reference_mesh(stocky()) == ReferenceMesh(3, 112, 1)
+    assert reference_mesh(stocky(degree=2)) == ReferenceMesh(2, 112, 3)
+    assert reference_mesh(stocky(layers=1, degree=2)) == ReferenceMesh(2, 112, 1)
+    assert thickness_error(stocky(), 2, 1) > 0.0227, "as much as was measured, or more"
+    assert "dolfinx.layers=2" in second_mesh(stocky()) and SECOND == "dolfinx-second"
