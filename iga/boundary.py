@@ -14,7 +14,7 @@ from iga.iga_file import IgaFile, mesh
 from iga.iga_read import read_iga
 from iga.neighbours import NEAR, Sides, chains_of, element_sides
 from iga.quadrature import gauss, square
-from iga.sound import faults, unity_fault
+from iga.sound import dependence, faults, unity_fault
 
 #: Sides of a rectangle: (coordinate that they share, whether it is the largest, hand of the body). The chains run with
 #: the axes, as those of a mesh made from knots do.
@@ -58,7 +58,7 @@ def body_mesh(path: Path | str) -> Mesh:
         body = mesh(file)
         _refuse_folded(body)
         sides = element_sides(body)
-        if unsound := (*faults(body, sides), *unity_fault(body)):
+        if unsound := (*faults(body, sides), *unity_fault(body), *dependence(body)):
             raise ValueError("; ".join(unsound))
         chains = {side: _side(file, body, sides, side) for side in RECTANGLE}
     except ValueError as error:

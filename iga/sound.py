@@ -60,6 +60,12 @@ def unity_fault(mesh: Mesh) -> tuple[str, ...]:
     return (f"the sum of the functions misses 1 by {missed:.3g}",) if missed > UNITY else ()
 
 
+def dependence(mesh: Mesh) -> tuple[str, ...]:
+    """A sentence where the functions are not independent of each other: stiffness matrices are singular then."""
+    found, count = rank(coefficients(mesh)), len(mesh.P_AI)
+    return (f"the functions are dependent: rank {found} of {count}",) if found < count else ()
+
+
 def faults(mesh: Mesh, sides: Sides | None = None) -> tuple[str, ...]:
     """What keeps a mesh with positive Jacobians from being one body, in sentences; empty for a sound mesh.
 

@@ -24,7 +24,7 @@ from iga.material import isotropic
 from iga.plane import no_rigid_motion, solve, stiffness, traction_forces
 from iga.quadrature import square
 from iga.sides import side_points
-from iga.sound import UNITY, faults, missed_unity, unity_fault
+from iga.sound import UNITY, dependence, faults, missed_unity, unity_fault
 from iga.subdivide import bezier_refined
 from verify.plane_errors import Errors, errors
 from verify.plane_exact import PlaneField, kirsch, smooth, uniform
@@ -91,7 +91,7 @@ def load_plate(source: str) -> Plate:
     try:
         mesh = mesh_of(read_iga(path))
         stiffness(mesh, isotropic(**SOLID))  # refuses elements that are inside out
-        if unsound := faults(mesh):
+        if unsound := (*faults(mesh), *dependence(mesh)):
             raise ValueError("; ".join([*unsound, *unity_fault(mesh)]))
         chains = {f"{_BOUNDARY}{i}": chain for i, chain in enumerate(boundary_chains(mesh))}
         mesh = replace(mesh, chains=chains)

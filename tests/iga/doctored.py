@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from iga.bspline import open_knots
-from iga.extraction import Mesh
+from iga.extraction import ElementBlock, Mesh
 from iga.nurbs import nurbs_rectangle
 
 
@@ -74,6 +74,28 @@ def function_scaled(body: Mesh, factor: float = 1.0 + 1e-8) -> Mesh:
     (block,) = body.blocks
     scale_ea = np.where(block.conn_ea == len(body.P_AI) // 2, factor, 1.0)
     return with_block(body, C_eab=block.C_eab * scale_ea[..., None])
+
+
+def function_halved(body: Mesh) -> Mesh:
+    """Two functions for one, each half of it, with the same control point: the sum is the same."""
+    (block,) = body.blocks
+    conn_ea, C_eab = block.conn_ea, block.C_eab
+    here_ea = conn_ea == len(body.P_AI) // 2
+    on_e = here_ea.any(1)
+    C_eab = np.where(here_ea[..., None], 0.5, 1.0) * C_eab
+    extra_eb = np.einsum("ea,eab->eb", here_ea, C_eab)
+    more = ElementBlock(
+        block.degrees,
+        np.concatenate([C_eab, extra_eb[:, None]], axis=1)[on_e],
+        np.column_stack([conn_ea, np.full(len(conn_ea), len(body.P_AI))])[on_e],
+    )
+    rest = replace(block, C_eab=C_eab[~on_e], conn_ea=conn_ea[~on_e])
+    P_AI, w_A = (np.concatenate([part, part[len(part) // 2 :][:1]]) for part in (body.P_AI, body.w_A))
+    return Mesh(P_AI, w_A, (rest, more) if not on_e.all() else (more,))
+
+
+def point_unused(body: Mesh) -> Mesh:
+    return replace(body, P_AI=np.concatenate([body.P_AI, body.P_AI[:1]]), w_A=np.append(body.w_A, 1.0), chains={})
 
 
 def every(body: Mesh) -> np.ndarray:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from doctored import C0, SMOOTH, arch, every, with_block, with_copies, with_elements
+from doctored import C0, SMOOTH, arch, every, function_halved, point_unused, with_block, with_copies, with_elements
 from hypothesis import given, settings
 from iga_files import REAL, SMALL, real, small
 from random_tmeshes import suitable_tmeshes
@@ -16,7 +16,7 @@ from iga.iga_file import from_mesh, mesh, write_iga
 from iga.iga_read import read_iga
 from iga.nurbs import nurbs_rectangle
 from iga.polygon import polygon_mesh
-from iga.sound import UNITY, faults, missed_unity, unity_fault
+from iga.sound import UNITY, dependence, faults, missed_unity, unity_fault
 from iga.subdivide import bezier_refined
 from iga.tspline import tspline_rectangle
 
@@ -261,3 +261,12 @@ def test_a_body_that_is_not_sound_is_refused(kind, tmp_path):
     write_iga(from_mesh(replace(doctor(flat), chains={})), tmp_path / "body.iga")
     with pytest.raises(ValueError, match=f"body.iga: .*{words}"):
         body_mesh(tmp_path / "body.iga")
+
+
+@pytest.mark.parametrize("doctor", [function_halved, point_unused])
+def test_functions_that_depend_on_others_are_named(doctor):
+    """And nothing else: they tear no mesh."""
+    body = doctor(arch(spans=8))
+    count = len(body.P_AI)
+    assert faults(body) == () and unity_fault(body) == () and dependence(arch()) == ()
+    assert dependence(body) == (f"the functions are dependent: rank {count - 1} of {count}",)

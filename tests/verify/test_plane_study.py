@@ -8,7 +8,7 @@ import pytest
 
 from iga.iga_file import from_mesh, write_iga
 from iga.polygon import polygon_mesh
-from tests.iga.doctored import SMOOTH, arch, function_scaled
+from tests.iga.doctored import SMOOTH, arch, function_halved, function_scaled, point_unused
 from tests.iga.test_plane import ring, square_mesh
 from verify import plane_study
 from verify.cli import FAILED, REFUSED, main
@@ -104,6 +104,9 @@ def test_meshes_that_are_no_body_are_refused(written):
     for doctor, words in (SMOOTH[kind] for kind in ("an element twice", "two halves", "ids of one element exchanged")):
         with pytest.raises(Refusal, match=f"body.iga: .*{words}"):
             load_plate(written(doctor(replace(arch(), chains={}))))
+    for doctor in (function_halved, point_unused):
+        with pytest.raises(Refusal, match=r"body.iga: the functions are dependent: rank 49 of 50"):
+            load_plate(written(doctor(arch())))
 
 
 def test_functions_that_miss_one_fail_a_check(written):
