@@ -60,6 +60,21 @@ def closed_ring(spans: int = 5) -> Mesh:
     return Mesh(P_AI, np.ones(2 * spans), (ElementBlock((2, 1), C_eab, conn_ea),))
 
 
+def mixed() -> Mesh:
+    """Functions along the bottom of which all but the first and last live on every element, as in hierarchies."""
+    body = arch()
+    (block,) = body.blocks
+    n = 7
+    T_ab = np.eye(n)
+    T_ab[1:-1, 1:-1] += 0.3 * np.roll(np.eye(n - 2), 1, axis=0) + 0.2 * np.ones((n - 2, n - 2))
+    T_AB = np.kron(np.eye(n), T_ab / T_ab.sum(0))
+    N_eAb = np.zeros((body.elements, n * n, block.C_eab.shape[2]))
+    for e in range(body.elements):
+        N_eAb[e, block.conn_ea[e]] = block.C_eab[e]
+    C_eab, conn_ea = T_AB @ N_eAb, np.broadcast_to(np.arange(n * n), (body.elements, n * n))
+    return replace(with_block(body, C_eab=C_eab, conn_ea=conn_ea), P_AI=np.linalg.solve(T_AB.T, body.P_AI))
+
+
 def disc() -> Mesh:
     """Six triangles, each an element with a side that is a point."""
     angle = np.pi / 3.0 * np.arange(7)
@@ -93,6 +108,7 @@ RIGHT = {
     "ring around": closed_ring,
     "ring of three": lambda: closed_ring(3),
     "disc": disc,
+    "many functions on every side": mixed,
     "slit with names": lambda: slit(True),
     "hole in a C0 mesh": lambda: with_elements(arch(1), np.delete(every(arch(1)), 5)),
     "narrow slot": lambda: quads(
