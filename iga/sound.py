@@ -216,27 +216,40 @@ def _covered(sides: Sides, k_n: np.ndarray, asked_n: np.ndarray) -> np.ndarray:
     """Sides of the boundary inside an element, by the winding number of the boundary about their points.
 
     The angle under which a point of the boundary sees it, walked with the body on the left, is pi, and 2 pi more for
-    every element that lies over the point. Points as near to another side as its chord are left out.
+    every element that lies over the point. Sides whose hull holds the point are seen in pieces, the others as their
+    chords. Points as near to another side as its pieces are to the curve are left out.
     """
     t_j = np.linspace(0.0, 1.0, 2 * _PIECES + 1)
-    k, t = np.repeat(k_n, len(t_j)), np.tile(t_j, len(k_n))
-    X_njI = sides.points(k, t)[:, :2].reshape(len(k_n), len(t_j), 2)
-    node_npI, middle_npI = X_njI[:, ::2], X_njI[:, 1::2]
-    start_mI, end_mI = node_npI[:, :-1].reshape(-1, 2), node_npI[:, 1:].reshape(-1, 2)
-    sag_np = np.linalg.norm(middle_npI - 0.5 * (node_npI[:, :-1] + node_npI[:, 1:]), axis=2)
-    sag_m = 4.0 * sag_np.ravel() + NEAR * np.linalg.norm(end_mI - start_mI, axis=1)
-    own_m = np.repeat(np.arange(len(k_n)), _PIECES)
+    X_njI = sides.points(np.repeat(k_n, len(t_j)), np.tile(t_j, len(k_n)))[:, :2].reshape(len(k_n), len(t_j), 2)
+    X_npI = X_njI[:, ::2]
+    sag_np = np.linalg.norm(X_njI[:, 1::2] - 0.5 * (X_npI[:, :-1] + X_npI[:, 1:]), axis=2)
+    sag_n = 4.0 * sag_np.max(1) + NEAR * sides.length_k[k_n]
+    hull_nbI = sides.H_kbI[k_n, :, :2] / sides.H_kbI[k_n, :, 3:]
+    low_nI, high_nI = hull_nbI.min(1) - sag_n[:, None], hull_nbI.max(1) + sag_n[:, None]
     asked = np.flatnonzero(asked_n)
-    x_sI, own_s = node_npI[asked, 1:-1].reshape(-1, 2), np.repeat(asked, _PIECES - 1)
+    x_sI, own_s = X_npI[asked, 1:-1].reshape(-1, 2), np.repeat(asked, _PIECES - 1)
     covered_n = np.zeros(len(k_n), dtype=bool)
-    for part in np.array_split(np.arange(len(x_sI)), 1 + len(x_sI) * len(start_mI) // _CHUNK):
-        a, b = start_mI - x_sI[part, None], end_mI - x_sI[part, None]
-        angle_s = np.arctan2(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0], np.sum(a * b, -1)).sum(1)
+    for part in np.array_split(np.arange(len(x_sI)), 1 + len(x_sI) * len(k_n) // _CHUNK):
+        x_snI = x_sI[part, None]
+        angle_sn = _angle(X_npI[:, 0] - x_snI, X_npI[:, -1] - x_snI)
+        s, n = np.nonzero(np.all((low_nI <= x_snI) & (x_snI <= high_nI), axis=2))
+        pieces_mpI = X_npI[n] - x_sI[part[s], None]
+        a, b = pieces_mpI[:, :-1], pieces_mpI[:, 1:]
+        angle_sn[s, n] = _angle(a, b).sum(1)
         along = np.clip(-np.sum(a * (b - a), -1) / np.maximum(np.sum((b - a) ** 2, -1), 1e-300), 0.0, 1.0)
-        away_sm = np.linalg.norm(a + along[..., None] * (b - a), axis=-1)
-        clear_s = np.all((away_sm > sag_m) | (own_m == own_s[part, None]), axis=1)
-        covered_n[own_s[part[clear_s & (angle_s > 2.0 * np.pi)]]] = True
+        away_m = np.linalg.norm(a + along[..., None] * (b - a), axis=-1).min(1)
+        unclear = s[(away_m <= sag_n[n]) & (n != own_s[part[s]])]
+        inside_s = angle_sn.sum(1) > 2.0 * np.pi
+        inside_s[unclear] = False
+        covered_n[own_s[part[inside_s]]] = True
     return covered_n
+
+
+def _angle(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Angles from vectors a (..., 2) to b, counterclockwise; 0 where one has no length."""
+    cross = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    dot = a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]
+    return np.arctan2(cross, dot + 0.0)  # of a dot product of -0.0 the angle would be pi
 
 
 def _heights(mesh: Mesh, sides: Sides) -> np.ndarray:
