@@ -14,6 +14,7 @@ from iga.iga_file import IgaFile, mesh
 from iga.iga_read import read_iga
 from iga.neighbours import NEAR, Sides, chains_of, element_sides
 from iga.quadrature import gauss, square
+from iga.sound import dependence, faults, unity_fault
 
 #: Sides of a rectangle: (coordinate that they share, whether it is the largest, hand of the body). The chains run with
 #: the axes, as those of a mesh made from knots do.
@@ -49,7 +50,7 @@ def body_mesh(path: Path | str) -> Mesh:
     Raises
     ------
     ValueError : the file is malformed (`IgaError`, with the line), is no plane, has a Jacobian that is not positive,
-        or a side cannot be found or is not one chain.
+        is torn or doubled (`iga.sound`), or a side cannot be found or is not one chain.
     OSError : the file cannot be read.
     """
     file = read_iga(path)
@@ -57,6 +58,8 @@ def body_mesh(path: Path | str) -> Mesh:
         body = mesh(file)
         _refuse_folded(body)
         sides = element_sides(body)
+        if unsound := (*faults(body, sides), *unity_fault(body), *dependence(body)):
+            raise ValueError("; ".join(unsound))
         chains = {side: _side(file, body, sides, side) for side in RECTANGLE}
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None

@@ -21,6 +21,9 @@ from iga.quadrature import gauss, square
 #: What a file may describe; only the first is a body in the plane.
 KINDS = ("plane", "surface", "thickened_surface", "volume")
 
+#: A third coordinate below this part of the body's extent is rounding.
+FLAT = 1e-12
+
 
 @dataclass(frozen=True)
 class NamedSet:
@@ -74,10 +77,11 @@ def mesh(file: IgaFile) -> Mesh:
 
     Raises
     ------
-    ValueError : the file does not describe a plane.
+    ValueError : the file does not describe a plane, or has control points beside the plane z = 0.
     """
     if file.kind != "plane":
         raise ValueError(f"type: must be plane for a body in the plane, got {file.kind}")
+    _refuse_lifted(file.P_AI)
     body = Mesh(np.ascontiguousarray(file.P_AI[:, :2]), file.w_A, file.blocks)
     turned = [_clockwise(body, block) for block in file.blocks]
     body = replace(body, blocks=tuple(block_from_behind(*pair) for pair in zip(file.blocks, turned, strict=True)))
@@ -94,6 +98,13 @@ def mesh(file: IgaFile) -> Mesh:
         numbers = [""] if len(pieces) == 1 else [f"-{i + 1}" for i in range(len(pieces))]
         chains |= {name + number: piece for number, piece in zip(numbers, pieces, strict=True)}
     return replace(body, chains=chains)
+
+
+def _refuse_lifted(P_AI: np.ndarray) -> None:
+    lifted_A = np.abs(P_AI[:, 2]) > FLAT * np.ptp(P_AI[:, :2], axis=0).max()
+    if np.any(lifted_A):
+        A = int(np.argmax(lifted_A))
+        raise ValueError(f"node {A}: z must be 0 in a plane, got {P_AI[A, 2]:.6g} (nodes count from 0)")
 
 
 def from_mesh(body: Mesh) -> IgaFile:

@@ -99,7 +99,7 @@ class Sides:
         last = np.searchsorted(self.edge_k[order], self.edge_k[order], side="right") - 1
         here = np.arange(len(order))
         partner = order[np.where(here < last, here + 1, first)]
-        point, side, t = self._on(self.points(lone, np.full(len(lone), 0.5)), self.size_k[lone])
+        point, side, t = self.on(self.points(lone, np.full(len(lone), 0.5)), self.size_k[lone])
         other = lone[point] != side
         return (
             np.concatenate([order, lone[point[other]]]),
@@ -128,11 +128,11 @@ class Sides:
         starts = self.vertex_kv[self.lone, 0]  # and with them all ends, for lone sides form closed chains
         vertex, first = np.unique(starts, return_index=True)
         k = self.lone[first]
-        point, side, t = self._on(self.points(k, np.zeros(len(k))), self.size_k[k])
+        point, side, t = self.on(self.points(k, np.zeros(len(k))), self.size_k[k])
         inside = np.all(self.vertex_kv[side] != vertex[point][:, None], axis=1)
         return vertex[point[inside]], side[inside], t[inside]
 
-    def _on(self, X_nI: np.ndarray, size_n: np.ndarray) -> tuple[np.ndarray, ...]:
+    def on(self, X_nI: np.ndarray, size_n: np.ndarray) -> tuple[np.ndarray, ...]:
         """Which points (n, 3) lie on which lone sides: number of the point, the side and its parameter."""
         k_m = self.lone
         hull_mbI = self.H_kbI[k_m, :, :2] / self.H_kbI[k_m, :, 3:]
@@ -141,7 +141,7 @@ class Sides:
         x_nmI = X_nI[:, None, :2]
         point, m = np.nonzero(np.all((low_mI <= x_nmI) & (x_nmI <= high_mI), axis=2))
         side = k_m[m]
-        t = _nearest(self.H_kbI[side], X_nI[point, :2])
+        t = nearest(self.H_kbI[side], X_nI[point, :2])
         away = np.abs(self.points(side, t) - X_nI[point])
         size = np.minimum(size_n[point], self.size_k[side])
         on = (np.hypot(away[:, 0], away[:, 1]) < NEAR * size) & (away[:, 2] < NEAR)
@@ -212,7 +212,7 @@ def _merged(X_nI: np.ndarray, size_n: np.ndarray) -> np.ndarray:
     return connected_components(graph, directed=False)[1]
 
 
-def _nearest(H_nbI: np.ndarray, x_nI: np.ndarray, steps: int = 8) -> np.ndarray:
+def nearest(H_nbI: np.ndarray, x_nI: np.ndarray, steps: int = 8) -> np.ndarray:
     """Parameter (n,) at which each curve comes nearest to its point in the plane: from samples, by Gauss and Newton."""
     p = H_nbI.shape[1] - 1
     H_nbI = H_nbI[..., [0, 1, 3]]

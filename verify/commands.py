@@ -119,6 +119,7 @@ def _print_result(result, checks, folder: Path) -> None:
 
 
 def verify(options: argparse.Namespace) -> int:
+    from verify.given_meshes import given_meshes
     from verify.included import named
     from verify.judgement import Demands
     from verify.plane_study import load_plate
@@ -132,7 +133,9 @@ def verify(options: argparse.Namespace) -> int:
             if source.lower().endswith(".iga"):
                 plates.append(load_plate(source))
             else:
-                scenes.append((source, load_scene(source)))
+                scene = load_scene(source)
+                given_meshes(scene)
+                scenes.append((source, scene))
         except Refusal as error:
             wrong.append(str(error))
     names = [*(scene.name for _, scene in scenes), *(plate.name for plate in plates)]
@@ -168,10 +171,12 @@ def _curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curv
 
 def cost(options: argparse.Namespace) -> int:
     from verify.cost.study import cost, would_run
+    from verify.given_meshes import refuse_files
     from verify.scene import load_scene
 
     _alone("cost")
     scene = load_scene(options.scene, options.overrides)
+    refuse_files(scene, "debond cost")
     what = (options.scene, scene, options.overrides, options.out, options.jobs)
     if options.dry_run:
         return _listed(would_run(*what))
@@ -199,11 +204,14 @@ def effects(options: argparse.Namespace) -> int:
 
 
 def scaling(options: argparse.Namespace) -> int:
+    from verify.given_meshes import refuse_files
     from verify.scaling.study import scaling, would_run
     from verify.scene import load_scene
 
     _alone("scaling")
-    what = (options.scene, load_scene(options.scene, options.overrides), options.overrides, options.out)
+    scene = load_scene(options.scene, options.overrides)
+    refuse_files(scene, "debond scaling")
+    what = (options.scene, scene, options.overrides, options.out)
     if options.dry_run:
         return _listed(would_run(*what))
     _folder(options.out)
@@ -249,6 +257,7 @@ def compare(options: argparse.Namespace) -> int:
 
 def export(options: argparse.Namespace) -> int:
     from verify.export.command import FORMATS, export
+    from verify.given_meshes import refuse_files
     from verify.scene import load_scene
     from verify.section import one_of
 
@@ -256,6 +265,7 @@ def export(options: argparse.Namespace) -> int:
         raise Refusal(f"--format: must be {one_of(FORMATS)}, got {options.format!r}")
     elements = [f"dolfinx.elements={options.elements}"] if options.elements else []
     scene = load_scene(options.scene, [*elements, *options.overrides])
+    refuse_files(scene, "debond export")
     folder = options.out or Path("debond-export") / f"{scene.name}-{options.format}"
     return _listed(export(scene, options.format, folder, options.layers))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,30 @@ from verify.schema import Scene
 
 #: Part of the specimen's length within which two places are the same.
 SAME = 1e-6
+
+#: The method that solves on meshes from files.
+METHOD = "tspline"
+
+#: The override with which a method makes a mesh of its own, for a scene that names files.
+OWN = "specimen.mesh=[]"
+
+
+def own_mesh(scene: Scene) -> Scene:
+    """The scene without its mesh files, as `OWN` makes it."""
+    return scene.model_copy(update={"specimen": scene.specimen.model_copy(update={"mesh": ()})})
+
+
+def refuse_files(scene: Scene, who: str) -> None:
+    """Raise Refusal where a scene names mesh files and ``who``, a method or a command, takes none."""
+    if scene.specimen.mesh:
+        text = f"must be left out (--set {OWN}) for {who}, which takes no mesh files: only the method {METHOD} does"
+        raise Refusal(f"specimen.mesh: {text}, got {list(scene.specimen.mesh)}")
+
+
+def remarks(others: Sequence[str]) -> tuple[str, ...]:
+    """Which runs of a scene with mesh files have not solved on them."""
+    text = f"specimen.mesh: the mesh of {METHOD} alone; {', '.join(others)} ran without it"
+    return (text,) if others else ()
 
 
 def given_meshes(scene: Scene) -> tuple[Mesh, ...]:

@@ -10,6 +10,7 @@ from verify.checks import OF_THE_ZONE
 from verify.estimate import seconds
 from verify.fingerprint import fingerprint
 from verify.folder import read_result
+from verify.given_meshes import OWN
 from verify.methods import NotRun, require
 from verify.plain import Damaged
 from verify.pools import pool
@@ -73,7 +74,7 @@ class Job:
 
     def meant_for(self, check: Check) -> bool:
         """On coarse meshes what rests on the J-integral measures the mesh and not the solver."""
-        keys = [override.partition("=")[0] for override in self.overrides]
+        keys = [override.partition("=")[0] for override in self.overrides if override != OWN]
         coarse = keys == ["discretization.dofs"] or "dolfinx.layers" in keys
         return not (coarse and check.name in OF_THE_ZONE)
 

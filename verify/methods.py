@@ -98,6 +98,8 @@ def solve(scene: Scene, method: str, on_step: OnStep | None = None, on_frame: On
 
 def require(scene: Scene, method: str) -> None:
     """Raise ``Unsuitable`` where the method is not made for the scene, ``NotRun`` where this machine lacks it."""
+    if scene.specimen.mesh:
+        _require_files(scene, method)
     if method not in METHODS:
         from verify import plugins
 
@@ -113,10 +115,6 @@ def require(scene: Scene, method: str) -> None:
     mesh, programme = scene.discretization, scene.load.opening
     if method == "tspline" and mesh.degree != 3:
         raise Unsuitable(f"discretization.degree: must be 3 for tspline, got {mesh.degree}")
-    if method == "tspline" and scene.specimen.mesh:
-        from verify.given_meshes import given_meshes
-
-        given_meshes(scene)
     least = least_dofs(method, mesh.degree)
     if mesh.dofs < least:
         text = f"must be >= {least} for {method} of degree {mesh.degree}, got {mesh.dofs}"
@@ -127,6 +125,15 @@ def require(scene: Scene, method: str) -> None:
         _require_mesh(scene, method)
     if method in ("beam", "lefm") and any(b <= a for a, b in zip((0.0, *programme), programme, strict=False)):
         raise Unsuitable(f"load.opening: must only increase for the method {method}, got {list(programme)}")
+
+
+def _require_files(scene: Scene, method: str) -> None:
+    """Mesh files that are those of the specimen, and a method that takes files; a plug-in may."""
+    from verify import given_meshes
+
+    if method in METHODS and method != given_meshes.METHOD:
+        given_meshes.refuse_files(scene, method)
+    given_meshes.given_meshes(scene)
 
 
 def _require_mesh(scene: Scene, method: str) -> None:

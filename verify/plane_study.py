@@ -24,6 +24,7 @@ from iga.material import isotropic
 from iga.plane import no_rigid_motion, solve, stiffness, traction_forces
 from iga.quadrature import square
 from iga.sides import side_points
+from iga.sound import UNITY, dependence, faults, missed_unity, unity_fault
 from iga.subdivide import bezier_refined
 from verify.plane_errors import Errors, errors
 from verify.plane_exact import PlaneField, kirsch, smooth, uniform
@@ -89,9 +90,11 @@ def load_plate(source: str) -> Plate:
     path = Path(source)
     try:
         mesh = mesh_of(read_iga(path))
+        stiffness(mesh, isotropic(**SOLID))  # refuses elements that are inside out
+        if unsound := (*faults(mesh), *dependence(mesh)):
+            raise ValueError("; ".join([*unsound, *unity_fault(mesh)]))
         chains = {f"{_BOUNDARY}{i}": chain for i, chain in enumerate(boundary_chains(mesh))}
         mesh = replace(mesh, chains=chains)
-        stiffness(mesh, isotropic(**SOLID))  # refuses elements that are inside out
         return Plate(path.stem, mesh, _hole(mesh))
     except OSError as error:
         raise Refusal(f"SCENE: must be a file that can be read, got {source!r}: {error.strerror}") from None
@@ -109,7 +112,7 @@ def study(plate: Plate) -> PlaneStudy:
     patch = _errors(plate.mesh, _solved(plate.mesh, plate.boundary, constant), constant)
     order = max(max(block.degrees) for block in plate.mesh.blocks) + 1
     X, found, exact = _sampled(plate.mesh, u_Ai, field)
-    checks = tuple(_checks(plate.name, patch, levels, order))
+    checks = (_unity(plate), *_checks(plate.name, patch, levels, order))
     return PlaneStudy(plate.name, problem, order, patch, levels, X, found, exact, checks)
 
 
@@ -187,6 +190,11 @@ def _checks(name: str, patch: Errors, levels: tuple[Level, ...], order: int) -> 
     if settled(levels):
         meaning = "The rate in L2 under refinement is p + 1."
         yield Check("rate", name, levels[-1].rate - order, RATE_TOLERANCE, "analytical", meaning)
+
+
+def _unity(plate: Plate) -> Check:
+    meaning = "The functions of the file add up to 1: tolerance for the digits of a file."
+    return Check("sum-of-functions", plate.name, missed_unity(plate.mesh), UNITY, "exact", meaning)
 
 
 def _solved(mesh: Mesh, boundary: list, field: PlaneField) -> np.ndarray:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import shlex
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from verify import neglected, verdict_file
+from verify import given_meshes, neglected, verdict_file
 from verify.checks import run_checks
 from verify.crosschecks import cross_checks, remarks
 from verify.effects import simulated
@@ -16,7 +17,7 @@ from verify.included import Included, found_in
 from verify.jobs import Job, Outcome, dry_run, is_missing, run_all
 from verify.judgement import NO_DEMANDS, Demands, judged
 from verify.mesh_sequences import sequences
-from verify.methods import WITH_DOFS, known_methods
+from verify.methods import METHODS, WITH_DOFS, known_methods
 from verify.odd_one_out import odd_one_out
 from verify.paper import peel, peel_statements, statements
 from verify.paper import plan as figures
@@ -126,20 +127,23 @@ def _all_jobs(plan: Sequence[Job], beams: figures.Plan, strips: peel.PeelPlan) -
 
 
 def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
-    """The runs of one scene."""
+    """The runs of one scene; those that do not take its mesh files make meshes of their own."""
+    own = (given_meshes.OWN,) if scene.specimen.mesh else ()
     for method in known_methods():
-        yield Job(source, scene, method, method)
-    yield Job(source, scene, REFERENCE, SECOND, second_mesh(scene), fields=False)
+        takes = method == given_meshes.METHOD or method not in METHODS
+        yield Job(source, scene, method, method, () if takes else own)
+    yield Job(source, scene, REFERENCE, SECOND, (*own, *second_mesh(scene)), fields=False)
     effects = simulated(scene, SEARCHING)
     if scene.specimen.kind == "dcb" and effects["kinematics"] == "finite" and effects["search"]:
-        yield Job(source, scene, SEARCHING, MATCHED, ("effects.search=false",), fields=False)
+        yield Job(source, scene, SEARCHING, MATCHED, (*own, "effects.search=false"), fields=False)
     if full and scene.specimen.kind == "dcb":
-        yield figures.cubic(source, scene)
-        yield Job(source, scene, "tspline", "tspline-adaptive", ADAPTIVE)
+        cubic = figures.cubic(source, scene)
+        yield replace(cubic, overrides=(*own, *cubic.overrides))
+        yield Job(source, scene, "tspline", "tspline-adaptive", (*own, *ADAPTIVE))
     if full:
         for parts in (2, 4):
             dofs = scene.discretization.dofs // parts
-            yield Job(source, scene, "nurbs", f"nurbs-{dofs}", (f"discretization.dofs={dofs}",))
+            yield Job(source, scene, "nurbs", f"nurbs-{dofs}", (*own, f"discretization.dofs={dofs}"))
 
 
 def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneReport:
@@ -148,14 +152,23 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     checks: list[Check] = []
     for outcome in outcomes:
         if outcome.result is not None:
-            checks += [c for c in run_checks(scene, outcome.result, outcome.job.variant) if outcome.job.meant_for(c)]
+            on = _with_its_mesh(scene, outcome.job)
+            checks += [c for c in run_checks(on, outcome.result, outcome.job.variant) if outcome.job.meant_for(c)]
         elif outcome.failed:
             meaning = "The run ended with a result."
             checks.append(Check("completed", outcome.job.variant, float("nan"), 1e-9, "exact", meaning))
     results = {o.job.variant: o.result for o in outcomes if o.result is not None}
-    said = (*remarks(scene, results), *neglected.remarks(scene, results))
+    on_their_own = [o.job.variant for o in outcomes if o.job.variant in results and given_meshes.OWN in o.job.overrides]
+    given, own = ({k: r for k, r in results.items() if (k in on_their_own) == other} for other in (False, True))
+    left_out = (*neglected.remarks(scene, given), *neglected.remarks(given_meshes.own_mesh(scene), own))
+    said = (*remarks(scene, results), *given_meshes.remarks(on_their_own), *left_out)
     checks += cross_checks(scene, results)
     return SceneReport(scene, runs, tuple(checks), (*said, *odd_one_out(scene, checks, results)))
+
+
+def _with_its_mesh(scene: Scene, job: Job) -> Scene:
+    """The scene as far as its mesh files are concerned: without them where the job is."""
+    return given_meshes.own_mesh(scene) if given_meshes.OWN in job.overrides else scene
 
 
 def convergence(reports: Sequence[SceneReport]) -> list[str]:

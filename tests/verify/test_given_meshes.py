@@ -10,15 +10,19 @@ import numpy as np
 import pytest
 
 from iga.arms import arm_meshes
-from iga.extraction import Mesh
+from iga.extraction import ElementBlock, Mesh
 from iga.iga_file import from_mesh, write_iga
 from iga.peel_meshes import tmeshes as peel_tmeshes
 from iga.tspline import tspline_rectangle
-from verify.given_meshes import given_meshes
-from verify.methods import require, solve
+from verify import verification
+from verify.checks import OF_THE_ZONE
+from verify.cli import REFUSED, main
+from verify.given_meshes import OWN, given_meshes, own_mesh
+from verify.methods import METHODS, require, solve
 from verify.problems import iga_problem
 from verify.refusal import Refusal
 from verify.scene import Scene, load_scene
+from verify.verdict import Check, SceneReport
 
 DCB = ("discretization.dofs=400", "load.opening=0.5", "discretization.steps=4")
 
@@ -107,7 +111,6 @@ def test_what_is_no_mesh_is_refused(tmp_path: Path) -> None:
 def test_what_is_no_mesh_of_the_specimen_is_refused_before_a_run(arms: tuple[Mesh, ...], tmp_path: Path) -> None:
     files = written(tmp_path, *arms)
     require(scene_with(files), "tspline")
-    require(scene_with([str(tmp_path / "none.iga")]), "beam")
     shifted = [replace(arm, P_AI=arm.P_AI + [0.0, 0.01]) for arm in arms]
     for wrong in (written(tmp_path, *shifted), [str(tmp_path / "none.iga")]):
         with pytest.raises(Refusal, match="specimen.mesh: "):
@@ -123,3 +126,83 @@ def test_bodies_may_be_off_their_places_by_a_millionth_of_the_length(arms: tuple
         else:
             with pytest.raises(Refusal, match="its bottom side must lie on Y = 0"):
                 given_meshes(scene_with(files))
+
+
+@pytest.mark.parametrize("method", [name for name in METHODS if name != "tspline"])
+def test_a_method_that_takes_no_files_refuses_them(method: str, arms: tuple[Mesh, ...], tmp_path: Path) -> None:
+    for files in (written(tmp_path, *arms), [str(tmp_path / "none.iga")]):
+        with pytest.raises(Refusal, match=rf"specimen.mesh: must be left out .* for {method}, which takes no mesh"):
+            require(scene_with(files), method)
+        assert own_mesh(scene_with(files)) == load_scene("dcb-czm1", [OWN]) == load_scene("dcb-czm1")
+
+
+@pytest.mark.parametrize(
+    "command",
+    ["solve", "solve --method tspline", "solve --method beam", "solve --accuracy 1%", "effects", "cost", "scaling"]
+    + ["effects --method tspline", "export --format gmsh", "cost --dry-run", "effects --dry-run", "scaling --dry-run"],
+)
+def test_a_missing_file_is_refused_before_any_work(command: str, tmp_path: Path, monkeypatch, capsys) -> None:
+    monkeypatch.chdir(tmp_path)
+    name, *options = command.split()
+    assert main([name, "dcb-czm1", *options, "--set", 'specimen.mesh="none.iga"']) == REFUSED
+    assert "specimen.mesh: " in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def scene_file(folder: Path, mesh: object) -> str:
+    """The linear scene on a small mesh of four steps."""
+    overrides = (*DCB, "dolfinx.elements=20", "effects.kinematics=linear")
+    scene = load_scene("dcb-czm1-linear", overrides).model_dump(exclude={"published", "name"}, exclude_defaults=True)
+    scene["specimen"]["mesh"] = mesh
+    lines = [f"{key} = {_toml(value)}" for key, value in scene.items()]
+    (folder / "mine.toml").write_text("\n".join(lines) + "\n")
+    return str(folder / "mine.toml")
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {_toml(one)}' for key, one in value.items())} }}"
+    return json.dumps(value)
+
+
+def test_verify_refuses_files_that_are_no_meshes_of_the_specimen(arms, tmp_path: Path, capsys) -> None:
+    (block,) = arms[0].blocks
+    write_iga(from_mesh(replace(arms[0], blocks=(doubled(block),), chains={})), tmp_path / "doubled.iga")
+    for file, words in (("none.iga", "cannot read"), ("doubled.iga", "elements lie on each other")):
+        assert main(["verify", scene_file(tmp_path, [file]), "--out", str(tmp_path / "out")]) == REFUSED
+        said = capsys.readouterr().err
+        assert "specimen.mesh: " in said and words in said and not (tmp_path / "out").exists()
+
+
+def doubled(block: ElementBlock) -> ElementBlock:
+    return replace(block, C_eab=np.repeat(block.C_eab, 2, axis=0), conn_ea=np.repeat(block.conn_ea, 2, axis=0))
+
+
+def test_verify_holds_the_mesh_against_methods_on_meshes_of_their_own(
+    arms: tuple[Mesh, ...], tmp_path: Path, monkeypatch
+) -> None:
+    """Both arms from files are solved as two, the others as the scene without files would be."""
+    seen: list[SceneReport] = []
+    monkeypatch.setattr(verification, "write_page", lambda module, reports, *others: seen.extend(reports))
+    every = verification.planned
+    few = ("tspline", "nurbs", "lefm")
+    monkeypatch.setattr(verification, "planned", lambda *what: [job for job in every(*what) if job.method in few])
+    source = scene_file(tmp_path, [Path(file).name for file in written(tmp_path, *arms)])
+    scene = load_scene(source)
+    verification.verify([(source, scene)], tmp_path / "out", 1)
+    (report,) = seen
+    runs = {run.method: run for run in report.runs}
+    assert set(runs) == set(few) and all(run.result is not None and run.result.complete for run in runs.values())
+    assert "specimen.mesh=[]" in runs["nurbs"].command and "specimen.mesh=[]" not in runs["tspline"].command
+    assert (runs["tspline"].scene, runs["nurbs"].scene) == (scene, own_mesh(scene))
+    assert "specimen.mesh: the mesh of tspline alone; nurbs, lefm ran without it" in report.remarks
+
+
+def test_a_full_verification_takes_files_for_tspline_alone(arms: tuple[Mesh, ...], tmp_path: Path) -> None:
+    scene = scene_with(written(tmp_path, *arms))
+    jobs = list(verification.planned("mine.toml", scene, full=True))
+    assert [job.variant for job in jobs if OWN not in job.overrides and job.method in METHODS] == ["tspline"]
+    assert all(job.solved.specimen.mesh == () for job in jobs if OWN in job.overrides)
+    (coarse,) = [job for job in jobs if job.variant == "nurbs-978"]
+    check = Check("j-integral", "nurbs-978", 1.0, 0.1, "exact", "")
+    assert check.name in OF_THE_ZONE and not coarse.meant_for(check)

@@ -8,10 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from doctored import SMOOTH, arch
 from hypothesis import given, settings
 from iga_files import REAL, SMALL, assert_same, real, small
 from test_iga_file import MALFORMED, mutated
 
+from iga import rank
 from iga.bspline import open_knots
 from iga.extraction import ElementBlock, Mesh
 from iga.iga_file import from_mesh, mesh, write_iga
@@ -169,6 +171,39 @@ def test_a_folded_element_is_no_mesh_to_solve_on(tmp_path, capsys):
     assert "continuity: not looked at" in said.out and (tmp_path / "debond-mesh" / "small.svg").exists()
 
 
+@pytest.mark.parametrize("kind", SMOOTH)
+def test_what_is_wrong_is_named(kind, tmp_path, capsys):
+    doctor, words = SMOOTH[kind]
+    write_iga(from_mesh(doctor(replace(arch(), chains={}))), tmp_path / "wrong.iga")
+    assert main(["mesh", "wrong.iga", "--out", "wrong.vtu"]) == 1
+    said = capsys.readouterr()
+    assert words in said.err and "debond: wrong.iga: " in said.err and "elements" in said.out
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("conn_swap", "functions go on beyond 6 sides of the boundary"),
+        ("dupelem", "elements lie on each other: 10 sides with more than one neighbour"),
+        ("extr_row102", "the sum of the functions misses 1 by 0.00125"),
+    ],
+)
+@pytest.mark.parametrize(("command", "code"), [("mesh", 1), ("verify", 2)])
+def test_real_files_that_were_doctored(name, words, command, code, tmp_path, capsys):
+    path = real("arch_nurbs").parents[1] / "iga-broken" / f"{name}.iga"
+    if not path.exists():
+        pytest.skip(f"the file {path.name} is not at hand")
+    assert main([command, str(path), "--out", str(tmp_path / "out.vtu")]) == code
+    assert words in capsys.readouterr().err
+
+
+def test_a_third_coordinate_is_bad_input(tmp_path, capsys):
+    path = small(tmp_path, SMALL.replace("node 2 0.5 0 1", "node 2 0.5 0.25 1"))
+    for command in ("mesh", "verify"):
+        assert main([command, str(path), "--out", "out.vtu"]) == 2
+        assert "node 5: z must be 0 in a plane, got 0.25 (nodes count from 0)" in capsys.readouterr().err
+
+
 def doubled(body: Mesh) -> Mesh:
     """One function twice, each half of it: the sum is the same, but they are dependent."""
     (block,) = body.blocks
@@ -183,7 +218,7 @@ def doubled(body: Mesh) -> Mesh:
 @pytest.mark.parametrize("many", [0, 2000])
 def test_dependent_functions_are_found(many, monkeypatch):
     """By singular values and, as for large meshes, by the smallest eigenvalue."""
-    monkeypatch.setattr(mesh_facts, "MANY", many)
+    monkeypatch.setattr(rank, "MANY", many)
     kv = open_knots(np.linspace(0.0, 1.0, 4), 3)
     body = nurbs_rectangle(kv, kv)
     assert independent(body) == 36

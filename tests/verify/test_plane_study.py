@@ -8,6 +8,7 @@ import pytest
 
 from iga.iga_file import from_mesh, write_iga
 from iga.polygon import polygon_mesh
+from tests.iga.doctored import SMOOTH, arch, function_halved, function_scaled, point_unused
 from tests.iga.test_plane import ring, square_mesh
 from verify import plane_study
 from verify.cli import FAILED, REFUSED, main
@@ -97,6 +98,23 @@ def test_files_that_are_refused(written, tmp_path):
         with pytest.raises(Refusal, match=Path(source).name):
             load_plate(source)
         assert main(["verify", source, "--out", str(tmp_path / "out")]) == REFUSED
+
+
+def test_meshes_that_are_no_body_are_refused(written):
+    for doctor, words in (SMOOTH[kind] for kind in ("an element twice", "two halves", "ids of one element exchanged")):
+        with pytest.raises(Refusal, match=f"body.iga: .*{words}"):
+            load_plate(written(doctor(replace(arch(), chains={}))))
+    for doctor in (function_halved, point_unused):
+        with pytest.raises(Refusal, match=r"body.iga: the functions are dependent: rank 49 of 50"):
+            load_plate(written(doctor(arch())))
+
+
+def test_functions_that_miss_one_fail_a_check(written):
+    """The rational functions divide by their sum: all else holds."""
+    found = study(load_plate(written(function_scaled(replace(arch(), chains={})))))
+    (missed,) = [check for check in found.checks if not check.passed]
+    assert (missed.name, missed.kind) == ("sum-of-functions", "exact")
+    assert missed.value == pytest.approx(4.4e-9, rel=0.1) and missed.tolerance == 1e-10
 
 
 def test_verify_takes_files_and_counts_their_checks(written, tmp_path, monkeypatch, capsys):
