@@ -88,6 +88,8 @@
     }
   }
 
+  if (!boxes.length) found.push("empty: no text is seen");
+
   // No text on another one.
   boxes.sort((a, b) => a.y0 - b.y0);
   let open = [];

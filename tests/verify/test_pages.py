@@ -61,3 +61,51 @@ def test_what_is_drawn_can_be_read(name: str, written: Callable[[str], Path], br
         if (said := faults(browser, written(name), scripts, scheme, width))
     }
     assert wrong == {}
+
+
+STYLE = "svg { width: 300px; height: 100px } body { color: #222 } svg * { fill: #222; font-size: 12px }"
+GOOD = """<p>A text.</p>
+<svg viewBox="0 0 300 100"><text x="10" y="20">one</text><text x="10" y="40">two</text></svg>"""
+
+
+@pytest.mark.parametrize(
+    ("part", "fault"),
+    [
+        ("", ""),
+        ('<svg viewBox="0 0 300 100"><path style="fill: black" d="M0 0H9V9z"/></svg>', "black: 1 times (path)"),
+        (
+            '<svg viewBox="0 0 300 100"><path style="fill: none; stroke: black" d="M0 0H9"/></svg>',
+            "black: 1 times (path)",
+        ),
+        ('<p style="color: black">A text.</p>', 'black: "A text."'),
+        ('<p style="color: #ccc">A text.</p>', 'contrast: "A text."'),
+        ('<p style="font-size: 9px">A text.</p>', 'size: 9.0 px of "A text."'),
+        ('<svg viewBox="0 0 900 300"><text x="10" y="40">small</text></svg>', 'size: 4.0 px of "small"'),
+        ('<svg viewBox="0 0 300 100"><text x="280" y="20">outside</text></svg>', 'outside: "outside"'),
+        ('<svg viewBox="0 0 300 100"><text x="9" y="20">one</text><text x="15" y="22">two</text></svg>', "overlap: "),
+        ('<svg viewBox="0 0 300 100"><g></g></svg>', "empty: a figure"),
+        ('<div style="width: 1500px">wide</div>', "page: "),
+        ("<script>console.error('this is wrong')</script>", "console: "),
+        ('<img src="http://127.0.0.1:9/x.png" alt="">', "asks for http://127.0.0.1:9/x.png"),
+    ],
+)
+def test_every_fault_is_found(part: str, fault: str, browser: Browser, tmp_path: Path) -> None:
+    """A page without fault has none, and each that is planted is named."""
+    (tmp_path / "page.html").write_text(f"<!DOCTYPE html><style>{STYLE}</style><body>{GOOD}{part}</body>")
+    said = faults(browser, tmp_path / "page.html", True, "light", 1300)
+    assert any(fault in one for one in said) if fault else said == []
+
+
+def test_a_page_that_says_nothing_is_a_fault(browser: Browser, tmp_path: Path) -> None:
+    (tmp_path / "page.html").write_text(f"<!DOCTYPE html><style>{STYLE}</style><body></body>")
+    assert faults(browser, tmp_path / "page.html", True, "light", 1300) == ["empty: no text is seen"]
+
+
+def test_styles_of_figures_are_read_where_scripts_run(written: Callable[[str], Path], browser: Browser) -> None:
+    """The bars of what accuracy costs have the colours of their phases, and not the black of no style."""
+    browser.size(1300)
+    browser.media()
+    browser.scripts(True)
+    browser.open(written("cost"))
+    colours = "new Set([...document.querySelectorAll('svg.plot path')].map((one) => getComputedStyle(one).fill)).size"
+    assert browser.ask(colours) > 5
