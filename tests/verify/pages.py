@@ -21,6 +21,7 @@ from made_up_runs import ENVIRONMENT, made_up, scene_report
 from test_hard import FAKE, faulty, stub
 
 from verify import report
+from verify.checks import run_checks
 from verify.cli import main
 from verify.cost import page as cost_page
 from verify.cost.study import Study as CostStudy
@@ -29,11 +30,14 @@ from verify.hard.case import BASES
 from verify.hard.one import run_case
 from verify.hard.suite import Cell
 from verify.included import found_in
+from verify.methods import solve
+from verify.report.style import METHOD_NAMES
 from verify.scaling import page as scaling_page
+from verify.scene import load_scene
 from verify.switches import page as effects_page
 from verify.switches.row import Row as EffectRow
 from verify.switches.study import Study as EffectsStudy
-from verify.verdict import Check, SceneReport
+from verify.verdict import Check, Run, SceneReport
 
 
 def meshes(given: SceneReport) -> SceneReport:
@@ -55,10 +59,22 @@ def verification(out: Path) -> Path:
     made_up_studies.hard(out / "hard")
     given = meshes(scene_report())
     failing = Check("peak-load", "lagrange / dolfinx", 0.02, 5e-3, "cross-code", "Two codes find the same peak.")
-    given = replace(given, checks=(*given.checks, failing))
+    runs = tuple(replace(run, key="0123456789abcdef" * 2) for run in given.runs)
+    runs += (Run("T-spline", "tspline", None, "not run: no mesh has so few unknowns"),)
+    given = replace(given, runs=runs, checks=(*given.checks, failing))
     path = out / "report.html"
     report.write((given,), path, ENVIRONMENT, included=found_in(out))
     return path
+
+
+def peel(out: Path) -> Path:
+    """A coarse peel test by two bases, with T-junctions."""
+    scene = load_scene("peel-80", ("discretization.dofs=1100", "load.opening=2.0", "discretization.steps=10"))
+    found = {method: solve(scene, method) for method in ("nurbs", "tspline")}
+    runs = tuple(Run(METHOD_NAMES[method], method, one, "", f"peel-80/{method}") for method, one in found.items())
+    checks = tuple(check for one in found.values() for check in run_checks(scene, one))
+    report.write((SceneReport(scene, runs, checks),), out / "report.html", ENVIRONMENT)
+    return out / "report.html"
 
 
 def plane_problems(out: Path) -> Path:
@@ -145,6 +161,7 @@ def mesh(out: Path) -> Path:
 #: Name -> what writes the page into an empty folder, and says where it is.
 PAGES: Mapping[str, Callable[[Path], Path]] = {
     "verify": verification,
+    "peel": peel,
     "plane": plane_problems,
     "paper": paper,
     "cost": cost,
