@@ -150,7 +150,7 @@ def filled(place: Place, base: str, options: list[str], tests: bool = False) -> 
         if not is_whole(place.venv):
             make_venv(place, base, options)
         if not is_whole(place.venv, tests):
-            add_packages(place, "what the tests need, too", 1.5, "tests")
+            add_packages(place, "the Python packages of the tests", 1.5, "tests")
             (place.venv / "whole-for-tests").touch()
     return place
 
