@@ -10,6 +10,7 @@ from iga.control import Control, arc_length_control, dissipation_control, gap_co
 from iga.events import next_event
 from iga.interface import holding
 from iga.point import Point
+from iga.promise import KEPT, Kept
 from iga.system import System
 
 #: Largest step of the front in parts of g_u, where steps are counted and where they are chosen by accuracy; smallest
@@ -23,6 +24,13 @@ SPARED = 3
 #: Fewer steps than these would not draw the curve: what is asked for is then a least number of steps. How long they are
 #: once one that was chosen by accuracy has failed, in such parts of the programme.
 FEWEST, SAFE = 40, 150
+#: How often a step is shortened because it does not keep its promise.
+CUTS = 6
+#: How many steps end at kinks of any kind once a single arc has turned out to have a corner.
+CORNERED = 8
+#: Of a parabola what it leaves its tangent by over what it leaves the straight line by, as it is measured.
+OF_TANGENT = 3.0
+ROUGH = 1.0 / 3.0
 #: What a step that has failed is tried with, in this order, before it is halved.
 CAREFUL = ("front", "dissipation", "arc length")
 
@@ -56,6 +64,9 @@ class Pace:
     counted: float = 0.0
     bend: float = BEND
     spared: int = SPARED
+    promised: bool = False
+    cuts: int = 0
+    cornered: int = 0
 
     @property
     def careful(self) -> bool:
@@ -93,20 +104,38 @@ class Pace:
         if not self.by_accuracy:
             return replace(self, attempt=self.attempt + 1)
         if self.spared == 0:
-            return Pace(self.counted, self.counted)
+            return Pace(self.counted, self.counted, bend=self.bend, promised=self.promised)
         return replace(self, step=0.5 * self.step, spared=self.spared - 1)
 
-    def after(self, start: Point, end: Point, peak: float) -> Pace:
+    def cut(self, kept: Kept, moved: float) -> Pace:
+        """Where a step that went for a change ``moved`` of the opening has not kept its promise."""
+        step = min(kept.part * abs(moved) / 0.5**self.level, self.step)
+        return replace(self, step=step, cuts=self.cuts + 1, cornered=CORNERED if kept.few else self.cornered)
+
+    @property
+    def every_kink(self) -> bool:
+        """Whether steps end at the next kink of any kind."""
+        return self.by_kinks and self.cornered > 0
+
+    def after(self, start: Point, end: Point, peak: float, kept: Kept = KEPT) -> Pace:
         """The next step where one from ``start`` to ``end`` has converged."""
         if self.careful:
-            return replace(self, attempt=1 + len(CAREFUL) * (self.level - 1) if self.level else 0)
+            return replace(self, attempt=1 + len(CAREFUL) * (self.level - 1) if self.level else 0, cuts=0)
         if not self.by_accuracy:
-            return self
+            return replace(self, step=min(2.0 * self.step, self.largest), cuts=0)
         moved = end.opening - start.opening
         bend = abs(end.state.load - start.state.load - start.slope * moved) / (self.bend * peak)
+        if _rough(start):
+            bend = (0.5 if kept.few and kept.away <= 0.5 else OF_TANGENT * kept.away) ** 2
         grown = abs(moved) * max(min(bend**-0.5, 2.0), 0.5) if bend > 0.0 else 2.0 * abs(moved)
         step = min(max(grown, SMALLEST * self.largest), self.largest)
-        return replace(self, step=step, spared=min(self.spared + 1, SPARED))
+        return replace(self, step=step, spared=min(self.spared + 1, SPARED), cuts=0, cornered=max(self.cornered - 1, 0))
+
+
+def _rough(point: Point) -> bool:
+    """Whether the slope of the load changes so much at a kink that neither side says anything of the way ahead."""
+    low, high = sorted((point.tangent.arrival, point.tangent.departure), key=abs)
+    return low * high <= 0.0 or abs(low) < ROUGH * abs(high)
 
 
 def paced(programme: np.ndarray, steps: int | None, bend: float = BEND, linear: bool = False) -> Pace:
@@ -120,7 +149,7 @@ def paced(programme: np.ndarray, steps: int | None, bend: float = BEND, linear: 
         return Pace(asked, asked)
     largest = min(LARGEST * whole, asked)
     first = largest if linear else min(FIRST * whole, asked)
-    return Pace(largest, first, by_accuracy=True, counted=whole / SAFE, bend=bend)
+    return Pace(largest, first, by_accuracy=True, counted=whole / SAFE, bend=bend, promised=True)
 
 
 def next_step(system: System, point: Point, goal: float, pace: Pace, direction: float) -> Step:

@@ -27,8 +27,9 @@ ATTEMPTS, NO_GAP, NO_RATE = 30, 1e-6, 1e-9
 class Tangent:
     """Direction of the path ``(du_d, d_load)``, of any length, forward.
 
-    ``slope`` is d load / d opening, ``arrival`` that before the kink on which the path stands, ``heading`` the sign of
-    the change of the opening, ``rate_q`` (n_q,) the rates of the gaps, and ``growing_q`` the points whose damage grows.
+    ``slope`` is d load / d opening; at a kink ``arrival`` is that before it, ``departure`` that behind it, and ``slope``
+    their mean. ``heading`` is the sign of the change of the opening, ``rate_q`` (n_q,) the rates of the gaps, and
+    ``growing_q`` the points whose damage grows.
     ``closed_q`` is the contact; whether the rates agree with it and with ``growing_q``, ``agreed`` says.
     """
 
@@ -40,6 +41,7 @@ class Tangent:
     growing_q: np.ndarray
     closed_q: np.ndarray
     arrival: float
+    departure: float
     agreed: bool = False
 
 
@@ -160,14 +162,14 @@ def _along(
     z_d = inverse.under_load_d
     compliance = float(system.load_d @ z_d)
     before = compliance if kink is None else float(system.load_d @ _before(system, response, kink, inverse))
-    arrival, slope = 1.0 / before if before != 0.0 else np.inf, 1.0 / compliance
-    slope = 0.5 * (slope + arrival) if before * compliance > 0.0 else slope
+    arrival, departure = 1.0 / before if before != 0.0 else np.inf, 1.0 / compliance
+    slope = 0.5 * (departure + arrival) if before * compliance > 0.0 else departure
     rate_q = response.contact.rates(z_d)
     growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
     dissipating = growth != 0.0 and (direction > 0.0 or not system.interface.law.irreversible)
     sign = direction * float(np.sign(growth if dissipating else compliance))
     heading = sign * float(np.sign(compliance))
-    return Tangent(sign * z_d, sign, slope, heading, sign * rate_q, growing_q, response.closed_q, arrival)
+    return Tangent(sign * z_d, sign, slope, heading, sign * rate_q, growing_q, response.closed_q, arrival, departure)
 
 
 def _before(system: System, response: Response, kink: Kink, inverse: Inverse) -> np.ndarray:
