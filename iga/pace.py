@@ -125,17 +125,10 @@ class Pace:
             return replace(self, step=min(2.0 * self.step, self.largest), cuts=0)
         moved = end.opening - start.opening
         bend = abs(end.state.load - start.state.load - start.slope * moved) / (self.bend * peak)
-        if _rough(start):
-            bend = (0.5 if kept.few and kept.away <= 0.5 else OF_TANGENT * kept.away) ** 2
-        grown = abs(moved) * max(min(bend**-0.5, 2.0), 0.5) if bend > 0.0 else 2.0 * abs(moved)
+        gone = max(abs(moved), self.step) if start.tangent.rough else abs(moved)
+        grown = gone * max(min(bend**-0.5, 2.0), 0.5) if bend > 0.0 else 2.0 * gone
         step = min(max(grown, SMALLEST * self.largest), self.largest)
         return replace(self, step=step, spared=min(self.spared + 1, SPARED), cuts=0, cornered=max(self.cornered - 1, 0))
-
-
-def _rough(point: Point) -> bool:
-    """Whether the slope of the load changes so much at a kink that neither side says anything of the way ahead."""
-    low, high = sorted((point.tangent.arrival, point.tangent.departure), key=abs)
-    return low * high <= 0.0 or abs(low) < ROUGH * abs(high)
 
 
 def paced(programme: np.ndarray, steps: int | None, bend: float = BEND, linear: bool = False) -> Pace:

@@ -128,7 +128,7 @@ def advance(
     leaving, known = left
     broken = broken_between(system, old, state) if pace.by_kinks else 0
     before = (point.opening, old.load) if broken else None
-    if broken >= SEVERAL and point.before is not None:
+    if (broken >= SEVERAL or (broken and leaving.rough and not pace.every_kink)) and point.before is not None:
         slope = slope_over_arcs(point.before, (point.opening, old.load), (opening, state.load))
         leaving = leaving if slope is None else replace(leaving, slope=slope)
     residuals = foreseen.spent + found.residuals

@@ -22,6 +22,9 @@ from iga.system import Phase, System, factorise, respond
 #: that counts as rounding.
 ATTEMPTS, NO_GAP, NO_RATE = 30, 1e-6, 1e-9
 
+#: A slope less than this part of the one on the other side of a kink.
+ROUGH = 1.0 / 3.0
+
 
 @dataclass(frozen=True)
 class Tangent:
@@ -43,6 +46,12 @@ class Tangent:
     arrival: float
     departure: float
     agreed: bool = False
+
+    @property
+    def rough(self) -> bool:
+        """Whether the slope changes so much at a kink that neither side says anything of the way ahead."""
+        low, high = sorted((self.arrival, self.departure), key=abs)
+        return low * high <= 0.0 or abs(low) < ROUGH * abs(high)
 
 
 @dataclass(frozen=True)
