@@ -30,7 +30,6 @@ CUTS = 6
 CORNERED = 8
 #: Of a parabola what it leaves its tangent by over what it leaves the straight line by, as it is measured.
 OF_TANGENT = 3.0
-ROUGH = 1.0 / 3.0
 #: What a step that has failed is tried with, in this order, before it is halved.
 CAREFUL = ("front", "dissipation", "arc length")
 
@@ -125,6 +124,8 @@ class Pace:
             return replace(self, step=min(2.0 * self.step, self.largest), cuts=0)
         moved = end.opening - start.opening
         bend = abs(end.state.load - start.state.load - start.slope * moved) / (self.bend * peak)
+        if kept.broken:
+            bend = min(bend, 0.25 if kept.few and kept.away <= 0.5 else OF_TANGENT * kept.away)
         gone = max(abs(moved), self.step) if start.tangent.rough else abs(moved)
         grown = gone * max(min(bend**-0.5, 2.0), 0.5) if bend > 0.0 else 2.0 * gone
         step = min(max(grown, SMALLEST * self.largest), self.largest)

@@ -51,6 +51,7 @@ class Kept:
     part: float = 1.0
     away: float = 0.0
     few: bool = False
+    broken: bool = False
 
 
 KEPT = Kept()
@@ -79,8 +80,12 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
     )
     x, y = _drawn(system, start, end, size, chord)
     unseen = spent / float(np.prod(size)) - ends[0, 1] * chord[0] - float(np.trapezoid(y, x))
-    away = float(np.abs(x * chord[1] - y * chord[0]).max()) + TIP * abs(unseen)
-    over = ends[0, 1] + float(y.max()) - 1.0 + TIP * max(unseen * np.sign(chord[0]), 0.0) / length
+    tooth = _tooth(system, start, end, size, chord)
+    away = float(np.abs(x * chord[1] - y * chord[0]).max()) + max(
+        TIP * abs(unseen), abs(unseen) + tooth * abs(chord[0])
+    )
+    above = max(unseen * np.sign(chord[0]), 0.0) / length
+    over = ends[0, 1] + float(y.max()) - 1.0 + max(TIP * above, above + tooth)
     open_ = abs(end.external_work - end.energies.total) > LEDGER * largest.work
     leak = abs(work - spent) / (LEDGER * abs(work)) if open_ and work != 0.0 else 0.0
     LAST.update(away=away / length / bend, over=over / (PEAK * bend), leak=leak, unseen=TIP * unseen / length / bend)
@@ -88,9 +93,28 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
     part = 1.0 if excess <= 1.0 else float(np.clip(SAFELY * excess**-0.5, SHORTEST, LONGEST))
     g_max = system.interface.law.g_max
     begun = np.count_nonzero((end.state.k_q > g_max) & (start.state.k_q <= g_max))
-    return Kept(
-        part, away / length / bend, bool(begun < SEVERAL and broken_between(system, start.state, end.state) < SEVERAL)
-    )
+    broken = broken_between(system, start.state, end.state)
+    return Kept(part, away / length / bend, bool(max(begun, broken) < SEVERAL), broken > 0)
+
+
+def _tooth(system: System, start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> float:
+    """Height of the teeth of the load on a step over several arcs of equal length, 0 on any other.
+
+    What is above the straight line on one side of a kink is below it on the other, and no area tells. Of straight
+    flanks with the slopes a and b on both sides of a kink, and c along the step, a tooth as wide as w has the height
+    ``w (a - c) (c - b) / (a - b)``.
+    """
+    broken = broken_between(system, start.state, end.state)
+    if broken < SEVERAL or chord[0] == 0.0:
+        return 0.0
+    along = chord[1] / chord[0]
+    width = abs(chord[0]) / broken
+    heights = [0.0]
+    for point in (start, end):
+        a, b = (slope * size[0] / size[1] - along for slope in (point.tangent.arrival, point.tangent.departure))
+        if a * b < 0.0:
+            heights.append(width * abs(a * b / (a - b)))
+    return max(heights)
 
 
 def _drawn(system: System, start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> np.ndarray:
