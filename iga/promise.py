@@ -107,14 +107,14 @@ def _tooth(system: System, start: Point, end: Point, size: np.ndarray, chord: np
     broken = broken_between(system, start.state, end.state)
     if broken < SEVERAL or chord[0] == 0.0:
         return 0.0
-    along = chord[1] / chord[0]
-    width = abs(chord[0]) / broken
-    heights = [0.0]
+    along, width, heights = chord[1] / chord[0], abs(chord[0]) / broken, [0.0]
     for point in (start, end):
-        a, b = (slope * size[0] / size[1] - along for slope in (point.tangent.arrival, point.tangent.departure))
+        a, b = slopes = np.array([point.tangent.arrival, point.tangent.departure]) * size[0] / size[1] - along
         if a * b < 0.0:
             heights.append(width * abs(a * b / (a - b)))
-    return max(heights)
+        elif point.tangent.arrival * point.tangent.departure < 0.0:
+            heights.append(width * np.abs(slopes).min())
+    return float(max(heights))
 
 
 def _drawn(system: System, start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> np.ndarray:
