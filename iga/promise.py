@@ -107,14 +107,12 @@ def _tooth(system: System, start: Point, end: Point, size: np.ndarray, chord: np
     broken = broken_between(system, start.state, end.state)
     if broken < SEVERAL or chord[0] == 0.0:
         return 0.0
-    along, width, heights = chord[1] / chord[0], abs(chord[0]) / broken, [0.0]
-    for point in (start, end):
-        a, b = slopes = np.array([point.tangent.arrival, point.tangent.departure]) * size[0] / size[1] - along
-        if a * b < 0.0:
-            heights.append(width * abs(a * b / (a - b)))
-        elif point.tangent.arrival * point.tangent.departure < 0.0:
-            heights.append(width * np.abs(slopes).min())
-    return float(max(heights))
+    width, heights = abs(chord[0]) / broken, []
+    for path in (start.tangent, end.tangent):
+        flanks = np.array([path.arrival, path.departure]) * size[0] / size[1] - chord[1] / chord[0]
+        a, b = np.where(np.array([path.came, path.heading]) * chord[0] > 0.0, flanks, np.inf * -flanks[::-1])
+        heights.append(width * (0.5 * min(abs(a), abs(b)) if a * b > 0.0 else 1.0 / (1.0 / abs(a) + 1.0 / abs(b))))
+    return max(heights)
 
 
 def _drawn(system: System, start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> np.ndarray:
@@ -126,7 +124,7 @@ def _drawn(system: System, start: Point, end: Point, size: np.ndarray, chord: np
         return np.outer(chord, _S)
     angle = np.arctan(np.array([start.tangent.departure, end.tangent.arrival]) * size[0] / size[1])
     unit = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    way = np.array([start.heading, np.sign(unit[1] @ chord) or 1.0])
+    way = np.array([start.heading, end.tangent.came])
     first, last = float(np.hypot(*chord)) * way[:, None] * unit
     s = _S
     return (

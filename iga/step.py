@@ -127,8 +127,7 @@ def advance(
         return None, None
     leaving, known = left
     broken = broken_between(system, old, state) if pace.by_kinks else 0
-    moved, gained = opening - point.opening, state.load - old.load
-    if leaving.arrival * leaving.departure < 0.0 and leaving.heading * moved > 0.0 and leaving.arrival * moved * gained > 0.0:
+    if leaving.arrival * leaving.departure < 0.0 and leaving.came == leaving.heading:
         leaving = replace(leaving, slope=0.0)  # a top or a foot, where any other slope would overshoot on one side
     before = (point.opening, old.load) if broken else None
     if (broken >= SEVERAL or (broken and leaving.rough and not pace.every_kink)) and point.before is not None:
