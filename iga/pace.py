@@ -123,7 +123,8 @@ class Pace:
         if not self.by_accuracy:
             return replace(self, step=min(2.0 * self.step, self.largest), cuts=0)
         moved = end.opening - start.opening
-        bend = abs(end.state.load - start.state.load - start.slope * moved) / (self.bend * peak)
+        slope = start.tangent.departure if start.tangent.rough and not kept.broken else start.slope
+        bend = abs(end.state.load - start.state.load - slope * moved) / (self.bend * peak)
         if kept.broken:
             bend = min(bend, 0.25 if kept.few and kept.away <= 0.5 else OF_TANGENT * kept.away)
         gone = max(abs(moved), self.step) if start.tangent.rough else abs(moved)

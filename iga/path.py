@@ -67,6 +67,7 @@ def follow(
             point, known = _departing(system, point.state, direction, point.external_work, phase) or (point, None)
         while point.opening != goal:
             asked = next_step(system, point, goal, pace, direction)
+            length = asked.away * float(system.load_d @ point.tangent.du_d)
             foreseen, known = (
                 foresee(system, point, asked, pace.by_kinks and not asked.exact, known, phase, pace.every_kink),
                 None,
@@ -81,7 +82,7 @@ def follow(
                 kept = judged(system, point, reached, largest, pace.bend)
             if kept.part < 1.0 and pace.cuts < CUTS:
                 known, rejected = None, rejected + 1  # before the next one is made
-                pace = pace.cut(kept, asked.away * float(system.load_d @ point.tangent.du_d))
+                pace = pace.cut(kept, length)
                 known = _once_more(system, point, direction, phase) if pace.by_kinks else None
                 continue
             if reached is None or leaks(system, point, reached, largest.work):

@@ -85,7 +85,7 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
         TIP * abs(unseen), abs(unseen) + tooth * abs(chord[0])
     )
     above = max(unseen * np.sign(chord[0]), 0.0) / length
-    over = ends[0, 1] + float(y.max()) - 1.0 + max(TIP * above, above + tooth)
+    over = ends[0, 1] + float(y.max()) - 1.0 + max(TIP * above, above + 0.5 * tooth)
     open_ = abs(end.external_work - end.energies.total) > LEDGER * largest.work
     leak = abs(work - spent) / (LEDGER * abs(work)) if open_ and work != 0.0 else 0.0
     LAST.update(away=away / length / bend, over=over / (PEAK * bend), leak=leak, unseen=TIP * unseen / length / bend)
@@ -107,12 +107,14 @@ def _tooth(system: System, start: Point, end: Point, size: np.ndarray, chord: np
     broken = broken_between(system, start.state, end.state)
     if broken < SEVERAL or chord[0] == 0.0:
         return 0.0
-    width, heights = abs(chord[0]) / broken, []
-    for path in (start.tangent, end.tangent):
-        flanks = np.array([path.arrival, path.departure]) * size[0] / size[1] - chord[1] / chord[0]
-        a, b = np.where(np.array([path.came, path.heading]) * chord[0] > 0.0, flanks, np.inf * -flanks[::-1])
-        heights.append(width * (0.5 * min(abs(a), abs(b)) if a * b > 0.0 else 1.0 / (1.0 / abs(a) + 1.0 / abs(b))))
-    return max(heights)
+    flanks = np.array([[path.arrival, path.departure] for path in (start.tangent, end.tangent)]).ravel()
+    onward = chord[0] * np.array([[path.came, path.heading] for path in (start.tangent, end.tangent)]).ravel() > 0.0
+    flanks = np.where(onward, flanks * size[0] / size[1] - chord[1] / chord[0], -np.inf)
+    high, low = flanks.max(), -flanks.min()
+    width = abs(chord[0]) / broken
+    if high * low <= 0.0:
+        return 0.5 * width * min(abs(high), abs(low))
+    return width / (1.0 / high + 1.0 / low)
 
 
 def _drawn(system: System, start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> np.ndarray:
