@@ -21,6 +21,8 @@ PEAK = 0.2
 LEDGER = 2.5e-3
 #: Height of a triangle over its mean height: of all that bulges to one side nothing has a higher tip.
 TIP = 2.0
+#: Part of the height of teeth by which they may leave their mean: both ends stand anywhere on theirs.
+PHASE = 1.0
 #: Step that is tried after one that has failed to keep its promise, in parts of it: least, largest, and of what is due.
 SHORTEST, LONGEST, SAFELY = 0.25, 0.75, 0.9
 
@@ -82,10 +84,10 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
     unseen = spent / float(np.prod(size)) - ends[0, 1] * chord[0] - float(np.trapezoid(y, x))
     tooth = _tooth(system, start, end, size, chord)
     away = float(np.abs(x * chord[1] - y * chord[0]).max()) + max(
-        TIP * abs(unseen), abs(unseen) + tooth * abs(chord[0])
+        TIP * abs(unseen), abs(unseen) + PHASE * tooth * abs(chord[0])
     )
     above = max(unseen * np.sign(chord[0]), 0.0) / length
-    over = ends[0, 1] + float(y.max()) - 1.0 + max(TIP * above, above + 0.5 * tooth)
+    over = ends[0, 1] + float(y.max()) - 1.0 + max(TIP * above, above + PHASE * tooth)
     open_ = abs(end.external_work - end.energies.total) > LEDGER * largest.work
     leak = abs(work - spent) / (LEDGER * abs(work)) if open_ and work != 0.0 else 0.0
     LAST.update(away=away / length / bend, over=over / (PEAK * bend), leak=leak, unseen=TIP * unseen / length / bend)
@@ -107,11 +109,18 @@ def _tooth(system: System, start: Point, end: Point, size: np.ndarray, chord: np
     broken = broken_between(system, start.state, end.state)
     if broken < SEVERAL or chord[0] == 0.0:
         return 0.0
-    flanks = np.array([[path.arrival, path.departure] for path in (start.tangent, end.tangent)]).ravel()
-    onward = chord[0] * np.array([[path.came, path.heading] for path in (start.tangent, end.tangent)]).ravel() > 0.0
-    flanks = np.where(onward, flanks * size[0] / size[1] - chord[1] / chord[0], -np.inf)
-    high, low = flanks.max(), -flanks.min()
-    width = abs(chord[0]) / broken
+    paths = start.tangent, end.tangent
+    flanks = np.array([[path.arrival, path.departure] for path in paths]).ravel() * size[0] / size[1]
+    flanks = flanks - chord[1] / chord[0]
+    back = chord[0] * np.array([[path.came, path.heading] for path in paths]).ravel() < 0.0
+    width, ahead = abs(chord[0]) / broken, flanks[~back]
+    if ahead.size == 0:
+        return np.inf
+    high, low = ahead.max(), -ahead.min()
+    if back.any():  # a flank on which the opening falls makes the other one longer
+        high = max(high, low)
+        shorter = 1.0 / high - float(np.max(1.0 / np.abs(flanks[back])))
+        return width / shorter if shorter > 0.0 else np.inf
     if high * low <= 0.0:
         return 0.5 * width * min(abs(high), abs(low))
     return width / (1.0 / high + 1.0 / low)
