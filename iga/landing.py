@@ -68,7 +68,7 @@ def landing(system: System, old: State, touch: Contact, g_q: np.ndarray, follows
 
 
 def next_kink(system: System, old: State, start: Contact, touch: Contact, g_q: np.ndarray) -> Landing | None:
-    """The first kink of any kind on the way from the gaps at the ``start`` of a step to g_q (n_q,); None without one."""
+    """The first kink of any kind on the way from the gaps at the ``start`` of a step to g_q (n_q,), if there is one."""
     law, g0_q = system.interface.law, start.g_q
     g_q = np.where(holding(system.interface, touch), g_q, 0.0)
     part_qk = np.full((g_q.size, len(law.kinks)), np.inf)

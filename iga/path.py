@@ -69,7 +69,7 @@ def follow(
             asked = next_step(system, point, goal, pace, direction)
             length = asked.away * float(system.load_d @ point.tangent.du_d)
             foreseen, known = (
-                foresee(system, point, asked, pace.by_kinks and not asked.exact, known, phase, pace.every_kink),
+                foresee(system, point, asked, pace.by_kinks and not asked.exact, known, phase),
                 None,
             )  # of all that is held the largest
             reached, known = advance(system, point, asked, foreseen, direction, pace, newton, phase)

@@ -26,7 +26,6 @@ PHASE = 1.0
 #: Step that is tried after one that has failed to keep its promise, in parts of it: least, largest, and of what is due.
 SHORTEST, LONGEST, SAFELY = 0.25, 0.75, 0.9
 
-LAST = {}
 _S = np.linspace(0.0, 1.0, 17)
 
 
@@ -45,9 +44,10 @@ class Largest:
 
 @dataclass(frozen=True)
 class Kept:
-    """Part of a step that keeps what is promised, 1 for one that does; how far the path leaves the straight line.
+    """Part of a step that keeps what is promised, 1 for one that does, and ``away``: distance over the one promised.
 
-    ``away`` is in parts of what it may. ``few``: no more than one arc of the load has been passed.
+    ``broken``: points of the interface have broken on the step; ``few``: no more than one of them has, and no more than
+    one has begun to soften.
     """
 
     part: float = 1.0
@@ -60,7 +60,7 @@ KEPT = Kept()
 
 
 def judged(system: System, start: Point, end: Point, before: Largest, bend: float) -> Kept:
-    """What a step keeps.
+    """What a step keeps of the following.
 
     - No point of the path is further from the straight line between both ends than ``bend``, with loads in parts of the
       largest one and openings in parts of the opening at that load.
@@ -90,7 +90,6 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
     over = ends[0, 1] + float(y.max()) - 1.0 + max(TIP * above, above + PHASE * tooth)
     open_ = abs(end.external_work - end.energies.total) > LEDGER * largest.work
     leak = abs(work - spent) / (LEDGER * abs(work)) if open_ and work != 0.0 else 0.0
-    LAST.update(away=away / length / bend, over=over / (PEAK * bend), leak=leak, unseen=TIP * unseen / length / bend)
     excess = max(away / length / bend, over / (PEAK * bend), leak)
     part = 1.0 if excess <= 1.0 else float(np.clip(SAFELY * excess**-0.5, SHORTEST, LONGEST))
     g_max = system.interface.law.g_max
@@ -102,9 +101,9 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
 def _tooth(system: System, start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> float:
     """Height of the teeth of the load on a step over several arcs of equal length, 0 on any other.
 
-    What is above the straight line on one side of a kink is below it on the other, and no area tells. Of straight
-    flanks with the slopes a and b on both sides of a kink, and c along the step, a tooth as wide as w has the height
-    ``w (a - c) (c - b) / (a - b)``.
+    Teeth lie on both sides of the straight line, so that the area does not show them. With straight flanks of slopes a
+    and b, slope c along the step and width w the height is ``w (a - c) (c - b) / (a - b)``, also where the opening
+    falls on one flank.
     """
     broken = broken_between(system, start.state, end.state)
     if broken < SEVERAL or chord[0] == 0.0:

@@ -43,12 +43,8 @@ def foresee(
     by_kinks: bool,
     known: Linearised | None,
     phase: Phase,
-    every: bool = False,
 ) -> Foreseen:
-    """Along the tangent; where its inverse is still known, with what the law makes of the step, the bulk as it is.
-
-    ``every``: it is to end at the first kink of any kind.
-    """
+    """Along the tangent; where its inverse is still known, with what the law makes of the step, the bulk as it is."""
     old, path = point.state, point.tangent
     along_d = asked.away * np.append(path.du_d, path.d_load)
     if known is None:
@@ -66,7 +62,7 @@ def foresee(
         # one kink is as good as the next one; of a linear bulk the step onto it is exact, and no other is made
         ahead_q = touch.g_q + asked.away * path.rate_q if guess_q is None and linear else guess_q
         if by_kinks and ahead_q is not None:
-            place = _place(system, point, touch, ahead_q, every)
+            place = _place(system, point, touch, ahead_q, asked.every_kink)
         if place is not None:
             control, target = gap_control(system, place.q), place.target
         found = correction(system, old, response, known.inverse, control, target, True, guess_q)
@@ -74,7 +70,7 @@ def foresee(
         return Foreseen(old.moved(along_d))
     if by_kinks and place is None:
         guess_q = touch.g_q + touch.rates(found[0][:-1])
-        place = _place(system, point, touch, guess_q, every)
+        place = _place(system, point, touch, guess_q, asked.every_kink)
         if place is not None and linear:  # this is exact then; else Newton is needed anyway
             control = gap_control(system, place.q)
             with phase("solve"):
@@ -107,7 +103,7 @@ def advance(
             if nearly is None:
                 return None, None
             touch = nearly.response.contact
-            place = _place(system, point, touch, touch.g_q, pace.every_kink)
+            place = _place(system, point, touch, touch.g_q, asked.every_kink)
             foreseen = Foreseen(nearly.state, True, place, nearly.residuals)
         if foreseen.place is not None:
             found, kink = _landed(system, point, foreseen.state, foreseen.place, newton, phase)
@@ -130,7 +126,7 @@ def advance(
     if leaving.arrival * leaving.departure < 0.0 and leaving.came == leaving.heading:
         leaving = replace(leaving, slope=0.0)  # a top or a foot, where any other slope would overshoot on one side
     before = (point.opening, old.load) if broken else None
-    if (broken >= SEVERAL or (broken and leaving.rough and not pace.every_kink)) and point.before is not None:
+    if (broken >= SEVERAL or (broken and leaving.rough and not asked.every_kink)) and point.before is not None:
         slope = slope_over_arcs(point.before, (point.opening, old.load), (opening, state.load))
         leaving = leaving if slope is None else replace(leaving, slope=slope)
     residuals = foreseen.spent + found.residuals

@@ -30,9 +30,9 @@ ROUGH = 1.0 / 3.0
 class Tangent:
     """Direction of the path ``(du_d, d_load)``, of any length, forward.
 
-    ``slope`` is d load / d opening; at a kink ``arrival`` is that before it, ``departure`` that behind it, and ``slope``
-    their mean. ``heading`` is the sign of the change of the opening, ``came`` that before the kink, ``rate_q`` (n_q,) the rates of the gaps, and
-    ``growing_q`` the points whose damage grows.
+    ``slope`` is d load / d opening; at a kink ``arrival`` is the slope before it, ``departure`` that behind it, and
+    ``slope`` their mean. ``heading`` is the sign of the change of the opening, ``came`` that before the kink,
+    ``rate_q`` (n_q,) the rates of the gaps, and ``growing_q`` the points whose damage grows.
     ``closed_q`` is the contact; whether the rates agree with it and with ``growing_q``, ``agreed`` says.
     """
 
