@@ -22,13 +22,17 @@ from iga.system import Phase, System, factorise, respond
 #: that counts as rounding.
 ATTEMPTS, NO_GAP, NO_RATE = 30, 1e-6, 1e-9
 
+#: A slope less than this part of the one on the other side of a kink.
+ROUGH = 1.0 / 3.0
+
 
 @dataclass(frozen=True)
 class Tangent:
     """Direction of the path ``(du_d, d_load)``, of any length, forward.
 
-    ``slope`` is d load / d opening, ``arrival`` that before the kink on which the path stands, ``heading`` the sign of
-    the change of the opening, ``rate_q`` (n_q,) the rates of the gaps, and ``growing_q`` the points whose damage grows.
+    ``slope`` is d load / d opening; at a kink ``arrival`` is the slope before it, ``departure`` that behind it, and
+    ``slope`` their mean. ``heading`` is the sign of the change of the opening, ``came`` that before the kink,
+    ``rate_q`` (n_q,) the rates of the gaps, and ``growing_q`` the points whose damage grows.
     ``closed_q`` is the contact; whether the rates agree with it and with ``growing_q``, ``agreed`` says.
     """
 
@@ -40,7 +44,15 @@ class Tangent:
     growing_q: np.ndarray
     closed_q: np.ndarray
     arrival: float
+    departure: float
+    came: float
     agreed: bool = False
+
+    @property
+    def rough(self) -> bool:
+        """Whether the slope changes so much at a kink that neither side says anything of the way ahead."""
+        low, high = sorted((self.arrival, self.departure), key=abs)
+        return low * high <= 0.0 or abs(low) < ROUGH * abs(high)
 
 
 @dataclass(frozen=True)
@@ -158,16 +170,31 @@ def _along(
 ) -> Tangent:
     """Solution of ``K du = f d_load`` for one set of points, turned forward."""
     z_d = inverse.under_load_d
-    compliance = float(system.load_d @ z_d)
-    before = compliance if kink is None else float(system.load_d @ _before(system, response, kink, inverse))
-    arrival, slope = 1.0 / before if before != 0.0 else np.inf, 1.0 / compliance
-    slope = 0.5 * (slope + arrival) if before * compliance > 0.0 else slope
+    before_d = z_d if kink is None else _before(system, response, kink, inverse)
+    compliance, before = float(system.load_d @ z_d), float(system.load_d @ before_d)
+    arrival, departure = 1.0 / before if before != 0.0 else np.inf, 1.0 / compliance
+    slope = 0.5 * (departure + arrival) if before * compliance > 0.0 else departure
     rate_q = response.contact.rates(z_d)
-    growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
-    dissipating = growth != 0.0 and (direction > 0.0 or not system.interface.law.irreversible)
-    sign = direction * float(np.sign(growth if dissipating else compliance))
-    heading = sign * float(np.sign(compliance))
-    return Tangent(sign * z_d, sign, slope, heading, sign * rate_q, growing_q, response.closed_q, arrival)
+    dissipates = direction > 0.0 or not system.interface.law.irreversible
+
+    def forward(rate_q: np.ndarray, compliance: float) -> float:
+        growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
+        return direction * float(np.sign(growth if growth != 0.0 and dissipates else compliance))
+
+    sign = forward(rate_q, compliance)
+    came = sign if kink is None else forward(response.contact.rates(before_d), before)
+    return Tangent(
+        sign * z_d,
+        sign,
+        slope,
+        sign * float(np.sign(compliance)),
+        sign * rate_q,
+        growing_q,
+        response.closed_q,
+        arrival,
+        departure,
+        came * float(np.sign(before)),
+    )
 
 
 def _before(system: System, response: Response, kink: Kink, inverse: Inverse) -> np.ndarray:
