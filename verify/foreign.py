@@ -10,21 +10,18 @@ from pathlib import Path
 
 import numpy as np
 
+from verify import beam_error
 from verify.compare import ROUNDING
 from verify.crosschecks import (
-    ANALYTICAL,
     CROSS_CODE,
-    ON_SUBSTRATE,
-    SQUEEZED,
+    beam_check,
     distance,
     peak_load,
     published_load,
     published_meaning,
     published_names,
-    squeeze,
 )
 from verify.curve_file import Reading, read_curve
-from verify.effects import simulated
 from verify.magnitudes import LEAST, MOST
 from verify.methods import METHODS, known_methods
 from verify.refusal import Refusal
@@ -129,12 +126,9 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
             ratio = peak_load(curve) / peak_load(usable[method]) - 1
             meaning = "Two codes that share nothing find the same peak load (relative difference)."
             checks.append(Check("peak", pair, ratio, tolerance, "cross-code", meaning))
-    if "beam" in usable and squeeze(scene) < SQUEEZED:
-        error = distance(curve, usable["beam"], end)
-        fine = ANALYTICAL[simulated(scene, "beam")["kinematics"]]
-        tolerance = ON_SUBSTRATE if scene.specimen.kind == "peel" else fine
-        meaning = "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening)."
-        checks.append(Check("beam-curve", f"{name} / beam", error, tolerance, "analytical", meaning))
+    fine = beam_error.tolerance(scene)
+    if "beam" in usable and fine is not None:
+        checks.append(beam_check(scene, name, curve, usable["beam"], fine))
     for known_name, known in zip(published_names(scene), scene.published, strict=True):
         value = known.deviation(published_load(known, curve))
         checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))
