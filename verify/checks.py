@@ -11,7 +11,7 @@ from math import nan
 
 import numpy as np
 
-from verify import process_zone
+from verify import balance, process_zone
 from verify.effects import simulated
 from verify.law import LAWS, Law
 from verify.result import Result
@@ -29,7 +29,6 @@ ENERGY_TOLERANCE = 0.005
 ANGLE_TOLERANCE = 0.01
 AT_THE_END = 1e-9  # part of the length within which the process zone has come to the far end
 REST = 1e-12  # part of the largest work below which there is none
-BALANCE_TOLERANCE = 1e-8
 DISSIPATION_TOLERANCE = 0.02
 
 J_OF_LAW = "The J-integral of the specimen is the area under the law."
@@ -49,6 +48,7 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
     subject : the name of the run in the report; the method's where empty
     """
     j_tolerance = J_TOLERANCE_LAGRANGE if result.method == "lagrange" else J_TOLERANCE
+    force, moment = balance.force_tolerance(scene, result), balance.moment_tolerance(scene, result)
     dissipation = partial(dissipation_gap, element=partial(process_zone.element_length, scene, result.method))
     values: list[tuple[str, Callable[[Scene, Steps], float | None], float, str]] = [
         ("completed", _missing_part, 1e-9, "The run reached the end of the load programme, or the specimen separated."),
@@ -56,11 +56,11 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
         ("growth-load", growth_load, j_tolerance, "While the crack grows the load is at least G_Ic times the width."),
         ("growth-angle", growth_angle, ANGLE_TOLERANCE, "In the end load sin(theta) is G_Ic times the width."),
         ("energy-ledger", energy_gap, ENERGY_TOLERANCE, "External work is stored or dissipated, nothing is lost."),
-        ("interface-force", interface_gap, BALANCE_TOLERANCE, "The interface tractions carry the load."),
-        ("moment-balance", moment_gap, BALANCE_TOLERANCE, "Load and interface tractions have equal moments."),
-        ("clamp-moment", clamp_gap, BALANCE_TOLERANCE, "Load and clamp have equal moments."),
-        ("lengthwise", lengthwise_gap, BALANCE_TOLERANCE, "What tilted tractions pull lengthwise, the anchor holds."),
-        ("reactions", support_forces, BALANCE_TOLERANCE, "The supports carry the load and nothing else."),
+        ("interface-force", interface_gap, force, "The interface tractions carry the load."),
+        ("moment-balance", moment_gap, moment, "Load and interface tractions have equal moments."),
+        ("clamp-moment", clamp_gap, moment, "Load and clamp have equal moments."),
+        ("lengthwise", lengthwise_gap, force, "What tilted tractions pull lengthwise, the anchor holds."),
+        ("reactions", support_forces, force, "The supports carry the load and nothing else."),
         ("dissipation", dissipation, DISSIPATION_TOLERANCE, "A new length of crack costs G_Ic times the width."),
     ]
     resolved = not measures_the_mesh(scene, result)
