@@ -14,6 +14,7 @@ import numpy as np
 from verify import balance, process_zone
 from verify.effects import simulated
 from verify.law import LAWS, Law
+from verify.problems import elastic_constants
 from verify.result import Result
 from verify.schema import Scene
 from verify.verdict import Check, Kind
@@ -25,7 +26,7 @@ J_TOLERANCE = 0.005
 #: deviation (1.0 to 1.9 % on the packaged scenes) measures the mesh and not the solver; its tolerance is the curve's.
 J_TOLERANCE_LAGRANGE = 0.02
 ENERGY_TOLERANCE = 0.005
-#: Of load sin(theta) / (G_Ic w): besides the mesh, what the ends of strip and substrate hold of the energy.
+#: Of load sin(theta) / (G_Ic w): besides the mesh, what the unloaded ends of strip and substrate hold of the energy.
 ANGLE_TOLERANCE = 0.01
 AT_THE_END = 1e-9  # part of the length within which the process zone has come to the far end
 REST = 1e-12  # part of the largest work below which there is none
@@ -106,7 +107,7 @@ def growth_load(scene: Scene, steps: Steps) -> float | None:
     0.2 % in peel-soft; so load max(s, 1) is what may not fall short. What the gap at the far end holds is not there to
     be released (see `j_deviation`).
     """
-    steady = growing(scene, steps)
+    steady = growing(scene, steps) & out_of_reach(scene, steps)
     if not steady.any() or simulated(scene, "")["kinematics"] == "linear":
         return None
     pull = steps["load"] * np.maximum(np.abs(steps.get("face_slope_top", 1.0)), 1.0)
@@ -114,17 +115,27 @@ def growth_load(scene: Scene, steps: Steps) -> float | None:
 
 
 def growth_angle(scene: Scene, steps: Steps) -> float | None:
-    """load sin(theta) / (G_Ic w) - 1 at the last step at which the crack of a peel grows.
+    """load sin(theta) / (G_Ic w) - 1 at the last step at which the crack of a peel grows out of reach of the flush end.
 
-    Of an inextensible strip on a rigid substrate (Rivlin 1944 for theta = 90 degrees; elastica): what is left of J is
-    the energy density on the ends of strip and substrate.
+    Of an inextensible strip on a rigid substrate (Rivlin 1944 for theta = 90 degrees; elastica). What is left of J is
+    the energy on the end faces. On the loaded one that is of the load itself, and is taken off: ``P^2 / (2 h w)
+    (sin(theta)^2 / E1 + cos(theta)^2 / G12)`` (Kendall 1975 for theta = 90 degrees).
     """
-    steady = growing(scene, steps)
+    steady = growing(scene, steps) & out_of_reach(scene, steps)
     if not steady.any() or "face_slope_top" not in steps:
         return None
     last = np.flatnonzero(steady)[-1]
-    pull = steps["load"][last] * abs(steps["face_slope_top"][last])
+    load, sine = steps["load"][last], abs(steps["face_slope_top"][last])
+    pull = load * sine - _end_face_energy(scene, load, sine)
     return float(pull / _to_release(scene, steps)[last] - 1.0)
+
+
+def _end_face_energy(scene: Scene, load: float, sine: float) -> float:
+    """Energy per length of the strip at its loaded face, whose traction is uniform and keeps its direction."""
+    body, strip = scene.specimen, scene.materials[0]
+    along = 0.0 if simulated(scene, "")["kinematics"] == "linear" else min(sine, 1.0) ** 2
+    E1, G12 = process_zone.bending_modulus(strip, body.plane), elastic_constants(strip)["G12"]
+    return load**2 / (2.0 * body.loaded_thickness * body.width) * (along / E1 + (1.0 - along) / G12)
 
 
 def _to_release(scene: Scene, steps: Steps) -> np.ndarray:
@@ -164,6 +175,24 @@ def _j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     valid = loading(steps) if simulated(scene, "")["irreversible"] else np.ones(J.size, dtype=bool)
     valid &= ~np.isnan(spent) | np.isnan(tip)  # not on a branch that nobody has stated
     return np.where(valid & far_from_end(scene, steps), J - area, 0.0) / scene.interface.toughness
+
+
+def out_of_reach(scene: Scene, steps: Steps) -> np.ndarray:
+    """Steps (n_steps,) of a peel whose process zone does not stress the flush end: it is four decay lengths of the
+    strip away, and twice the thickness of the substrate.
+
+    Ahead of the front the strip and what is under it fade as ``exp(-x / l)``, l = (4 E I / K w)^(1/4) of a beam on the
+    foundation K of bond and substrate in series, and the energy on the flush faces, which load sin(theta) lacks, as
+    ``exp(-2 x / l)``: 3e-4 of G_Ic. A substrate that is clamped below fades as ``exp(-pi x / 2 t)`` by itself.
+    """
+    if "damage_front" not in steps or scene.specimen.kind != "peel":
+        return np.zeros(steps["opening"].size, dtype=bool)
+    body, law, plane = scene.specimen, law_of(scene), scene.specimen.plane
+    strip, substrate = scene.materials
+    K = 1.0 / (1.0 / law.stiffness + body.substrate_thickness / process_zone.across_modulus(substrate, plane))
+    bending = process_zone.bending_modulus(strip, plane) * body.strip_thickness**3 / 12.0
+    away = max(4.0 * (4.0 * bending / K) ** 0.25, 2.0 * body.substrate_thickness)
+    return steps["damage_front"] <= body.extent - away
 
 
 def _tip_is_open(scene: Scene, steps: Steps) -> np.ndarray:
