@@ -84,7 +84,9 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
             loaded=("left",) * len(arms),
             loaded_at=0.0,
             free_length=problem.precrack,
-            energy_faces=tuple((number, "left", 1.0) for number in range(len(arms))),
+            energy_faces=tuple(
+                (n, end, sign) for n in range(len(arms)) for end, sign in (("left", 1.0), ("right", -1.0))
+            ),
             upper_is_slave=slave_number(problem, arms) == 0,
             copies=copies,
             probe=probe(problem, arms, extent, system.interface),

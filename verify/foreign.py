@@ -10,21 +10,17 @@ from pathlib import Path
 
 import numpy as np
 
+from verify import beam_error
 from verify.crosschecks import (
-    ANALYTICAL,
     CROSS_CODE,
-    ON_SUBSTRATE,
-    SQUEEZED,
     beam_check,
     pair_checks,
     proven,
     published_load,
     published_meaning,
     published_names,
-    squeeze,
 )
 from verify.curve_file import Reading, read_curve
-from verify.effects import simulated
 from verify.leg_checks import along_the_programme, turns_check
 from verify.legs import NEAR, only_opens, path
 from verify.magnitudes import LEAST, MOST
@@ -130,13 +126,12 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
         if method in usable:
             pair = pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
             checks += [proven(scene, check, usable) for check in pair]
-    if "beam" in usable and squeeze(scene) < SQUEEZED:
-        fine = ANALYTICAL[simulated(scene, "beam")["kinematics"]]
-        tolerance = ON_SUBSTRATE if scene.specimen.kind == "peel" else fine
+    fine = beam_error.tolerance(scene)
+    if "beam" in usable and fine is not None:
         beam = usable["beam"]
-        checks.append(beam_check(scene, name, curve, beam, tolerance))
+        checks.append(beam_check(scene, name, curve, beam, fine))
         curves = (curve.opening, curve.load), (beam.opening, beam.load)
-        checks += along_the_programme(f"{name} / beam", *curves, programme, tolerance, "analytical")
+        checks += along_the_programme(f"{name} / beam", *curves, programme, fine, "analytical")
     for known_name, known in zip(published_names(scene), scene.published, strict=True):
         value = known.deviation(published_load(known, curve))
         checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))
