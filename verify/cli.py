@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence  # noqa: E402
 from pathlib import Path  # noqa: E402
 
 from verify import commands  # noqa: E402
-from verify.arguments import accuracy, column, count, fraction, number, numbers, positive, scale  # noqa: E402
+from verify.arguments import accuracy, column, count, fraction, number, numbers, positive, scale, seeds  # noqa: E402
 from verify.commands import FAILED  # noqa: E402
 from verify.refusal import Refusal  # noqa: E402
 from verify.say import say  # noqa: E402
@@ -189,7 +189,9 @@ def _scaling_options(sub: Parser) -> None:
 
 
 def _hard_options(sub: Parser) -> None:
-    sub.add_argument("names", nargs="*", metavar="NAME", help="hard cases; default: all")
+    sub.add_argument("names", nargs="*", metavar="NAME", help="hard cases, or random for random scenes; default: all")
+    what = "of random: how many scenes, or the first and the last like 40-79; default: 40"
+    sub.add_argument("--seeds", type=seeds, metavar="N", help=what)
     _out_option(sub, "debond-hard")
     _sweep_options(sub)
 
