@@ -141,6 +141,9 @@ def test_tests_alone_ask_for_what_they_need_and_know_where_they_are(
         launcher.main(words)
     assert asked == [False, True]
     assert [one.get("DEBOND_TESTS_IN") for one in seen] == [None, "root" if root else "venv"]
+    monkeypatch.setattr(places, "inside", lambda: places.Place(tmp_path, tmp_path, root))
+    launcher.main(["test"])
+    assert len(asked) == 2 and "DEBOND_TESTS_IN" not in seen[-1], "nothing is set up from within"
 
 
 def test_cache_that_cannot_be_written_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -109,3 +109,22 @@ def test_styles_of_figures_are_read_where_scripts_run(written: Callable[[str], P
     browser.open(written("cost"))
     colours = "new Set([...document.querySelectorAll('svg.plot path')].map((one) => getComputedStyle(one).fill)).size"
     assert browser.ask(colours) > 5
+
+
+def test_letters_of_a_chart_keep_their_size_where_the_window_becomes_narrow(
+    written: Callable[[str], Path], browser: Browser
+) -> None:
+    """The chart is drawn anew, in the width that there is."""
+    browser.size(1300)
+    browser.media()
+    browser.scripts(True)
+    browser.open(written("cost"))
+    widths = []
+    for width in (1300, 400, 1300):
+        browser.size(width)
+        drawn = "requestAnimationFrame(() => requestAnimationFrame(() => done(document.querySelector('.chart'))))"
+        found = f"new Promise((done) => {drawn}).then((one) => [one.getScreenCTM().a, one.clientWidth])"
+        scale, across = browser.ask(found)
+        assert scale > 0.95
+        widths.append(across)
+    assert widths[1] < 400 < widths[0] == widths[2]

@@ -24,20 +24,18 @@ def name_points(axes: Axes, places: Sequence[tuple[float, float]], names: Sequen
     names, inks : text and colour, one a point
     """
     to_points = 72.0 / axes.figure.dpi
-    at = axes.transData.transform(np.asarray(places, float)) * to_points
-    inside = tuple(axes.get_window_extent().extents * to_points)
-    taken = [(x - _MARKER, y - _MARKER, x + _MARKER, y + _MARKER) for x, y in at.tolist()]
-    for number, (point, name, ink) in enumerate(zip(at.tolist(), names, inks, strict=True)):
-        others = [box for other, box in enumerate(taken) if other != number]
-        width = _LETTER * len(name)
-
-        def lost(option: tuple[str, float], point=point, width=width, others=others) -> float:
-            box = _box(point, *option, width)
-            return sum(_common(box, one) for one in others) + _area(box) - _common(box, inside)
-
-        ahead = _SIDES if point[0] < 0.5 * (inside[0] + inside[2]) else (_SIDES[3], *_SIDES)
-        side, rise = min(ahead, key=lost)  # the first of the best
-        taken.append(_box(point, side, rise, width))
+    at = [(to_points * x, to_points * y) for x, y in axes.transData.transform(np.asarray(places, float))]
+    left, bottom, right, top = (to_points * value for value in axes.get_window_extent().extents)
+    markers = [(x - _MARKER, y - _MARKER, x + _MARKER, y + _MARKER) for x, y in at]
+    written: list[Box] = []
+    for number, (point, name, ink) in enumerate(zip(at, names, inks, strict=True)):
+        others = [*markers[:number], *markers[number + 1 :], *written]
+        sides = _SIDES if point[0] < 0.5 * (left + right) else (_SIDES[3], *_SIDES)
+        boxes = [_box(point, side, rise, _LETTER * len(name)) for side, rise in sides]
+        lost = [_lost(box, (left, bottom, right, top), others) for box in boxes]
+        best = lost.index(min(lost))  # the first of them
+        side, rise = sides[best]
+        written.append(boxes[best])
         shift = {"left": _GAP, "right": -_GAP, "center": 0.0}[side], rise
         axes.annotate(name, places[number], shift, textcoords="offset points", color=ink, ha=side)
 
@@ -49,8 +47,10 @@ def _box(point: Sequence[float], side: str, rise: float, width: float) -> Box:
     return left, bottom, left + width, bottom + _LINE
 
 
-def _area(box: Box) -> float:
-    return (box[2] - box[0]) * (box[3] - box[1])
+def _lost(box: Box, inside: Box, others: Sequence[Box]) -> float:
+    """Area of a box that lies outside, or on others."""
+    area = (box[2] - box[0]) * (box[3] - box[1])
+    return sum(_common(box, one) for one in others) + area - _common(box, inside)
 
 
 def _common(one: Box, other: Box) -> float:
