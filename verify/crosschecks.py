@@ -39,8 +39,8 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
     usable = {method: result for method, result in results.items() if result.load.size > 1}
     fine = beam_error.tolerance(scene)
     checks: list[Check] = []
-    for method in dict.fromkeys((*CROSS_CODE, *CLOSE)) if "beam" in usable and fine is not None else ():
-        if method in usable:
+    if "beam" in usable and fine is not None:
+        for method in (name for name in dict.fromkeys((*CROSS_CODE, *CLOSE)) if name in usable):
             tolerance = fine if method in CLOSE else max(fine, CROSS_CODE[method])
             checks.append(beam_check(scene, method, usable[method], usable["beam"], tolerance))
     for method, tolerance in CROSS_CODE.items():

@@ -14,6 +14,13 @@ from verify.verdict import Check
 
 COARSE = ["discretization.dofs=300", "interface.strength=7.5"]
 SLENDER = ["specimen.arm_thickness=0.05", "load.opening=8", "discretization.steps=40"]
+STIFF_CONTACT = ["interface.penalty=1e10", "discretization.steps=40"]
+LONG = [
+    "specimen.length=114.06236909598474", "specimen.arm_thickness=1", "specimen.precrack=56.228538432247156",
+    "material.young=1e5", "material.poisson=0.3244093595137369", "interface.toughness=0.48117285123914466",
+    "interface.strength=0.1628493795958447", "interface.ductility=2.017008049533789", "interface.penalty=1e5",
+    "load.opening=36.77040374733115", "discretization.steps=80",
+]  # fmt: skip
 VERY_SLENDER = ["specimen.arm_thickness=0.02", "load.opening=20", "discretization.steps=40"]
 
 BALANCES = {"interface-force": "interface_force", "moment-balance": "interface_moment", "reactions": "reaction_y"}
@@ -29,6 +36,8 @@ def balances(scene, result) -> dict[str, Check]:
         ("dcb-czm1", "lagrange", COARSE),
         ("dcb-czm1", "dolfinx", SLENDER),
         ("dcb-czm1-linear", "dolfinx", VERY_SLENDER),
+        ("dcb-czm1-linear", "lagrange", LONG),
+        ("dcb-czm1", "dolfinx", STIFF_CONTACT),
         ("dcb-czm1", "nurbs", SLENDER),
     ],
 )
