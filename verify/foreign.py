@@ -24,7 +24,7 @@ from verify.crosschecks import (
 )
 from verify.curve_file import Reading, read_curve
 from verify.effects import simulated
-from verify.leg_checks import along_the_programme, turns_check
+from verify.leg_checks import farthest_check, turns_check
 from verify.legs import NEAR, only_opens, path
 from verify.magnitudes import LEAST, MOST
 from verify.methods import METHODS, known_methods
@@ -134,7 +134,7 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
         beam = usable["beam"]
         checks.append(beam_check(scene, name, curve, beam, tolerance))
         curves = (curve.opening, curve.load), (beam.opening, beam.load)
-        checks += along_the_programme(f"{name} / beam", *curves, programme, tolerance, "analytical")
+        checks += farthest_check(f"{name} / beam", *curves, programme, tolerance, "analytical")
     for known_name, known in zip(published_names(scene), scene.published, strict=True):
         value = known.deviation(published_load(known, curve))
         checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))

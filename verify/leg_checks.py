@@ -22,6 +22,9 @@ LEAST_LOAD = 0.1
 #: Part of its load that a leg gives up before its slope can be told, and before its residual opening can.
 TELLS_SLOPE, TELLS_RESIDUAL = 0.25, 0.5
 
+#: Part of half the largest load above which a load tells the stiffness.
+TELLS_STIFFNESS = 0.2
+
 #: Part of the opening at its beginning above which an unloading is a straight line: below, faces begin to touch.
 CLEAR = 0.2
 
@@ -90,25 +93,62 @@ def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthe
     return max(found, key=lambda one: one.value, default=None)
 
 
+def stiffness(a: Leg, b: Leg) -> float:
+    """Secant stiffness of A over that of B, less one, where each first bears half the largest load of B, or the last
+    load of A before that: the nearer one counts, see `_where`. NaN where B bears nothing, infinite where A does not.
+    """
+    half = 0.5 * float(np.max(np.abs(b.load)))
+    there = a.heading * a.load >= half
+    if half == 0.0 or not there.any():
+        return np.nan if half == 0.0 else np.inf
+    before = a.heading * a.load[max(int(np.argmax(there)) - 1, 0)]
+    loads = [load for load in (half, before) if load >= TELLS_STIFFNESS * half]
+    found = [_first_at(b, load) / _first_at(a, load) - 1.0 for load in loads]
+    return float(min(found, key=abs))
+
+
+def _first_at(leg: Leg, load: float) -> float:
+    """The opening, times its heading, at which a path first bears a load that it comes to."""
+    d, P = leg.onward[0], leg.heading * leg.load
+    i = max(1, int(np.argmax(P >= load)))
+    return float(d[i - 1] + (d[i] - d[i - 1]) * (load - P[i - 1]) / (P[i] - P[i - 1]))
+
+
+def farthest_check(
+    subject: str, a: Curve, b: Curve, programme: Sequence[float], tolerance: float, kind: Kind = "cross-code"
+) -> tuple[Check, ...]:
+    """The point of A that is farthest from B; nothing where they have no opening in common.
+
+    Parameters
+    ----------
+    tolerance : that of the curve
+    """
+    worst = farthest(path(a, programme), path(b, programme), OF_A_POINT * tolerance)
+    if worst is None:
+        return ()
+    meaning = (
+        "No point is farther from the other curve, in parts of its own opening and load: the farthest is at "
+        f"opening {worst.opening:.6g}, load {worst.load:.6g}, on leg {worst.number}."
+    )
+    return (Check("farthest-point", subject, worst.value, OF_A_POINT * tolerance, kind, meaning),)
+
+
 def along_the_programme(
     subject: str, a: Curve, b: Curve, programme: Sequence[float], tolerance: float, kind: Kind = "cross-code"
 ) -> tuple[Check, ...]:
-    """Checks of A against B besides the L2 distance of their envelopes: the farthest point and, where the programme
-    turns, every leg.
+    """Checks of A against B besides the L2 distance of their envelopes: the farthest point, the stiffness, and every
+    leg of a programme that turns.
 
     Parameters
     ----------
     tolerance : that of the curve
     """
     of_a, of_b = path(a, programme), path(b, programme)
-    worst = farthest(of_a, of_b, OF_A_POINT * tolerance)
-    checks = []
-    if worst is not None:
-        meaning = (
-            "No point is farther from the other curve, in parts of its own opening and load: the farthest is at "
-            f"opening {worst.opening:.6g}, load {worst.load:.6g}, on leg {worst.number}."
-        )
-        checks.append(Check("farthest-point", subject, worst.value, OF_A_POINT * tolerance, kind, meaning))
+    checks = [*farthest_check(subject, a, b, programme, tolerance, kind)]
+    stiff = stiffness(of_a.legs[0], of_b.legs[0])
+    if not np.isnan(stiff):
+        meaning = "The secant stiffness at half the largest load of the first leg (relative difference)."
+        checks.append(Check("stiffness", subject, stiff, tolerance, kind, meaning))
     if not only_opens(programme):
         checks += leg_checks(leg_differences(of_a, of_b), subject, tolerance, kind)
     return tuple(checks)
@@ -160,22 +200,29 @@ def _range(*legs: Leg) -> tuple[float, float] | None:
 
 
 def _error(a: Leg, b: Leg, least: float) -> float:
-    """Relative L2 distance over the common openings: along the chords of A, or at its own points, whichever is less.
+    """Relative L2 distance over the common openings."""
+    return min(_l2(a, b, at, least) for at in _where(a, _range(a, b) or (0.0, 1.0)))
 
-    A chord across the kink at which a reloading comes back to the envelope says something of the steps alone.
+
+def _where(leg: Leg, ends: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """Where a leg is compared: along its chords, and at its own points. The nearer one counts.
+
+    A chord says something of the steps alone, as across the kink at which a reloading comes back to the envelope.
     """
-    low, high = _range(a, b) or (0.0, 1.0)
+    low, high = ends
     grid = np.minimum(low + (high - low) * (np.arange(SAMPLES + 1) / SAMPLES), high)
-    own = np.unique(np.clip(envelope(*a.onward)[0], low, high))
-    return min(_l2(a, b, at, least) for at in (grid, own))
+    return grid, np.unique(np.clip(envelope(*leg.onward)[0], low, high))
 
 
 def _l2(a: Leg, b: Leg, at: np.ndarray, least: float) -> float:
-    width = np.diff(at)
-    weight = np.append(width, 0.0) + np.append(0.0, width)
     mine, other = load_at(a.onward, at), load_at(b.onward, at)
-    off, size = (np.sqrt(np.sum(weight * load**2) / np.sum(weight)) for load in (mine - other, other))
+    off, size = (np.sqrt(_mean(load**2, at)) for load in (mine - other, other))
     return float(off / max(size, least))
+
+
+def _mean(values: np.ndarray, at: np.ndarray) -> float:
+    """By the trapezoidal rule."""
+    return float(np.sum((values[1:] + values[:-1]) * np.diff(at)) / (2.0 * (at[-1] - at[0])))
 
 
 def _unloading(a: Leg, b: Leg, least: float) -> tuple[float, float]:
@@ -211,10 +258,10 @@ def _loop(there: tuple[Leg, Leg], back: tuple[Leg, Leg], least: float) -> float:
     low, high = max(-ways[1], returns[0]), min(-ways[0], returns[1])
     if not high > low:
         return np.nan
-    grid = np.linspace(low, high, SAMPLES + 1)
-    lost = []
-    for out, home in zip(there, back, strict=True):
-        fall, rise = load_at(out.onward, np.maximum(-grid, ways[0])), load_at(home.onward, grid)
-        lost.append(float(np.mean(rise - fall)))
-    given = float(np.mean(np.abs(load_at(there[1].onward, np.maximum(-grid, ways[0])))))
-    return (lost[0] - lost[1]) / max(given, least)
+    fall, rise = (
+        [_mean(load_at(a.onward, at) - load_at(b.onward, at), at) for at in _where(a, ends)]
+        for (a, b), ends in ((there, (-high, -low)), (back, (low, high)))
+    )
+    grid = _where(there[1], (-high, -low))[0]
+    given = _mean(np.abs(load_at(there[1].onward, grid)), grid)
+    return min((up - down for up in rise for down in fall), key=abs) / max(given, least)
