@@ -6,11 +6,12 @@ LEFM appears in no check: it is a limit that a cohesive zone approaches, not a t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from verify.curve import curve_error, dense, from_origin, load_at, peak
 from verify.effects import simulated
 from verify.leg_checks import along_the_programme
+from verify.legs import path
 from verify.problems import elastic_constants
 from verify.published import Published
 from verify.result import Result
@@ -99,7 +100,7 @@ def published_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check
     checks = []
     for name, known in zip(published_names(scene), scene.published, strict=True):
         for method in (method for method in JUDGED if method in results):
-            value = known.deviation(published_load(known, results[method]))
+            value = known.deviation(published_load(known, results[method], scene.load.opening))
             checks.append(Check(name, method, value, known.tolerance, known.kind, published_meaning(known)))
     return tuple(checks)
 
@@ -107,20 +108,28 @@ def published_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check
 def published_names(scene: Scene) -> tuple[str, ...]:
     """One for every value: ``published-peak``, ``published-load-4.5``; numbered from the second of a kind on."""
     plain = [
-        "published-peak" if known.quantity == "peak" else f"published-load-{known.opening:g}"
+        "published-peak"
+        if known.quantity == "peak"
+        else f"published-load-{known.opening:g}" + (f"-leg-{known.leg}" if known.leg else "")
         for known in scene.published
     ]
     return tuple(name + (f"-{plain[: i + 1].count(name)}" if name in plain[:i] else "") for i, name in enumerate(plain))
 
 
-def published_load(known: Published, result: Result) -> float:
-    """What a run has for a published value; NaN where it did not come so far."""
+def published_load(known: Published, result: Result, programme: Sequence[float] = ()) -> float:
+    """What a run has for a published value; NaN where it did not come so far.
+
+    ``programme`` is that of the scene, of whose legs a value may be.
+    """
     if known.quantity == "peak" or known.opening is None:
         return peak_load(result)
     curve, steps = (result.opening, result.load), result.steps
     if {"load_slope", "heading"} <= set(steps):
         curve = dense(*curve, steps["load_slope"], steps["heading"])
-    return float(load_at(curve, known.opening))
+    if known.leg is None:
+        return float(load_at(curve, known.opening))
+    legs = path(curve, programme).legs[known.leg - 1 : known.leg]
+    return float(load_at(legs[0].onward, legs[0].heading * known.opening)) if legs else float("nan")
 
 
 def published_meaning(known: Published) -> str:
@@ -128,6 +137,7 @@ def published_meaning(known: Published) -> str:
     low, high = known.value
     value = f"{low:g}" if low == high else f"{low:g} to {high:g}"
     what = "The peak load" if known.quantity == "peak" else f"The load at opening {known.opening:g}"
+    what += f" on leg {known.leg}" if known.leg else ""
     return f"{what} is what others published, {value}: {known.source}."
 
 

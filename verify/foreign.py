@@ -25,16 +25,20 @@ from verify.crosschecks import (
 from verify.curve_file import Reading, read_curve
 from verify.effects import simulated
 from verify.leg_checks import farthest_check, turns_check
-from verify.legs import NEAR, only_opens, path
+from verify.legs import NEAR, path
 from verify.magnitudes import LEAST, MOST
 from verify.methods import METHODS, known_methods
 from verify.refusal import Refusal
 from verify.result import Result
 from verify.schema import Scene
+from verify.turns import only_opens, turns
 from verify.verdict import Check, Run, SceneReport
 
 #: Codes that a curve from elsewhere is held against, with the relative tolerance that holds between them as well.
 CODES: Mapping[str, float] = {**{m: CROSS_CODE[m] for m in ("tspline", "nurbs")}, "dolfinx": CROSS_CODE["nurbs"]}
+
+#: Part of the first leg behind which a curve begins late.
+LATE = 0.01
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 
@@ -104,7 +108,23 @@ def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneRepo
     results = {run.method: run.result for run in reversed(report.runs) if run.result is not None}
     others = {run.method: run.result for run in (*report.runs, *runs) if run.method not in METHODS and run.result}
     checks = [check for name, other in others.items() for check in checks_of(report.scene, name, other, results)]
-    return replace(report, runs=(*report.runs, *runs), checks=(*report.checks, *checks))
+    said = [remark for name, other in others.items() for remark in _beginning(report.scene, name, other)]
+    return replace(
+        report,
+        runs=(*report.runs, *runs),
+        checks=(*report.checks, *checks),
+        remarks=(*report.remarks, *said),
+    )
+
+
+def _beginning(scene: Scene, name: str, curve: Result) -> tuple[str, ...]:
+    """What is said of a curve that leaves out more than a small part of the first leg."""
+    if curve.load.size == 0:
+        return ()
+    first, goal = float(curve.opening[0]), turns(scene.load.opening)[0]
+    if first / goal <= LATE:
+        return ()
+    return (f"{name}: begins at the opening {first:.6g} and is joined to the origin by a straight line",)
 
 
 def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Result]) -> tuple[Check, ...]:
@@ -136,7 +156,7 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
         curves = (curve.opening, curve.load), (beam.opening, beam.load)
         checks += farthest_check(f"{name} / beam", *curves, programme, tolerance, "analytical")
     for known_name, known in zip(published_names(scene), scene.published, strict=True):
-        value = known.deviation(published_load(known, curve))
+        value = known.deviation(published_load(known, curve, programme))
         checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))
     return tuple(checks)
 

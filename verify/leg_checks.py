@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from verify.curve import Curve, envelope, load_at
-from verify.legs import NEAR, Leg, Path, only_opens, path
+from verify.legs import NEAR, Leg, Path, path
 from verify.nearness import distances
+from verify.turns import only_opens
 from verify.verdict import Check, Kind
 
 #: Samples of a leg.
@@ -60,7 +61,7 @@ class Farthest:
 
 def leg_differences(a: Path, b: Path) -> tuple[LegDifference, ...]:
     """Every leg that both have."""
-    top = max((float(np.max(np.abs(leg.load))) for leg in b.legs), default=0.0)
+    top = _largest([leg.load for leg in b.legs])
     pairs = [pair for pair in zip(a.legs, b.legs, strict=False) if _range(*pair) is not None]
     return tuple(
         LegDifference(
@@ -79,7 +80,7 @@ def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthe
 
     Without ``snap_backs`` only the envelope of A counts, as where B may show vertical drops.
     """
-    size = tuple(max(float(np.max(np.abs(getattr(leg, of)))) for leg in b.legs) for of in ("opening", "load"))
+    size = _largest([leg.opening for leg in b.legs]), _largest([leg.load for leg in b.legs])
     found = []
     for i, (mine, other) in enumerate(zip(a.legs, b.legs, strict=False), 1):
         if _range(mine, other) is None:
@@ -192,6 +193,10 @@ def turns_check(subject: str, curve: Path, kind: Kind = "cross-code") -> Check:
     return Check("legs", subject, curve.misfit, NEAR, kind, meaning)
 
 
+def _largest(values: Sequence[np.ndarray]) -> float:
+    return max((float(np.max(np.abs(some))) for some in values), default=0.0)
+
+
 def _range(*legs: Leg) -> tuple[float, float] | None:
     """The openings, times their heading, that all of some legs of one heading pass through."""
     low = max(float(leg.onward[0][0]) for leg in legs)
@@ -247,7 +252,7 @@ def _unloading(a: Leg, b: Leg, least: float) -> tuple[float, float]:
         unloaded = [
             at[1] - end * (at[1] - at[0]) / (end - start) for start, end in ((start_a, end_a), (start_b, end_b))
         ]
-    return float(slope), float(np.nan_to_num((unloaded[0] - unloaded[1]) / abs(at[0]), nan=np.inf))
+    return float(slope), float(np.nan_to_num(b.heading * (unloaded[0] - unloaded[1]) / abs(at[0]), nan=np.inf))
 
 
 def _loop(there: tuple[Leg, Leg], back: tuple[Leg, Leg], least: float) -> float:

@@ -15,6 +15,7 @@ from verify.laws import PLAIN, known
 from verify.published import Published
 from verify.section import Positive, Section, one_of, refuse
 from verify.specimen import MATERIALS, Material, Specimen, definite
+from verify.turns import turns
 
 
 def _hundred_initial_stiffnesses(data: dict[str, Any]) -> float:
@@ -255,4 +256,14 @@ class Scene(Section):
         beyond = [((i, "opening"), known.opening) for i, known in enumerate(published) if (known.opening or 0) > end]
         if beyond:
             raise refuse(f"<= {end:g}, the largest load.opening", *beyond)
+        way = (0.0, *turns(load.opening))
+        for i, value in enumerate(published):
+            if value.leg is None or value.opening is None:
+                continue
+            if value.leg >= len(way):
+                raise refuse(f"<= {len(way) - 1}, the number of legs of load.opening", ((i, "leg"), value.leg))
+            low, high = sorted(way[value.leg - 1 : value.leg + 1])
+            if not low <= value.opening <= high:
+                rule = f">= {low:g} and <= {high:g}, leg {value.leg} of load.opening"
+                raise refuse(rule, ((i, "opening"), value.opening))
         return published
