@@ -11,7 +11,7 @@ import pytest
 from verify import verification
 from verify.cli import main
 from verify.curve_file import Reading, read_curve
-from verify.foreign import checks_of, joined, read_curves
+from verify.foreign import Curve, checks_of, joined, read_curves
 from verify.methods import METHODS, solve
 from verify.result import Result
 from verify.scene import load_scene
@@ -183,3 +183,31 @@ def test_what_is_no_curve_is_refused_before_any_run(line: str, folder: Path, cap
     said = capsys.readouterr()
     assert code == 2 and REFUSED[line] in said.err and "Traceback" not in said.err
     assert sorted(folder.rglob("*")) == before
+
+
+@pytest.mark.parametrize(("first", "said"), [(0.0067, 0), (0.1, 1)])
+def test_a_curve_need_not_begin_at_zero(folder: Path, beam: Result, first: float, said: int) -> None:
+    """It is joined to the origin, which is said of what begins late."""
+    kept = beam.opening >= first
+    d, P = np.append(first, beam.opening[kept]), np.append(np.interp(first, beam.opening, beam.load), beam.load[kept])
+    curve = Curve("mine", Path("mine.csv"), Reading(), Result("mine", {"opening": d, "load": P}))
+    report = SceneReport(load_scene(LINEAR), (Run("beam", "beam", beam, folder=f"{LINEAR}/beam"),), ())
+    found = joined(report, [curve], Path("out"))
+    assert [check.name for check in found.checks if not check.passed] == [] and len(found.checks) == 3
+    assert len(found.remarks) == said and all(
+        "begins at the opening 0.1 and is joined" in text for text in found.remarks
+    )
+
+
+def test_a_programme_that_closes_is_compared_too(beam: Result) -> None:
+    """Where the opening never grows there is no envelope over it, but a leg."""
+    scene = load_scene(LINEAR, ["load.opening=-0.2"])
+    d = np.linspace(0.0, -0.2, 50)
+    found = checks_of(
+        scene,
+        "mine",
+        Result("mine", {"opening": d, "load": 1.02 * d}),
+        {"nurbs": Result("", {"opening": d, "load": d})},
+    )
+    assert {check.name for check in found if not check.passed} == {"curve-leg-1", "stiffness"}
+    assert {check.name for check in found if check.passed} == {"legs", "farthest-point"}
