@@ -10,17 +10,17 @@ from pathlib import Path
 
 import numpy as np
 
+from verify import introduction
 from verify.crosschecks import (
     ANALYTICAL,
     CROSS_CODE,
     ON_SUBSTRATE,
-    SQUEEZED,
     beam_check,
+    no_beam,
     pair_checks,
     published_load,
     published_meaning,
     published_names,
-    squeeze,
 )
 from verify.curve_file import Reading, read_curve
 from verify.effects import simulated
@@ -109,6 +109,8 @@ def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneRepo
     others = {run.method: run.result for run in (*report.runs, *runs) if run.method not in METHODS and run.result}
     checks = [check for name, other in others.items() for check in checks_of(report.scene, name, other, results)]
     said = [remark for name, other in others.items() for remark in _beginning(report.scene, name, other)]
+    load = introduction.sentence(report.scene) if curves else ""
+    said += [load] if load and load not in report.remarks else []
     return replace(
         report,
         runs=(*report.runs, *runs),
@@ -148,7 +150,7 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
     for method, tolerance in CODES.items():
         if method in usable:
             checks += pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
-    if "beam" in usable and squeeze(scene) < SQUEEZED:
+    if "beam" in usable and not no_beam(scene):
         fine = ANALYTICAL[simulated(scene, "beam")["kinematics"]]
         tolerance = ON_SUBSTRATE if scene.specimen.kind == "peel" else fine
         beam = usable["beam"]

@@ -53,6 +53,9 @@ class Load(Section):
     opening: Annotated[tuple[float, ...], BeforeValidator(_as_programme), Field(min_length=1)]
     """End of the displacement programme [length]; a list unloads and reloads, like [1.5, 0.2, 3.0]."""
 
+    at: Literal["face", "node", "hinge"] = "face"
+    """Where load and opening are: even over the end face and its mean, its corner away from the bond, or its middle."""
+
     @field_validator("opening")
     @classmethod
     def _every_leg_goes_somewhere(cls, opening: tuple[float, ...]) -> tuple[float, ...]:

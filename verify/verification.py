@@ -7,7 +7,7 @@ import shlex
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from verify import neglected, verdict_file
+from verify import introduction, neglected, verdict_file
 from verify.checks import run_checks
 from verify.crosschecks import cross_checks, remarks
 from verify.foreign import Curve, joined
@@ -140,7 +140,7 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
             meaning = "The run ended with a result."
             checks.append(Check("completed", outcome.job.variant, float("nan"), 1e-9, "exact", meaning))
     results = {o.job.variant: o.result for o in outcomes if o.result is not None}
-    said = (*remarks(scene, results), *neglected.remarks(scene, results))
+    said = (*remarks(scene, results), *neglected.remarks(scene, results), *introduction.remarks(scene))
     return SceneReport(scene, runs, (*checks, *cross_checks(scene, results)), said)
 
 

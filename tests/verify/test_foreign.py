@@ -194,9 +194,9 @@ def test_a_curve_need_not_begin_at_zero(folder: Path, beam: Result, first: float
     report = SceneReport(load_scene(LINEAR), (Run("beam", "beam", beam, folder=f"{LINEAR}/beam"),), ())
     found = joined(report, [curve], Path("out"))
     assert [check.name for check in found.checks if not check.passed] == [] and len(found.checks) == 3
-    assert len(found.remarks) == said and all(
-        "begins at the opening 0.1 and is joined" in text for text in found.remarks
-    )
+    *late, load = found.remarks
+    assert len(late) == said and all("begins at the opening 0.1 and is joined" in text for text in late)
+    assert "the load is spread evenly" in load and "the peak load by less than 0.01 %" in load
 
 
 def test_a_programme_that_closes_is_compared_too(beam: Result) -> None:
