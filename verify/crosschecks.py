@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from verify import introduction
 from verify.curve import curve_error, dense, from_origin, load_at, peak
 from verify.effects import simulated
-from verify.leg_checks import along_the_programme
+from verify.leg_checks import farthest_check, programme_checks, stiffness_check
 from verify.legs import path
 from verify.problems import elastic_constants
 from verify.published import Published
@@ -67,7 +69,15 @@ def pair_checks(scene: Scene, pair: str, a: Result, b: Result, tolerance: float)
         meaning = "Two codes that share nothing find the same peak load (relative difference)."
         checks.append(Check("peak", pair, ratio, tolerance, "cross-code", meaning))
     curves = (a.opening, a.load), (b.opening, b.load)
-    return (*checks, *along_the_programme(pair, *curves, programme, tolerance))
+    checks += stiffness_check(pair, drawn(a), drawn(b), programme, tolerance)
+    checks += farthest_check(pair, *curves, programme, tolerance)
+    return (*checks, *programme_checks(pair, *curves, programme, tolerance))
+
+
+def drawn(result: Result) -> tuple[np.ndarray, np.ndarray]:
+    """The path of a run, between its steps as well where their slopes are known."""
+    curve, steps = (result.opening, result.load), result.steps
+    return dense(*curve, steps["load_slope"], steps["heading"]) if {"load_slope", "heading"} <= set(steps) else curve
 
 
 def beam_check(scene: Scene, name: str, a: Result, beam: Result, tolerance: float) -> Check:
@@ -132,9 +142,7 @@ def published_load(known: Published, result: Result, programme: Sequence[float] 
     """
     if known.quantity == "peak" or known.opening is None:
         return peak_load(result)
-    curve, steps = (result.opening, result.load), result.steps
-    if {"load_slope", "heading"} <= set(steps):
-        curve = dense(*curve, steps["load_slope"], steps["heading"])
+    curve = drawn(result)
     if known.leg is None:
         return float(load_at(curve, known.opening))
     legs = path(curve, programme).legs[known.leg - 1 : known.leg]

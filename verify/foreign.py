@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -36,6 +36,9 @@ from verify.verdict import Check, Run, SceneReport
 
 #: Codes that a curve from elsewhere is held against, with the relative tolerance that holds between them as well.
 CODES: Mapping[str, float] = {**{m: CROSS_CODE[m] for m in ("tspline", "nurbs")}, "dolfinx": CROSS_CODE["nurbs"]}
+
+#: Part of its largest load below which a curve bears nothing any more.
+NOTHING = 0.01
 
 #: Part of the first leg behind which a curve begins late.
 LATE = 0.01
@@ -119,6 +122,18 @@ def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneRepo
     )
 
 
+def _programme(scene: Scene, curve: Result, runs: Iterable[Result]) -> tuple[float, ...]:
+    """The load programme, as far as there is a specimen: where a run has separated, a curve that ends there, or that
+    bears nothing any more, has come to its end."""
+    programme = scene.load.opening
+    apart = [float(run.opening.max()) for run in runs if run.complete and run.ending.startswith("separated")]
+    if apart and abs(curve.load[-1]) <= NOTHING * np.max(np.abs(curve.load)):
+        apart.append(float(curve.opening.max()))
+    end = min(apart, default=np.inf)
+    last = next((i for i, goal in enumerate(programme) if goal > end), None)
+    return programme if last is None else (*programme[:last], end)
+
+
 def _beginning(scene: Scene, name: str, curve: Result) -> tuple[str, ...]:
     """What is said of a curve that leaves out more than a small part of the first leg."""
     if curve.load.size == 0:
@@ -136,9 +151,9 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
     ----------
     results : the runs that are there, by method
     """
-    programme = scene.load.opening
     if curve.load.size < 2:
         return ()
+    programme = _programme(scene, curve, results.values())
     checks: list[Check] = []
     if max(programme) > 0.0:
         missing = max(0.0, 1.0 - float(curve.opening.max()) / max(programme))

@@ -9,16 +9,12 @@ import numpy as np
 
 from verify.curve import Curve, envelope, load_at
 from verify.legs import NEAR, Leg, Path, path
-from verify.nearness import distances
+from verify.nearness import LEAST_LOAD, distances
 from verify.turns import only_opens
 from verify.verdict import Check, Kind
 
-#: Samples of a leg.
-SAMPLES = 400
-
-#: The load that an error is relative to is at least this part of the largest load of the reference: on a leg whose
-#: loads go through zero there is no other measure.
-LEAST_LOAD = 0.1
+#: Samples of a leg; a distance up to which that of the loads alone will do, in parts of the load.
+SAMPLES, CLOSE = 400, 1e-3
 
 #: Part of its load that a leg gives up before its slope can be told, and before its residual opening can.
 TELLS_SLOPE, TELLS_RESIDUAL = 0.25, 0.5
@@ -28,6 +24,9 @@ TELLS_STIFFNESS = 0.2
 
 #: Part of the opening at its beginning above which an unloading is a straight line: below, faces begin to touch.
 CLEAR = 0.2
+
+#: Part of a tolerance up to which the load alone says how far a point is.
+NO_MATTER = 0.25
 
 #: A single point may be farther off than a whole curve, by the tolerance of the curve times this.
 OF_A_POINT = 4.0
@@ -61,15 +60,16 @@ class Farthest:
 
 def leg_differences(a: Path, b: Path) -> tuple[LegDifference, ...]:
     """Every leg that both have."""
-    top = _largest([leg.load for leg in b.legs])
+    size = _size(b)
+    least = LEAST_LOAD * size[1]
     pairs = [pair for pair in zip(a.legs, b.legs, strict=False) if _range(*pair) is not None]
     return tuple(
         LegDifference(
             i + 1,
             pair[1].words,
-            _error(*pair, LEAST_LOAD * top),
-            *_unloading(*pair, LEAST_LOAD * top),
-            _loop(pair, pairs[i + 1], LEAST_LOAD * top) if pair[1].unloads and i + 1 < len(pairs) else np.nan,
+            _error(*pair, size),
+            *_unloading(*pair, least),
+            _loop(pair, pairs[i + 1], least) if pair[1].unloads and i + 1 < len(pairs) else np.nan,
         )
         for i, pair in enumerate(pairs)
     )
@@ -80,7 +80,7 @@ def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthe
 
     Without ``snap_backs`` only the envelope of A counts, as where B may show vertical drops.
     """
-    size = _largest([leg.opening for leg in b.legs]), _largest([leg.load for leg in b.legs])
+    size = _size(b)
     found = []
     for i, (mine, other) in enumerate(zip(a.legs, b.legs, strict=False), 1):
         if _range(mine, other) is None:
@@ -88,7 +88,7 @@ def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthe
         d, P = mine.onward if snap_backs else envelope(*mine.onward)
         graph = other.onward
         there = d <= np.max(graph[0])
-        off = distances((d[there], P[there]), graph, size, enough)
+        off = distances((d[there], P[there]), graph, size, NO_MATTER * enough, enough)
         worst = int(np.argmax(off))
         found.append(Farthest(float(off[worst]), i, float(mine.heading * d[there][worst]), float(P[there][worst])))
     return max(found, key=lambda one: one.value, default=None)
@@ -134,25 +134,22 @@ def farthest_check(
     return (Check("farthest-point", subject, worst.value, OF_A_POINT * tolerance, kind, meaning),)
 
 
-def along_the_programme(
+def stiffness_check(
     subject: str, a: Curve, b: Curve, programme: Sequence[float], tolerance: float, kind: Kind = "cross-code"
 ) -> tuple[Check, ...]:
-    """Checks of A against B besides the L2 distance of their envelopes: the farthest point, the stiffness, and every
-    leg of a programme that turns.
+    """The secant stiffness of the first leg, see `stiffness`; nothing where B bears no load there."""
+    value = stiffness(path(a, programme).legs[0], path(b, programme).legs[0])
+    meaning = "The secant stiffness at half the largest load of the first leg (relative difference)."
+    return () if np.isnan(value) else (Check("stiffness", subject, value, tolerance, kind, meaning),)
 
-    Parameters
-    ----------
-    tolerance : that of the curve
-    """
-    of_a, of_b = path(a, programme), path(b, programme)
-    checks = [*farthest_check(subject, a, b, programme, tolerance, kind)]
-    stiff = stiffness(of_a.legs[0], of_b.legs[0])
-    if not np.isnan(stiff):
-        meaning = "The secant stiffness at half the largest load of the first leg (relative difference)."
-        checks.append(Check("stiffness", subject, stiff, tolerance, kind, meaning))
-    if not only_opens(programme):
-        checks += leg_checks(leg_differences(of_a, of_b), subject, tolerance, kind)
-    return tuple(checks)
+
+def programme_checks(
+    subject: str, a: Curve, b: Curve, programme: Sequence[float], tolerance: float, kind: Kind = "cross-code"
+) -> tuple[Check, ...]:
+    """Every leg of a programme that turns, of A against B; nothing where the opening only grows."""
+    if only_opens(programme):
+        return ()
+    return leg_checks(leg_differences(path(a, programme), path(b, programme)), subject, tolerance, kind)
 
 
 def leg_checks(
@@ -193,8 +190,11 @@ def turns_check(subject: str, curve: Path, kind: Kind = "cross-code") -> Check:
     return Check("legs", subject, curve.misfit, NEAR, kind, meaning)
 
 
-def _largest(values: Sequence[np.ndarray]) -> float:
-    return max((float(np.max(np.abs(some))) for some in values), default=0.0)
+def _size(path: Path) -> tuple[float, float]:
+    """Largest opening and load of all legs."""
+    both = ([leg.opening for leg in path.legs], [leg.load for leg in path.legs])
+    opening, load = (max((float(np.max(np.abs(some))) for some in of), default=0.0) for of in both)
+    return opening, load
 
 
 def _range(*legs: Leg) -> tuple[float, float] | None:
@@ -204,9 +204,10 @@ def _range(*legs: Leg) -> tuple[float, float] | None:
     return (low, high) if high > low else None
 
 
-def _error(a: Leg, b: Leg, least: float) -> float:
-    """Relative L2 distance over the common openings."""
-    return min(_l2(a, b, at, least) for at in _where(a, _range(a, b) or (0.0, 1.0)))
+def _error(a: Leg, b: Leg, size: tuple[float, float]) -> float:
+    """Relative L2 distance over the common openings; see `verify.nearness.distances`: of a steep drop, which a little
+    later would be as far off as it is high, the distance along the opening counts."""
+    return min(_l2(a, b, at, size) for at in _where(a, _range(a, b) or (0.0, 1.0)))
 
 
 def _where(leg: Leg, ends: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
@@ -216,13 +217,15 @@ def _where(leg: Leg, ends: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]
     """
     low, high = ends
     grid = np.minimum(low + (high - low) * (np.arange(SAMPLES + 1) / SAMPLES), high)
-    return grid, np.unique(np.clip(envelope(*leg.onward)[0], low, high))
+    own = np.unique(np.clip(envelope(*leg.onward)[0], low, high))
+    return grid, own if len(own) < SAMPLES else grid
 
 
-def _l2(a: Leg, b: Leg, at: np.ndarray, least: float) -> float:
-    mine, other = load_at(a.onward, at), load_at(b.onward, at)
-    off, size = (np.sqrt(_mean(load**2, at)) for load in (mine - other, other))
-    return float(off / max(size, least))
+def _l2(a: Leg, b: Leg, at: np.ndarray, size: tuple[float, float]) -> float:
+    mine, other, least = load_at(a.onward, at), load_at(b.onward, at), LEAST_LOAD * size[1]
+    near = distances((at, mine), b.onward, size, CLOSE) * np.maximum(np.abs(mine), least)
+    off = np.minimum(near, np.abs(mine - other))
+    return float(np.sqrt(_mean(off**2, at)) / max(np.sqrt(_mean(other**2, at)), least))
 
 
 def _mean(values: np.ndarray, at: np.ndarray) -> float:

@@ -10,8 +10,8 @@ from verify.curve import Curve, envelope
 #: zero, or nothing is open yet, only the size of the whole curve is left as a measure.
 LEAST_OPENING, LEAST_LOAD = 0.02, 0.1
 
-#: Points that are looked at together, and the part of a tolerance up to which a point is not looked at.
-CHUNK, NO_MATTER = 64, 0.25
+#: Points that are looked at together.
+CHUNK = 64
 
 
 def distances_along_load(points: Curve, graph: Curve, size: tuple[float, float]) -> np.ndarray:
@@ -25,19 +25,23 @@ def distances_along_load(points: Curve, graph: Curve, size: tuple[float, float])
     return np.where((d >= x[0]) & (d <= x[-1]), off, np.inf)
 
 
-def distances(points: Curve, graph: Curve, size: tuple[float, float], enough: float) -> np.ndarray:
+def distances(
+    points: Curve, graph: Curve, size: tuple[float, float], near: float = 0.0, enough: float = np.inf
+) -> np.ndarray:
     """Distance (n,) of every point of a path from the graph of another one, in parts of its own opening and load.
 
     ``min over (x, y) of the graph of |d - x| / max(|d|, least) + |P - y| / max(|P|, least)``: a steep drop may lie that
     much earlier or later, a load be that much larger or smaller. The graph has the path, with its snap-backs, its
     envelope, with vertical drops, and the kinks that its chords may cut. Openings grow in the envelopes of both.
 
-    A point whose load alone is no more than `NO_MATTER` of ``enough`` off counts with that. Where one of `CHUNK` points
-    is farther than ``enough``, those that are not looked at yet count as 0: the verdict is the same.
+    Parameters
+    ----------
+    near : a point whose load alone is no more than that off counts with this.
+    enough : where one of `CHUNK` points is farther, those that are not looked at yet count as 0.
     """
     d, P = (np.asarray(values, dtype=float) for values in points)
     found = distances_along_load(points, graph, size)
-    far = np.flatnonzero(found > NO_MATTER * enough)
+    far = np.flatnonzero(found > near)
     far = far[np.argsort(-found[far], kind="stable")]
     starts, ends = _segments(graph)
     scale = np.maximum(np.abs(d), LEAST_OPENING * size[0]), np.maximum(np.abs(P), LEAST_LOAD * size[1])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -211,3 +212,18 @@ def test_a_programme_that_closes_is_compared_too(beam: Result) -> None:
     )
     assert {check.name for check in found if not check.passed} == {"curve-leg-1", "stiffness"}
     assert {check.name for check in found if check.passed} == {"legs", "farthest-point"}
+
+
+def test_a_curve_may_end_where_the_specimen_comes_apart() -> None:
+    """With the run that has separated, or earlier where it bears nothing any more, but not while it bears a load."""
+    scene = load_scene(LINEAR, ["load.opening=[1.0, 0.2, 6.0]"])
+    d = np.concatenate((np.linspace(0.0, 1.0, 51), np.linspace(1.0, 0.2, 41)[1:], np.linspace(0.2, 5.0, 241)[1:]))
+    grown = np.maximum.accumulate(d)
+    load = d / (0.1 + grown**2) * np.clip(4.0 - grown, 1e-4, 1.0)
+    run = Result("nurbs", {"opening": d, "load": load}, ending="separated at opening 5")
+    for end, broken in ((5.0, set()), (4.5, set()), (3.5, {"end", "legs"})):
+        kept = (d <= end) | (np.arange(d.size) < 100)
+        mine = Result("mine", {"opening": d[kept], "load": load[kept]})
+        assert {check.name for check in checks_of(scene, "mine", mine, {"nurbs": run}) if not check.passed} == broken
+    whole = replace(run, ending="")
+    assert "end" in {check.name for check in checks_of(scene, "mine", run, {"nurbs": whole}) if not check.passed}

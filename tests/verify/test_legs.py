@@ -134,7 +134,7 @@ def test_distances_are_those_of_the_definition() -> None:
     size = 2.0, 1.0
 
     def off(d: float, P: float, graph: tuple = drop) -> float:
-        return float(distances((np.array([d]), np.array([P])), graph, size, 0.0)[0])
+        return float(distances((np.array([d]), np.array([P])), graph, size)[0])
 
     assert off(0.5, 0.5) == off(1.0, 0.7) == off(2.0, 0.5) == 0.0
     assert off(0.5, 0.54) == pytest.approx(0.04 / 0.54)  # at the same opening; 0.04 / 0.5 at the same load
