@@ -39,6 +39,7 @@ class Problem(Debonding):
         if self.symmetry:
             raise ValueError("symmetry: this model has both arms; use symmetry = false")
         self.require_positive("length", "arm_thickness", "precrack", "E1", "E2", "G12", "elements_across")
+        self.require_place(self.elements_across)
         if not self.precrack < self.length:
             raise ValueError(f"precrack: must be < length = {self.length}, got {self.precrack}")
         self.specimen()

@@ -20,7 +20,7 @@ from fem_reference.linear import Factorisation, outer, widened, without_zeros
 from fem_reference.mesh import TwoBodies, two_bodies
 from fem_reference.problem import Debonding
 from fem_reference.specimen import Specimen
-from fem_reference.supports import supports, tie
+from fem_reference.supports import point_load, supports, tie
 
 Phase = Callable[[str], AbstractContextManager]
 
@@ -146,6 +146,8 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
         internal, load, slope = (_vector(blocks, weak) for blocks in (weak.internal, weak.load, weak.slope))
         energy, face_energy = compile_forms([weak.energy, weak.face_energy], weak.maps)
     bcs, free_n = supports(specimen, displacement)
+    X_nI = np.concatenate([_node_positions(u) for u in displacement])
+    upper_n = np.arange(len(X_nI)) < owned(displacement[0])
     tie_n = tie(specimen, displacement)
     with phase("assembly"):
         bond, X_q = _bond(problem, weak, free_n, phase)
@@ -170,9 +172,11 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
         bcs=bcs,
         free_n=free_n,
         tie_n=tie_n,
-        load_n=load.assemble(),
+        load_n=load.assemble()
+        if problem.load_at == "face"
+        else point_load(specimen, problem.load_at, X_nI, upper_n, comm),
         slope_n=slope.assemble(),
-        X_nI=np.concatenate([_node_positions(u) for u in displacement]),
+        X_nI=X_nI,
         X_q=X_q,
         tie_matrix=tie_matrix,
         bulk_matrix=bulk_matrix,

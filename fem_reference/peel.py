@@ -46,6 +46,7 @@ class Problem(Debonding):
         if not self.bond_length <= self.substrate_length:
             text = f"must be <= substrate_length = {self.substrate_length}, got {self.bond_length}"
             raise ValueError(f"bond_length: {text}")
+        self.require_place(self.strip_layers)
         self.specimen()
 
     def specimen(self) -> Specimen:

@@ -11,6 +11,7 @@ from iga.adaptive import Window, adapted_tmeshes, carried, first_window, followe
 from iga.arms import arm_meshes, crack_path, tmeshes
 from iga.body import Body, bodies, mean_row, point_row
 from iga.bond import bond, control_points, probe, slave_number
+from iga.load import pulled_row
 from iga.material import orthotropic
 from iga.point import Point
 from iga.pose import Pose
@@ -65,7 +66,7 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
         copies = 2.0 if problem.symmetry else 1.0
         arms = bodies(meshes, (D,) * len(meshes), pose, copies * problem.width, smooth(problem))
         P_AI = control_points(arms)
-        across = [mean_row(arm.face("left"), pose.axes_kI[1], P_AI.size) for arm in arms]
+        across = [pulled_row(arm, "left", problem.load_at, pose, 1, P_AI.size) for arm in arms]
         springs_rd, spring_r = _supports(problem, arms, pose)
         system = System(
             solids=joined([solid for arm in arms for solid in arm.solids]),
@@ -83,6 +84,7 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
             pose=pose,
             loaded=("left",) * len(arms),
             loaded_at=0.0,
+            load_at=problem.load_at,
             free_length=problem.precrack,
             energy_faces=tuple(
                 (n, end, sign) for n in range(len(arms)) for end, sign in (("left", 1.0), ("right", -1.0))

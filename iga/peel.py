@@ -9,6 +9,7 @@ import numpy as np
 
 from iga.body import Body, bodies, mean_row
 from iga.bond import bond, closes, control_points, probe, slave_number
+from iga.load import pulled_row
 from iga.material import orthotropic
 from iga.peel_meshes import meshes, tmeshes
 from iga.pose import Pose
@@ -64,7 +65,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             solids=joined([solid for body in pair for solid in body.solids]),
             interface=bond(problem, pair, extent, _touching(problem)),
             kinematics=problem.kinematics,
-            load_d=mean_row(strip.face("right"), pose.axes_kI[1], P_AI.size),
+            load_d=pulled_row(strip, "right", problem.load_at, pose, 1, P_AI.size),
             free_d=_free(substrate, P_AI.size),
             x_d=np.repeat(pose.own(P_AI)[:, 0], 2),
             springs_rd=springs_rd,
@@ -76,6 +77,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             pose=pose,
             loaded=("right", ""),
             loaded_at=problem.strip_length,
+            load_at=problem.load_at,
             free_length=problem.strip_length - problem.bond_length,
             energy_faces=((0, "right", 1.0), (1, "right", 1.0), (0, "left", -1.0), (1, "left", -1.0)),
             upper_is_slave=slave_number(problem, pair) == 0,

@@ -13,9 +13,10 @@ from iga.pose import Pose
 class Debonding:
     """Common part of a problem in plain numbers, any consistent units.
 
-    ``opening`` is the programme of the loaded faces' mean displacement. ``steps`` is the number of steps asked for over
-    the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed at. ``law_name`` is
-    one of `iga.cohesive.LAWS`.
+    ``opening`` is the programme of the displacement of where the load acts, ``load_at``: "face" (a uniform dead
+    traction, the mean displacement), "node" (the corner of the loaded face away from the interface) or "hinge" (its
+    middle). ``steps`` is the number of steps asked for over the whole programme; None lets the path choose them.
+    ``dofs`` is the number of unknowns aimed at. ``law_name`` is one of `iga.cohesive.LAWS`.
     ``meshes`` are those of the bodies, upper first, in the specimen's own frame; made by the solver where left out.
 
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
@@ -32,6 +33,7 @@ class Debonding:
     penalty: float
     law_name: str = "bilinear"
     opening: tuple[float, ...]
+    load_at: str = "face"
     width: float = 1.0
     plane: str = "stress"
     contact: bool = True

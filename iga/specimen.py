@@ -7,11 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
-from iga.body import Body, mean_row, slope_row
+from iga.body import Body, slope_row
 from iga.bulk import element_stiffness, full_matrices, gradient
 from iga.extraction import Mesh
 from iga.interface import Interface
 from iga.kinematics import KINEMATICS
+from iga.load import pulled_row
 from iga.pose import Pose
 from iga.solid import Solid, joined
 from iga.system import System
@@ -22,7 +23,8 @@ from iga.tmesh import TMesh
 class Specimen:
     """A system and what it takes to read it: bodies (upper first), pose, and which ends count for what.
 
-    ``loaded`` names the end, "left" or "right", at which the dead load pulls each body; "" where it does not.
+    ``loaded`` names the end, "left" or "right", at which the dead load pulls each body; "" where it does not. Where on
+    it is ``load_at``, see `iga.load`.
     Distances along the specimen are counted from the plane ``loaded_at`` of the first of them; the bond begins at the
     distance ``free_length``. ``energy_faces`` (body, end, sign) are those whose strain energy enters the J-integral.
     ``path`` are the distances between which the mesh is made for the crack to run.
@@ -42,6 +44,7 @@ class Specimen:
     probe: Interface
     path: tuple[float, float]
     tmeshes: tuple[TMesh, ...] = ()
+    load_at: str = "face"
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:
@@ -88,8 +91,8 @@ class Specimen:
 
     @cached_property
     def face_row(self) -> np.ndarray:
-        """Row (n_dof,) of the mean displacement of the upper body's loaded face along the specimen."""
-        return mean_row(self.bodies[0].face(self.loaded[0]), self.pose.axes_kI[0], self.system.n_dof)
+        """Row (n_dof,) of the displacement along the specimen of where the load acts on the upper body."""
+        return pulled_row(self.bodies[0], self.loaded[0], self.load_at, self.pose, 0, self.system.n_dof)
 
     @cached_property
     def beside_probe(self) -> np.ndarray:

@@ -227,6 +227,8 @@ def _compare_options(sub: Parser) -> None:
             sub.add_argument(f"--{key}-scale-{side}", type=scale, default=1.0, metavar="X", help=what)
     sub.add_argument("--end", type=number, metavar="D", help="compare up to this opening; default: the last of B")
     sub.add_argument("--begin", type=number, metavar="D", help="compare from this opening on; default: 0")
+    what = "the load programme, where B does not show its turns: 1.5,0.2,3"
+    sub.add_argument("--programme", type=numbers, metavar="D,D,...", help=what)
     sub.add_argument("--at", type=numbers, default=[], metavar="D,D,...", help="print the loads at these openings")
     limit = "fail where the curve error is larger, e.g. 0.01"
     sub.add_argument("--curve-tol", "--tolerance", type=fraction, metavar="T", help=limit)

@@ -258,7 +258,7 @@ def compare(options: argparse.Namespace) -> int:
         work.Source(getattr(options, side), Reading(**{key: getattr(options, f"{key}_{side}") for key in keys}))
         for side in "ab"
     )
-    comparison, loads = work.held_against(a, b, options.end, options.at, options.begin)
+    comparison, loads = work.held_against(a, b, options.end, options.at, options.begin, options.programme)
     if options.out is not None:
         _folder(options.out)
     found = checks(comparison, options.curve_tol, options.peak_tol, options.energy_tol)

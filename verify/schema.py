@@ -15,6 +15,7 @@ from verify.laws import PLAIN, known
 from verify.published import Published
 from verify.section import Positive, Section, one_of, refuse
 from verify.specimen import MATERIALS, Material, Specimen, definite
+from verify.turns import turns
 
 
 def _hundred_initial_stiffnesses(data: dict[str, Any]) -> float:
@@ -51,6 +52,9 @@ def _as_programme(value: object) -> object:
 class Load(Section):
     opening: Annotated[tuple[float, ...], BeforeValidator(_as_programme), Field(min_length=1)]
     """End of the displacement programme [length]; a list unloads and reloads, like [1.5, 0.2, 3.0]."""
+
+    at: Literal["face", "node", "hinge"] = "face"
+    """Where load and opening are: even over the end face and its mean, its corner away from the bond, or its middle."""
 
     @field_validator("opening")
     @classmethod
@@ -266,4 +270,14 @@ class Scene(Section):
         beyond = [((i, "opening"), known.opening) for i, known in enumerate(published) if (known.opening or 0) > end]
         if beyond:
             raise refuse(f"<= {end:g}, the largest load.opening", *beyond)
+        way = (0.0, *turns(load.opening))
+        for i, value in enumerate(published):
+            if value.leg is None or value.opening is None:
+                continue
+            if value.leg >= len(way):
+                raise refuse(f"<= {len(way) - 1}, the number of legs of load.opening", ((i, "leg"), value.leg))
+            low, high = sorted(way[value.leg - 1 : value.leg + 1])
+            if not low <= value.opening <= high:
+                rule = f">= {low:g} and <= {high:g}, leg {value.leg} of load.opening"
+                raise refuse(rule, ((i, "opening"), value.opening))
         return published

@@ -12,6 +12,7 @@ from verify.crosschecks import distance
 from verify.folder import write_csv
 from verify.hard.random_scenes import name_of
 from verify.jobs import Job, Outcome, dry_run, run_all
+from verify.odd_one_out import ODD
 from verify.process_zone import bulk_length, slender_length
 from verify.proof import MATCHED, REFERENCE, SECOND
 from verify.result import Result
@@ -81,7 +82,7 @@ def row(report: SceneReport) -> Row:
     apart = max(
         (_between(results, pair, end) for group in _models(scene) for pair in combinations(group, 2)), default=nan
     )
-    odd = next((remark for remark in report.remarks if remark.startswith("odd one out")), "")
+    odd = next((remark for remark in report.remarks if remark.startswith(ODD)), "")
     stopped = [run.name for run in report.runs if run.name != SECOND and not (run.result and run.result.complete)]
     silent = counts.held == counts.total and apart > APART
     fault = "stopped" if stopped else "silent" if silent else "unnamed" if counts.broken and not odd else ""
