@@ -14,7 +14,7 @@ from iga.bond import bond, control_points, probe, slave_number
 from iga.material import orthotropic
 from iga.point import Point
 from iga.pose import Pose
-from iga.problem import Debonding, smooth
+from iga.problem import Debonding, presses, smooth
 from iga.solid import joined
 from iga.solve import OnFrame, Solution, run
 from iga.specimen import Specimen
@@ -69,7 +69,7 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
         springs_rd, spring_r = _supports(problem, arms, pose)
         system = System(
             solids=joined([solid for arm in arms for solid in arm.solids]),
-            interface=bond(problem, arms, extent),
+            interface=bond(problem, arms, extent, (0.0, problem.length) if presses(problem) else None),
             kinematics=problem.kinematics,
             load_d=2.0 * across[0] if problem.symmetry else across[0] - across[1],
             free_d=np.ones(P_AI.size, dtype=bool),

@@ -51,6 +51,11 @@ class Linearised:
     inverse: Inverse
 
 
+def away_from_zero(direction: float, opening: float) -> bool:
+    """Whether a programme goes on opening, or on pressing: damage may grow there; on the way back it unloads."""
+    return direction * opening >= 0.0
+
+
 def on_envelope(system: System, state: State, g_q: np.ndarray) -> np.ndarray:
     """Points that soften: their damage grows as soon as they open any further."""
     law, k_q = system.interface.law, state.k_q
@@ -72,13 +77,14 @@ def tangent(
     ----------
     response : to this very state, used as it is where all its points agree with it.
     direction : +1 where the programme opens the specimen, -1 where it closes it. Damage cannot heal: while it grows
-        the path goes forward where energy is dissipated, whatever the opening does there.
+        on the way away from zero the path goes forward where energy is dissipated, whatever the opening does there.
     turning : the programme has turned round at this state, or begins: nothing is known of the points.
     kink : the one that the state stands on; ``slope`` is the mean of both sides where these have one sign.
     """
     law, g_q = system.interface.law, response.contact.g_q
+    onward = away_from_zero(direction, float(system.load_d @ state.u_d))
     soft_q = on_envelope(system, state, g_q) & holding(system.interface, response.contact)
-    growing_q = soft_q if direction > 0.0 or not law.irreversible else np.zeros_like(soft_q)
+    growing_q = soft_q if onward or not law.irreversible else np.zeros_like(soft_q)
     flat_q = law.contact & (np.abs(g_q) <= NO_GAP * law.g_max)
     closed_q = state.closed_q
     inverse: Inverse | None
@@ -94,7 +100,7 @@ def tangent(
         if inverse is None:
             return None
         with phase("solve"):
-            found = _along(system, response, inverse, direction, growing_q, kink)
+            found = _along(system, response, inverse, direction, onward, growing_q, kink)
         least = NO_RATE * float(np.abs(found.rate_q).max(initial=0.0))
         agreeing_q = soft_q & (found.rate_q > np.where(growing_q, -least, least)) if law.irreversible else soft_q
         touching_q = np.where(flat_q & turning, found.rate_q < 0.0, closed_q)
@@ -153,6 +159,7 @@ def _along(
     response: Response,
     inverse: Inverse,
     direction: float,
+    onward: bool,
     growing_q: np.ndarray,
     kink: Kink | None,
 ) -> Tangent:
@@ -164,8 +171,10 @@ def _along(
     slope = 0.5 * (slope + arrival) if before * compliance > 0.0 else slope
     rate_q = response.contact.rates(z_d)
     growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
-    dissipating = growth != 0.0 and (direction > 0.0 or not system.interface.law.irreversible)
-    sign = direction * float(np.sign(growth if dissipating else compliance))
+    if growth != 0.0 and (onward or not system.interface.law.irreversible):
+        sign = float(np.sign(growth)) if onward else -float(np.sign(growth))
+    else:
+        sign = direction * float(np.sign(compliance))
     heading = sign * float(np.sign(compliance))
     return Tangent(sign * z_d, sign, slope, heading, sign * rate_q, growing_q, response.closed_q, arrival)
 
