@@ -56,6 +56,8 @@ class Problem(Debonding):
             bodies=(Body(L, Y, D), Body(L, -Y[::-1], D)),
             X=lines_by_way_of((self.precrack, L), self.elements),
             bond=(self.precrack, L),
+            facing=(0.0, L),
+            touching=self.presses,
             faces=(Face(UPPER, 0.0, load=1.0, energy=1.0), Face(LOWER, 0.0, load=-1.0, energy=1.0)),
             held=(Held(UPPER, point(L, 0.0), (0,)), Held(LOWER, point(L, 0.0), (0, 1))),
             hooks=self._tie(),

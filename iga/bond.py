@@ -10,7 +10,7 @@ from iga.body import Body
 from iga.cohesive import TractionLaw
 from iga.interface import Interface, settled
 from iga.lumped import chained, lumped, paired
-from iga.problem import Debonding
+from iga.problem import Debonding, unloads
 from iga.quadrature import gauss, lobatto
 from iga.surface import Surface
 
@@ -18,6 +18,9 @@ RULES = {"gauss": gauss, "lobatto": lobatto}
 
 #: Surface by which each body, upper and lower, meets the other.
 FACING = ("bottom", "top")
+
+#: Samples of the gap on each side, where it is looked at whether faces pass through each other.
+SAMPLES = 5
 
 #: Part of a side that is too little to touch.
 SLIVER = 1e-6
@@ -74,6 +77,18 @@ def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, flo
     found = _interface(problem, bodies, c[at // 2], at % 2.0, np.full(2, 0.5))
     if interface.pairing is not None:
         found = replace(found, near=interface.pairing[interface.beside(found.X_qi)])
+    return settled(found) if stays(problem) else found
+
+
+def faces(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float]) -> Interface | None:
+    """Samples from end to end of the faces that are opposite to each other, ends of elements included.
+
+    None where the programme never goes down: no gap closes then.
+    """
+    if not unloads(problem):
+        return None
+    even = np.linspace(0.0, 1.0, SAMPLES), np.full(SAMPLES, 1.0 / SAMPLES)
+    found = _interface(problem, bodies, *_between(problem, bodies, (min(extent), max(extent)), even))
     return settled(found) if stays(problem) else found
 
 

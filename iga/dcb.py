@@ -10,7 +10,7 @@ import numpy as np
 from iga.adaptive import Window, adapted_tmeshes, carried, first_window, followed
 from iga.arms import arm_meshes, crack_path, tmeshes
 from iga.body import Body, bodies, mean_row, point_row
-from iga.bond import bond, control_points, probe, slave_number
+from iga.bond import bond, control_points, faces, probe, slave_number
 from iga.material import orthotropic
 from iga.point import Point
 from iga.pose import Pose
@@ -90,6 +90,7 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
             probe=probe(problem, arms, extent, system.interface),
             path=(problem.precrack, _end_of_path(problem, window)),
             tmeshes=drawn,
+            faces=faces(problem, arms, (0.0, problem.length)),
         )
 
 

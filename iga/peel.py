@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from iga.body import Body, bodies, mean_row
-from iga.bond import bond, control_points, probe, slave_number
+from iga.bond import bond, control_points, faces, probe, slave_number
 from iga.material import orthotropic
 from iga.peel_meshes import meshes, tmeshes
 from iga.pose import Pose
@@ -83,6 +83,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             probe=probe(problem, pair, extent, system.interface),
             path=(problem.strip_length - problem.bond_length, problem.strip_length),
             tmeshes=drawn,
+            faces=faces(problem, pair, (facing(problem), 0.0)),
         )
 
 

@@ -77,3 +77,8 @@ def presses(problem: Debonding) -> bool:
     Unloading alone does not close them: along the secants of the damage they come together at no opening, all at once.
     """
     return problem.contact and min(problem.opening) < 0.0
+
+
+def unloads(problem: Debonding) -> bool:
+    """Whether the programme goes down anywhere."""
+    return any(after < before for before, after in zip((0.0, *problem.opening), problem.opening, strict=False))
