@@ -165,10 +165,12 @@ def step(
     u_n, load = guess
     attempt = find_equilibrium(model, control, u_n, load, state.k_q, state.peak * model.norm(model.load_n))
     if not attempt.converged:
+        pressed = state.opening <= 0.0 and state.heading < 0.0
+        less = "close by less (load.opening), as bodies that are crushed have no equilibrium, or " if pressed else ""
         return Failure(
             f"no equilibrium beyond opening {state.opening:.6g} in {attempt.iterations} iterations "
             f"(residual {attempt.residuals[-1]:.1e} of the load), however short the step; "
-            "use more elements along the specimen or a higher degree"
+            f"{less}use more elements along the specimen or a higher degree"
         )
     model.factorise(on_arrival(model, state, attempt.u_n), state.k_q)
     rate_n, slope = tangent_of_path(model)

@@ -132,3 +132,9 @@ def lines_by_way_of(corners: tuple[float, ...], elements: int) -> np.ndarray:
     numbers = np.diff([*counts_before, elements])
     parts = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], numbers, strict=True)]
     return np.concatenate([*parts, ends[-1:]])
+
+
+def finer_at_first(X: np.ndarray, most: float) -> np.ndarray:
+    """Element boundaries with the first element halved, again and again, until it is no longer than ``most``."""
+    halvings = max(0, int(np.ceil(np.log2((X[1] - X[0]) / most) - 1e-9)))
+    return np.concatenate([X[:1], X[0] + (X[1] - X[0]) * 0.5 ** np.arange(halvings, 0, -1), X[1:]])

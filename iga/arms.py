@@ -33,8 +33,8 @@ MARGIN = 0.4
 #: Part of the unknowns by which a mesh may miss those aimed at.
 NEAR = 0.02
 
-#: Elements on the crack path that are so few that each counts.
-FEW = 7
+#: Elements on the crack path that are so few that each counts; and no more halvings than these in any case.
+FEW, MOST = 7, 60
 
 #: Where the arms are pressed together, the element at the loaded end is no longer than this part of their thickness.
 PRESSED = 0.25
@@ -156,12 +156,11 @@ def lines(problem: Problem, path: int, spare: int = 0, layers: int = 0) -> np.nd
     """
     parts, x = division(problem, path, spare, layers)
     breaks = pieces(*((start, end, n) for start, end, n in zip(x[:-1], x[1:], parts, strict=True)))
-    halved = 0
-    if presses(problem):
-        ratio = x[1] / (parts[0] - spare) / (PRESSED * problem.arm_thickness)
-        halved = max(0, int(np.ceil(np.log2(ratio) - ROUNDING)))
-        halved = min(halved, path) if path <= FEW else halved
-    return np.concatenate([breaks[:1], breaks[1] * 0.5 ** np.arange(halved, 0, -1), breaks[1:]])
+    if not presses(problem):
+        return breaks
+    halvings = np.log2(x[1] / (parts[0] - spare) / (PRESSED * problem.arm_thickness)) - ROUNDING
+    number = min(max(0, int(np.ceil(halvings))), path if path <= FEW else MOST)
+    return np.concatenate([breaks[:1], breaks[1] * 0.5 ** np.arange(number, 0, -1), breaks[1:]])
 
 
 def _rectangles(problem: Problem) -> tuple[Mesh, ...]:

@@ -96,7 +96,7 @@ LIMITS = [
     ("dolfinx.degree", 1, 4),
     ("dolfinx.elements", 2, 100_000),
     ("pose.angle", -360.0, 360.0),
-    ("load.opening", -0.4, 28.0),
+    ("load.opening", -0.2, 28.0),
 ]
 
 
