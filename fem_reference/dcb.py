@@ -21,7 +21,6 @@ from fem_reference.specimen import (
     point,
 )
 
-
 #: Where the arms are pressed together, elements at the loaded end are no longer than this part of their thickness: load
 #: and contact balance each other within about one thickness. So many of them, at least, are then through an arm: one of
 #: degree 2 is 0.5 % too stiff there.

@@ -31,8 +31,8 @@ class Model:
 
     Unknowns ``u_n`` are the displacements owned by this rank: x and y in turn, upper body first. The load enters as
     ``load * load_n``, and ``load_n @ u_n``, summed over the ranks, is the opening: one vector is force and constraint.
-    Points ``q`` of the interface are those that this rank owns; where ``bonded_q`` is False the faces only touch: nothing
-    holds them there, and they have no history.
+    Points ``q`` of the interface are those that this rank owns; where ``bonded_q`` is False the faces only touch:
+    nothing holds them there, and they have no history.
     """
 
     problem: Debonding

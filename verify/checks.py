@@ -32,7 +32,7 @@ AT_THE_END = 1e-9  # part of the length within which the process zone has come t
 REST = 1e-12  # part of the largest work below which there is none
 BALANCE_TOLERANCE = 1e-8
 DISSIPATION_TOLERANCE = 0.02
-#: Between the points at which contact is asked for the faces may be deeper in each other: measured 0.1 on coarse meshes.
+#: Between the points that carry contact the faces may be deeper in each other: measured up to 0.1 on coarse meshes.
 PENETRATION_TOLERANCE = 0.5
 NO_DEPTH = 1e-6  # part of the thickness of an arm below which faces are not in each other
 
@@ -248,14 +248,15 @@ def penetration(scene: Scene, steps: Steps) -> float | None:
     """Worst depth of the faces in each other over what contact gives way under its own pressure, less 1.
 
     The pressure over the penalty, and over the stiffness of an arm across: between the points that carry contact a
-    surface bulges by a part of that. None where contact was to be left out, or the programme never goes down.
+    surface bulges by a part of that. None where contact was to be left out, or the programme never goes down; not
+    counted where the specimen turns about its far end (see `far_from_end`).
     """
     if not simulated(scene, "")["contact"] or not _has(steps, "penetration", "contact_pressure"):
         return None
     specimen, across = scene.specimen, elastic_constants(scene.materials[0])["E2"]
     gives = steps["contact_pressure"] * (1.0 / scene.interface.penalty + specimen.loaded_thickness / across)
     depth = steps["penetration"]
-    deep = depth > NO_DEPTH * specimen.loaded_thickness
+    deep = (depth > NO_DEPTH * specimen.loaded_thickness) & far_from_end(scene, steps)
     return _worst(np.maximum(np.where(deep, depth / _scale(gives) - 1.0, 0.0), 0.0))
 
 
