@@ -26,6 +26,11 @@ NEAR = 0.01
 TRIFLE = 1e-6
 
 
+#: What to do where a path cannot go on, and where the bodies are pressed together.
+FINER = "use more elements along the specimen or a higher degree"
+LESS = "close by less (load.opening), as bodies that are crushed have no equilibrium,"
+
+
 @dataclass(frozen=True)
 class Failure:
     """A step that did not converge; ``final`` when the run stops for it."""
@@ -136,6 +141,9 @@ def lead(model: Model, state: State, control: Control, lines: np.ndarray) -> Sta
     """A step of the front; one that passes the goal, or all but reaches it, is taken again so that it ends there."""
     reached = step(model, state, control)
     goal, increment = float(lines[-1]), lines[1] - lines[0]
+    if isinstance(reached, State) and reached.opening * goal < 0.0 <= state.opening * goal:
+        # a front opens on both sides of zero: by pulling and by pressing
+        return Failure(f"the path leaps from opening {state.opening:.6g} to {reached.opening:.6g}; {LESS} or {FINER}")
     if isinstance(reached, Failure) or (goal - reached.opening) / increment > NEAR:
         return reached
     share = (goal - state.opening) / (reached.opening - state.opening)
@@ -165,12 +173,10 @@ def step(
     u_n, load = guess
     attempt = find_equilibrium(model, control, u_n, load, state.k_q, state.peak * model.norm(model.load_n))
     if not attempt.converged:
-        pressed = state.opening <= 0.0 and state.heading < 0.0
-        less = "close by less (load.opening), as bodies that are crushed have no equilibrium, or " if pressed else ""
+        less = f"{LESS} or " if state.opening <= 0.0 and state.heading < 0.0 else ""
         return Failure(
             f"no equilibrium beyond opening {state.opening:.6g} in {attempt.iterations} iterations "
-            f"(residual {attempt.residuals[-1]:.1e} of the load), however short the step; "
-            f"{less}use more elements along the specimen or a higher degree"
+            f"(residual {attempt.residuals[-1]:.1e} of the load), however short the step; {less}{FINER}"
         )
     model.factorise(on_arrival(model, state, attempt.u_n), state.k_q)
     rate_n, slope = tangent_of_path(model)
