@@ -78,8 +78,8 @@ def row_of(model: Model, state: State) -> dict[str, float]:
 
 def _of_contact(model: Model, state: State, p_q: np.ndarray) -> dict[str, float]:
     """How deep the faces are in each other anywhere, at nodes too, what pushes them apart, and the gap at the mouth."""
-    pressure = model.comm.allreduce(float(-np.min(p_q, initial=0.0)), MPI.MAX)
-    depth = -float(np.min(face_gaps(model, state), initial=0.0))
+    pressure = model.comm.allreduce(float(np.max(-p_q, initial=0.0)), MPI.MAX)
+    depth = float(np.max(-face_gaps(model, state), initial=0.0))
     mouth = {"mouth_opening": opening_at(model, model.specimen.facing[0])} if model.problem.presses else {}
     return {"penetration": depth, "contact_pressure": pressure, **mouth}
 

@@ -37,7 +37,7 @@ NEAR = 0.02
 FEW, MOST = 7, 60
 
 #: Where the arms are pressed together, the element at the loaded end is no longer than this part of their thickness.
-PRESSED = 0.25
+PRESSED = 0.125
 
 #: Elements (before, on, beyond) the crack path.
 Division = tuple[int, int, int]

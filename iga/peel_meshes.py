@@ -20,7 +20,7 @@ COARSENING = 4.0
 
 #: Where a strip is pressed on the end of the substrate, elements are no longer than this part of its thickness; and
 #: elements on the bond that are so few that there are no more halvings than these, and never more than the last.
-PRESSED, FEW, MOST = 0.25, 7, 60
+PRESSED, FEW, MOST = 0.125, 7, 60
 
 #: Layers of the substrate: at most so many, each this much thicker than the one above, and the top one no thinner than
 #: such a part of the length of its elements.
