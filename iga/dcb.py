@@ -32,7 +32,9 @@ class Problem(Debonding):
     """A double cantilever beam in its own frame.
 
     X runs from 0 (loaded end) to ``length``, the interface lies on Y = 0 and is bonded from ``precrack`` on; each arm
-    is ``arm_thickness`` thick and elastic with axis 1 along X. The opening is the separation of the loaded faces.
+    is ``arm_thickness`` thick and elastic with axis 1 along X. The opening is the separation of the loaded faces. Where
+    it goes below zero the faces are pressed together from X = 0 on: the load, spread over the faces at X = 0, and the
+    contact next to them are a couple, which makes the arms gape behind.
     ``symmetry`` models the upper arm alone against its mirror image. ``adaptive`` T-splines follow the process zone and
     have at most ``dofs`` unknowns at any time.
     """

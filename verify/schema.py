@@ -50,7 +50,8 @@ def _as_programme(value: object) -> object:
 
 class Load(Section):
     opening: Annotated[tuple[float, ...], BeforeValidator(_as_programme), Field(min_length=1)]
-    """End of the displacement programme [length]; a list unloads and reloads, like [1.5, 0.2, 3.0]."""
+    """End of the displacement programme [length]; a list unloads and reloads, like [1.5, 0.2, 3.0]; below 0 the loaded
+    faces are pressed together."""
 
     @field_validator("opening")
     @classmethod
