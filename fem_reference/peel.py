@@ -63,6 +63,8 @@ class Problem(Debonding):
             ),
             X=X,
             bond=(bond, 0.0),
+            facing=(min(lower, upper), 0.0),
+            touching=self.presses,
             faces=(
                 Face(UPPER, upper, load=1.0, energy=1.0),
                 Face(LOWER, lower, load=0.0, energy=1.0),

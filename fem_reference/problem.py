@@ -63,6 +63,16 @@ class Debonding:
                 f"got {self.degree}"
             )
 
+    @property
+    def presses(self) -> bool:
+        """Whether faces beyond the bond meet: the programme goes below zero; to zero all gaps go together."""
+        return self.contact and min(self.opening) < 0.0
+
+    @property
+    def unloads(self) -> bool:
+        """Whether the programme goes down anywhere."""
+        return any(after < before for before, after in zip((0.0, *self.opening), self.opening, strict=False))
+
     def require_positive(self, *names: str) -> None:
         """Raise ValueError where one of these is not."""
         for name in names:

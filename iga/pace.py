@@ -12,6 +12,7 @@ from iga.interface import holding
 from iga.point import Point
 from iga.promise import KEPT, Kept
 from iga.system import System
+from iga.tangent import away_from_zero
 
 #: Largest step of the front in parts of g_u, where steps are counted and where they are chosen by accuracy; smallest
 #: step in parts of the one asked for.
@@ -162,7 +163,7 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
     law, path = system.interface.law, point.tangent
     left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
     grows, event = bool(path.growing_q.any()), None
-    if direction > 0.0 and (pace.careful or not grows):
+    if away_from_zero(direction, point.opening) and (pace.careful or not grows):
         touch = point.response.contact
         k_q = np.where(holding(system.interface, touch), point.state.k_q, law.g_u)  # no kink for the others
         event = next_event(law, touch.g_q, k_q, path.rate_q)

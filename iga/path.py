@@ -90,7 +90,7 @@ def follow(
                 rejected, pace = rejected + 1, pace.slower()
                 known = _once_more(system, point, direction, phase) if pace.by_kinks else None
                 if pace.exhausted:
-                    yield End(_advice(point.opening, leapt=reached is not None), rejected)
+                    yield End(_advice(point, leapt=reached is not None), rejected)
                     return
                 continue
             largest = largest.with_point(reached)
@@ -200,7 +200,14 @@ def _onto(system: System, point: Point, goal: float) -> Step:
     return Step(opening_control(system), (goal - point.opening) / float(system.load_d @ point.tangent.du_d), exact=True)
 
 
-def _advice(opening: float, leapt: bool) -> str:
+def _advice(point: Point, leapt: bool) -> str:
+    opening = point.opening
+    if opening < 0.0 and point.state.load < 0.0:
+        return (
+            f"stopped: Newton did not converge beyond opening {opening:.6g}, where a load of {point.state.load:.4g} "
+            "presses the bodies together, even with a step 4096 times smaller; close by less (load.opening), as bodies "
+            "that are crushed have no equilibrium, or refine the mesh along the crack (discretization.dofs)"
+        )
     if leapt:
         return (
             f"stopped: the energy jumps at opening {opening:.6g}, however short the step, as where a point of the "

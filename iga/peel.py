@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from iga.body import Body, bodies, mean_row
-from iga.bond import bond, closes, control_points, probe, slave_number
+from iga.bond import bond, control_points, faces, probe, slave_number
 from iga.load import pulled_row
 from iga.material import orthotropic
 from iga.peel_meshes import meshes, tmeshes
 from iga.pose import Pose
-from iga.problem import Debonding, smooth
+from iga.problem import Debonding, presses, smooth
 from iga.solid import joined
 from iga.solve import OnFrame, Solution, run
 from iga.specimen import Specimen
@@ -85,6 +85,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             probe=probe(problem, pair, extent, system.interface),
             path=(problem.strip_length - problem.bond_length, problem.strip_length),
             tmeshes=drawn,
+            faces=faces(problem, pair, (facing(problem), 0.0)),
         )
 
 
@@ -107,8 +108,13 @@ def _free(substrate: Body, n_dof: int) -> np.ndarray:
 
 def _touching(problem: Problem) -> tuple[float, float] | None:
     """How far strip and substrate may touch, beyond the bond as well; None where no gap closes there."""
-    face = min(problem.strip_length, problem.substrate_length)
-    return (face, 0.0) if problem.contact and closes(problem.opening) and face > problem.bond_length else None
+    face = facing(problem)
+    return (face, 0.0) if presses(problem) and face > problem.bond_length else None
+
+
+def facing(problem: Problem) -> float:
+    """How far from the flush end strip and substrate face each other."""
+    return min(problem.strip_length, problem.substrate_length)
 
 
 def _support(problem: Problem, strip: Body, pose: Pose, n_dof: int) -> tuple[np.ndarray, np.ndarray]:

@@ -71,3 +71,16 @@ class Debonding:
 def smooth(problem: Debonding) -> bool:
     """Whether the basis is more than continuous along the specimen; of a mesh that is given nothing is known."""
     return problem.basis != "lagrange" and not problem.meshes
+
+
+def presses(problem: Debonding) -> bool:
+    """Whether faces beyond the bond can meet: the programme goes below zero.
+
+    Unloading alone does not close them: along the secants of the damage they come together at no opening, all at once.
+    """
+    return problem.contact and min(problem.opening) < 0.0
+
+
+def unloads(problem: Debonding) -> bool:
+    """Whether the programme goes down anywhere."""
+    return any(after < before for before, after in zip((0.0, *problem.opening), problem.opening, strict=False))

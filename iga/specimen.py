@@ -29,7 +29,8 @@ class Specimen:
     distance ``free_length``. ``energy_faces`` (body, end, sign) are those whose strain energy enters the J-integral.
     ``path`` are the distances between which the mesh is made for the crack to run.
     ``probe`` has two points, on the tip of the bond and on its far end. ``copies`` is 2 where one body stands for both.
-    ``tmeshes`` are the T-meshes of the bodies in the specimen's own frame, none where the basis is another.
+    ``tmeshes`` are the T-meshes of the bodies in the specimen's own frame, none where the basis is another. ``faces``
+    are samples of all that the bodies face of each other, bonded or not, where the programme may close it.
     """
 
     system: System
@@ -45,6 +46,7 @@ class Specimen:
     path: tuple[float, float]
     tmeshes: tuple[TMesh, ...] = ()
     load_at: str = "face"
+    faces: Interface | None = None
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:
@@ -98,6 +100,11 @@ class Specimen:
     def beside_probe(self) -> np.ndarray:
         """Points of the interface next to those of the probe, which meet the master close by."""
         return self.system.interface.beside(self.probe.X_qi)
+
+    @cached_property
+    def mouth(self) -> int:
+        """The sample of the faces that is nearest to the load."""
+        return int(np.argmin(self.distance(self.faces.X_qi)))
 
     @cached_property
     def ordered(self) -> tuple[np.ndarray, np.ndarray]:

@@ -63,6 +63,11 @@ class Linearised:
     inverse: Inverse
 
 
+def away_from_zero(direction: float, opening: float) -> bool:
+    """Whether a programme goes on opening, or on pressing: damage may grow there; on the way back it unloads."""
+    return direction * opening >= 0.0
+
+
 def on_envelope(system: System, state: State, g_q: np.ndarray) -> np.ndarray:
     """Points that soften: their damage grows as soon as they open any further."""
     law, k_q = system.interface.law, state.k_q
@@ -84,13 +89,14 @@ def tangent(
     ----------
     response : to this very state, used as it is where all its points agree with it.
     direction : +1 where the programme opens the specimen, -1 where it closes it. Damage cannot heal: while it grows
-        the path goes forward where energy is dissipated, whatever the opening does there.
+        on the way away from zero the path goes forward where energy is dissipated, whatever the opening does there.
     turning : the programme has turned round at this state, or begins: nothing is known of the points.
     kink : the one that the state stands on; ``slope`` is the mean of both sides where these have one sign.
     """
     law, g_q = system.interface.law, response.contact.g_q
+    onward = away_from_zero(direction, float(system.load_d @ state.u_d))
     soft_q = on_envelope(system, state, g_q) & holding(system.interface, response.contact)
-    growing_q = soft_q if direction > 0.0 or not law.irreversible else np.zeros_like(soft_q)
+    growing_q = soft_q if onward or not law.irreversible else np.zeros_like(soft_q)
     flat_q = law.contact & (np.abs(g_q) <= NO_GAP * law.g_max)
     closed_q = state.closed_q
     inverse: Inverse | None
@@ -106,7 +112,7 @@ def tangent(
         if inverse is None:
             return None
         with phase("solve"):
-            found = _along(system, response, inverse, direction, growing_q, kink)
+            found = _along(system, response, inverse, direction, onward, growing_q, kink)
         least = NO_RATE * float(np.abs(found.rate_q).max(initial=0.0))
         agreeing_q = soft_q & (found.rate_q > np.where(growing_q, -least, least)) if law.irreversible else soft_q
         touching_q = np.where(flat_q & turning, found.rate_q < 0.0, closed_q)
@@ -165,6 +171,7 @@ def _along(
     response: Response,
     inverse: Inverse,
     direction: float,
+    onward: bool,
     growing_q: np.ndarray,
     kink: Kink | None,
 ) -> Tangent:
@@ -175,11 +182,13 @@ def _along(
     arrival, departure = 1.0 / before if before != 0.0 else np.inf, 1.0 / compliance
     slope = 0.5 * (departure + arrival) if before * compliance > 0.0 else departure
     rate_q = response.contact.rates(z_d)
-    dissipates = direction > 0.0 or not system.interface.law.irreversible
+    onto_envelope = onward or not system.interface.law.irreversible
 
     def forward(rate_q: np.ndarray, compliance: float) -> float:
         growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
-        return direction * float(np.sign(growth if growth != 0.0 and dissipates else compliance))
+        if growth != 0.0 and onto_envelope:
+            return float(np.sign(growth)) if onward else -float(np.sign(growth))
+        return direction * float(np.sign(compliance))
 
     sign = forward(rate_q, compliance)
     came = sign if kink is None else forward(response.contact.rates(before_d), before)

@@ -26,6 +26,8 @@ J_TOLERANCE = 0.005
 #: Lagrange elements are three times longer at equal unknowns, with about three of them in the process zone: there the
 #: deviation (1.0 to 1.9 % on the packaged scenes) measures the mesh and not the solver; its tolerance is the curve's.
 J_TOLERANCE_LAGRANGE = 0.02
+#: Measured up to 0.05, of a strip that lies on the edge of its substrate; without the contact the deviation is 1.
+J_PRESSED_TOLERANCE = 0.1
 ENERGY_TOLERANCE = 0.005
 #: Of load sin(theta) / (G_Ic w): besides the mesh, what the unloaded ends of strip and substrate hold of the energy.
 ANGLE_TOLERANCE = 0.01
@@ -34,14 +36,17 @@ AT_THE_END = 1e-9  # part of the length within which the process zone has come t
 HELD_AT_THE_END = 0.5 * J_TOLERANCE
 REST = 1e-12  # part of the largest work below which there is none
 DISSIPATION_TOLERANCE = 0.02
+#: Between the points that carry contact the faces may be deeper in each other: measured up to 0.1 on coarse meshes.
+PENETRATION_TOLERANCE = 0.5
+NO_DEPTH = 1e-6  # part of the thickness of an arm below which faces are not in each other
 
 J_OF_LAW = "The J-integral of the specimen is the area under the law."
 J_OF_ANY_LAW = "The J-integral of the specimen is G_Ic once the bond has opened (of this law no check knows the shape)."
 
 #: Checks that hold as well as the mesh resolves the process zone.
-OF_THE_ZONE = ("j-integral", "growth-angle")
+OF_THE_ZONE = ("j-integral", "j-pressed", "growth-angle")
 #: Checks that need the load to be spread evenly over the end face: under a point load the slope is that of no mesh.
-OF_THE_FACE = ("j-integral", "growth-load", "growth-angle")
+OF_THE_FACE = ("j-integral", "j-pressed", "growth-load", "growth-angle")
 #: What stands behind a check that is no identity.
 KINDS: Mapping[str, Kind] = {"growth-angle": "analytical"}
 
@@ -58,7 +63,19 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
     dissipation = partial(dissipation_gap, element=partial(process_zone.element_length, scene, result.method))
     values: list[tuple[str, Callable[[Scene, Steps], float | None], float, str]] = [
         ("completed", _missing_part, 1e-9, "The run reached the end of the load programme, or the specimen separated."),
+        (
+            "penetration",
+            penetration,
+            PENETRATION_TOLERANCE,
+            "Faces are in each other by no more than contact gives way.",
+        ),
         ("j-integral", j_deviation, j_tolerance, J_OF_LAW if scene.interface.law in LAWS else J_OF_ANY_LAW),
+        (
+            "j-pressed",
+            j_pressed,
+            J_PRESSED_TOLERANCE,
+            "The J-integral of pressed faces is the area under law and contact.",
+        ),
         ("growth-load", growth_load, j_tolerance, "While the crack grows the load is at least G_Ic times the width."),
         ("growth-angle", growth_angle, ANGLE_TOLERANCE, "In the end load sin(theta) is G_Ic times the width."),
         ("energy-ledger", energy_gap, ENERGY_TOLERANCE, "External work is stored or dissipated, nothing is lost."),
@@ -115,6 +132,9 @@ def j_deviation(scene: Scene, steps: Steps) -> float | None:
     as well. With damage it holds while the interface loads, not while it unloads. Of a law whose shape nobody has
     stated once more (`verify.law`) the area is known below the strength and once the bond has opened.
 
+    Where faces touch beyond the bond their tractions do work in the same integral, from the mouth of the crack to its
+    tip: ``- integral of p dg/dX = A(g_mouth) - A(g_tip)`` with A the energy of the contact, nothing of an open gap.
+
     The end faces are both ends of both bodies, but for those at the far end with a minus: contact at the end of a short
     ligament squeezes them, and with a stiff penalty they hold more than the contact does. The base of a peel gives no
     term, being fixed. Once the far end holds more than HELD_AT_THE_END, on a spot that may be smaller than an element,
@@ -122,10 +142,20 @@ def j_deviation(scene: Scene, steps: Steps) -> float | None:
     and `resolution.at_the_end` says what cannot be judged.
     """
     found = _j_gap(scene, steps)
-    if found is None:
+    if found is None or not (steps["opening"] > 0.0).any():
         return None
-    gap, held = np.abs(found), held_at_the_end(scene, steps)
+    gap, held = np.where(steps["opening"] >= 0.0, np.abs(found), 0.0), held_at_the_end(scene, steps)
     return _worst(gap if felt_from_the_start(scene, steps) else _beyond_the_end(gap, held))
+
+
+def j_pressed(scene: Scene, steps: Steps) -> float | None:
+    """The same where the specimen is pressed together, over G_Ic or what the mouth of the crack holds, if that is more.
+
+    What it holds is read off at the edge of a body, where stress varies within an element: it is known as well as the
+    mesh resolves that.
+    """
+    gap, pressed = _j_gap(scene, steps), steps["opening"] < 0.0
+    return None if gap is None or not pressed.any() else _worst(gap[pressed & far_from_end(scene, steps)])
 
 
 def _beyond_the_end(gap: np.ndarray, held: np.ndarray) -> np.ndarray:
@@ -212,20 +242,29 @@ def growing(scene: Scene, steps: Steps) -> np.ndarray:
         return np.zeros(steps["opening"].size, dtype=bool)
     open_ = _tip_is_open(scene, steps)
     inside = steps["damage_front"] < (1.0 - AT_THE_END) * scene.specimen.extent
-    return open_ & inside & loading(steps) & far_from_end(scene, steps)
+    pulled = (steps["opening"] > 0.0) & zone_is_new(scene, steps)
+    return open_ & inside & loading(steps) & far_from_end(scene, steps) & pulled
 
 
 def _j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
-    """(J - integral of p dg) / G_Ic at every step (n_steps,), 0 where that need not hold."""
+    """(J - integral of p dg) / G_Ic at every step (n_steps,), 0 where that need not hold.
+
+    Where pressed faces hold more than G_Ic it is J less that, a small difference of large terms: over what they hold.
+    """
     if not _has(steps, "face_slope_top", "face_slope_bottom", "face_energy", "tip_opening", "dissipated_energy"):
         return None
-    slopes = np.abs(steps["face_slope_top"]) + np.abs(steps["face_slope_bottom"])
-    J = steps["load"] * slopes / scene.specimen.width - steps["face_energy"]
-    law, spent = law_of(scene), _spent(scene, steps)
+    J = steps["load"] * _turn(scene, steps) / scene.specimen.width - steps["face_energy"]
+    law, spent, tip = law_of(scene), _spent(scene, steps), steps["tip_opening"]
     area = spent - law.area(steps.get("end_opening", np.zeros(J.size)))
-    valid = loading(steps) if simulated(scene, "")["irreversible"] else np.ones(J.size, dtype=bool)
-    valid &= ~np.isnan(spent) | np.isnan(steps["tip_opening"])  # not on a branch that nobody has stated
-    return np.where(valid, J - area, 0.0) / scene.interface.toughness
+    scale = np.full(J.size, scene.interface.toughness)
+    if "mouth_opening" in steps:
+        touching = law.area(np.minimum(steps["mouth_opening"], 0.0))
+        area += touching - law.area(np.minimum(tip, 0.0))
+        scale = np.maximum(scale, touching)
+    irreversible = simulated(scene, "")["irreversible"]
+    valid = loading(steps) & zone_is_new(scene, steps) if irreversible else np.ones(J.size, dtype=bool)
+    valid &= ~np.isnan(spent) | np.isnan(tip)  # not on a branch that nobody has stated
+    return np.where(valid, J - area, 0.0) / scale
 
 
 def _spent(scene: Scene, steps: Steps) -> np.ndarray:
@@ -252,6 +291,39 @@ def out_of_reach(scene: Scene, steps: Steps) -> np.ndarray:
     return steps["damage_front"] <= body.extent - away
 
 
+def _turn(scene: Scene, steps: Steps) -> np.ndarray:
+    """How far the loaded faces turn in the sense in which the load opens the specimen, of every step (n_steps,)."""
+    top, bottom = steps["face_slope_top"], steps["face_slope_bottom"]
+    pressed = top if scene.specimen.kind == "peel" else bottom - top
+    return np.where(steps["opening"] < 0.0, pressed, np.abs(top) + np.abs(bottom))
+
+
+def zone_is_new(scene: Scene, steps: Steps) -> np.ndarray:
+    """Steps (n_steps,) at which nothing in the process zone was damaged on an earlier leg of the programme, as is told.
+
+    Pressed arms gape in another shape than opened ones: points of an old zone come back to the envelope one after the
+    other, and until the zone has gone on by its own length J is not the area under the law. Of a programme that never
+    goes below zero all come back at once.
+    """
+    if min(scene.load.opening) >= 0.0 or not _has(steps, "crack_length", "damage_front"):
+        return np.ones(steps["opening"].size, dtype=bool)
+    before = np.maximum.accumulate(steps["damage_front"])[_start_of_leg(scene, steps)]
+    return np.where(before > scene.specimen.free_length, steps["crack_length"] >= before, True)
+
+
+def _start_of_leg(scene: Scene, steps: Steps) -> np.ndarray:
+    """The step (n_steps,) at which the leg of the programme began on which each step lies."""
+    opening, start, reach = steps["opening"], 0, max(map(abs, scene.load.opening))
+    starts = np.zeros(opening.size, dtype=int)
+    for goal in scene.load.opening:
+        arrived = np.flatnonzero(np.abs(opening[start:] - goal) <= 1e-9 * reach)
+        if not arrived.size:
+            break
+        start += int(arrived[0])
+        starts[start + 1 :] = start
+    return starts
+
+
 def _tip_is_open(scene: Scene, steps: Steps) -> np.ndarray:
     """Steps (n_steps,) at which nothing holds the tip of the bond any more; of a law that is not known, as is told."""
     if scene.interface.law in LAWS:
@@ -273,6 +345,22 @@ def loading(steps: Steps) -> np.ndarray:
     dissipated = steps["dissipated_energy"]
     rounding = 1e-12 * np.max(dissipated, initial=0.0)
     return (np.diff(dissipated, prepend=0.0) > rounding) | (np.maximum.accumulate(dissipated) <= rounding)
+
+
+def penetration(scene: Scene, steps: Steps) -> float | None:
+    """Worst depth of the faces in each other over what contact gives way under its own pressure, less 1.
+
+    The pressure over the penalty, and over the stiffness of an arm across: between the points that carry contact a
+    surface bulges by a part of that. None where contact was to be left out, or the programme never goes down; not
+    counted where the specimen turns about its far end (see `far_from_end`).
+    """
+    if not simulated(scene, "")["contact"] or not _has(steps, "penetration", "contact_pressure"):
+        return None
+    specimen, across = scene.specimen, elastic_constants(scene.materials[0])["E2"]
+    gives = steps["contact_pressure"] * (1.0 / scene.interface.penalty + specimen.loaded_thickness / across)
+    depth = steps["penetration"]
+    deep = (depth > NO_DEPTH * specimen.loaded_thickness) & far_from_end(scene, steps)
+    return _worst(np.maximum(np.where(deep, depth / _scale(gives) - 1.0, 0.0), 0.0))
 
 
 def energy_gap(scene: Scene, steps: Steps) -> float | None:

@@ -43,6 +43,9 @@ EVIDENCE_COLUMNS = (
     "bulk_energy",
     "cohesive_energy",
     "contact_energy",
+    "penetration",  # how deep the faces are in each other, sampled all along them; where the programme goes down
+    "contact_pressure",  # largest traction with which they push each other apart
+    "mouth_opening",  # gap at the end of the faces next to the load, where they may touch beyond the bond
 )
 
 

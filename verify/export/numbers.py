@@ -83,8 +83,10 @@ def notes(scene: Scene) -> list[str]:
     )
     damage = "damage stays" if simulate["irreversible"] else "there is no history: traction follows the gap"
     posed = scene.pose != type(scene.pose)()
+    beyond = ["debond presses faces beyond the bond together as well, below zero: contact that is not in this file"]
     return [
         f"{simulate['kinematics']} kinematics; {closing}; {damage}",
+        *(beyond if bond.contact and min(scene.load.opening) < 0.0 else []),
         *_load(scene),
         "the load of the curve is the force on one loaded face, of the whole width",
         "the pose of the scene is left out, as no answer depends on it"
