@@ -48,7 +48,8 @@ def follow(
     steps : number of steps asked for over the whole programme; None lets the path choose them, few and by accuracy,
         and so does a number too small to draw the curve. A step that fails is made to end at the next kink of the law,
         then tried with other controls, then halved, down to 1/4096, and grows again afterwards.
-    bend : by how much of the peak the load may leave the tangent of a step that the path chooses.
+    bend : by how much of the peak the load may leave the tangent of a step that the path chooses; what such a step
+        keeps (see `iga.promise`) follows from it.
     renew : may answer a converged point with another system, and its state in equilibrium at the same opening.
     """
     pace = paced(np.array(programme), steps, bend, system.kinematics == "linear")
