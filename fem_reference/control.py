@@ -73,7 +73,7 @@ def front_of(model: Model, state: State, reach: float) -> Front | None:
     missing_q = np.maximum(k_q, law.g_peak) - g_q
     grows_q = (k_q < law.g_open) & (rate_q * LOOKAHEAD * reach >= missing_q) & (rate_q > 0)
     heals_q = (g_q < law.g_open) & (g_q > law.g_peak) & (not law.irreversible)
-    place = most_open(model, np.where(grows_q | heals_q, g_q, -np.inf))
+    place = most_open(model, np.where((grows_q | heals_q) & model.bonded_q, g_q, -np.inf))
     return None if place is None else Front(place, *(at(model, place, a_q) for a_q in (g_q, missing_q, rate_q)))
 
 

@@ -24,14 +24,15 @@ def frame(model: Model, sample: Sampler, state: State) -> dict[str, Any] | None:
     the displacement itself, at the places and in the order that drawing programs know.
     """
     values_euvc = sample(state)
-    p_q, _ = model.law.traction(state.g_q, state.k_q)
-    s_q, X_q, *values = ordered_along(model, model.X_q, state.g_q, p_q, model.law.damage(state.k_q), state.k_q)
+    p_q, _ = model.traction(state.g_q, state.k_q)
+    values = model.X_q, model.bonded_q, state.g_q, p_q, model.damage(state.k_q), state.k_q
+    s_q, X_q, bonded_q, *values = ordered_along(model, *values)
     if values_euvc is None:
         return None
     cells = [_cells(number, values_euvc) for number in range(len(model.specimen.bodies))]
     named = dict(zip(("gap_q", "traction_q", "damage_q", "history_q"), values, strict=True))
     places = {"X_qi": np.stack([X_q, np.zeros_like(X_q)], -1), "u_qi": _on_upper_face(values_euvc, X_q)}
-    bond = {**places, "s_q": s_q, **named, "bonded_q": np.ones(len(X_q), dtype=bool)}
+    bond = {**places, "s_q": s_q, **named, "bonded_q": bonded_q}
     return {"opening": state.opening, "load": state.load, "cells": cells, "bond": bond}
 
 

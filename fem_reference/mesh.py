@@ -1,4 +1,4 @@
-"""Two bodies on one conforming mesh: the parent, a submesh for each body, and one for the bond between them."""
+"""Two bodies on one conforming mesh: the parent, a submesh for each body, and one for the interface between them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class TwoBodies:
 
     Pairs are those of its two bodies, upper first: submeshes, and ``cells`` of the parent that this rank owns.
     ``faces`` has the owned facets (n, 2) of every face of the specimen as (cell, local facet); ``interface_quads``
-    (n, 4) are owned facets of the bond as (upper cell, local facet, lower cell, local facet).
+    (n, 4) are owned facets of the interface as (upper cell, local facet, lower cell, local facet).
     """
 
     parent: mesh.Mesh
@@ -36,7 +36,8 @@ def two_bodies(specimen: Specimen, comm: MPI.Intracomm) -> TwoBodies:
     for pair in ((1, tdim), (tdim, 1)):
         parent.topology.create_connectivity(*pair)
     upper, lower = (entities_on(parent, tdim, _extent(body), near) for body in specimen.bodies)
-    bonded = entities_on(parent, 1, ((min(specimen.bond), max(specimen.bond)), (0.0, 0.0)), near)
+    low, high = sorted(specimen.interface)
+    bonded = entities_on(parent, 1, ((low, high), (0.0, 0.0)), near)
     belongs = [_marked(parent, tdim, cells) for cells in (upper, lower)]
     faces = (_owned(parent, 1, entities_on(parent, 1, _side(specimen, face), near)) for face in specimen.faces)
     return TwoBodies(

@@ -20,7 +20,7 @@ from fem_reference.linear import Factorisation, outer, widened, without_zeros
 from fem_reference.mesh import TwoBodies, two_bodies
 from fem_reference.problem import Debonding
 from fem_reference.specimen import Specimen
-from fem_reference.supports import supports, tie
+from fem_reference.supports import point_load, supports, tie
 
 Phase = Callable[[str], AbstractContextManager]
 
@@ -31,7 +31,8 @@ class Model:
 
     Unknowns ``u_n`` are the displacements owned by this rank: x and y in turn, upper body first. The load enters as
     ``load * load_n``, and ``load_n @ u_n``, summed over the ranks, is the opening: one vector is force and constraint.
-    Points ``q`` of the bond are those that this rank owns.
+    Points ``q`` of the interface are those that this rank owns; where ``bonded_q`` is False the faces only touch:
+    nothing holds them there, and they have no history.
     """
 
     problem: Debonding
@@ -51,6 +52,7 @@ class Model:
     slope_n: np.ndarray  # mean du_y/dX of the loaded faces, upper and lower, as functionals
     X_nI: np.ndarray  # (n, 2) reference position of the node of each unknown
     X_q: np.ndarray
+    bonded_q: np.ndarray
     tie_matrix: PETSc.Mat  # the spring's
     bulk_matrix: PETSc.Mat
     tangent_matrix: PETSc.Mat
@@ -92,9 +94,30 @@ class Model:
         self.displace(u_n)
         return self.internal.assemble()
 
+    def traction(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Traction and slope (n_q,) each, as `Law.traction` where the bodies are bonded; elsewhere contact alone."""
+        carries_q = self.bonded_q | ((g_q < 0.0) & self.law.contact)
+        p_q, dp_q = self.law.traction(g_q, k_q)
+        return np.where(carries_q, p_q, 0.0), np.where(carries_q, dp_q, 0.0)
+
+    def history(self, g_q: np.ndarray, k_q: np.ndarray) -> np.ndarray:
+        """Largest gap (n_q,) once the present one is counted; none is kept where nothing is bonded."""
+        return np.where(self.bonded_q, self.law.history(g_q, k_q), 0.0)
+
+    def damage(self, k_q: np.ndarray) -> np.ndarray:
+        """d (n_q,); 1 where nothing is bonded."""
+        return np.where(self.bonded_q, self.law.damage(k_q), 1.0)
+
+    def bond_energies(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[float, float, float]:
+        """Recoverable from cohesion, stored in contact, dissipated; over all ranks."""
+        recoverable_q, contact_q, lost_q = self.law.energies(g_q, k_q)
+        parts = np.where(self.bonded_q, recoverable_q, 0.0), contact_q, np.where(self.bonded_q, lost_q, 0.0)
+        recoverable, contact, lost = (self.dot(self.bond.weight_q, part_q) for part_q in parts)
+        return recoverable, contact, lost
+
     def bond_force(self, u_n: np.ndarray, k_q: np.ndarray) -> np.ndarray:
         """Internal forces of the bond, at the supports too; ``k_q`` is the committed history."""
-        p_q, _ = self.law.traction(self.bond.gap(u_n), k_q)
+        p_q, _ = self.traction(self.bond.gap(u_n), k_q)
         return self.bond.force(p_q)
 
     def residual(self, u_n: np.ndarray, load: float, k_q: np.ndarray) -> np.ndarray:
@@ -108,7 +131,7 @@ class Model:
         """Derivative of the residual by the displacements, 1 on the diagonal where held; valid until the next call."""
         if self.problem.kinematics == "finite":
             self.assemble_bulk(u_n)
-        _, dp_q = self.law.traction(self.bond.gap(u_n), k_q)
+        _, dp_q = self.traction(self.bond.gap(u_n), k_q)
         self.bulk_matrix.copy(self.tangent_matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
         self.tangent_matrix.axpy(1.0, self.bond.tangent(dp_q), PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
         return self.tangent_matrix
@@ -146,6 +169,8 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
         internal, load, slope = (_vector(blocks, weak) for blocks in (weak.internal, weak.load, weak.slope))
         energy, face_energy = compile_forms([weak.energy, weak.face_energy], weak.maps)
     bcs, free_n = supports(specimen, displacement)
+    X_nI = np.concatenate([_node_positions(u) for u in displacement])
+    upper_n = np.arange(len(X_nI)) < owned(displacement[0])
     tie_n = tie(specimen, displacement)
     with phase("assembly"):
         bond, X_q = _bond(problem, weak, free_n, phase)
@@ -170,10 +195,13 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
         bcs=bcs,
         free_n=free_n,
         tie_n=tie_n,
-        load_n=load.assemble(),
+        load_n=load.assemble()
+        if problem.load_at == "face"
+        else point_load(specimen, problem.load_at, X_nI, upper_n, comm),
         slope_n=slope.assemble(),
-        X_nI=np.concatenate([_node_positions(u) for u in displacement]),
+        X_nI=X_nI,
         X_q=X_q,
+        bonded_q=(X_q > min(specimen.bond)) & (X_q < max(specimen.bond)),
         tie_matrix=tie_matrix,
         bulk_matrix=bulk_matrix,
         tangent_matrix=tangent_matrix,

@@ -24,6 +24,8 @@ SLACK = 0.5
 MAX_SEARCHES = 40
 #: Contact is first solved with this stiffness, in units of that of the bond, then with ten times more until its own.
 SOFT_CONTACT = 100.0
+#: The same where faces touch that nothing holds together.
+SOFT_FACES = 1.0
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ def stiffening(model: Model) -> list[Model]:
     and where contact is soft the answer is nearly that of stiffer contact.
     """
     law = model.law
-    stages = [SOFT_CONTACT * law.K0]
+    stages = [(SOFT_FACES if model.specimen.touching else SOFT_CONTACT) * law.K0]
     while stages[-1] < law.penalty:
         stages.append(10 * stages[-1])
     penalties = [*stages[:-1], law.penalty]

@@ -26,6 +26,11 @@ NEAR = 0.01
 TRIFLE = 1e-6
 
 
+#: What to do where a path cannot go on, and where the bodies are pressed together.
+FINER = "use more elements along the specimen or a higher degree"
+LESS = "close by less (load.opening), as bodies that are crushed have no equilibrium,"
+
+
 @dataclass(frozen=True)
 class Failure:
     """A step that did not converge; ``final`` when the run stops for it."""
@@ -42,8 +47,13 @@ class Separation:
 
 
 def branches(problem: Debonding) -> list[np.ndarray]:
-    """Equal increments of the opening, about ``steps`` over the whole programme: their ends, one array a branch."""
-    corners = np.concatenate([[0.0], problem.opening])
+    """Equal increments of the opening, about ``steps`` over the whole programme: their ends, one array a branch.
+
+    A branch ends where the programme passes through zero, at which all gaps of an unloaded bond open or close.
+    """
+    goals = np.concatenate([[0.0], problem.opening])
+    crossed = np.flatnonzero(goals[1:] * goals[:-1] < 0.0)
+    corners = np.insert(goals, crossed + 1, 0.0)
     ways = np.abs(np.diff(corners))
     counts = np.maximum(1, np.rint(problem.steps * ways / ways.sum()).astype(int))
     parts = zip(corners[:-1], corners[1:], counts, ways, strict=True)
@@ -131,6 +141,9 @@ def lead(model: Model, state: State, control: Control, lines: np.ndarray) -> Sta
     """A step of the front; one that passes the goal, or all but reaches it, is taken again so that it ends there."""
     reached = step(model, state, control)
     goal, increment = float(lines[-1]), lines[1] - lines[0]
+    if isinstance(reached, State) and reached.opening * goal < 0.0 <= state.opening * goal:
+        # a front opens on both sides of zero: by pulling and by pressing
+        return Failure(f"the path leaps from opening {state.opening:.6g} to {reached.opening:.6g}; {LESS} or {FINER}")
     if isinstance(reached, Failure) or (goal - reached.opening) / increment > NEAR:
         return reached
     share = (goal - state.opening) / (reached.opening - state.opening)
@@ -160,12 +173,12 @@ def step(
     u_n, load = guess
     attempt = find_equilibrium(model, control, u_n, load, state.k_q, state.peak * model.norm(model.load_n))
     if not attempt.converged:
+        less = f"{LESS} or " if state.opening <= 0.0 and state.heading < 0.0 else ""
         return Failure(
             f"no equilibrium beyond opening {state.opening:.6g} in {attempt.iterations} iterations "
-            f"(residual {attempt.residuals[-1]:.1e} of the load), however short the step; "
-            "use more elements along the specimen or a higher degree"
+            f"(residual {attempt.residuals[-1]:.1e} of the load), however short the step; {less}{FINER}"
         )
-    model.factorise(attempt.u_n, state.k_q)
+    model.factorise(on_arrival(model, state, attempt.u_n), state.k_q)
     rate_n, slope = tangent_of_path(model)
     du_n, d_load = bordered_step(model, control, attempt.u_n, model.residual(attempt.u_n, attempt.load, state.k_q))
     u_n, load = attempt.u_n + du_n, attempt.load + d_load
@@ -179,7 +192,7 @@ def step(
         u_n=u_n,
         load=load,
         opening=opening,
-        k_q=model.law.history(g_q, state.k_q),
+        k_q=model.history(g_q, state.k_q),
         g_q=g_q,
         rate_n=rate_n,
         slope=slope,
@@ -188,6 +201,16 @@ def step(
         work=state.work + work,
         iterations=attempt.iterations + 1,
     )
+
+
+def on_arrival(model: Model, state: State, u_n: np.ndarray) -> np.ndarray:
+    """Displacements at which the tangent of a converged step is taken: those found, unless they are nothing at all.
+
+    At no opening the signs of the gaps are rounding. What is open and what is closed is as it was a trifle before.
+    """
+    if abs(model.dot(model.load_n, u_n)) > TRIFLE * abs(state.opening):
+        return u_n
+    return u_n + TRIFLE * (state.u_n - u_n)
 
 
 def tangent_of_path(model: Model) -> tuple[np.ndarray, float]:

@@ -46,6 +46,7 @@ class Problem(Debonding):
         if not self.bond_length <= self.substrate_length:
             text = f"must be <= substrate_length = {self.substrate_length}, got {self.bond_length}"
             raise ValueError(f"bond_length: {text}")
+        self.require_place(self.strip_layers)
         self.specimen()
 
     def specimen(self) -> Specimen:
@@ -62,6 +63,8 @@ class Problem(Debonding):
             ),
             X=X,
             bond=(bond, 0.0),
+            facing=(min(lower, upper), 0.0),
+            touching=self.presses,
             faces=(
                 Face(UPPER, upper, load=1.0, energy=1.0),
                 Face(LOWER, lower, load=0.0, energy=1.0),

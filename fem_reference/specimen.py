@@ -73,6 +73,8 @@ class Specimen:
     bodies : upper (Y > 0) and lower (Y < 0).
     X : element boundaries along the specimen, rising; those of a body are the ones up to its length.
     bond : ends in X of the bond, the one nearer to the load first.
+    facing : ends in X of the faces that are opposite to each other, in the same order: the bond and what is beyond it.
+    touching : whether these faces carry contact beyond the bond.
     faces : all end faces that carry load or count in the J-integral, one of each body at least.
     loaded_at : X of the loaded faces.
     """
@@ -80,6 +82,8 @@ class Specimen:
     bodies: tuple[Body, Body]
     X: np.ndarray
     bond: tuple[float, float]
+    facing: tuple[float, float]
+    touching: bool
     faces: tuple[Face, ...]
     held: tuple[Held, ...]
     hooks: tuple[Hook, ...]
@@ -89,6 +93,11 @@ class Specimen:
     def near(self) -> float:
         """A distance within which two places are one."""
         return 1e-6 * min(float(np.min(np.diff(lines))) for lines in (self.X, *(body.Y for body in self.bodies)))
+
+    @property
+    def interface(self) -> tuple[float, float]:
+        """Ends in X of what carries tractions: the bond, or all that can touch."""
+        return self.facing if self.touching else self.bond
 
     @property
     def bond_elements(self) -> np.ndarray:
@@ -123,3 +132,9 @@ def lines_by_way_of(corners: tuple[float, ...], elements: int) -> np.ndarray:
     numbers = np.diff([*counts_before, elements])
     parts = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], numbers, strict=True)]
     return np.concatenate([*parts, ends[-1:]])
+
+
+def finer_at_first(X: np.ndarray, most: float) -> np.ndarray:
+    """Element boundaries with the first element halved, again and again, until it is no longer than ``most``."""
+    halvings = max(0, int(np.ceil(np.log2((X[1] - X[0]) / most) - 1e-9)))
+    return np.concatenate([X[:1], X[0] + (X[1] - X[0]) * 0.5 ** np.arange(halvings, 0, -1), X[1:]])

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from dolfinx import fem
+from mpi4py import MPI
 
 from fem_reference.assembled import owned
 from fem_reference.model import Model
@@ -40,13 +41,12 @@ def row_of(model: Model, state: State) -> dict[str, float]:
     ``reaction_x`` and ``reaction_y`` are what the supports carry besides the resultant of the loads, which is zero
     where two faces are pulled apart.
     """
-    bond_force_n = model.bond.force(model.law.traction(state.g_q, state.k_q)[0])
+    p_q, _ = model.traction(state.g_q, state.k_q)
+    bond_force_n = model.bond.force(p_q)
     load_n = state.load * model.load_n
     reaction_n = (1 - model.free_n) * (model.bulk_force(state.u_n) + bond_force_n - load_n)
     bulk, face = (model.comm.allreduce(fem.assemble_scalar(form)) for form in (model.energy, model.face_energy))
-    cohesive, contact, dissipated = (
-        model.dot(model.bond.weight_q, density_q) for density_q in model.law.energies(state.g_q, state.k_q)
-    )
+    cohesive, contact, dissipated = model.bond_energies(state.g_q, state.k_q)
     on_upper_n = model.upper_n
     return {
         "opening": state.opening,
@@ -72,7 +72,29 @@ def row_of(model: Model, state: State) -> dict[str, float]:
         "bulk_energy": bulk,
         "cohesive_energy": cohesive,
         "contact_energy": contact,
+        **(_of_contact(model, state, p_q) if model.problem.unloads else {}),
     }
+
+
+def _of_contact(model: Model, state: State, p_q: np.ndarray) -> dict[str, float]:
+    """How deep the faces are in each other anywhere, at nodes too, what pushes them apart, and the gap at the mouth."""
+    pressure = model.comm.allreduce(float(np.max(-p_q, initial=0.0)), MPI.MAX)
+    depth = float(np.max(-face_gaps(model, state), initial=0.0))
+    mouth = {"mouth_opening": opening_at(model, model.specimen.facing[0])} if model.problem.presses else {}
+    return {"penetration": depth, "contact_pressure": pressure, **mouth}
+
+
+def face_gaps(model: Model, state: State) -> np.ndarray:
+    """Gaps (n,) at all nodes of the faces that are opposite to each other, bonded or not, along the specimen."""
+    sides, first = [], 0
+    place = tuple(sorted(model.specimen.facing)), (0.0, 0.0)
+    for u in model.displacement:
+        dofs = dofs_on(u, place, model.specimen.near, 1)
+        own = first + dofs[dofs < owned(u)]
+        X, across = (np.concatenate(model.comm.allgather(v)) for v in (model.X_nI[own, 0], state.u_n[own]))
+        sides.append(across[np.argsort(X)])
+        first += owned(u)
+    return sides[0] - sides[1]
 
 
 def resultant(model: Model, force_n: np.ndarray, component: int) -> float:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from dolfinx import fem
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from fem_reference.assembled import owned
 from fem_reference.mesh import entities_on
-from fem_reference.specimen import Place, Specimen, point
+from fem_reference.specimen import UPPER, Place, Specimen, point
 
 Displacement = tuple[fem.Function, fem.Function]
 
@@ -33,6 +34,29 @@ def tie(specimen: Specimen, displacement: Displacement) -> np.ndarray:
         dofs = dofs_on(u, point(*hook.X_I), specimen.near, 0)
         parts[hook.body][dofs[dofs < owned(u)]] += hook.factor
     return np.concatenate(parts)
+
+
+def point_load(specimen: Specimen, at: str, X_nI: np.ndarray, upper_n: np.ndarray, comm: MPI.Intracomm) -> np.ndarray:
+    """Forces (n,) of a unit load at one node of each loaded face: its corner away from the interface, or its middle.
+
+    Raises
+    ------
+    ValueError : there is no node in the middle.
+    """
+    load_n = np.zeros(len(X_nI))
+    for face in (face for face in specimen.faces if face.load != 0.0):
+        Y = specimen.bodies[face.body].Y
+        outer = Y[np.argmax(np.abs(Y))]
+        place = np.array([face.X, outer if at == "node" else 0.5 * outer])
+        there_n = (np.max(np.abs(X_nI - place), axis=1) < specimen.near) & (upper_n == (face.body == UPPER))
+        there_n[::2] = False  # x
+        if comm.allreduce(int(there_n.sum())) == 0:
+            raise ValueError(
+                'load_at: must be "face" or "node" where no node is in the middle of the face; an even degree, or an '
+                "even number of elements across, has one"
+            )
+        load_n[there_n] = face.load
+    return load_n
 
 
 def dofs_on(u: fem.Function, place: Place, near: float, component: int) -> np.ndarray:

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from iga.arms import arm_tmeshes, zone_length
+from iga.arms import PRESSED, arm_tmeshes, zone_length
 from iga.control import opening_control
 from iga.grading import largest
 from iga.newton import PATIENT, equilibrium
 from iga.point import Point
+from iga.problem import presses
 from iga.state import State
 from iga.strip import Strip
 from iga.system import Phase
@@ -66,7 +67,8 @@ def first_window(problem: Problem) -> Window:
 def strip(problem: Problem, window: Window) -> Strip:
     """One arm with equal cells in the window and ever longer ones away from it, halved at the interface in the window.
 
-    An element boundary lies at the end of the precrack.
+    An element boundary lies at the end of the precrack. Where the arms are pressed together there are short cells at
+    the loaded end as well.
     """
     bond = problem.length - problem.precrack
     before = max(int(np.ceil(window.roots * problem.precrack / bond)), 1)
@@ -77,7 +79,7 @@ def strip(problem: Problem, window: Window) -> Strip:
         finest = bond / window.roots / 2**HALVINGS
         for _ in range(HALVINGS):
             away = np.maximum(np.maximum(window.start - (x + size), x - window.end), 0.0)
-            long = size > np.maximum(1.5 * finest, GROWTH * away)
+            long = size > np.maximum(1.5 * finest, np.minimum(GROWTH * away, most_at(problem, x)))
             half = 0.5 * size[long]
             x = np.concatenate([x[~long], x[long], x[long] + half])
             size = np.concatenate([size[~long], half, half])
@@ -89,6 +91,11 @@ def strip(problem: Problem, window: Window) -> Strip:
     middle = x + 0.5 * size
     halved = (middle > max(window.start, problem.precrack)) & (middle < window.end) & (size < 1.5 * finest)
     return Strip(np.append(x, problem.length), halved)
+
+
+def most_at(problem: Problem, x: np.ndarray) -> np.ndarray:
+    """How long (n,) cells at x (n,) may be, where arms are pressed together at the loaded end; infinite elsewhere."""
+    return PRESSED * problem.arm_thickness + GROWTH * x if presses(problem) else np.full(x.shape, np.inf)
 
 
 def adapted_tmeshes(problem: Problem, window: Window) -> tuple[TMesh, ...]:
@@ -138,8 +145,8 @@ def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State |
 
 def _history(old: Specimen, new: Specimen, k_q: np.ndarray) -> np.ndarray | None:
     """History at the points of the new mesh; None where a point that is being damaged would be lost."""
-    s_old, s_new = (specimen.distance(specimen.system.interface.X_qi) for specimen in (old, new))
-    order = np.argsort(s_old)
+    (s_old, held_q), (s_new, holds_q) = (_held(specimen) for specimen in (old, new))
+    order = np.flatnonzero(held_q)[np.argsort(s_old[held_q])]
     s, k = s_old[order], k_q[order]
     right = np.clip(np.searchsorted(s, s_new), 1, len(s) - 1)
     nearest = np.where(s_new - s[right - 1] < s[right] - s_new, right - 1, right)
@@ -150,4 +157,11 @@ def _history(old: Specimen, new: Specimen, k_q: np.ndarray) -> np.ndarray | None
     kept[nearest[same]] = True
     if np.any(active & ~kept):
         return None
-    return np.where(same, k[nearest], np.interp(s_new, s, k))
+    return np.where(holds_q, np.where(same, k[nearest], np.interp(s_new, s, k)), 0.0)
+
+
+def _held(specimen: Specimen) -> tuple[np.ndarray, np.ndarray]:
+    """Distances (n_q,) of the interface's points from the loaded end, and which of them are bonded."""
+    interface = specimen.system.interface
+    bonded_q = np.ones(interface.points, dtype=bool) if interface.bonded_q is None else interface.bonded_q
+    return specimen.distance(interface.X_qi), bonded_q

@@ -15,6 +15,7 @@ import numpy as np
 from iga.extraction import Mesh
 from iga.grading import ROUNDING, columns, elements_within, largest, pieces, rectangle, unequal
 from iga.material import orthotropic
+from iga.problem import presses
 from iga.strip import Strip, functions_of_halves, strip_tmesh
 from iga.tmesh import DEGREE, TMesh
 from iga.tspline import tspline_rectangle
@@ -32,8 +33,11 @@ MARGIN = 0.4
 #: Part of the unknowns by which a mesh may miss those aimed at.
 NEAR = 0.02
 
-#: Elements on the crack path that are so few that each counts.
-FEW = 7
+#: Elements on the crack path that are so few that each counts; and no more halvings than these in any case.
+FEW, MOST = 7, 60
+
+#: Where the arms are pressed together, the element at the loaded end is no longer than this part of their thickness.
+PRESSED = 0.125
 
 #: Elements (before, on, beyond) the crack path.
 Division = tuple[int, int, int]
@@ -49,7 +53,7 @@ def arm_meshes(problem: Problem) -> tuple[Mesh, ...]:
     Lagrange meshes are one element thick; one with `FEW` elements on the path is quadratic through the arms, all that
     bending needs, and spends the rest along them. Where two equal arms would miss ``dofs`` by more than `NEAR`, the
     lower one has one element more, or there are more elements before the path. T-splines halve the elements towards
-    the interface (see `iga.strip`).
+    the interface (see `iga.strip`). Arms that are pressed together have shorter elements at the loaded end.
 
     Raises
     ------
@@ -144,6 +148,21 @@ def division(
     return (before + spare, ahead + path, beyond), (0.0, start, end, problem.length)
 
 
+def lines(problem: Problem, path: int, spare: int = 0, layers: int = 0) -> np.ndarray:
+    """Element boundaries along an arm that is divided like this; parameters as those of `division`.
+
+    Where arms are pressed together the first element is halved towards the loaded end, again and again, down to
+    `PRESSED`: load and contact balance each other within about the thickness of an arm from there.
+    """
+    parts, x = division(problem, path, spare, layers)
+    breaks = pieces(*((start, end, n) for start, end, n in zip(x[:-1], x[1:], parts, strict=True)))
+    if not presses(problem):
+        return breaks
+    halvings = np.log2(x[1] / (parts[0] - spare) / (PRESSED * problem.arm_thickness)) - ROUNDING
+    number = min(max(0, int(np.ceil(halvings))), path if path <= FEW else MOST)
+    return np.concatenate([breaks[:1], breaks[1] * 0.5 ** np.arange(number, 0, -1), breaks[1:]])
+
+
 def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
     basis, p = problem.basis, problem.degree
 
@@ -153,7 +172,7 @@ def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
 
     @cache
     def along(arm: Arm) -> int:
-        return columns(basis, p, sum(division(problem, *arm)[0]))
+        return columns(basis, p, len(lines(problem, *arm)) - 1)
 
     def unknowns(both: tuple[Arm, Arm], q: int) -> int:
         return 2 * (q + 1) * sum(along(arm) for arm in both)
@@ -180,7 +199,7 @@ def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
 
     @cache
     def drawn(arm: Arm) -> Mesh:
-        return rectangle(basis, (p, q), _breaks(*division(problem, *arm)), through)
+        return rectangle(basis, (p, q), lines(problem, *arm), through)
 
     upper, lower = (drawn(arm) for arm in both)
     return upper, replace(lower, P_AI=lower.P_AI - [0.0, lower.P_AI[-1, 1]])  # its top on Y = 0, to the last digit
@@ -201,15 +220,14 @@ def _strips(problem: Problem, layers: int) -> tuple[Strip, Strip]:
     column, halves = layers + DEGREE, functions_of_halves(layers)
 
     def strip(path: int, halved: int, spare: int) -> Strip:
-        parts, x = division(problem, path, spare, layers)
-        breaks_c = _breaks(parts, x)
-        number = np.arange(len(breaks_c) - 1) - parts[0]
+        parts, breaks_c = division(problem, path, spare, layers)[0], lines(problem, path, spare, layers)
+        number = np.arange(len(breaks_c) - 1) - (len(breaks_c) - 1 - sum(parts[1:]))
         return Strip(breaks_c, (number >= 0) & (number < parts[1] - path + min(halved, path)), layers)
 
     def unknowns(path: int, halved: int, spare: int = 0) -> int:
         paths = unequal(path, problem.mismatch)
         parts = [division(problem, n, spare, layers)[0] for n in paths]
-        columns = sum(sum(part) + DEGREE for part in parts)
+        columns = sum(len(lines(problem, n, spare, layers)) - 1 + DEGREE for n in paths)
         cut = sum(min(halved, n) + part[1] - n for n, part in zip(paths, parts, strict=True))
         return 2 * (columns * column + cut * halves)
 
@@ -224,7 +242,3 @@ def _strips(problem: Problem, layers: int) -> tuple[Strip, Strip]:
     best = min(options, key=lambda option: abs(problem.dofs - unknowns(*option)))
     upper, lower = (strip(n, *best[1:]) for n in unequal(best[0], problem.mismatch))
     return upper, lower
-
-
-def _breaks(division: Division, x: tuple[float, float, float, float]) -> np.ndarray:
-    return pieces(*((start, end, n) for start, end, n in zip(x[:-1], x[1:], division, strict=True)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,8 +9,8 @@ import numpy as np
 from iga.body import Body
 from iga.cohesive import TractionLaw
 from iga.interface import Interface, settled
-from iga.lumped import lumped
-from iga.problem import Debonding
+from iga.lumped import chained, lumped, paired
+from iga.problem import Debonding, unloads
 from iga.quadrature import gauss, lobatto
 from iga.surface import Surface
 
@@ -19,6 +18,9 @@ RULES = {"gauss": gauss, "lobatto": lobatto}
 
 #: Surface by which each body, upper and lower, meets the other.
 FACING = ("bottom", "top")
+
+#: Samples of the gap on each side, where it is looked at whether faces pass through each other.
+SAMPLES = 5
 
 #: Part of a side that is too little to touch.
 SLIVER = 1e-6
@@ -33,7 +35,7 @@ def bond(
     """Interface over the ``extent`` (from, to) in the specimen's own coordinate along it; one body meets its mirror.
 
     Beyond the bond the bodies may touch from end to end of ``touching``, which holds the extent, at p + 1 points a
-    side. Lumped partners are one to one, and only on the bond.
+    side, at which lumped ones keep their partners.
     """
     found = _bonded(problem, bodies, extent, touching)
     return settled(found) if stays(problem) else found
@@ -42,29 +44,29 @@ def bond(
 def _bonded(
     problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float], touching: tuple[float, float] | None
 ) -> Interface:
-    if problem.interface_rule == "lumped":
-        return lumped(_interface(problem, bodies, *_everywhere(problem, bodies, extent, gauss(problem.degree + 1))))
-    rule = RULES[problem.interface_rule](problem.interface_points)
-    held = _everywhere(problem, bodies, extent, rule)
+    lumps, free = problem.interface_rule == "lumped", gauss(problem.degree + 1)
+    held = _everywhere(
+        problem, bodies, extent, free if lumps else RULES[problem.interface_rule](problem.interface_points)
+    )
+    parts = [held]
+    if touching is not None:
+        ends = (min(touching), min(extent)), (max(extent), max(touching))
+        before, after = (_between(problem, bodies, part, free) for part in ends)
+        parts = [part for part in (before, held, after) if len(part[0])]
+    if lumps:
+        found = [(lumped if part is held else paired)(_interface(problem, bodies, *part)) for part in parts]
+    else:
+        found = [_interface(problem, bodies, *(np.concatenate(values) for values in zip(*parts, strict=True)))]
+    whole = chained(found)
     if touching is None:
-        return _interface(problem, bodies, *held)
-    free = [
-        _between(problem, bodies, part, gauss(problem.degree + 1))
-        for part in ((min(touching), min(extent)), (max(extent), max(touching)))
-    ]
-    c_q, xi_q, w_q = (np.concatenate(parts) for parts in zip(held, *free, strict=True))
-    whole = _interface(problem, bodies, c_q, xi_q, w_q)
-    return replace(whole, bonded_q=np.arange(len(c_q)) < len(held[0]))
+        return whole
+    points = [one.points for one in found] if lumps else [len(part[0]) for part in parts]
+    return replace(whole, bonded_q=np.repeat([part is held for part in parts], points))
 
 
 def stays(problem: Debonding) -> bool:
     """Whether partners and normals stay what they are before anything moves."""
     return problem.kinematics == "linear" or not problem.search
-
-
-def closes(programme: Sequence[float]) -> bool:
-    """Whether a programme of openings goes down anywhere: elsewhere no gap that has opened closes again."""
-    return any(after < before for before, after in zip((0.0, *programme), programme, strict=False))
 
 
 def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float], interface: Interface) -> Interface:
@@ -75,6 +77,18 @@ def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, flo
     found = _interface(problem, bodies, c[at // 2], at % 2.0, np.full(2, 0.5))
     if interface.pairing is not None:
         found = replace(found, near=interface.pairing[interface.beside(found.X_qi)])
+    return settled(found) if stays(problem) else found
+
+
+def faces(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float]) -> Interface | None:
+    """Samples from end to end of the faces that are opposite to each other, ends of elements included.
+
+    None where the programme never goes down: no gap closes then.
+    """
+    if not unloads(problem):
+        return None
+    even = np.linspace(0.0, 1.0, SAMPLES), np.full(SAMPLES, 1.0 / SAMPLES)
+    found = _interface(problem, bodies, *_between(problem, bodies, (min(extent), max(extent)), even))
     return settled(found) if stays(problem) else found
 
 

@@ -10,11 +10,12 @@ import numpy as np
 from iga.adaptive import Window, adapted_tmeshes, carried, first_window, followed
 from iga.arms import arm_meshes, crack_path, tmeshes
 from iga.body import Body, bodies, mean_row, point_row
-from iga.bond import bond, control_points, probe, slave_number
+from iga.bond import bond, control_points, faces, probe, slave_number
+from iga.load import pulled_row
 from iga.material import orthotropic
 from iga.point import Point
 from iga.pose import Pose
-from iga.problem import Debonding, smooth
+from iga.problem import Debonding, presses, smooth
 from iga.solid import joined
 from iga.solve import OnFrame, Solution, run
 from iga.specimen import Specimen
@@ -32,7 +33,9 @@ class Problem(Debonding):
     """A double cantilever beam in its own frame.
 
     X runs from 0 (loaded end) to ``length``, the interface lies on Y = 0 and is bonded from ``precrack`` on; each arm
-    is ``arm_thickness`` thick and elastic with axis 1 along X. The opening is the separation of the loaded faces.
+    is ``arm_thickness`` thick and elastic with axis 1 along X. The opening is the separation of the loaded faces. Where
+    it goes below zero the faces are pressed together from X = 0 on: the load, spread over the faces at X = 0, and the
+    contact next to them are a couple, which makes the arms gape behind.
     ``symmetry`` models the upper arm alone against its mirror image. ``adaptive`` T-splines follow the process zone and
     have at most ``dofs`` unknowns at any time.
     """
@@ -65,11 +68,11 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
         copies = 2.0 if problem.symmetry else 1.0
         arms = bodies(meshes, (D,) * len(meshes), pose, copies * problem.width, smooth(problem))
         P_AI = control_points(arms)
-        across = [mean_row(arm.face("left"), pose.axes_kI[1], P_AI.size) for arm in arms]
+        across = [pulled_row(arm, "left", problem.load_at, pose, 1, P_AI.size) for arm in arms]
         springs_rd, spring_r = _supports(problem, arms, pose)
         system = System(
             solids=joined([solid for arm in arms for solid in arm.solids]),
-            interface=bond(problem, arms, extent),
+            interface=bond(problem, arms, extent, (0.0, problem.length) if presses(problem) else None),
             kinematics=problem.kinematics,
             load_d=2.0 * across[0] if problem.symmetry else across[0] - across[1],
             free_d=np.ones(P_AI.size, dtype=bool),
@@ -83,13 +86,17 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
             pose=pose,
             loaded=("left",) * len(arms),
             loaded_at=0.0,
+            load_at=problem.load_at,
             free_length=problem.precrack,
-            energy_faces=tuple((number, "left", 1.0) for number in range(len(arms))),
+            energy_faces=tuple(
+                (n, end, sign) for n in range(len(arms)) for end, sign in (("left", 1.0), ("right", -1.0))
+            ),
             upper_is_slave=slave_number(problem, arms) == 0,
             copies=copies,
             probe=probe(problem, arms, extent, system.interface),
             path=(problem.precrack, _end_of_path(problem, window)),
             tmeshes=drawn,
+            faces=faces(problem, arms, (0.0, problem.length)),
         )
 
 

@@ -75,6 +75,22 @@ def unequal(elements: int, mismatch: float) -> tuple[int, int]:
     return (elements, part(elements / mismatch)) if mismatch >= 1.0 else (part(elements * mismatch), elements)
 
 
+def finer_towards(breaks: np.ndarray, place: float, most: float, times: int) -> np.ndarray:
+    """Element boundaries with one at a place, and the elements beside it halved towards it, again and again.
+
+    That ends where those at the place are no longer than ``most``, or have been halved so many ``times``.
+    """
+    near = np.abs(breaks - place) < ROUNDING * breaks[-1]
+    breaks = np.where(near, place, breaks) if near.any() else np.sort(np.append(breaks, place))
+    at, parts = int(np.argmin(np.abs(breaks - place))), [breaks]
+    for beside in (at - 1, at + 1):
+        if 0 <= beside < len(breaks):
+            away = breaks[beside] - place
+            halvings = min(max(0, int(np.ceil(np.log2(abs(away) / most) - ROUNDING))), times)
+            parts.append(place + away * 0.5 ** np.arange(1, halvings + 1))
+    return np.sort(np.concatenate(parts))
+
+
 def pieces(*parts: tuple[float, float, int]) -> np.ndarray:
     """Element boundaries of neighbouring pieces (start, end, equal elements); an empty piece is left out."""
     breaks = [np.linspace(start, end, n + 1)[:-1] for start, end, n in parts if end > start]

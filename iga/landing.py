@@ -67,6 +67,21 @@ def landing(system: System, old: State, touch: Contact, g_q: np.ndarray, follows
     return Landing(q, target, gap, None if half else Kink(q, law.jump(gap)))
 
 
+def next_kink(system: System, old: State, start: Contact, touch: Contact, g_q: np.ndarray) -> Landing | None:
+    """The first kink of any kind on the way from the gaps at the ``start`` of a step to g_q (n_q,), if there is one."""
+    law, g0_q = system.interface.law, start.g_q
+    g_q = np.where(holding(system.interface, touch), g_q, 0.0)
+    part_qk = np.full((g_q.size, len(law.kinks)), np.inf)
+    for column, kink in enumerate(law.kinks):
+        passes_q = (old.k_q < kink) & (g_q >= kink) & (g0_q < kink)
+        part_qk[passes_q, column] = (kink - g0_q[passes_q]) / (g_q - g0_q)[passes_q]
+    q, column = np.unravel_index(int(np.argmin(part_qk)), part_qk.shape)
+    if not np.isfinite(part_qk[q, column]):
+        return None
+    kink = law.kinks[column]
+    return Landing(int(q), kink * (1.0 + BEYOND), kink, Kink(int(q), law.jump(kink)))
+
+
 def travelled(interface: Interface, g_q: np.ndarray, q: int, target: float) -> np.ndarray | None:
     """Gaps (n_q,) after the crack has run on, as far as it takes the one at point q to a larger ``target``.
 

@@ -8,6 +8,7 @@ May, de Borst 2015, sec. 5).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -52,6 +53,35 @@ def lumped(interface: Interface) -> Interface:
         mirror_i=n_Ai[A] / np.linalg.norm(n_Ai[A], axis=1, keepdims=True),
         twin_qa=None if interface.master is None else _twins(interface, start, A)[:, None],
     )
+
+
+def paired(interface: Interface) -> Interface:
+    """The interface at its own points, whose partners are the control points that face theirs, for good.
+
+    Parameters and errors as those of `lumped`, beside which it has places that are not bonded.
+    """
+    start = settled(interface).at_rest
+    if interface.master is None:
+        return replace(interface, mirror_i=start.n_qi)
+    A = _in_order(interface.conn_qa)
+    twin_A = np.zeros(len(interface.P_AI), dtype=int)
+    twin_A[A] = _twins(interface, start, A)
+    return replace(interface, master=None, mirror_i=start.n_qi, twin_qa=twin_A[interface.conn_qa])
+
+
+def chained(parts: Sequence[Interface]) -> Interface:
+    """One interface from parts whose partners are known; a lumped point takes functions that are zero there as well."""
+    first, *others = parts
+    if not others:
+        return first
+    n_a = max(part.N_qa.shape[1] for part in parts)
+    joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ("dA_q", "X_qi", "mirror_i")}
+    joined["N_qa"] = np.concatenate([np.pad(part.N_qa, ((0, 0), (0, n_a - part.N_qa.shape[1]))) for part in parts])
+    for name in ("conn_qa", "twin_qa"):
+        values = [getattr(part, name) for part in parts]
+        if values[0] is not None:
+            joined[name] = np.concatenate([np.pad(v, ((0, 0), (0, n_a - v.shape[1])), mode="edge") for v in values])
+    return replace(first, **joined)
 
 
 def _areas(interface: Interface, n_qi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -47,6 +47,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         "bulk_energy": energies.bulk,
         "cohesive_energy": energies.cohesive,
         "contact_energy": energies.contact,
+        **({} if specimen.faces is None else _closing(specimen, point)),
     }
 
 
@@ -72,6 +73,24 @@ def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
         start = probe.pairing if probe.pairing is None or met is None else met[specimen.beside_probe]
         g_q = contact(probe, point.state.u_d, start).g_q
     return float(g_q[0]), float(g_q[-1])
+
+
+def _closing(specimen: Specimen, point: Point) -> dict[str, float]:
+    """How deep the faces are in each other, between the interface's points as well, and what pushes them apart.
+
+    Where they may touch beyond the bond, the gap at the end of the faces next to the load as well.
+    """
+    faces, interface = specimen.faces, specimen.system.interface
+    if faces.at_rest is not None:
+        g_q, on_q = faces.at_rest.gaps(point.state.u_d), faces.at_rest.on_q
+    else:
+        touch = contact(faces, point.state.u_d, faces.pairing)
+        g_q, on_q = touch.g_q, touch.on_q
+    return {
+        "penetration": max(0.0, -float(np.min(g_q, where=on_q, initial=0.0))),
+        "contact_pressure": max(0.0, -float(np.min(point.response.p_q))),
+        **({} if interface.bonded_q is None else {"mouth_opening": float(g_q[specimen.mouth])}),
+    }
 
 
 def face_energy(specimen: Specimen, u_d: np.ndarray) -> float:

@@ -10,7 +10,9 @@ from iga.control import Control, arc_length_control, dissipation_control, gap_co
 from iga.events import next_event
 from iga.interface import holding
 from iga.point import Point
+from iga.promise import KEPT, Kept
 from iga.system import System
+from iga.tangent import away_from_zero
 
 #: Largest step of the front in parts of g_u, where steps are counted and where they are chosen by accuracy; smallest
 #: step in parts of the one asked for.
@@ -23,17 +25,27 @@ SPARED = 3
 #: Fewer steps than these would not draw the curve: what is asked for is then a least number of steps. How long they are
 #: once one that was chosen by accuracy has failed, in such parts of the programme.
 FEWEST, SAFE = 40, 150
+#: How often a step is shortened because it does not keep its promise.
+CUTS = 6
+#: How many steps end at kinks of any kind once a single arc has turned out to have a corner.
+CORNERED = 8
+#: Of a parabola what it leaves its tangent by over what it leaves the straight line by, as it is measured.
+OF_TANGENT = 3.0
 #: What a step that has failed is tried with, in this order, before it is halved.
 CAREFUL = ("front", "dissipation", "arc length")
 
 
 @dataclass(frozen=True)
 class Step:
-    """What is asked of a step: the control, the length of the tangent it goes, and whether it ends on the goal."""
+    """What is asked of a step: the control, the length of the tangent it goes, and whether it ends on the goal.
+
+    ``every_kink``: where it ends at a kink, that is the first one of any kind.
+    """
 
     control: Control
     away: float
     exact: bool = False
+    every_kink: bool = False
 
 
 @dataclass(frozen=True)
@@ -45,6 +57,8 @@ class Pace:
     are ``counted``, each of this length.
     ``bend`` is by how much of the peak the load may leave the tangent of such a step; the front may go as much further
     as steps are longer for it.
+    ``promised``: steps keep what `iga.promise` states. One that does not is shortened, up to ``CUTS`` times (``cuts``);
+    after a single arc of the load that does not, ``cornered`` steps end at kinks of any kind.
     ``attempt`` counts how often the next one has failed: careful steps end at the kinks of the law; they change the
     control, and then their length.
     """
@@ -56,6 +70,9 @@ class Pace:
     counted: float = 0.0
     bend: float = BEND
     spared: int = SPARED
+    promised: bool = False
+    cuts: int = 0
+    cornered: int = 0
 
     @property
     def careful(self) -> bool:
@@ -91,22 +108,36 @@ class Pace:
 
     def slower(self) -> Pace:
         if not self.by_accuracy:
-            return replace(self, attempt=self.attempt + 1)
+            return replace(self, attempt=self.attempt + 1, cuts=0)
         if self.spared == 0:
-            return Pace(self.counted, self.counted)
-        return replace(self, step=0.5 * self.step, spared=self.spared - 1)
+            return Pace(self.counted, self.counted, bend=self.bend, promised=self.promised)
+        return replace(self, step=0.5 * self.step, spared=self.spared - 1, cuts=0)
 
-    def after(self, start: Point, end: Point, peak: float) -> Pace:
+    def cut(self, kept: Kept, moved: float) -> Pace:
+        """Where a step that went for a change ``moved`` of the opening has not kept its promise."""
+        step = min(kept.part * abs(moved) / 0.5**self.level, self.step)
+        return replace(self, step=step, cuts=self.cuts + 1, cornered=CORNERED if kept.few else self.cornered)
+
+    @property
+    def every_kink(self) -> bool:
+        """Whether steps end at the next kink of any kind."""
+        return self.by_kinks and self.cornered > 0
+
+    def after(self, start: Point, end: Point, peak: float, kept: Kept = KEPT) -> Pace:
         """The next step where one from ``start`` to ``end`` has converged."""
         if self.careful:
-            return replace(self, attempt=1 + len(CAREFUL) * (self.level - 1) if self.level else 0)
+            return replace(self, attempt=1 + len(CAREFUL) * (self.level - 1) if self.level else 0, cuts=0)
         if not self.by_accuracy:
-            return self
-        moved = end.opening - start.opening
-        bend = abs(end.state.load - start.state.load - start.slope * moved) / (self.bend * peak)
-        grown = abs(moved) * max(min(bend**-0.5, 2.0), 0.5) if bend > 0.0 else 2.0 * abs(moved)
+            return replace(self, step=min(2.0 * self.step, self.largest), cuts=0) if self.promised else self
+        moved, rough = end.opening - start.opening, start.tangent.rough
+        slope = start.tangent.departure if rough and not kept.broken else start.slope
+        bend = abs(end.state.load - start.state.load - slope * moved) / (self.bend * peak)
+        if kept.broken:  # teeth are no reason for shorter steps as long as the straight line is near
+            bend = min(bend, 0.25 if kept.few and kept.away <= 0.5 else OF_TANGENT * kept.away)
+        gone = max(abs(moved), self.step) if rough else abs(moved)  # behind a kink a step goes less far than asked
+        grown = gone * max(min(bend**-0.5, 2.0), 0.5) if bend > 0.0 else 2.0 * gone
         step = min(max(grown, SMALLEST * self.largest), self.largest)
-        return replace(self, step=step, spared=min(self.spared + 1, SPARED))
+        return replace(self, step=step, spared=min(self.spared + 1, SPARED), cuts=0, cornered=max(self.cornered - 1, 0))
 
 
 def paced(programme: np.ndarray, steps: int | None, bend: float = BEND, linear: bool = False) -> Pace:
@@ -120,7 +151,7 @@ def paced(programme: np.ndarray, steps: int | None, bend: float = BEND, linear: 
         return Pace(asked, asked)
     largest = min(LARGEST * whole, asked)
     first = largest if linear else min(FIRST * whole, asked)
-    return Pace(largest, first, by_accuracy=True, counted=whole / SAFE, bend=bend)
+    return Pace(largest, first, by_accuracy=True, counted=whole / SAFE, bend=bend, promised=True)
 
 
 def next_step(system: System, point: Point, goal: float, pace: Pace, direction: float) -> Step:
@@ -132,7 +163,7 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
     law, path = system.interface.law, point.tangent
     left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
     grows, event = bool(path.growing_q.any()), None
-    if direction > 0.0 and (pace.careful or not grows):
+    if away_from_zero(direction, point.opening) and (pace.careful or not grows):
         touch = point.response.contact
         k_q = np.where(holding(system.interface, touch), point.state.k_q, law.g_u)  # no kink for the others
         event = next_event(law, touch.g_q, k_q, path.rate_q)
@@ -141,7 +172,7 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
         away = (left if exact else np.copysign(pace.length, left)) / opening_rate
         if event is not None and event.away < away:
             return Step(gap_control(system, event.q), event.beyond)
-        return Step(opening_control(system), away, exact)
+        return Step(opening_control(system), away, exact, pace.every_kink)
     if 0.0 < direction * left < pace.step and not pace.careful and path.heading == direction:
         return Step(opening_control(system), left / opening_rate, exact=True)
     q = point.front
@@ -153,4 +184,4 @@ def next_step(system: System, point: Point, goal: float, pace: Pace, direction: 
         "dissipation": lambda: dissipation_control(system),
         "arc length": lambda: arc_length_control(system, point.response, path.du_d),
     }
-    return Step(controls[pace.control](), away)
+    return Step(controls[pace.control](), away, every_kink=pace.every_kink)

@@ -14,8 +14,9 @@ import numpy as np
 
 from iga.control import opening_control
 from iga.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium
-from iga.pace import BEND, Step, next_step, paced
+from iga.pace import BEND, CUTS, Step, next_step, paced
 from iga.point import End, Point
+from iga.promise import KEPT, Largest, judged
 from iga.state import State
 from iga.step import advance, foresee
 from iga.system import Phase, System, energies, respond, untimed
@@ -52,7 +53,7 @@ def follow(
     """
     pace = paced(np.array(programme), steps, bend, system.kinematics == "linear")
     reach = float(np.max(np.abs(programme)))
-    rejected, peak, most = 0, 0.0, 0.0
+    rejected, largest = 0, Largest()
     direction = float(np.sign(programme[0]))
     departed = _departing(system, system.start(), direction, 0.0, phase)
     if departed is None:
@@ -66,6 +67,7 @@ def follow(
             point, known = _departing(system, point.state, direction, point.external_work, phase) or (point, None)
         while point.opening != goal:
             asked = next_step(system, point, goal, pace, direction)
+            length = asked.away * float(system.load_d @ point.tangent.du_d)
             foreseen, known = (
                 foresee(system, point, asked, pace.by_kinks and not asked.exact, known, phase),
                 None,
@@ -75,19 +77,27 @@ def follow(
                 asked, known = _onto(system, point, goal), None
                 foreseen = foresee(system, point, asked, False, None, phase)
                 reached, known = advance(system, point, asked, foreseen, direction, pace, newton, phase)
-            if reached is None or leaks(system, point, reached, most):
+            kept = KEPT
+            if reached is not None and pace.promised:
+                kept = judged(system, point, reached, largest, pace.bend)
+            if kept.part < 1.0 and pace.cuts < CUTS:
+                known, rejected = None, rejected + 1  # before the next one is made
+                pace = pace.cut(kept, length)
+                known = _once_more(system, point, direction, phase) if pace.by_kinks else None
+                continue
+            if reached is None or leaks(system, point, reached, largest.work):
                 known = None  # before the next one is made
                 rejected, pace = rejected + 1, pace.slower()
                 known = _once_more(system, point, direction, phase) if pace.by_kinks else None
                 if pace.exhausted:
-                    yield End(_advice(point.opening, leapt=reached is not None), rejected)
+                    yield End(_advice(point, leapt=reached is not None), rejected)
                     return
                 continue
-            peak, most = max(peak, abs(reached.state.load)), max(most, abs(reached.external_work))
-            pace = pace.after(point, reached, peak)
+            largest = largest.with_point(reached)
+            pace = pace.after(point, reached, largest.load, kept)
             point = replace(reached, opening=goal) if asked.exact else reached
             yield point
-            if direction > 0.0 and point.opening > 0.0 and _separated(system, point, reach, peak):
+            if direction > 0.0 and point.opening > 0.0 and _separated(system, point, reach, largest.load):
                 yield End("complete", rejected, separated=True)
                 return
             renewed = renew(point) if renew is not None else None
@@ -190,7 +200,14 @@ def _onto(system: System, point: Point, goal: float) -> Step:
     return Step(opening_control(system), (goal - point.opening) / float(system.load_d @ point.tangent.du_d), exact=True)
 
 
-def _advice(opening: float, leapt: bool) -> str:
+def _advice(point: Point, leapt: bool) -> str:
+    opening = point.opening
+    if opening < 0.0 and point.state.load < 0.0:
+        return (
+            f"stopped: Newton did not converge beyond opening {opening:.6g}, where a load of {point.state.load:.4g} "
+            "presses the bodies together, even with a step 4096 times smaller; close by less (load.opening), as bodies "
+            "that are crushed have no equilibrium, or refine the mesh along the crack (discretization.dofs)"
+        )
     if leapt:
         return (
             f"stopped: the energy jumps at opening {opening:.6g}, however short the step, as where a point of the "

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from iga.body import Body, bodies, mean_row
-from iga.bond import bond, closes, control_points, probe, slave_number
+from iga.bond import bond, control_points, faces, probe, slave_number
+from iga.load import pulled_row
 from iga.material import orthotropic
 from iga.peel_meshes import meshes, tmeshes
 from iga.pose import Pose
-from iga.problem import Debonding, smooth
+from iga.problem import Debonding, presses, smooth
 from iga.solid import joined
 from iga.solve import OnFrame, Solution, run
 from iga.specimen import Specimen
@@ -64,7 +65,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             solids=joined([solid for body in pair for solid in body.solids]),
             interface=bond(problem, pair, extent, _touching(problem)),
             kinematics=problem.kinematics,
-            load_d=mean_row(strip.face("right"), pose.axes_kI[1], P_AI.size),
+            load_d=pulled_row(strip, "right", problem.load_at, pose, 1, P_AI.size),
             free_d=_free(substrate, P_AI.size),
             x_d=np.repeat(pose.own(P_AI)[:, 0], 2),
             springs_rd=springs_rd,
@@ -76,6 +77,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             pose=pose,
             loaded=("right", ""),
             loaded_at=problem.strip_length,
+            load_at=problem.load_at,
             free_length=problem.strip_length - problem.bond_length,
             energy_faces=((0, "right", 1.0), (1, "right", 1.0), (0, "left", -1.0), (1, "left", -1.0)),
             upper_is_slave=slave_number(problem, pair) == 0,
@@ -83,6 +85,7 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
             probe=probe(problem, pair, extent, system.interface),
             path=(problem.strip_length - problem.bond_length, problem.strip_length),
             tmeshes=drawn,
+            faces=faces(problem, pair, (facing(problem), 0.0)),
         )
 
 
@@ -105,8 +108,13 @@ def _free(substrate: Body, n_dof: int) -> np.ndarray:
 
 def _touching(problem: Problem) -> tuple[float, float] | None:
     """How far strip and substrate may touch, beyond the bond as well; None where no gap closes there."""
-    face = min(problem.strip_length, problem.substrate_length)
-    return (face, 0.0) if problem.contact and closes(problem.opening) and face > problem.bond_length else None
+    face = facing(problem)
+    return (face, 0.0) if presses(problem) and face > problem.bond_length else None
+
+
+def facing(problem: Problem) -> float:
+    """How far from the flush end strip and substrate face each other."""
+    return min(problem.strip_length, problem.substrate_length)
 
 
 def _support(problem: Problem, strip: Body, pose: Pose, n_dof: int) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from iga.extraction import Mesh
-from iga.grading import columns, elements_within, largest, part, pieces, rectangle, unequal
+from iga.grading import columns, elements_within, finer_towards, largest, part, pieces, rectangle, unequal
+from iga.problem import presses
 from iga.strip import Strip, strip_tmesh
 from iga.tmesh import DEGREE, TMesh
 
@@ -16,6 +17,10 @@ if TYPE_CHECKING:
 
 #: Elements away from the bond only bend; they may be this much longer than those on it.
 COARSENING = 4.0
+
+#: Where a strip is pressed on the end of the substrate, elements are no longer than this part of its thickness; and
+#: elements on the bond that are so few that there are no more halvings than these, and never more than the last.
+PRESSED, FEW, MOST = 0.125, 7, 60
 
 #: Layers of the substrate: at most so many, each this much thicker than the one above, and the top one no thinner than
 #: such a part of the length of its elements.
@@ -138,10 +143,17 @@ def _beyond(problem: Problem, length: float, path: int, layers: int = 0) -> int:
 
 
 def _breaks(problem: Problem, length: float, path: int, beyond: int, layers: int = 0) -> np.ndarray:
-    """Element boundaries along a body with so many elements on and beyond the bond."""
+    """Element boundaries along a body with so many elements on and beyond the bond.
+
+    A strip that is pressed down lies on the end of the substrate, or ends on it: there they are shorter.
+    """
     bond, ahead = problem.bond_length, _ahead(problem, length, path, layers)
     start = bond * (path + ahead) / path
-    return pieces((0.0, bond, path), (bond, start, ahead), (start, length, beyond))
+    breaks = pieces((0.0, bond, path), (bond, start, ahead), (start, length, beyond))
+    face = min(problem.strip_length, problem.substrate_length)
+    if not presses(problem) or face <= bond:
+        return breaks
+    return finer_towards(breaks, face, PRESSED * problem.strip_thickness, path if path <= FEW else MOST)
 
 
 def _require_bodies(problem: Problem) -> None:

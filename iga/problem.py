@@ -13,9 +13,10 @@ from iga.pose import Pose
 class Debonding:
     """Common part of a problem in plain numbers, any consistent units.
 
-    ``opening`` is the programme of the loaded faces' mean displacement. ``steps`` is the number of steps asked for over
-    the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed at. ``law_name`` is
-    one of `iga.cohesive.LAWS`.
+    ``opening`` is the programme of the displacement of where the load acts, ``load_at``: "face" (a uniform dead
+    traction, the mean displacement), "node" (the corner of the loaded face away from the interface) or "hinge" (its
+    middle). ``steps`` is the number of steps asked for over the whole programme; None lets the path choose them.
+    ``dofs`` is the number of unknowns aimed at. ``law_name`` is one of `iga.cohesive.LAWS`.
     ``meshes`` are those of the bodies, upper first, in the specimen's own frame; made by the solver where left out.
 
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
@@ -32,6 +33,7 @@ class Debonding:
     penalty: float
     law_name: str = "bilinear"
     opening: tuple[float, ...]
+    load_at: str = "face"
     width: float = 1.0
     plane: str = "stress"
     contact: bool = True
@@ -69,3 +71,16 @@ class Debonding:
 def smooth(problem: Debonding) -> bool:
     """Whether the basis is more than continuous along the specimen; of a mesh that is given nothing is known."""
     return problem.basis != "lagrange" and not problem.meshes
+
+
+def presses(problem: Debonding) -> bool:
+    """Whether faces beyond the bond can meet: the programme goes below zero.
+
+    Unloading alone does not close them: along the secants of the damage they come together at no opening, all at once.
+    """
+    return problem.contact and min(problem.opening) < 0.0
+
+
+def unloads(problem: Debonding) -> bool:
+    """Whether the programme goes down anywhere."""
+    return any(after < before for before, after in zip((0.0, *problem.opening), problem.opening, strict=False))

@@ -7,11 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
-from iga.body import Body, mean_row, slope_row
+from iga.body import Body, slope_row
 from iga.bulk import element_stiffness, full_matrices, gradient
 from iga.extraction import Mesh
 from iga.interface import Interface
 from iga.kinematics import KINEMATICS
+from iga.load import pulled_row
 from iga.pose import Pose
 from iga.solid import Solid, joined
 from iga.system import System
@@ -22,12 +23,14 @@ from iga.tmesh import TMesh
 class Specimen:
     """A system and what it takes to read it: bodies (upper first), pose, and which ends count for what.
 
-    ``loaded`` names the end, "left" or "right", at which the dead load pulls each body; "" where it does not.
+    ``loaded`` names the end, "left" or "right", at which the dead load pulls each body; "" where it does not. Where on
+    it is ``load_at``, see `iga.load`.
     Distances along the specimen are counted from the plane ``loaded_at`` of the first of them; the bond begins at the
     distance ``free_length``. ``energy_faces`` (body, end, sign) are those whose strain energy enters the J-integral.
     ``path`` are the distances between which the mesh is made for the crack to run.
     ``probe`` has two points, on the tip of the bond and on its far end. ``copies`` is 2 where one body stands for both.
-    ``tmeshes`` are the T-meshes of the bodies in the specimen's own frame, none where the basis is another.
+    ``tmeshes`` are the T-meshes of the bodies in the specimen's own frame, none where the basis is another. ``faces``
+    are samples of all that the bodies face of each other, bonded or not, where the programme may close it.
     """
 
     system: System
@@ -42,6 +45,8 @@ class Specimen:
     probe: Interface
     path: tuple[float, float]
     tmeshes: tuple[TMesh, ...] = ()
+    load_at: str = "face"
+    faces: Interface | None = None
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:
@@ -88,13 +93,18 @@ class Specimen:
 
     @cached_property
     def face_row(self) -> np.ndarray:
-        """Row (n_dof,) of the mean displacement of the upper body's loaded face along the specimen."""
-        return mean_row(self.bodies[0].face(self.loaded[0]), self.pose.axes_kI[0], self.system.n_dof)
+        """Row (n_dof,) of the displacement along the specimen of where the load acts on the upper body."""
+        return pulled_row(self.bodies[0], self.loaded[0], self.load_at, self.pose, 0, self.system.n_dof)
 
     @cached_property
     def beside_probe(self) -> np.ndarray:
         """Points of the interface next to those of the probe, which meet the master close by."""
         return self.system.interface.beside(self.probe.X_qi)
+
+    @cached_property
+    def mouth(self) -> int:
+        """The sample of the faces that is nearest to the load."""
+        return int(np.argmin(self.distance(self.faces.X_qi)))
 
     @cached_property
     def ordered(self) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.control import gap_control
-from iga.landing import SEVERAL, Kink, Landing, broken_between, landing, slope_over_arcs, travelled
+from iga.interface import Contact
+from iga.landing import SEVERAL, Kink, Landing, broken_between, landing, next_kink, slope_over_arcs, travelled
 from iga.newton import Equilibrium, Newton, correction, equilibrium, roughly
 from iga.pace import Pace, Step
 from iga.point import Point
@@ -36,7 +37,12 @@ class Foreseen:
 
 
 def foresee(
-    system: System, point: Point, asked: Step, by_kinks: bool, known: Linearised | None, phase: Phase
+    system: System,
+    point: Point,
+    asked: Step,
+    by_kinks: bool,
+    known: Linearised | None,
+    phase: Phase,
 ) -> Foreseen:
     """Along the tangent; where its inverse is still known, with what the law makes of the step, the bulk as it is."""
     old, path = point.state, point.tangent
@@ -46,7 +52,7 @@ def foresee(
     response, touch, control = known.response, known.response.contact, asked.control
     value, a_d, a_load = control(old, response)
     target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
-    follows_on, guess_q, place = point.before is not None, None, None
+    guess_q, place = None, None
     linear = system.kinematics == "linear"
     with phase("solve"):
         q = point.front
@@ -56,7 +62,7 @@ def foresee(
         # one kink is as good as the next one; of a linear bulk the step onto it is exact, and no other is made
         ahead_q = touch.g_q + asked.away * path.rate_q if guess_q is None and linear else guess_q
         if by_kinks and ahead_q is not None:
-            place = landing(system, old, touch, ahead_q, follows_on)
+            place = _place(system, point, touch, ahead_q, asked.every_kink)
         if place is not None:
             control, target = gap_control(system, place.q), place.target
         found = correction(system, old, response, known.inverse, control, target, True, guess_q)
@@ -64,7 +70,7 @@ def foresee(
         return Foreseen(old.moved(along_d))
     if by_kinks and place is None:
         guess_q = touch.g_q + touch.rates(found[0][:-1])
-        place = landing(system, old, touch, guess_q, follows_on)
+        place = _place(system, point, touch, guess_q, asked.every_kink)
         if place is not None and linear:  # this is exact then; else Newton is needed anyway
             control = gap_control(system, place.q)
             with phase("solve"):
@@ -97,7 +103,7 @@ def advance(
             if nearly is None:
                 return None, None
             touch = nearly.response.contact
-            place = landing(system, old, touch, touch.g_q, follows_on=point.before is not None)
+            place = _place(system, point, touch, touch.g_q, asked.every_kink)
             foreseen = Foreseen(nearly.state, True, place, nearly.residuals)
         if foreseen.place is not None:
             found, kink = _landed(system, point, foreseen.state, foreseen.place, newton, phase)
@@ -117,8 +123,10 @@ def advance(
         return None, None
     leaving, known = left
     broken = broken_between(system, old, state) if pace.by_kinks else 0
+    if leaving.arrival * leaving.departure < 0.0 and leaving.came == leaving.heading:
+        leaving = replace(leaving, slope=0.0)  # a top or a foot, where any other slope would overshoot on one side
     before = (point.opening, old.load) if broken else None
-    if broken >= SEVERAL and point.before is not None:
+    if (broken >= SEVERAL or (broken and leaving.rough and not asked.every_kink)) and point.before is not None:
         slope = slope_over_arcs(point.before, (point.opening, old.load), (opening, state.load))
         leaving = leaving if slope is None else replace(leaving, slope=slope)
     residuals = foreseen.spent + found.residuals
@@ -129,7 +137,7 @@ def advance(
         return None, None
     away, back = (there - value) / rate, (there - value) / end_rate
     if pace.by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
-        work = straight_work(point, reached)
+        work = straight_work(point, reached, broken >= SEVERAL)
     else:
         work = step_work(system, point, reached, away, back)
     slid = slid_off(system, point, reached, away, back)
@@ -137,6 +145,13 @@ def advance(
         spent = replace(reached.energies, dissipated=reached.energies.dissipated + slid)
         reached = replace(reached, state=replace(state, slid=old.slid + slid), energies=spent)
     return replace(reached, external_work=point.external_work + work), known
+
+
+def _place(system: System, point: Point, touch: Contact, g_q: np.ndarray, every: bool) -> Landing | None:
+    """Where a step from a point to the gaps g_q (n_q,) is to end."""
+    if every:
+        return next_kink(system, point.state, point.response.contact, touch, g_q)
+    return landing(system, point.state, touch, g_q, follows_on=point.before is not None)
 
 
 def _landed(

@@ -22,13 +22,17 @@ from iga.system import Phase, System, factorise, respond
 #: that counts as rounding.
 ATTEMPTS, NO_GAP, NO_RATE = 30, 1e-6, 1e-9
 
+#: A slope less than this part of the one on the other side of a kink.
+ROUGH = 1.0 / 3.0
+
 
 @dataclass(frozen=True)
 class Tangent:
     """Direction of the path ``(du_d, d_load)``, of any length, forward.
 
-    ``slope`` is d load / d opening, ``arrival`` that before the kink on which the path stands, ``heading`` the sign of
-    the change of the opening, ``rate_q`` (n_q,) the rates of the gaps, and ``growing_q`` the points whose damage grows.
+    ``slope`` is d load / d opening; at a kink ``arrival`` is the slope before it, ``departure`` that behind it, and
+    ``slope`` their mean. ``heading`` is the sign of the change of the opening, ``came`` that before the kink,
+    ``rate_q`` (n_q,) the rates of the gaps, and ``growing_q`` the points whose damage grows.
     ``closed_q`` is the contact; whether the rates agree with it and with ``growing_q``, ``agreed`` says.
     """
 
@@ -40,7 +44,15 @@ class Tangent:
     growing_q: np.ndarray
     closed_q: np.ndarray
     arrival: float
+    departure: float
+    came: float
     agreed: bool = False
+
+    @property
+    def rough(self) -> bool:
+        """Whether the slope changes so much at a kink that neither side says anything of the way ahead."""
+        low, high = sorted((self.arrival, self.departure), key=abs)
+        return low * high <= 0.0 or abs(low) < ROUGH * abs(high)
 
 
 @dataclass(frozen=True)
@@ -49,6 +61,11 @@ class Linearised:
 
     response: Response
     inverse: Inverse
+
+
+def away_from_zero(direction: float, opening: float) -> bool:
+    """Whether a programme goes on opening, or on pressing: damage may grow there; on the way back it unloads."""
+    return direction * opening >= 0.0
 
 
 def on_envelope(system: System, state: State, g_q: np.ndarray) -> np.ndarray:
@@ -72,13 +89,14 @@ def tangent(
     ----------
     response : to this very state, used as it is where all its points agree with it.
     direction : +1 where the programme opens the specimen, -1 where it closes it. Damage cannot heal: while it grows
-        the path goes forward where energy is dissipated, whatever the opening does there.
+        on the way away from zero the path goes forward where energy is dissipated, whatever the opening does there.
     turning : the programme has turned round at this state, or begins: nothing is known of the points.
     kink : the one that the state stands on; ``slope`` is the mean of both sides where these have one sign.
     """
     law, g_q = system.interface.law, response.contact.g_q
+    onward = away_from_zero(direction, float(system.load_d @ state.u_d))
     soft_q = on_envelope(system, state, g_q) & holding(system.interface, response.contact)
-    growing_q = soft_q if direction > 0.0 or not law.irreversible else np.zeros_like(soft_q)
+    growing_q = soft_q if onward or not law.irreversible else np.zeros_like(soft_q)
     flat_q = law.contact & (np.abs(g_q) <= NO_GAP * law.g_max)
     closed_q = state.closed_q
     inverse: Inverse | None
@@ -94,7 +112,7 @@ def tangent(
         if inverse is None:
             return None
         with phase("solve"):
-            found = _along(system, response, inverse, direction, growing_q, kink)
+            found = _along(system, response, inverse, direction, onward, growing_q, kink)
         least = NO_RATE * float(np.abs(found.rate_q).max(initial=0.0))
         agreeing_q = soft_q & (found.rate_q > np.where(growing_q, -least, least)) if law.irreversible else soft_q
         touching_q = np.where(flat_q & turning, found.rate_q < 0.0, closed_q)
@@ -153,21 +171,39 @@ def _along(
     response: Response,
     inverse: Inverse,
     direction: float,
+    onward: bool,
     growing_q: np.ndarray,
     kink: Kink | None,
 ) -> Tangent:
     """Solution of ``K du = f d_load`` for one set of points, turned forward."""
     z_d = inverse.under_load_d
-    compliance = float(system.load_d @ z_d)
-    before = compliance if kink is None else float(system.load_d @ _before(system, response, kink, inverse))
-    arrival, slope = 1.0 / before if before != 0.0 else np.inf, 1.0 / compliance
-    slope = 0.5 * (slope + arrival) if before * compliance > 0.0 else slope
+    before_d = z_d if kink is None else _before(system, response, kink, inverse)
+    compliance, before = float(system.load_d @ z_d), float(system.load_d @ before_d)
+    arrival, departure = 1.0 / before if before != 0.0 else np.inf, 1.0 / compliance
+    slope = 0.5 * (departure + arrival) if before * compliance > 0.0 else departure
     rate_q = response.contact.rates(z_d)
-    growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
-    dissipating = growth != 0.0 and (direction > 0.0 or not system.interface.law.irreversible)
-    sign = direction * float(np.sign(growth if dissipating else compliance))
-    heading = sign * float(np.sign(compliance))
-    return Tangent(sign * z_d, sign, slope, heading, sign * rate_q, growing_q, response.closed_q, arrival)
+    onto_envelope = onward or not system.interface.law.irreversible
+
+    def forward(rate_q: np.ndarray, compliance: float) -> float:
+        growth = float(system.interface.dA_q @ np.where(growing_q, rate_q, 0.0))
+        if growth != 0.0 and onto_envelope:
+            return float(np.sign(growth)) if onward else -float(np.sign(growth))
+        return direction * float(np.sign(compliance))
+
+    sign = forward(rate_q, compliance)
+    came = sign if kink is None else forward(response.contact.rates(before_d), before)
+    return Tangent(
+        sign * z_d,
+        sign,
+        slope,
+        sign * float(np.sign(compliance)),
+        sign * rate_q,
+        growing_q,
+        response.closed_q,
+        arrival,
+        departure,
+        came * float(np.sign(before)),
+    )
 
 
 def _before(system: System, response: Response, kink: Kink, inverse: Inverse) -> np.ndarray:

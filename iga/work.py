@@ -48,14 +48,14 @@ def step_work(system: System, start: Point, end: Point, away: float, back: float
     return float(WEIGHTS @ (load * d_opening))
 
 
-def straight_work(start: Point, end: Point) -> float:
-    """The same over the opening itself, with the slopes that are told, for a step that does not turn round.
+def straight_work(start: Point, end: Point, several: bool) -> float:
+    """The same over the opening itself, for a step that does not turn round.
 
-    Where damage begins at its end the slope that is told there is the mean of both sides, and the step has seen one.
+    With the slopes behind its start and before its end; over ``several`` arcs of the load with those that are told.
     """
     move = end.opening - start.opening
-    slope = end.slope if start.tangent.growing_q.any() else end.tangent.arrival
-    return 0.5 * move * (start.state.load + end.state.load) + move**2 / 12.0 * (start.slope - slope)
+    first, last = (start.slope, end.slope) if several else (start.tangent.departure, end.tangent.arrival)
+    return 0.5 * move * (start.state.load + end.state.load) + move**2 / 12.0 * (first - last)
 
 
 def slid_off(system: System, start: Point, end: Point, away: float, back: float) -> float:

@@ -11,7 +11,7 @@ import threading
 import time
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 
 import pytest
 
@@ -22,6 +22,7 @@ sys.path.insert(0, str(LAUNCHER))
 import bubblewrap  # noqa: E402
 import building  # noqa: E402
 import debian_root  # noqa: E402
+import fill_venv  # noqa: E402
 import places  # noqa: E402
 
 OWN = ("DEBOND_", "OMP_", "OPENBLAS_", "MKL_", "OMPI_", "PRTE_", "PYTHONPATH")
@@ -109,16 +110,40 @@ def test_second_start_is_fast() -> None:
     assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 0.5  # whatever else the machine does
 
 
-def test_test_verb() -> None:
+def the_launcher() -> ModuleType:
     loader = SourceFileLoader("debond_launcher", str(PROJECT / "debond"))
     launcher = importlib.util.module_from_spec(importlib.util.spec_from_loader("debond_launcher", loader))
     loader.exec_module(launcher)
+    return launcher
+
+
+def test_test_verb() -> None:
+    launcher = the_launcher()
     pytest_command = ["python", "-P", "-m", "pytest"]
     assert launcher.command(["test", "-k", "x"], "python") == [*pytest_command, "-k", "x"]
     assert launcher.command(["test", "--slow", "-q"], "python") == [*pytest_command, "-m", "", "-q"]
     assert launcher.command(["test"], "python") == [*pytest_command, "-n", "auto"]
     assert launcher.command(["test", "--slow"], "python") == [*pytest_command, "-m", "", "-n", "auto"]
     assert launcher.command(["solve", "--slow"], "python") == ["python", "-P", "-m", "verify.cli", "solve", "--slow"]
+
+
+@pytest.mark.parametrize("root", [None, Path("/root-of-debian")])
+def test_tests_alone_ask_for_what_they_need_and_know_where_they_are(
+    root: Path | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    launcher, asked, seen = the_launcher(), [], []
+    monkeypatch.setattr(places, "inside", lambda: None)
+    monkeypatch.setattr(places, "find", lambda tests: asked.append(tests) or places.Place(tmp_path, tmp_path, root))
+    monkeypatch.setattr(launcher, "run_in_root", lambda root, words, environment, *_: seen.append(environment) or 0)
+    monkeypatch.setattr(launcher.os, "execvpe", lambda name, words, environment: seen.append(environment))
+    monkeypatch.setattr(launcher.os, "chdir", lambda folder: None)
+    for words in (["exec", "true"], ["test"]):
+        launcher.main(words)
+    assert asked == [False, True]
+    assert [one.get("DEBOND_TESTS_IN") for one in seen] == [None, "root" if root else "venv"]
+    monkeypatch.setattr(places, "inside", lambda: places.Place(tmp_path, tmp_path, root))
+    launcher.main(["test"])
+    assert len(asked) == 2 and "DEBOND_TESTS_IN" not in seen[-1], "nothing is set up from within"
 
 
 def test_cache_that_cannot_be_written_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -225,6 +250,38 @@ def test_suites_have_roots_of_their_own(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setenv("DEBOND_SUITE", "sid")
     assert debian_root.root_folder(tmp_path) != stable
     assert any("Check-Valid-Until" in word for word in debian_root.recipe(tmp_path / "sid"))
+
+
+def test_a_root_for_tests_is_another_one_and_serves_all_else(tmp_path: Path, builds: list[Path]) -> None:
+    plain = debian_root.provide(tmp_path)
+    whole = debian_root.provide(tmp_path, tests=True)
+    assert plain != whole and debian_root.provide(tmp_path) == whole == debian_root.provide(tmp_path, tests=True)
+    assert [part.name for part in builds] == [f"{plain.name}.part", f"{whole.name}.part"]
+    words = [next(word for word in debian_root.recipe(plain, tests) if "include" in word) for tests in (False, True)]
+    assert ["chromium" in word for word in words] == [False, True] and all("python3-dolfinx" in word for word in words)
+
+
+def test_packages_of_tests_are_added_to_what_is_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    venv, ran = places.plain_venv(tmp_path, sys.executable), []
+
+    def run(words: list[str], *_: object) -> None:
+        ran.append([Path(word).name for word in words[1:3]] + words[3:4])
+        (venv / "bin").mkdir(parents=True, exist_ok=True)
+
+    monkeypatch.setattr(places, "run_logged", run)
+    for tests in (False, True, False, True):
+        assert places.plain(tmp_path, tests).venv == venv
+    assert ran == [["-m", "venv", str(venv)], ["fill_venv.py"], ["fill_venv.py", "tests"]]
+
+
+def test_what_tests_need_is_declared() -> None:
+    wishes = {word.split(">")[0].split("[")[0] for word in fill_venv.requirements(tests=True)}
+    assert {"numpy", "pytest", "matplotlib", "meshio", "pyvista", "distributed", "mkdocs", "mypy"} <= wishes
+    assert not {"meshio", "pyvista", "distributed", "mkdocs"} & {
+        word.split(">")[0] for word in fill_venv.requirements(tests=False)
+    }
+    pinned = {line.split("==")[0].lower().replace("_", "-") for line in fill_venv.constraints()}
+    assert wishes - {"numpy", "scipy"} <= pinned
 
 
 def test_half_built_venv_is_built_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -20,6 +20,18 @@ def count(text: str) -> int:
     return value
 
 
+def seeds(text: str) -> tuple[int, int]:
+    """The first and the last: a number N stands for 0 to N - 1, A-B for A to B."""
+    first, dash, last = text.partition("-")
+    try:
+        ends = (count(first), count(last)) if dash else (0, positive(first) - 1)
+    except argparse.ArgumentTypeError:
+        ends = (1, 0)
+    if ends[0] > ends[1]:
+        raise argparse.ArgumentTypeError(f"must be a number >= 1, or two like 40-79, got {text!r}")
+    return ends
+
+
 def accuracy(text: str) -> float:
     share = text.removesuffix("%").strip()
     return fraction(share) / (100.0 if text.endswith("%") else 1.0)

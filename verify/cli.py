@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence  # noqa: E402
 from pathlib import Path  # noqa: E402
 
 from verify import commands  # noqa: E402
-from verify.arguments import accuracy, column, count, fraction, number, numbers, positive, scale  # noqa: E402
+from verify.arguments import accuracy, column, count, fraction, number, numbers, positive, scale, seeds  # noqa: E402
 from verify.commands import FAILED  # noqa: E402
 from verify.refusal import Refusal  # noqa: E402
 from verify.say import say  # noqa: E402
@@ -189,7 +189,9 @@ def _scaling_options(sub: Parser) -> None:
 
 
 def _hard_options(sub: Parser) -> None:
-    sub.add_argument("names", nargs="*", metavar="NAME", help="hard cases; default: all")
+    sub.add_argument("names", nargs="*", metavar="NAME", help="hard cases, or random for random scenes; default: all")
+    what = "of random: how many scenes, or the first and the last like 40-79; default: 40"
+    sub.add_argument("--seeds", type=seeds, metavar="N", help=what)
     _out_option(sub, "debond-hard")
     _sweep_options(sub)
 
@@ -225,6 +227,8 @@ def _compare_options(sub: Parser) -> None:
             sub.add_argument(f"--{key}-scale-{side}", type=scale, default=1.0, metavar="X", help=what)
     sub.add_argument("--end", type=number, metavar="D", help="compare up to this opening; default: the last of B")
     sub.add_argument("--begin", type=number, metavar="D", help="compare from this opening on; default: 0")
+    what = "the load programme, where B does not show its turns: 1.5,0.2,3"
+    sub.add_argument("--programme", type=numbers, metavar="D,D,...", help=what)
     sub.add_argument("--at", type=numbers, default=[], metavar="D,D,...", help="print the loads at these openings")
     limit = "fail where the curve error is larger, e.g. 0.01"
     sub.add_argument("--curve-tol", "--tolerance", type=fraction, metavar="T", help=limit)

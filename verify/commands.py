@@ -258,11 +258,29 @@ def hard(options: argparse.Namespace) -> int:
     from verify.hard.cases import chosen
     from verify.hard.suite import dry_run, hard
 
+    if "random" in options.names:
+        return _random(options)
+    if options.seeds is not None:
+        raise Refusal("--seeds: is for random scenes; debond hard random --seeds 40")
     cases = chosen(options.names)
     if options.dry_run:
         return _listed(dry_run(cases, options.out, options.jobs))
     _folder(options.out)
     return 0 if hard(cases, options.out, options.jobs, options.scheduler) else FAILED
+
+
+def _random(options: argparse.Namespace) -> int:
+    """The campaign on random scenes."""
+    from verify.hard.campaign import campaign, would_run
+
+    if options.names != ["random"]:
+        raise Refusal("random: must be the only NAME, it is a campaign of its own")
+    first, last = options.seeds or (0, 39)
+    seeds = range(first, last + 1)
+    if options.dry_run:
+        return _listed(would_run(seeds, options.out, options.jobs))
+    _folder(options.out)
+    return 0 if campaign(seeds, options.out, options.jobs, options.scheduler) else FAILED
 
 
 def compare(options: argparse.Namespace) -> int:
@@ -276,7 +294,7 @@ def compare(options: argparse.Namespace) -> int:
         work.Source(getattr(options, side), Reading(**{key: getattr(options, f"{key}_{side}") for key in keys}))
         for side in "ab"
     )
-    comparison, loads = work.held_against(a, b, options.end, options.at, options.begin)
+    comparison, loads = work.held_against(a, b, options.end, options.at, options.begin, options.programme)
     if options.out is not None:
         _folder(options.out)
     found = checks(comparison, options.curve_tol, options.peak_tol, options.energy_tol)

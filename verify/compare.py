@@ -9,13 +9,16 @@ import numpy as np
 
 from verify.curve import PROPAGATION, envelope, from_origin, load_at, oscillation, peak
 from verify.curve_file import CurveError
+from verify.leg_checks import OF_A_POINT, LegDifference, farthest, leg_checks, leg_differences
+from verify.legs import NEAR, ROUNDING, Path, path, programme_of
+from verify.turns import turns
 from verify.verdict import Check
 
 #: Samples over the opening; points on the propagation branch below which a wave cannot be told from the sampling.
 SAMPLES, POINTS_OF_A_WAVE = 400, 10
 
-#: A curve that ends this share of the opening too early has reached the end all the same.
-ROUNDING = 1e-6
+#: Part of the tolerance of the curve by which its end and its turns may miss those of B, of the largest opening.
+OF_AN_END = 0.2
 
 Points = tuple[np.ndarray, np.ndarray]
 
@@ -53,6 +56,12 @@ class Comparison:
     load_b_n: np.ndarray
     names: tuple[str, str] = ("A", "B")
     begin: float = 0.0
+    paths: tuple[Path, Path] = (Path((), 0.0), Path((), 0.0))  # along the programme
+
+    @property
+    def legs(self) -> tuple[LegDifference, ...]:
+        """Every leg of a programme that turns; no leg where the opening only grows."""
+        return leg_differences(*self.paths) if len(self.paths[1].legs) > 1 else ()
 
     @property
     def reaches(self) -> bool:
@@ -100,18 +109,26 @@ class Comparison:
 
 
 def compare(
-    a: Points, b: Points, end: float | None = None, names: tuple[str, str] = ("A", "B"), begin: float | None = None
+    a: Points,
+    b: Points,
+    end: float | None = None,
+    names: tuple[str, str] = ("A", "B"),
+    begin: float | None = None,
+    programme: Sequence[float] | None = None,
 ) -> Comparison:
     """Hold A against B over the openings that both reach, from ``begin`` on and up to ``end``.
 
     Without them from 0, and to the last opening of B. What counts of a path begins where it first comes to ``begin``.
+    Where the load ``programme`` turns, its legs are compared as well; without it the turns are those of B, see
+    `verify.legs.programme_of`.
 
     A curve that begins at an opening above 0 is joined to the origin by a straight line: there the specimen bears
     nothing, and a beginning that is left out shows as an error.
 
     Raises
     ------
-    CurveError : ``end`` beyond B, ``begin`` not before the end, nothing in common, or no load of B above 0.
+    CurveError : ``end`` beyond B, ``begin`` not before the end, nothing in common, no load of B above 0, or a
+        ``programme`` with one of both, or one that B does not follow.
     """
     if begin is not None and not 0.0 <= begin < np.inf:
         raise CurveError(f"begin: must be >= 0, got {begin:g}")
@@ -138,21 +155,66 @@ def compare(
         whole = (part_a, part_b) if begin == 0.0 else (_part(a, 0.0, common), _part(b, 0.0, common))
         size = whole[1].peak_load
         wave = _wave([(part.opening / common, part.load / size) for part in whole], whole[1].peak_opening / common)
-    return Comparison(part_a, part_b, asked, common, error, *wave, grid, *loads, names, begin)
+        given = end is not None or begin > 0.0
+        ways = [(part.opening, part.load) for part in (part_a, part_b)] if given else [from_origin(*a), from_origin(*b)]
+        paths = _paths(ways[0], ways[1], names[1], programme, given)
+    return Comparison(part_a, part_b, asked, common, error, *wave, grid, *loads, names, begin, paths)
 
 
 def checks(
     comparison: Comparison, curve: float | None = None, peak: float | None = None, energy: float | None = None
 ) -> list[Check]:
-    """What the given relative tolerances ask for; and with any of them, that A goes as far as it was to be compared."""
+    """What the given relative tolerances ask for; and with any of them, that A goes as far as it was to be compared.
+
+    That of the curve asks for every leg of a programme that turns, and `OF_A_POINT` times as much of every point of A.
+    """
     limits = (
         ("curve-error", comparison.curve_error, curve, "relative L2 distance of the loads over the opening"),
         ("peak-load", comparison.peak_difference, peak, "difference of the peak loads over that of B"),
         ("energy", comparison.energy_difference, energy, "difference of the works along the path over that of B"),
     )
     found = [Check(name, "A / B", v, limit, "cross-code", text) for name, v, limit, text in limits if limit is not None]
+    if not found:
+        return []
+    near = NEAR if curve is None else min(NEAR, max(ROUNDING, OF_AN_END * curve))
     far = "share of the opening that A does not reach"
-    return found + [Check("end", "A / B", comparison.missing, ROUNDING, "cross-code", far)] if found else []
+    along = [] if curve is None else _along(comparison, curve, near)
+    return [*found, *along, Check("end", "A / B", comparison.missing, near, "cross-code", far)]
+
+
+def _along(comparison: Comparison, curve: float, near: float) -> list[Check]:
+    """The farthest point of A, its turns, and its legs."""
+    (a, b), (name, other) = comparison.paths, comparison.names
+    with np.errstate(all="ignore"):
+        worst = farthest(a, b, OF_A_POINT * curve, snap_backs=False)
+        found: list[Check] = []
+        if worst is not None:
+            text = f"distance of the farthest point of {name}, at opening {worst.opening:.6g}, from {other}"
+            found.append(Check("farthest-point", "A / B", worst.value, OF_A_POINT * curve, "cross-code", text))
+        if comparison.legs:
+            goals = ", ".join(f"{leg.end:g}" for leg in b.legs)
+            text = f"distance of the turns of {name} from those of {other}, {goals}, over the largest opening"
+            found.append(Check("legs", "A / B", a.misfit, near, "cross-code", text))
+        return [*found, *leg_checks(comparison.legs, "A / B", curve)]
+
+
+def _paths(a: Points, b: Points, name: str, programme: Sequence[float] | None, cut: bool) -> tuple[Path, Path]:
+    """Both curves along the programme that is given, or along that of B."""
+    if programme is None:
+        way = programme_of(b)
+        there = path(b, way)
+        return (path(a, way), there) if there.complete else (path(a, way[-1:]), path(b, way[-1:]))
+    goals = [float(goal) for goal in programme]
+    still = any(here == goal for here, goal in zip([0.0, *goals], goals, strict=False))
+    if not goals or still or not np.all(np.isfinite(goals)):
+        raise CurveError(f"programme: must be openings, each different from the one before it, got {goals}")
+    if cut:
+        raise CurveError("programme: must be left out with a begin or an end")
+    there = path(b, goals)
+    if not there.complete:
+        listed = ", ".join(f"{goal:g}" for goal in turns(goals))
+        raise CurveError(f"programme: {name} must turn, and end, at {listed}; it does not where {there.legs[-1].words}")
+    return path(a, goals), there
 
 
 def _part(curve: Points, begin: float, end: float) -> Part:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from verify import __version__
@@ -31,7 +31,12 @@ class Source:
 
 
 def held_against(
-    a: Source, b: Source, end: float | None, at: Sequence[float], begin: float | None = None
+    a: Source,
+    b: Source,
+    end: float | None,
+    at: Sequence[float],
+    begin: float | None = None,
+    programme: Sequence[float] | None = None,
 ) -> tuple[Comparison, list]:
     """The comparison and the loads at the openings ``at``.
 
@@ -39,7 +44,8 @@ def held_against(
     ------
     CurveError : a file that holds no curve, nothing in common, an opening outside.
     """
-    comparison = compare(read_curve(a.path, a.reading), read_curve(b.path, b.reading), end, begin=begin)
+    curves = read_curve(a.path, a.reading), read_curve(b.path, b.reading)
+    comparison = compare(*curves, end, begin=begin, programme=programme)
     return comparison, comparison.loads_at(at)
 
 
@@ -60,7 +66,7 @@ def write(
         say("no page without matplotlib and jinja2: pip install 'debond[report]'")
         return
     labels = sources[0].label, sources[1].label
-    cells = rows(comparison, loads)
+    cells = rows(comparison, loads, found)
     (folder / PAGE).write_text(page(comparison, labels, cells, found, remarks(comparison)), encoding="utf-8")
 
 
@@ -88,6 +94,7 @@ def numbers(
         "energy_difference": comparison.energy_difference,
         "oscillation": {"rms": comparison.oscillation_rms, "excess_variation": comparison.excess_variation},
         "largest_deviation": worst,
+        "legs": [asdict(leg) for leg in comparison.legs],
         "loads": [{"opening": at, "load_a": P_a, "load_b": P_b} for at, P_a, P_b in loads],
         "checks": judged,
         "passed": all(check.passed for check in found),

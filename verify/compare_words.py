@@ -6,9 +6,12 @@ import math
 from collections.abc import Sequence
 
 from verify.compare import Comparison
+from verify.leg_checks import LegDifference
 from verify.verdict import Check
 
 Loads = Sequence[tuple[float, float, float]]
+
+_FARTHEST = "farthest point, in parts of its own"
 
 
 def table(comparison: Comparison, loads: Loads, found: Sequence[Check]) -> list[str]:
@@ -17,7 +20,8 @@ def table(comparison: Comparison, loads: Loads, found: Sequence[Check]) -> list[
     limits = {check.name: f"<= {_percent(check.tolerance)}, " for check in found if check.name != "end"}
     verdicts = {check.name: limits.get(check.name, "") + _verdict(check) for check in found}
     lines = [("", a, b, "difference", "")]
-    lines += [(name, of_a, of_b, off, verdicts.get(key, "")) for name, key, of_a, of_b, off in rows(comparison, loads)]
+    cells = rows(comparison, loads, found)
+    lines += [(name, of_a, of_b, off, verdicts.get(key, "")) for name, key, of_a, of_b, off in cells]
     widths = [max(len(line[i]) for line in lines) for i in range(4)]
     return [
         "  ".join((line[0].ljust(widths[0]), *(line[i].rjust(widths[i]) for i in (1, 2, 3)), line[4])).rstrip()
@@ -25,7 +29,7 @@ def table(comparison: Comparison, loads: Loads, found: Sequence[Check]) -> list[
     ]
 
 
-def rows(comparison: Comparison, loads: Loads) -> list[tuple[str, str, str, str, str]]:
+def rows(comparison: Comparison, loads: Loads, found: Sequence[Check] = ()) -> list[tuple[str, str, str, str, str]]:
     """Name, name of its check, value of A, of B, and relative difference."""
     a, b = comparison.a, comparison.b
     at, worst_a, worst_b = comparison.worst
@@ -39,8 +43,22 @@ def rows(comparison: Comparison, loads: Loads) -> list[tuple[str, str, str, str,
         ("oscillation, RMS", "", "", "", _percent(comparison.oscillation_rms)),
         ("oscillation, excess variation", "", "", "", _percent(comparison.excess_variation)),
         *((name, "", *_both(P_a, P_b), _change(_over(P_a - P_b, P_b))) for name, P_a, P_b in pairs),
+        *((_FARTHEST, c.name, "", "", _percent(c.value)) for c in found if c.name == "farthest-point"),
+        *(("turns", c.name, "", "", _percent(c.value)) for c in found if c.name == "legs"),
+        *(row for leg in comparison.legs for row in _leg(leg)),
         ("last opening", "end", *_both(a.last, b.last), ""),
     ]
+
+
+def _leg(leg: LegDifference) -> list[tuple[str, str, str, str, str]]:
+    """What can be told of one leg."""
+    cells = [
+        (f"leg {leg.number}, {leg.words}", "curve", leg.error),
+        ("  secant stiffness", "slope", leg.slope),
+        ("  residual opening", "residual", leg.residual),
+        ("  work lost there and back", "loop", leg.loop),
+    ]
+    return [(name, f"{key}-leg-{leg.number}", "", "", _change(value)) for name, key, value in cells if value == value]
 
 
 def remarks(comparison: Comparison) -> list[str]:
@@ -60,9 +78,10 @@ def complaints(comparison: Comparison, found: Sequence[Check]) -> list[str]:
     """One sentence for every tolerance that is broken."""
     words = {"curve-error": "curve error", "peak-load": "peak load differs by", "energy": "energy differs by"}
     return [
-        f"{words[check.name]} {_percent(abs(check.value))}, more than {_percent(check.tolerance)}"
+        f"{words.get(check.name, check.meaning.rstrip('.') + ':')} {_percent(abs(check.value))}, "
+        f"more than {_percent(check.tolerance)}"
         for check in found
-        if not check.passed and check.name in words
+        if not check.passed and check.name != "end"
     ]
 
 

@@ -4,38 +4,43 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from verify import beam_error, introduction
 from verify.crosschecks import (
-    ANALYTICAL,
     CROSS_CODE,
-    ON_SUBSTRATE,
-    SQUEEZED,
     beam_check,
+    no_beam,
     pair_checks,
     proven,
     published_load,
     published_meaning,
     published_names,
-    squeeze,
 )
 from verify.curve_file import Reading, read_curve
-from verify.effects import simulated
-from verify.leg_checks import along_the_programme, turns_check
-from verify.legs import NEAR, only_opens, path
+from verify.leg_checks import farthest_check, turns_check
+from verify.legs import NEAR, path
 from verify.magnitudes import LEAST, MOST
 from verify.methods import METHODS, known_methods
+from verify.odd_one_out import ODD, odd_one_out
 from verify.refusal import Refusal
 from verify.result import Result
 from verify.schema import Scene
+from verify.turns import only_opens, turns
 from verify.verdict import Check, Run, SceneReport
 
 #: Codes that a curve from elsewhere is held against, with the relative tolerance that holds between them as well.
 CODES: Mapping[str, float] = {**{m: CROSS_CODE[m] for m in ("tspline", "nurbs")}, "dolfinx": CROSS_CODE["nurbs"]}
+
+#: Part of its largest load below which a curve bears nothing any more.
+NOTHING = 0.01
+
+#: Part of the first leg behind which a curve begins late.
+LATE = 0.01
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 
@@ -105,7 +110,35 @@ def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneRepo
     results = {run.name: run.result for run in report.runs if run.result is not None}
     others = {run.method: run.result for run in (*report.runs, *runs) if run.method not in METHODS and run.result}
     checks = [check for name, other in others.items() for check in checks_of(report.scene, name, other, results)]
-    return replace(report, runs=(*report.runs, *runs), checks=(*report.checks, *checks))
+    said = [remark for name, other in others.items() for remark in _beginning(report.scene, name, other)]
+    load = introduction.sentence(report.scene) if curves else ""
+    said += [load] if load and load not in report.remarks else []
+    whole = (*report.checks, *checks)
+    odd = odd_one_out(report.scene, whole, results | others)
+    kept = [remark for remark in report.remarks if not remark.startswith(ODD)]  # named again, among more runs
+    return replace(report, runs=(*report.runs, *runs), checks=whole, remarks=(*kept, *said, *odd))
+
+
+def _programme(scene: Scene, curve: Result, runs: Iterable[Result]) -> tuple[float, ...]:
+    """The load programme, as far as there is a specimen: where a run has separated, a curve that ends there, or that
+    bears nothing any more, has come to its end."""
+    programme = scene.load.opening
+    apart = [float(run.opening.max()) for run in runs if run.complete and run.ending.startswith("separated")]
+    if apart and abs(curve.load[-1]) <= NOTHING * np.max(np.abs(curve.load)):
+        apart.append(float(curve.opening.max()))
+    end = min(apart, default=np.inf)
+    last = next((i for i, goal in enumerate(programme) if goal > end), None)
+    return programme if last is None else (*programme[:last], end)
+
+
+def _beginning(scene: Scene, name: str, curve: Result) -> tuple[str, ...]:
+    """What is said of a curve that leaves out more than a small part of the first leg."""
+    if curve.load.size == 0:
+        return ()
+    first, goal = float(curve.opening[0]), turns(scene.load.opening)[0]
+    if first / goal <= LATE:
+        return ()
+    return (f"{name}: begins at the opening {first:.6g} and is joined to the origin by a straight line",)
 
 
 def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Result]) -> tuple[Check, ...]:
@@ -115,9 +148,9 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
     ----------
     results : the runs that are there, by name
     """
-    programme = scene.load.opening
     if curve.load.size < 2:
         return ()
+    programme = _programme(scene, curve, results.values())
     checks: list[Check] = []
     if max(programme) > 0.0:
         missing = max(0.0, 1.0 - float(curve.opening.max()) / max(programme))
@@ -130,15 +163,14 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
         if method in usable:
             pair = pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
             checks += [proven(scene, check, usable) for check in pair]
-    if "beam" in usable and squeeze(scene) < SQUEEZED:
-        fine = ANALYTICAL[simulated(scene, "beam")["kinematics"]]
-        tolerance = ON_SUBSTRATE if scene.specimen.kind == "peel" else fine
+    fine = beam_error.tolerance(scene)
+    if "beam" in usable and fine is not None and not no_beam(scene):
         beam = usable["beam"]
-        checks.append(beam_check(scene, name, curve, beam, tolerance))
+        checks.append(beam_check(scene, name, curve, beam, fine))
         curves = (curve.opening, curve.load), (beam.opening, beam.load)
-        checks += along_the_programme(f"{name} / beam", *curves, programme, tolerance, "analytical")
+        checks += farthest_check(f"{name} / beam", *curves, programme, fine, "analytical")
     for known_name, known in zip(published_names(scene), scene.published, strict=True):
-        value = known.deviation(published_load(known, curve))
+        value = known.deviation(published_load(known, curve, programme))
         checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))
     return tuple(checks)
 

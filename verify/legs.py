@@ -1,7 +1,4 @@
-"""The legs of a load programme: where a curve turns from one to the next.
-
-Legs are counted from turn to turn: goals of a programme that follow each other in one direction are one leg.
-"""
+"""The legs of a load programme: where a curve turns from one to the next."""
 
 from __future__ import annotations
 
@@ -11,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from verify.curve import Curve, envelope, from_origin
+from verify.turns import turns
 
 #: Turns that differ by this part of the largest opening are the same, up to rounding.
 ROUNDING = 1e-6
@@ -56,7 +54,7 @@ class Leg:
         return f"{what} from {self.begin:g} to {self.end:g}"
 
     @property
-    def onward(self) -> Curve:
+    def onward(self) -> tuple[np.ndarray, np.ndarray]:
         """The path over ``heading`` times the opening, in whose envelope that grows."""
         return self.heading * self.opening, self.load
 
@@ -75,18 +73,6 @@ class Path:
     @property
     def complete(self) -> bool:
         return self.misfit <= NEAR
-
-
-def turns(programme: Sequence[float]) -> tuple[float, ...]:
-    """The openings at which a programme turns, and its last one; at the beginning the opening is 0."""
-    way = (0.0, *programme)
-    later = zip(way[:-2], way[1:-1], way[2:], strict=True)
-    return (*(goal for before, goal, after in later if (goal - before) * (after - goal) < 0.0), way[-1])
-
-
-def only_opens(programme: Sequence[float]) -> bool:
-    """Whether the programme has one leg, on which the opening grows."""
-    return len(turns(programme)) == 1 and programme[-1] > 0.0
 
 
 def path(curve: Curve, programme: Sequence[float]) -> Path:

@@ -25,19 +25,23 @@ def distances_along_load(points: Curve, graph: Curve, size: tuple[float, float])
     return np.where((d >= x[0]) & (d <= x[-1]), off, np.inf)
 
 
-def distances(points: Curve, graph: Curve, size: tuple[float, float], enough: float) -> np.ndarray:
+def distances(
+    points: Curve, graph: Curve, size: tuple[float, float], near: float = 0.0, enough: float = np.inf
+) -> np.ndarray:
     """Distance (n,) of every point of a path from the graph of another one, in parts of its own opening and load.
 
-    ``min over (x, y) of the graph of max(|d - x| / max(|d|, least), |P - y| / max(|P|, least))``: a steep drop may lie
-    that much earlier or later, a load be that much larger or smaller. The graph has the path, with its snap-backs, its
+    ``min over (x, y) of the graph of |d - x| / max(|d|, least) + |P - y| / max(|P|, least)``: a steep drop may lie that
+    much earlier or later, a load be that much larger or smaller. The graph has the path, with its snap-backs, its
     envelope, with vertical drops, and the kinks that its chords may cut. Openings grow in the envelopes of both.
 
-    A point whose load alone is no more than ``enough`` off counts with that. Behind the first `CHUNK` of the farthest
-    points that are farther away the others count as 0: the verdict is the same.
+    Parameters
+    ----------
+    near : a point whose load alone is no more than that off counts with this.
+    enough : where one of `CHUNK` points is farther, those that are not looked at yet count as 0.
     """
     d, P = (np.asarray(values, dtype=float) for values in points)
     found = distances_along_load(points, graph, size)
-    far = np.flatnonzero(found > enough)
+    far = np.flatnonzero(found > near)
     far = far[np.argsort(-found[far], kind="stable")]
     starts, ends = _segments(graph)
     scale = np.maximum(np.abs(d), LEAST_OPENING * size[0]), np.maximum(np.abs(P), LEAST_LOAD * size[1])
@@ -77,15 +81,14 @@ def _kinks(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _to_segments(points: np.ndarray, starts: np.ndarray, ends: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Distance (n,) in the larger one of both coordinates, each in parts of its ``scale`` (2, n).
+    """Distance (n,): the sum of those in both coordinates, each in parts of its ``scale`` (2, n).
 
-    On a segment that is largest of two absolute values of linear functions: least at an end, or where both are equal.
+    On a segment that is least at an end, or where one of both is zero.
     """
     a, b = ((side[:, None, :] - points[:, :, None]) / scale[:, :, None] for side in (starts, ends))
-    best = np.minimum(np.max(np.abs(a), axis=0), np.max(np.abs(b), axis=0))
-    for sign in (1.0, -1.0):
-        f, g = a[0] - sign * a[1], b[0] - sign * b[1]
-        crosses = f * g < 0.0
-        t = f / np.where(crosses, f - g, 1.0)
-        best = np.where(crosses, np.minimum(best, np.abs(a[0] + t * (b[0] - a[0]))), best)
+    best = np.minimum(np.sum(np.abs(a), axis=0), np.sum(np.abs(b), axis=0))
+    for i, j in ((0, 1), (1, 0)):
+        crosses = a[i] * b[i] < 0.0
+        t = a[i] / np.where(crosses, a[i] - b[i], 1.0)
+        best = np.where(crosses, np.minimum(best, np.abs(a[j] + t * (b[j] - a[j]))), best)
     return np.min(best, axis=1)

@@ -118,8 +118,9 @@ def _rotation(scene: Scene, result: Result) -> Neglected | None:
 def _overlap(scene: Scene, result: Result) -> Neglected | None:
     """What contact would have made of the part of the bond that is squeezed.
 
-    The smallest gap is that of the fields that were kept and, at every step, of both ends of the bond. In the fields
-    the squeezed bond holds a part of the work; each point of it would have been stiffer by penalty / secant.
+    The smallest gap is that of the fields that were kept and, at every step, of both ends of the bond, and of all the
+    faces where the programme goes down. In the fields the squeezed bond holds a part of the work; each point of it
+    would have been stiffer by penalty / secant.
     """
     law, steps = law_of(scene), result.steps
     gaps = [steps[name] for name in ("tip_opening", "end_opening") if name in steps]
@@ -128,10 +129,12 @@ def _overlap(scene: Scene, result: Result) -> Neglected | None:
         return None
     overlap = max(0.0, -min(float(np.min(gap, initial=0.0)) for gap in gaps)) / law.g_peak
     ends = max(0.0, -min((float(np.min(steps[n])) for n in ("tip_opening", "end_opening") if n in steps), default=0.0))
+    ends = max(ends, float(np.max(steps.get("penetration", 0.0), initial=0.0)))
+    overlap = max(overlap, ends / law.g_peak)
     change = max((_load_of(snapshot, result, law, scene) for snapshot in result.snapshots), default=0.0)
     seen = f"faces overlapped by up to {overlap:.2g} g_max, which is worth {change:.2%} of the load"
     if ends / law.g_peak > OVERLAP:
-        seen = f"faces ran into each other by {overlap:.2g} g_max where the bond was to close"
+        seen = f"faces ran into each other by {overlap:.2g} g_max where they were to close"
         return Neglected("contact", max(change, overlap), False, seen)
     return Neglected("contact", change, change <= NEGLIGIBLE, seen)
 

@@ -15,6 +15,8 @@ from verify.verdict import Check
 
 #: The code that a basis belongs to. Bases of one code confirm each other less than different codes do.
 CODES = {name: "iga" for name in ("tspline", "tspline-adaptive", "nurbs", MATCHED, "lagrange")} | {SECOND: "dolfinx"}
+#: How every sentence of this module begins.
+ODD = "odd one out"
 #: Runs whose points keep their pairs.
 KEPT = {MATCHED, REFERENCE, SECOND, "beam"}
 #: Distance within which two runs agree.
@@ -64,11 +66,11 @@ def odd_one(results: Mapping[str, Result], end: float, models: float = 0.0) -> s
         if odd:
             inside = max((apart[frozenset(pair)] for pair in combinations(main, 2)), default=0.0)
             confirmed = f"{_listed(main)}, which agree within {inside:.2%}" if len(main) > 1 else main[0]
-            return f"odd one out: {_listed(list(odd))}, {min(odd.values()):.2%} or more from {confirmed}"
+            return f"{ODD}: {_listed(list(odd))}, {min(odd.values()):.2%} or more from {confirmed}"
     mean = {name: float(np.mean([far for pair, far in apart.items() if name in pair])) for name in results}
     far = max(mean, key=lambda name: mean[name])
     rest = float(np.mean([mean[name] for name in results if name != far]))
-    return f"odd one out, though not by much: {far}, on average {mean[far]:.2%} from the other runs, those {rest:.2%}"
+    return f"{ODD}, though not by much: {far}, on average {mean[far]:.2%} from the other runs, those {rest:.2%}"
 
 
 def _groups(names: Sequence[str], agree: set[frozenset[str]]) -> list[list[str]]:

@@ -87,6 +87,7 @@ def _common_keys(scene: Scene, method: str) -> dict[str, Any]:
         "contact": effects["contact"],
         "irreversible": effects["irreversible"],
         "opening": scene.load.opening,
+        "load_at": scene.load.at,
         "kinematics": effects["kinematics"],
         "snapshot_openings": tuple(f * max(0.0, *scene.load.opening) for f in SNAPSHOT_FRACTIONS),
     }

@@ -77,7 +77,10 @@ def warnings(scene: Scene, method: str) -> tuple[str, ...]:
         else f"process zone {zone.length:.2g}{unit} spans {zone.elements:.1f} elements of {zone.element:.2g}{unit}, "
         f"fewer than {ENOUGH}"
     )
-    return (f"{spans}: expect too high a load and snap-backs from element to element; {_remedy(scene, method, zone)}",)
+    return (
+        f"{spans}: expect too high a load and snap-backs from element to element; {remedy(scene, method)}, "
+        "or a lower interface.strength",
+    )
 
 
 def measured(result: Result) -> float:
@@ -149,6 +152,17 @@ def bending_modulus(material: Material, plane: str) -> float:
     return 1.0 / float(_compliance(material, plane)[0, 0])
 
 
+def across_modulus(material: Material, plane: str) -> float:
+    """Modulus of stretching across the specimen, E2 or its plane-strain value."""
+    return 1.0 / float(_compliance(material, plane)[1, 1])
+
+
+def poisson(material: Material, plane: str) -> float:
+    """Contraction across the specimen over the stretch along it, nu12 or its plane-strain value."""
+    a = _compliance(material, plane)
+    return -float(a[0, 1] / a[0, 0])
+
+
 def crack_modulus(material: Material, plane: str) -> float:
     """E' of G = K^2 / E' for a crack along axis 1 of an orthotropic solid (Sih, Paris, Irwin 1965)."""
     a = _compliance(material, plane)
@@ -179,17 +193,20 @@ def _longest(scene: Scene, method: str) -> float:
     return nan
 
 
-def _remedy(scene: Scene, method: str, zone: Zone) -> str:
+def remedy(scene: Scene, method: str, elements: float = ENOUGH) -> str:
+    """The setting of the mesh with which that many elements span the zone."""
+    if scene.specimen.mesh and method in WITH_DOFS:
+        return f"a mesh with {elements:.2g} elements in it resolves it"
     key, now = (
         ("dolfinx.elements", scene.dolfinx.elements)
         if method == "dolfinx"
         else ("discretization.dofs", scene.discretization.dofs)
     )
     # both grow about as the elements along the specimen do
-    wanted = _rounded(now * ENOUGH / zone.elements)
-    while method in WITH_DOFS and wanted < AT_HAND and not _with_dofs(scene, method, wanted).resolved:
+    wanted = _rounded(now * elements / expected(scene, method).elements)
+    while method in WITH_DOFS and wanted < AT_HAND and _with_dofs(scene, method, wanted).elements < elements:
         wanted = _rounded(1.05 * wanted)
-    return f"{key} = {wanted} resolves it, or a lower interface.strength"
+    return f"{key} = {wanted} resolves it"
 
 
 def _with_dofs(scene: Scene, method: str, dofs: int) -> Zone:

@@ -30,6 +30,8 @@ class Published(Section):
     """The largest load, or that at an opening."""
     opening: float | None = Field(default=None, gt=0, validate_default=True)
     """Of load_at [length]."""
+    leg: int | None = Field(default=None, ge=1, validate_default=True)
+    """Of load_at: the leg of the programme, counted from turn to turn; left out: where the opening is a new largest."""
     value: Annotated[tuple[float, float], BeforeValidator(_as_range)]
     """Load [force]; of codes that differ the lowest and the highest, like [4.3, 4.5]."""
     tolerance: float = Field(gt=0, lt=1)
@@ -48,6 +50,13 @@ class Published(Section):
         if quantity == "peak" and opening is not None:
             raise refuse("left out for a peak, wherever it is", ((), opening))
         return opening
+
+    @field_validator("leg")
+    @classmethod
+    def _of_a_load(cls, leg: int | None, info: ValidationInfo) -> int | None:
+        if leg is not None and info.data.get("quantity") == "peak":
+            raise refuse("left out for a peak, wherever it is", ((), leg))
+        return leg
 
     @field_validator("value")
     @classmethod

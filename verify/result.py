@@ -31,7 +31,7 @@ EVIDENCE_COLUMNS = (
     "damage_front",  # from the loaded end to the foremost point past its strength, g > g_max; at least the precrack
     "face_slope_top",  # mean of du_y/dX over the loaded face, signed
     "face_slope_bottom",
-    "face_energy",  # sum over the loaded faces of the integral of W dY, per unit width
+    "face_energy",  # integral of W dY over the end faces, those of the far end with a minus, per unit width
     "interface_force",  # vertical resultant of the interface tractions on the upper arm
     "reaction_x",  # sums of the support reactions, besides what balances the resultant of the loads
     "reaction_y",
@@ -43,6 +43,9 @@ EVIDENCE_COLUMNS = (
     "bulk_energy",
     "cohesive_energy",
     "contact_energy",
+    "penetration",  # how deep the faces are in each other, sampled all along them; where the programme goes down
+    "contact_pressure",  # largest traction with which they push each other apart
+    "mouth_opening",  # gap at the end of the faces next to the load, where they may touch beyond the bond
 )
 
 

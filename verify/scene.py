@@ -37,6 +37,7 @@ __all__ = [
 
 _FOLDER = Path(__file__).with_name("scenes")
 _KEY = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*(\.[A-Za-z_][A-Za-z0-9_-]*)*")
+_RANDOM = re.compile(r"random-(\d{1,9})")
 _BARE_WORD = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 
@@ -69,7 +70,7 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
 
     Parameters
     ----------
-    name_or_path : a packaged name, or the path of a TOML file
+    name_or_path : a packaged name, ``random-SEED`` (`verify.hard.random_scenes`), or the path of a TOML file
     overrides : ``dotted.key=value`` with a TOML value; a bare word is taken as text. Mesh files that are named here are
         found from the working directory and may lie anywhere; those of a scene file lie in its folder or below.
 
@@ -79,6 +80,10 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
         With one sentence for every thing that is wrong.
     """
     source = str(name_or_path)
+    if seed := _RANDOM.fullmatch(source):
+        from verify.hard.random_scenes import random_scene
+
+        return parse_scene(random_scene(int(seed[1])).model_dump(), overrides, source)
     path = _FOLDER / f"{source}.toml" if source in packaged_scenes() else Path(name_or_path)
     raw = _read(path, source)
     if not any(_key_of(override) in ("specimen", "specimen.mesh") for override in overrides):

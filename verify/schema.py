@@ -15,6 +15,7 @@ from verify.laws import PLAIN, known
 from verify.published import Published
 from verify.section import Positive, Section, one_of, refuse
 from verify.specimen import MATERIALS, Material, Specimen, definite
+from verify.turns import turns
 
 
 def _hundred_initial_stiffnesses(data: dict[str, Any]) -> float:
@@ -50,7 +51,11 @@ def _as_programme(value: object) -> object:
 
 class Load(Section):
     opening: Annotated[tuple[float, ...], BeforeValidator(_as_programme), Field(min_length=1)]
-    """End of the displacement programme [length]; a list unloads and reloads, like [1.5, 0.2, 3.0]."""
+    """End of the displacement programme [length]; a list unloads and reloads, like [1.5, 0.2, 3.0]; below 0 the loaded
+    faces are pressed together."""
+
+    at: Literal["face", "node", "hinge"] = "face"
+    """Where load and opening are: even over the end face and its mean, its corner away from the bond, or its middle."""
 
     @field_validator("opening")
     @classmethod
@@ -214,17 +219,24 @@ class Scene(Section):
     @field_validator("load")
     @classmethod
     def _within_reach(cls, load: Load, info: ValidationInfo) -> Load:
-        """Two arms of length L cannot be further apart than 2 L, nor pass through each other by more than both."""
+        """Two arms of length L cannot be further apart than 2 L.
+
+        Pressed together by one thickness both loaded faces would be in one place. A strip may be pressed down beside
+        the end of its substrate.
+        """
         specimen = info.data.get("specimen")
         if specimen is None:
             return load
         thickness, length = (
             ("strip_thickness", "strip_length") if specimen.kind == "peel" else ("arm_thickness", "length")
         )
-        low, high = -2 * getattr(specimen, thickness), 2 * getattr(specimen, length)
+        times, why = (2, "-2 strip_thickness")
+        if specimen.kind == "dcb":
+            times, why = 1, "-arm_thickness, at which both loaded faces would be in one place"
+        low, high = -times * getattr(specimen, thickness), 2 * getattr(specimen, length)
         outside = [(("opening", i), opening) for i, opening in enumerate(load.opening) if not low <= opening <= high]
         if outside:
-            raise refuse(f">= {low:g} (-2 {thickness}) and <= {high:g} (2 {length})", *outside)
+            raise refuse(f">= {low:g} ({why}) and <= {high:g} (2 {length})", *outside)
         return load
 
     @field_validator("effects")
@@ -266,4 +278,14 @@ class Scene(Section):
         beyond = [((i, "opening"), known.opening) for i, known in enumerate(published) if (known.opening or 0) > end]
         if beyond:
             raise refuse(f"<= {end:g}, the largest load.opening", *beyond)
+        way = (0.0, *turns(load.opening))
+        for i, value in enumerate(published):
+            if value.leg is None or value.opening is None:
+                continue
+            if value.leg >= len(way):
+                raise refuse(f"<= {len(way) - 1}, the number of legs of load.opening", ((i, "leg"), value.leg))
+            low, high = sorted(way[value.leg - 1 : value.leg + 1])
+            if not low <= value.opening <= high:
+                rule = f">= {low:g} and <= {high:g}, leg {value.leg} of load.opening"
+                raise refuse(rule, ((i, "opening"), value.opening))
         return published

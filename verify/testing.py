@@ -45,6 +45,7 @@ def assert_curves_close(
     peak: float | None = None,
     energy: float | None = None,
     end: float | None = None,
+    programme: Sequence[float] | None = None,
     actual_as: Reading | None = None,
     expected_as: Reading | None = None,
 ) -> None:
@@ -61,6 +62,10 @@ def assert_curves_close(
     ``actual`` must reach ``end`` as well: a run that stops early is not close. A curve whose first opening is above 0
     is joined to the origin by a straight line.
 
+    ``curve`` asks for more than that: no point of ``actual`` may be farther from ``expected`` than 4 times as much, in
+    parts of its own opening and load, and where ``expected`` unloads, every leg from turn to turn must be there, with
+    its loads, secant stiffness, residual opening and lost work within ``curve``.
+
     Parameters
     ----------
     actual, expected
@@ -69,6 +74,8 @@ def assert_curves_close(
         and ``load``, as a result of this package is; or the path of a text file or of the folder of a run.
     curve, peak, energy : relative tolerances, 0.01 for 1 %
     end : compare up to this opening; default: the last of ``expected``
+    programme : the openings at which the load turns, and the last one; default: those at which ``expected`` is seen to
+        unload. A path that snaps back does not unload: it comes back at smaller loads.
     actual_as, expected_as
         Which columns are opening and load, and what they are multiplied by; default: those of these names, unscaled.
 
@@ -101,13 +108,21 @@ def assert_curves_close(
         _tolerance(name, limit)
     if end is not None and (isinstance(end, bool) or not isinstance(end, Real)):
         raise TypeError(f"end: must be a number, got {end!r}")
+    if programme is not None and not _are_numbers(programme):
+        raise TypeError(f"programme: must be openings, got {programme!r}")
     names = ("actual", "expected")
-    found = compare(_points("actual", actual, actual_as), _points("expected", expected, expected_as), end, names)
+    curves = _points("actual", actual, actual_as), _points("expected", expected, expected_as)
+    found = compare(*curves, end, names, programme=programme)
     judged = checks(found, **limits)
     if not all(check.passed for check in judged):
         broken = "; ".join([*complaints(found, judged), *remarks(found)])
         lines = [f"actual is not close to expected: {broken}", *table(found, (), judged)]
         raise AssertionError("\n".join(lines))
+
+
+def _are_numbers(values: Any) -> bool:
+    listed = isinstance(values, Sequence | np.ndarray) and not isinstance(values, str)
+    return listed and all(isinstance(one, Real) and not isinstance(one, bool) for one in values)
 
 
 def _tolerance(name: str, limit: float | None) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from verify import given_meshes, neglected, verdict_file
+from verify import given_meshes, introduction, neglected, verdict_file
 from verify.checks import run_checks
 from verify.crosschecks import cross_checks, remarks
 from verify.effects import simulated
@@ -161,7 +161,7 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     on_their_own = [o.job.variant for o in outcomes if o.job.variant in results and given_meshes.OWN in o.job.overrides]
     given, own = ({k: r for k, r in results.items() if (k in on_their_own) == other} for other in (False, True))
     left_out = (*neglected.remarks(scene, given), *neglected.remarks(given_meshes.own_mesh(scene), own))
-    said = (*remarks(scene, results), *given_meshes.remarks(on_their_own), *left_out)
+    said = (*remarks(scene, results), *given_meshes.remarks(on_their_own), *left_out, *introduction.remarks(scene))
     checks += cross_checks(scene, results)
     return SceneReport(scene, runs, tuple(checks), (*said, *odd_one_out(scene, checks, results)))
 

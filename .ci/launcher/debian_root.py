@@ -22,6 +22,8 @@ PACKAGES = (
     "libc6-dev",
     "ca-certificates",
 )
+#: For tests alone: the browser of the pages, the shells whose words are completed, OpenGL without a screen for VTK.
+FOR_TESTS = ("chromium", "fish", "libegl1", "zsh")
 TOOLS = ("mmdebstrap", "bwrap")
 RETRY_AFTER = 3600.0  # seconds before a failed build is tried again by itself
 
@@ -31,14 +33,23 @@ def suite() -> str:
     return os.environ.get("DEBOND_SUITE") or "trixie"
 
 
-def root_folder(cache: Path) -> Path:
+def packages(tests: bool) -> tuple[str, ...]:
+    """The Debian packages of the root, with those of the tests or without."""
+    return (*PACKAGES, *(FOR_TESTS if tests else ()))
+
+
+def root_folder(cache: Path, tests: bool = False) -> Path:
     """Where the root of the present suite is or will be; another recipe is another folder."""
-    return cache / f"root-{suite()}-{digest(*PACKAGES)}"
+    return cache / f"root-{suite()}-{digest(*packages(tests))}"
 
 
-def provide(cache: Path) -> Path:
-    """The whole root, built first if it is not there. Raises Trouble when that cannot be done."""
-    root = root_folder(cache)
+def provide(cache: Path, tests: bool = False) -> Path:
+    """The whole root, built first if it is not there; a root for tests serves all else, too.
+
+    Raises Trouble when that cannot be done.
+    """
+    tests = tests or root_folder(cache, tests=True).is_dir()
+    root = root_folder(cache, tests)
     if root.is_dir():
         if shutil.which("bwrap") is None:
             raise Trouble("bubblewrap is missing; as root: apt-get install bubblewrap")
@@ -51,28 +62,29 @@ def provide(cache: Path) -> Path:
         if not root.is_dir():
             try:
                 failed.unlink(missing_ok=True)
-                build(root)
+                build(root, tests)
             except Trouble as trouble:
                 failed.write_text(f"{trouble}\n")
                 raise
     return root
 
 
-def build(root: Path) -> None:
+def build(root: Path, tests: bool = False) -> None:
     """Build the root beside its place and rename it when it is whole."""
     get_tools()
     can_enter()
-    need_space(root.parent, 3.0)
+    need_space(root.parent, 4.0 if tests else 3.0)
     log = root.with_name(root.name + ".log")
     log.unlink(missing_ok=True)
     part = root.with_name(root.name + ".part")
     if part.exists():
         say(f"removing a half-built root, {part}")
         remove_tree(part)
-    say(f"building a private Debian {suite()} with DOLFINx in {root}: once, about 3 minutes and 2 GB")
+    holds, size = ("DOLFINx and what the tests need", 3) if tests else ("DOLFINx", 2)
+    say(f"building a private Debian {suite()} with {holds} in {root}: once, about 3 minutes and {size} GB")
     start = time.monotonic()
     try:
-        run_logged(recipe(part), log, "building the private Debian root")
+        run_logged(recipe(part, tests), log, "building the private Debian root")
     except Trouble:
         remove_tree(part)
         raise
@@ -87,9 +99,9 @@ def own_mounts() -> list[str]:
     return words if works else []
 
 
-def recipe(part: Path) -> list[str]:
+def recipe(part: Path, tests: bool = False) -> list[str]:
     """The mmdebstrap command; an ordinary user unpacks a tar file, so that all files are his own to remove."""
-    words = ["mmdebstrap", "--variant=apt", "--include=" + ",".join(PACKAGES)]
+    words = ["mmdebstrap", "--variant=apt", "--include=" + ",".join(packages(tests))]
     words.append('--aptopt=APT::Install-Recommends "false"')
     if suite() in ("sid", "unstable"):
         words.append('--aptopt=Acquire::Check-Valid-Until "false"')  # a mirror's copy may be older than its validity

@@ -1,7 +1,7 @@
 """Installs what the project needs into the virtual environment whose Python runs this file.
 
-The wishes come from pyproject.toml, the versions from pins.txt. NumPy and SciPy of the base Python stay where it has
-them: its DOLFINx was compiled against them.
+With the word ``tests`` also what only tests need. The wishes come from pyproject.toml, the versions from pins.txt.
+NumPy and SciPy of the base Python stay where it has them: its DOLFINx was compiled against them.
 """
 
 import importlib.metadata
@@ -13,13 +13,16 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 LEFT_TO_THE_BASE = ("numpy", "scipy")
+EXTRAS = ("report", "dev")
+EXTRAS_OF_TESTS = ("distributed", "docs", "fields", "tests")
 
 
-def requirements() -> list[str]:
-    """What to install: the dependencies and the extras of the report and of development."""
+def requirements(tests: bool) -> list[str]:
+    """What to install: the dependencies and the extras of the report, of development and of tests."""
     project = tomllib.loads((HERE.parent.parent / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
-    return [*project["dependencies"], *extras["report"], *extras["dev"]]
+    wanted = (*EXTRAS, *(EXTRAS_OF_TESTS if tests else ()))
+    return [*project["dependencies"], *(wish for extra in wanted for wish in extras[extra])]
 
 
 def constraints() -> list[str]:
@@ -44,7 +47,7 @@ def main() -> int:
         file.write("\n".join(constraints()) + "\n")
         file.flush()
         pip = [sys.executable, "-m", "pip", "install", "--no-input", "--disable-pip-version-check"]
-        return subprocess.call([*pip, "--constraint", file.name, *requirements()])
+        return subprocess.call([*pip, "--constraint", file.name, *requirements("tests" in sys.argv[1:])])
 
 
 if __name__ == "__main__":

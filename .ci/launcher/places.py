@@ -62,26 +62,26 @@ def inside() -> Place | None:
     return Place(cache_folder(), Path(venv), sees_host=True) if venv else None
 
 
-def find() -> Place:
-    """The first environment that works. Raises Trouble when there is none."""
+def find(tests: bool = False) -> Place:
+    """The first environment that works, with what only tests need or without. Raises Trouble when there is none."""
     cache = cache_folder()
     if os.environ.get("DEBOND_NO_DOLFINX", "0") not in ("", "0"):
-        return plain(cache)
+        return plain(cache, tests)
     if os.environ.get("DEBOND_SUITE"):
-        return private_root(cache)
+        return private_root(cache, tests)
     for way in (own_dolfinx, private_root):
         try:
-            found = way(cache)
+            found = way(cache, tests)
         except Trouble as trouble:
             say(str(trouble))
             continue
         if found is not None:
             return found
     say("going on without DOLFINx; conda users: conda env create -f environment.yml")
-    return plain(cache)
+    return plain(cache, tests)
 
 
-def own_dolfinx(cache: Path) -> Place | None:
+def own_dolfinx(cache: Path, tests: bool = False) -> Place | None:
     """A virtual environment on a Python of this machine that has DOLFINx, or None."""
     base = python_with_dolfinx()
     if base is None:
@@ -95,8 +95,7 @@ def own_dolfinx(cache: Path) -> Place | None:
         if tuple(int(word) for word in version.split(".")[:2]) < (0, 9):
             raise Trouble(f"{base} has DOLFINx {version}, and 0.9 or newer is needed")
         say(f"{base} has DOLFINx {version}")
-        make_venv(Place(cache, venv, sees_host=True), base, ["--system-site-packages"])
-    return Place(cache, venv, sees_host=True)
+    return filled(Place(cache, venv, sees_host=True), base, ["--system-site-packages"], tests)
 
 
 def python_with_dolfinx() -> str | None:
@@ -109,16 +108,14 @@ def python_with_dolfinx() -> str | None:
     return system if subprocess.run([system, "-c", FIND_DOLFINX], check=False).returncode == 0 else None
 
 
-def private_root(cache: Path) -> Place:
+def private_root(cache: Path, tests: bool = False) -> Place:
     """The virtual environment of the private Debian root."""
-    root = debian_root.provide(cache)
+    root = debian_root.provide(cache, tests)
     place = Place(cache, cache / f"venv-{debian_root.suite()}-{digest(*recipe(), root.name)}", root)
-    if not is_whole(place.venv):
-        make_venv(place, "/usr/bin/python3", ["--system-site-packages"])
-    return place
+    return filled(place, "/usr/bin/python3", ["--system-site-packages"], tests)
 
 
-def plain(cache: Path) -> Place:
+def plain(cache: Path, tests: bool = False) -> Place:
     """A virtual environment from PyPI alone."""
     base = sys.executable
     if sys.version_info < (3, 11):  # noqa: UP036
@@ -126,10 +123,7 @@ def plain(cache: Path) -> Place:
         base = next(filter(None, map(shutil.which, names)), None)
         if base is None:
             raise Trouble(f"Python 3.11 or newer is needed and this is {sys.version.split()[0]}; install a newer one")
-    place = Place(cache, plain_venv(cache, base))
-    if not is_whole(place.venv):
-        make_venv(place, base, [])
-    return place
+    return filled(Place(cache, plain_venv(cache, base)), base, [], tests)
 
 
 def plain_venv(cache: Path, base: str) -> Path:
@@ -143,33 +137,56 @@ def recipe() -> tuple[str, ...]:
     return (*wanted, (LAUNCHER / "pins.txt").read_text())
 
 
-def is_whole(venv: Path) -> bool:
-    """Whether the building of a virtual environment came to its end."""
-    return (venv / "whole").exists()
+def is_whole(venv: Path, tests: bool = False) -> bool:
+    """Whether the building of a virtual environment came to its end, and that of what only tests need."""
+    return (venv / "whole").exists() and (not tests or (venv / "whole-for-tests").exists())
+
+
+def filled(place: Place, base: str, options: list[str], tests: bool = False) -> Place:
+    """The place, whose virtual environment is made and filled first where it is not whole."""
+    if is_whole(place.venv, tests):
+        return place
+    with only_one(place.cache):
+        if not is_whole(place.venv):
+            make_venv(place, base, options)
+        if not is_whole(place.venv, tests):
+            add_packages(place, "the Python packages of the tests", 1.5, "tests")
+            (place.venv / "whole-for-tests").touch()
+    return place
 
 
 def make_venv(place: Place, base: str, options: list[str]) -> None:
     """Make and fill a virtual environment where it will stay; the file ``whole`` is written last."""
-    with only_one(place.cache):
-        if is_whole(place.venv):
-            return
-        need_space(place.cache, 1.0)
-        remove_tree(place.venv)
-        log = place.venv.with_name(place.venv.name + ".log")
-        log.unlink(missing_ok=True)
-        seen = (PROJECT, place.cache)
-        enter = ["bwrap", "--die-with-parent", *mounts(place.root, PROJECT, seen)] if place.root else []
-        env = variables(place)
-        say(f"installing the Python packages in {place.venv}: once, about half a minute")
-        run_logged([*enter, base, "-m", "venv", *options, str(place.venv)], log, "making the virtual environment", env)
-        python = place.venv / "bin" / "python"
-        if place.sees_host:
-            follow_parent(base, place.venv)
-        run_logged([*enter, str(python), str(LAUNCHER / "fill_venv.py")], log, "installing the Python packages", env)
-        program = place.venv / "bin" / "debond"
-        program.write_text(f'#!/bin/sh\nexec "{python}" -P -m verify.cli "$@"\n')
-        program.chmod(0o755)
-        (place.venv / "whole").touch()
+    remove_tree(place.venv)
+    log_of(place).unlink(missing_ok=True)
+    make = [*entered(place), base, "-m", "venv", *options, str(place.venv)]
+    need_space(place.cache, 1.0)
+    run_logged(make, log_of(place), "making the virtual environment", variables(place))
+    if place.sees_host:
+        follow_parent(base, place.venv)
+    add_packages(place, "the Python packages", 1.0)
+    program = place.venv / "bin" / "debond"
+    program.write_text(f'#!/bin/sh\nexec "{place.venv / "bin" / "python"}" -P -m verify.cli "$@"\n')
+    program.chmod(0o755)
+    (place.venv / "whole").touch()
+
+
+def add_packages(place: Place, what: str, gigabytes: float, *words: str) -> None:
+    """Run ``fill_venv.py`` with these words in a virtual environment."""
+    need_space(place.cache, gigabytes)
+    say(f"installing {what} in {place.venv}: once, about half a minute")
+    fill = [*entered(place), str(place.venv / "bin" / "python"), str(LAUNCHER / "fill_venv.py"), *words]
+    run_logged(fill, log_of(place), f"installing {what}", variables(place))
+
+
+def entered(place: Place) -> list[str]:
+    """Words that let a command run in the root of the place, if it has one."""
+    return ["bwrap", "--die-with-parent", *mounts(place.root, PROJECT, (PROJECT, place.cache))] if place.root else []
+
+
+def log_of(place: Place) -> Path:
+    """What the builders of a virtual environment print."""
+    return place.venv.with_name(place.venv.name + ".log")
 
 
 def follow_parent(base: str, venv: Path) -> None:

@@ -110,7 +110,7 @@ def test_separation_is_reached_and_said(kinematics):
 
 
 @KINEMATICS
-@pytest.mark.parametrize("programme", [(1.5, 0.0, 1.5, 3.0), (1.5, -0.1, 3.0)])
+@pytest.mark.parametrize("programme", [(1.5, 0.0, 1.5, 3.0), (1.5, -0.002, 3.0)])
 def test_unloading_and_closing_come_back_to_the_envelope(programme, kinematics):
     problem = replace(COARSE, strength=4.0, elements=56, kinematics=kinematics)
     solution, run = solve(replace(problem, opening=programme))
@@ -120,7 +120,8 @@ def test_unloading_and_closing_come_back_to_the_envelope(programme, kinematics):
     assert np.min(run["opening"]) == min(programme[1], 0.0)
     assert ledger_error(run) < 0.002
     _, straight = solve(problem)
-    assert run["load"][-1] == pytest.approx(straight["load"][-1], rel=1e-4)
+    other_mesh = min(programme) < 0.0  # finer where the arms are pressed together
+    assert run["load"][-1] == pytest.approx(straight["load"][-1], rel=5e-4 if other_mesh else 1e-4)
     closed = run["opening"] <= 0
     assert np.all(run["load"][closed][1:] <= 1e-9)
     lost = run["dissipated_energy"][np.flatnonzero(run["opening"] == programme[1])[-1]]
@@ -128,14 +129,17 @@ def test_unloading_and_closing_come_back_to_the_envelope(programme, kinematics):
 
 
 def test_closed_arms_do_not_pass_through_each_other():
-    """Penetration is the contact pressure over the penalty: a hundred times less with a hundred times more of it."""
+    """Penetration is the contact pressure over the penalty, also at the loaded end, where nothing is bonded."""
     depths = []
-    for penalty in (1e4, 1e6):
-        problem = replace(COARSE, strength=4.0, elements=56, kinematics="linear", penalty=penalty, opening=(1.5, -0.1))
+    for penalty in (1e6, 1e8):
+        problem = replace(
+            COARSE, strength=4.0, elements=56, kinematics="linear", penalty=penalty, opening=(1.5, -0.002)
+        )
         model = build_model(replace(problem, steps=40), lambda name: nullcontext(), MPI.COMM_SELF)
         last = [point for point in path(model) if isinstance(point, State)][-1]
-        assert last.opening == -0.1
-        p_q, _ = model.law.traction(last.g_q, last.k_q)
+        assert last.opening == -0.002
+        p_q, _ = model.traction(last.g_q, last.k_q)
+        assert np.argmin(p_q) == np.argmin(model.X_q) and not model.bonded_q[np.argmin(p_q)]
         assert np.min(last.g_q) == pytest.approx(np.min(p_q) / penalty, rel=1e-12)
         depths.append(-np.min(last.g_q))
     assert 0 < depths[1] < 0.1 * depths[0]
@@ -163,7 +167,7 @@ def test_unloading_has_the_slope_of_frozen_damage():
 
 @pytest.mark.parametrize("penalty", [1e2, 1e4, 1e7, 1e10])
 def test_no_penalty_stops_the_path(penalty):
-    brief = replace(COARSE, strength=4.0, kinematics="linear", opening=(0.7, -0.02, 0.7), steps=20, penalty=penalty)
+    brief = replace(COARSE, strength=4.0, kinematics="linear", opening=(0.7, -0.002, 0.7), steps=20, penalty=penalty)
     solution, run = solve(brief)
     assert solution.status == "complete"
     assert run["opening"][-1] == 0.7

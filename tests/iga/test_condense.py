@@ -55,12 +55,12 @@ def test_the_condensed_path_is_that_of_the_whole(name, monkeypatch):
 
 def test_unloading_and_closing_come_to_the_same_ends(monkeypatch):
     """Where the programme turns, rounding decides how long the first steps are, and nothing else."""
-    problem = replace(BEAM, opening=(1.0, -0.05, 1.5))
+    problem = replace(BEAM, opening=(1.0, -0.002, 1.5))
     small = dcb.solve(problem)
     monkeypatch.setattr(iga.solve, "condensed", lambda system: None)
     whole = dcb.solve(problem)
     assert small.status == whole.status == "complete"
-    for goal in (1.0, -0.05, 0.0, 1.5):
+    for goal in (1.0, -0.002, 0.0, 1.5):
         a, b = ([row for row in run.rows if abs(row["opening"] - goal) < 1e-12] for run in (small, whole))
         assert len(a) == len(b) > 0
         for key in ("load", "dissipated_energy", "contact_energy", "tip_opening"):

@@ -8,7 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from iga.pace import BEND, CAREFUL, FEWEST, Pace, paced
+from iga.pace import BEND, CAREFUL, CORNERED, FEWEST, Pace, paced
+from iga.promise import Kept
 
 
 @pytest.mark.parametrize(("programme", "whole"), [((3.0,), 3.0), ((1.5, -0.5, 1.0), 5.0), ((-2.0,), 2.0)])
@@ -90,7 +91,9 @@ def ends(opening: float, h: float, curvature: float):
 
     def point(d: float) -> SimpleNamespace:
         load = 2.0 * d + curvature * d**2
-        return SimpleNamespace(opening=d, state=SimpleNamespace(load=load), slope=2.0 + 2.0 * curvature * d)
+        slope = 2.0 + 2.0 * curvature * d
+        tangent = SimpleNamespace(departure=slope, rough=False)
+        return SimpleNamespace(opening=d, state=SimpleNamespace(load=load), slope=slope, tangent=tangent)
 
     return point(opening), point(opening + h)
 
@@ -112,3 +115,29 @@ def test_a_straight_step_is_followed_by_one_twice_as_long_within_the_largest() -
     assert pace.after(*ends(1.0, 1e-9, 0.0), 4.0).step == pytest.approx(2.5 / 4096)
     counted = paced(np.array([10.0]), 100)
     assert counted.after(*ends(1.0, 0.25, 0.0), 4.0) is counted
+
+
+@pytest.mark.parametrize(("kept", "growth"), [(Kept(away=0.2, few=True, broken=True), 2.0), (Kept(away=1.0), 0.5)])
+def test_teeth_do_not_shorten_a_step_whose_straight_line_is_near(kept: Kept, growth: float) -> None:
+    """A load that leaves the tangent of its tooth by a lot; the step before it was asked to be as long."""
+    pace = replace(paced(np.array([10.0]), None), step=0.1)
+    assert pace.after(*ends(1.0, 0.1, -20.0), 1.0, kept).step == pytest.approx(growth * 0.1)
+
+
+def test_a_step_that_breaks_its_promise_is_cut_and_a_cornered_arc_ends_at_every_kink() -> None:
+    pace = replace(paced(np.array([10.0]), None), step=0.3)
+    cut = pace.cut(Kept(part=0.5, away=4.0), -0.2)
+    assert (cut.step, cut.cuts, cut.every_kink) == (pytest.approx(0.1), 1, False)
+    cornered = pace.cut(Kept(part=0.5, away=4.0, few=True), 0.2)
+    assert cornered.every_kink and cornered.spared == pace.spared
+    for _ in range(CORNERED):
+        assert cornered.every_kink
+        cornered = cornered.after(*ends(1.0, 0.1, 0.0), 4.0)
+    assert not cornered.every_kink and cornered.cuts == 0
+
+
+def test_steps_that_are_counted_after_failures_keep_the_promise_and_those_of_the_user_make_none() -> None:
+    pace = replace(paced(np.array([3.0]), None, 0.02), spared=0).slower()
+    assert pace.promised and pace.bend == 0.02 and not pace.by_accuracy
+    assert pace.cut(Kept(part=0.5), 0.02).after(*ends(1.0, 0.01, 0.0), 4.0).step == pace.step
+    assert not paced(np.array([3.0]), 150).promised

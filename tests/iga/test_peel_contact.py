@@ -49,9 +49,9 @@ def test_where_nothing_closes_nothing_touches_beyond_the_bond():
     """Not a point more than on the bond is looked at, and none where the bond ends with the substrate."""
     counts = {
         opening: build(replace(BACK, opening=opening)).system.interface.points
-        for opening in ((5.0,), (1.0, 5.0), (5.0, 1.0))
+        for opening in ((5.0,), (5.0, 1.0), (5.0, 0.0), (5.0, -0.05))
     }
-    assert counts[5.0,] == counts[1.0, 5.0] < counts[5.0, 1.0]
+    assert counts[5.0,] == counts[5.0, 1.0] == counts[5.0, 0.0] < counts[5.0, -0.05]
     for keys in ({"opening": (5.0,)}, {"bond_length": 120.0}, {"contact": False}):
         assert build(replace(BACK, **keys)).system.interface.bonded_q is None
 

@@ -4,7 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from doctored import C0, SMOOTH, arch, every, function_halved, point_unused, with_block, with_copies, with_elements
+from doctored_meshes import (
+    C0,
+    SMOOTH,
+    arch,
+    every,
+    function_halved,
+    point_unused,
+    with_block,
+    with_copies,
+    with_elements,
+)
 from hypothesis import given, settings
 from iga_files import REAL, SMALL, real, small
 from random_tmeshes import suitable_tmeshes

@@ -105,17 +105,16 @@ def test_reloading_meets_the_curve_again(reloaded):
 
 @pytest.mark.parametrize(("basis", "kinematics"), BOTH)
 def test_closing_is_held_by_contact(basis, kinematics):
-    """Pressed together by 0.1 and opened again: penetration is pressure by penalty, so a tenth with ten times that."""
+    """Pressed together by 0.002 and opened again: penetration is pressure by penalty, a tenth with ten times."""
     deepest = []
-    for penalty in (1e5, 1e6):
-        problem = replace(CZM1, basis=basis, kinematics=kinematics, penalty=penalty)
-        system, points, end = run(replace(problem, opening=(1.5, -0.1, 3.0)))
-        assert end.status == "complete" and not end.separated and points[-1].opening == 3.0
-        pressed = points[stops(points, -0.1)[0]]
+    for penalty in (1e7, 1e8):
+        problem = replace(CZM1, basis=basis, kinematics=kinematics, penalty=penalty, dofs=1000)
+        system, points, end = run(replace(problem, opening=(1.0, -0.002, 1.2)), steps=60)
+        assert end.status == "complete" and not end.separated and points[-1].opening == 1.2
+        pressed = points[stops(points, -0.002)[0]]
         g_q, p_q = pressed.response.contact.g_q, pressed.response.p_q
         assert pressed.state.load < 0.0 and np.min(p_q) < 0.0
-        broken_q = pressed.state.k_q >= system.interface.law.g_u
-        assert np.any(p_q[broken_q] < 0.0), "broken points let each other through"
+        assert np.argmin(system.interface.X_qi[p_q < 0.0, 0]) == np.argmin(p_q[p_q < 0.0]), "not held at the loaded end"
         assert np.all(-g_q[g_q < 0.0] <= -p_q[g_q < 0.0] / penalty * (1.0 + 1e-9))
         force = float(system.interface.dA_q @ p_q)
         assert force == pytest.approx(pressed.state.load, rel=1e-6 if kinematics == "linear" else 1e-2)

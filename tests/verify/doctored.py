@@ -37,16 +37,14 @@ def spike(leg: int, at: float, part: float) -> Doctor:
 
 
 def noise(part: float) -> Doctor:
-    random = np.random.default_rng(7)
-    return every(lambda d, P: (d, P * (1.0 + part * random.standard_normal(len(P)))))
+    return every(lambda d, P: (d, P * (1.0 + part * np.random.default_rng(len(P)).standard_normal(len(P)))))
 
 
 def some(keep: float) -> Doctor:
     """A part of the points, by chance; turns and ends, and the surroundings of the peak, are kept."""
-    random = np.random.default_rng(11)
 
     def change(d: np.ndarray, P: np.ndarray) -> Leg:
-        kept = random.random(len(d)) < keep
+        kept = np.random.default_rng(len(d)).random(len(d)) < keep
         kept[[0, -1]] = True
         kept |= np.abs(np.arange(len(d)) - np.argmax(P)) < 4
         return d[kept], P[kept]

@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
-from figures import Drawn, legend  # noqa: E402
+from figures import Drawn, legend, unreadable  # noqa: E402
 from made_up_costs import a_row  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 
@@ -19,7 +19,8 @@ from verify.compare import compare  # noqa: E402
 from verify.cost import figures as charts  # noqa: E402
 from verify.curve import envelope  # noqa: E402
 from verify.report import comparison  # noqa: E402
-from verify.report.style import PHASES, colour  # noqa: E402
+from verify.report.labels import name_points  # noqa: E402
+from verify.report.style import HALF, PHASES, colour, drawing, panel  # noqa: E402
 from verify.scaling import page as scaling  # noqa: E402
 from verify.scaling.growth import fit  # noqa: E402
 from verify.scaling.row import PARTS  # noqa: E402
@@ -59,6 +60,28 @@ def test_every_run_is_a_point_of_error_and_time(monkeypatch: pytest.MonkeyPatch)
     levels = sorted(set(one.get_ydata()[0] for one in axes.lines if one.get_color() == colour("rule")))
     assert levels == pytest.approx([0.1, 0.3, 1.0])
     assert axes.get_xscale() == axes.get_yscale() == "log"
+
+
+@pytest.mark.parametrize(
+    "places",
+    [
+        {"NURBS": (7.8, 0.052), "T-spline": (94.0, 0.027), "Lagrange": (22.0, 0.57), "cohesive beam": (5.6, 0.056)},
+        {"NURBS": (1.0, 0.05), "T-spline": (1.1, 0.05), "Lagrange": (1.0, 0.06), "cohesive beam": (9.0, 0.5)},
+        {"NURBS 489": (1.0, 0.12), "NURBS 978": (1.0, 0.11), "Lagrange": (40.0, 0.1), "beam": (0.1, 0.12)},
+    ],
+)
+def test_names_of_points_that_lie_close_do_not_meet(places: dict[str, tuple[float, float]]) -> None:
+    with drawing():
+        figure, axes = panel(HALF, 2.5)
+        for place in places.values():
+            axes.plot(*place, "o", color=colour("ink"), markersize=6)
+        axes.set(xscale="log", yscale="log", xlabel="wall time (s)", ylabel="distance (%)")
+        axes.margins(0.3, 0.3)
+        axes.minorticks_off()
+        axes.autoscale_view()
+        name_points(axes, list(places.values()), list(places), [colour("ink")] * len(places))
+        assert [text.get_text() for text in axes.texts] == list(places)
+        assert [said for said in unreadable(figure) if any(repr(name) in said for name in places)] == []
 
 
 def test_ladders_are_drawn_with_their_orders(monkeypatch: pytest.MonkeyPatch) -> None:

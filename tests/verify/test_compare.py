@@ -146,7 +146,7 @@ def test_a_curve_that_stops_early_is_not_close():
     half = d < 1.5
     found = compare((d[half], P[half]), (d, P))
     assert found.curve_error < 1e-5 and not found.reaches and found.end == d[half][-1]
-    assert [check.passed for check in checks(found, 0.01, 0.01)] == [True, True, False]
+    assert [check.passed for check in checks(found, 0.01, 0.01)] == [True, True, True, False]
     assert checks(found) == []
     (words,) = remarks(found)
     assert words.startswith(f"A ends at the opening {d[half][-1]:.6g}, before 3; an end of ")
@@ -209,9 +209,13 @@ def test_words_name_every_broken_tolerance():
     d, P = sampled(200)
     found = compare((d, 1.05 * P), (d, P))
     judged = checks(found, 0.01, 0.1, 0.02)
-    assert complaints(found, judged) == ["curve error 5 %, more than 1 %", "energy differs by 5 %, more than 2 %"]
+    assert complaints(found, judged) == [
+        "curve error 5 %, more than 1 %",
+        "energy differs by 5 %, more than 2 %",
+        "distance of the farthest point of A, at opening 1.90466, from B: 4.762 %, more than 4 %",
+    ]
     lines = table(found, [(1.0, 1.05, 1.0)], judged)
-    assert [line.split("  ")[0] for line in lines if "FAILS" in line] == ["curve error", "energy"]
+    assert [line.split("  ")[0] for line in lines if "FAILS" in line][:2] == ["curve error", "energy"]
     assert any(line.startswith("load at 1 ") and line.endswith("+5 %") for line in lines)
 
 
@@ -226,3 +230,69 @@ def test_where_a_comparison_begins_changes_no_wave() -> None:
         later = compare((d, waved), (d, load), begin=begin)
         assert (later.oscillation_rms, later.excess_variation) == (whole.oscillation_rms, whole.excess_variation)
         assert later.begin == begin and later.curve_error != whole.curve_error
+
+
+def loop(unloaded: float = 0.2, slope: float = 1.0, n: int = 200):
+    """Up to 1.5, along a line towards the origin and back, and on to 3."""
+    up, down, back = np.linspace(0, 1.5, n), np.linspace(1.5, unloaded, n)[1:], np.linspace(unloaded, 3.0, 2 * n)[1:]
+    secant = bond(1.5) / 1.5
+    loads = bond(up), bond(1.5) - slope * secant * (1.5 - down), np.where(back < 1.5, secant * back, bond(back))
+    return np.concatenate((up, down, back)), np.concatenate(loads)
+
+
+def test_an_unloading_is_compared_leg_by_leg():
+    """Where B is seen to unload; its envelope alone says nothing of it."""
+    found = compare(loop(slope=1.1, n=150), loop())
+    assert [leg.words for leg in found.legs] == [
+        "loading from 0 to 1.5",
+        "unloading from 1.5 to 0.2",
+        "reloading from 0.2 to 3",
+    ]
+    assert found.curve_error < 1e-3 and found.legs[1].slope == pytest.approx(0.1, abs=1e-6)
+    assert found.legs[1].residual == pytest.approx(1.0 / 11.0, abs=1e-6)  # 1.5 - 1.5 / 1.1, over 1.5
+    broken = {check.name for check in checks(found, 0.005) if not check.passed}
+    assert {"curve-leg-2", "slope-leg-2", "residual-leg-2", "loop-leg-2"} <= broken and "curve-error" not in broken
+    assert all(check.passed for check in checks(compare(loop(n=150), loop()), 0.005))
+    (words,) = [words for words in complaints(found, checks(found, 0.005)) if "stiffness" in words]
+    assert (
+        words == "The secant stiffness of leg 2, unloading from 1.5 to 0.2 (relative difference): 10 %, more than 0.5 %"
+    )
+    assert any(line.startswith("leg 2, unloading from 1.5 to 0.2 ") for line in table(found, (), []))
+
+
+def test_a_curve_without_the_unloading_of_the_other_lacks_a_leg():
+    d = np.linspace(0, 3, 400)
+    found = checks(compare((d, bond(d)), loop()), 0.005)
+    assert {check.name for check in found if not check.passed} == {"legs"}
+    assert all(check.passed for check in checks(compare(loop(), (d, bond(d))), 0.005)), "B does not ask for it"
+
+
+def test_the_programme_may_be_given():
+    """An unloading of 2 % is too small to be told from the steps of a snap-back."""
+    small = loop(unloaded=1.47)
+    assert compare(small, small).legs == () and len(compare(small, small, programme=(1.5, 1.47, 3.0)).legs) == 3
+    for programme, end, words in (
+        ((1.5, 0.2, 3.0), None, "programme: B must turn, and end, at 1.5, 0.2, 3; it does not where unloading"),
+        ((1.5, 1.5), None, "programme: must be openings, each different from the one before it, got"),
+        ((), None, "programme: must be openings, each different"),
+        ((1.5, 1.47, 3.0), 2.0, "programme: must be left out with a begin or an end"),
+    ):
+        with pytest.raises(CurveError, match=words):
+            compare(small, small, end, programme=programme)
+
+
+@pytest.mark.parametrize("at", [0.05, 0.3, 1.2, 2.5])
+def test_a_single_point_that_is_far_off_fails(at: float) -> None:
+    d, P = sampled(400)
+    spiked = P * np.where(np.arange(400) == np.argmin(np.abs(d - at)), 1.08, 1.0)
+    found = checks(compare((d, spiked), (d, P)), 0.01)
+    assert "farthest-point" in {check.name for check in found if not check.passed}
+    later = checks(compare((1.005 * d, P), (d, P)), 0.01, 0.01)
+    assert all(check.passed for check in later), "all of it a little later is no such point"
+
+
+def test_the_end_may_be_missed_by_a_part_of_the_tolerance():
+    d, P = sampled(400)
+    early = np.append(d[:-1], 2.9999), np.append(P[:-1], bond(2.9999))
+    assert all(check.passed for check in checks(compare(early, (d, P)), 0.005))
+    assert [check.name for check in checks(compare(early, (d, P)), 1e-4) if not check.passed] == ["end"]

@@ -35,7 +35,7 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_other_columns_and_units_are_mapped(files: Path, capsys: pytest.CaptureFixture) -> None:
     tolerances = ["--curve-tol", "0.001", "--peak-tol", "0.001", "--energy-tol", "0.001"]
     assert command(files, "abaqus.csv", "expected.csv", *MAPPED, *tolerances) == 0
-    assert capsys.readouterr().out.count("holds") == 4
+    assert capsys.readouterr().out.count("holds") == 5
     by_number = ["--opening-b", "2", "--load-b", "3", "--opening-scale-b", "-2", "--load-scale-b=-1000"]
     assert command(files, "expected.csv", "abaqus.csv", *by_number, *tolerances) == 0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 from verify import verification
 from verify.cli import main
 from verify.curve_file import Reading, read_curve
-from verify.foreign import checks_of, joined, read_curves
+from verify.foreign import Curve, checks_of, joined, read_curves
 from verify.methods import METHODS, solve
 from verify.result import Result
 from verify.scene import load_scene
@@ -183,3 +184,46 @@ def test_what_is_no_curve_is_refused_before_any_run(line: str, folder: Path, cap
     said = capsys.readouterr()
     assert code == 2 and REFUSED[line] in said.err and "Traceback" not in said.err
     assert sorted(folder.rglob("*")) == before
+
+
+@pytest.mark.parametrize(("first", "said"), [(0.0067, 0), (0.1, 1)])
+def test_a_curve_need_not_begin_at_zero(folder: Path, beam: Result, first: float, said: int) -> None:
+    """It is joined to the origin, which is said of what begins late."""
+    kept = beam.opening >= first
+    d, P = np.append(first, beam.opening[kept]), np.append(np.interp(first, beam.opening, beam.load), beam.load[kept])
+    curve = Curve("mine", Path("mine.csv"), Reading(), Result("mine", {"opening": d, "load": P}))
+    report = SceneReport(load_scene(LINEAR), (Run("beam", "beam", beam, folder=f"{LINEAR}/beam"),), ())
+    found = joined(report, [curve], Path("out"))
+    assert [check.name for check in found.checks if not check.passed] == [] and len(found.checks) == 3
+    *late, load = found.remarks
+    assert len(late) == said and all("begins at the opening 0.1 and is joined" in text for text in late)
+    assert "the load is spread evenly" in load and "the peak load by less than 0.01 %" in load
+
+
+def test_a_programme_that_closes_is_compared_too(beam: Result) -> None:
+    """Where the opening never grows there is no envelope over it, but a leg."""
+    scene = load_scene(LINEAR, ["load.opening=-0.2"])
+    d = np.linspace(0.0, -0.2, 50)
+    found = checks_of(
+        scene,
+        "mine",
+        Result("mine", {"opening": d, "load": 1.02 * d}),
+        {"nurbs": Result("", {"opening": d, "load": d})},
+    )
+    assert {check.name for check in found if not check.passed} == {"curve-leg-1", "stiffness"}
+    assert {check.name for check in found if check.passed} == {"legs", "farthest-point"}
+
+
+def test_a_curve_may_end_where_the_specimen_comes_apart() -> None:
+    """With the run that has separated, or earlier where it bears nothing any more, but not while it bears a load."""
+    scene = load_scene(LINEAR, ["load.opening=[1.0, 0.2, 6.0]"])
+    d = np.concatenate((np.linspace(0.0, 1.0, 51), np.linspace(1.0, 0.2, 41)[1:], np.linspace(0.2, 5.0, 241)[1:]))
+    grown = np.maximum.accumulate(d)
+    load = d / (0.1 + grown**2) * np.clip(4.0 - grown, 1e-4, 1.0)
+    run = Result("nurbs", {"opening": d, "load": load}, ending="separated at opening 5")
+    for end, broken in ((5.0, set()), (4.5, set()), (3.5, {"end", "legs"})):
+        kept = (d <= end) | (np.arange(d.size) < 100)
+        mine = Result("mine", {"opening": d[kept], "load": load[kept]})
+        assert {check.name for check in checks_of(scene, "mine", mine, {"nurbs": run}) if not check.passed} == broken
+    whole = replace(run, ending="")
+    assert "end" in {check.name for check in checks_of(scene, "mine", run, {"nurbs": whole}) if not check.passed}

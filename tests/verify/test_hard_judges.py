@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from test_hard import fake_rows
 
 from verify.checks import law_of
@@ -139,19 +140,32 @@ def back_and_forth(scene: Scene) -> Result:
     grown = np.maximum.accumulate(d)
     load = 2.0 * np.exp(-grown) * np.where(d < grown, d, grown)
     deepest = load[np.argmin(d)]
-    tip = np.where(d < 0, -pressed(scene, abs(deepest)), 0.01 * d)
-    return Result("nurbs", {"opening": d, "load": load, "tip_opening": tip})
+    mouth = np.where(d < 0, -pressed(scene, abs(deepest)), d)
+    front = np.full(d.size, PRESSED_ARM)
+    return Result("nurbs", {"opening": d, "load": load, "mouth_opening": mouth, "damage_front": front})
+
+
+#: Where the bond of a made-up arm is whole, from the loaded end.
+PRESSED_ARM = 7.0
 
 
 def pressed(scene: Scene, load: float) -> float:
-    """How far two arms go into each other: y = exp(-b x) (A cos b x + B sin b x) from moment and shear at the tip."""
+    """How far two arms go into each other at the loaded end, in closed form.
+
+    Each lies on its springs up to where y = 0, ``y = sum of c exp(r x)`` with r^4 = -4 b^4, moment 0 and shear P at the
+    end; from there to the clamp it is a beam held at both ends: y_2 = -4 y_1 / L, y_3 = 6 y_1 / L^2 (derivatives).
+    """
     body, k = scene.specimen, 2.0 * scene.specimen.width * scene.interface.penalty
     EI = scene.material.young * body.width * body.arm_thickness**3 / 12.0
-    b = (k / (4.0 * EI)) ** 0.25
-    # EI y'' = -2 EI b^2 B is the moment P a that pushes, EI y''' = 2 EI b^3 (A + B) the force
-    B = -load * body.precrack / (2.0 * EI * b**2)
-    A = load / (2.0 * EI * b**3) - B
-    return 2.0 * A
+    r = (k / (4.0 * EI)) ** 0.25 * np.array([1 + 1j, 1 - 1j, -1 + 1j, -1 - 1j])
+
+    def coefficients(end: float) -> np.ndarray:
+        L, e = PRESSED_ARM - end, np.exp(r * end)
+        rows = [r**2, r**3, (r**2 + 4.0 * r / L) * e, (r**3 - 6.0 * r / L**2) * e]
+        return np.linalg.solve(np.array(rows), np.array([0.0, load / EI, 0.0, 0.0]))
+
+    end = brentq(lambda end: float((coefficients(end) @ np.exp(r * end)).real), 0.2 / abs(r[0]), 3.0 / abs(r[0]))
+    return 2.0 * float(coefficients(end).sum().real)
 
 
 def test_a_programme_that_turns_is_judged_leg_by_leg() -> None:
@@ -159,7 +173,7 @@ def test_a_programme_that_turns_is_judged_leg_by_leg() -> None:
     linear, finite = ({name for name, subject in good if subject == f"{way}-linear"} for way in ("to-zero", "closing"))
     assert linear == {"secant", "return", "same-envelope"} and finite == {*linear, "contact"}
     assert [key for key, check in good.items() if not check.passed] == []
-    assert abs(good["contact", "closing-linear"].value) < 1e-9
+    assert abs(good["contact", "closing-linear"].value) < 1e-3
 
 
 @pytest.mark.parametrize(
@@ -190,9 +204,9 @@ def turned(d: np.ndarray) -> np.ndarray:
 
 
 def test_arms_that_go_further_into_each_other_are_named() -> None:
-    deeper = world("unload-reload", only("closing-finite", 1.2, "tip_opening"), back_and_forth)
+    deeper = world("unload-reload", only("closing-finite", 1.2, "mouth_opening"), back_and_forth)
     assert failing("unload-reload", deeper) == {("contact", "closing-finite")}
-    assert judged("unload-reload", deeper)["contact", "closing-finite"].value == pytest.approx(0.2)
+    assert judged("unload-reload", deeper)["contact", "closing-finite"].value == pytest.approx(0.2, abs=1e-3)
 
 
 def separated(scene: Scene) -> Result:
@@ -383,10 +397,10 @@ def test_what_changes_no_curve_is_held_against_the_plain_one(name: str, wrong: s
     assert failing(name, world(name, only(wrong, 1.0 + 2e-8))) == {("same-curve", wrong)}
 
 
-def test_without_the_opening_at_the_tip_nothing_is_said_of_contact() -> None:
+def test_without_the_opening_at_the_mouth_nothing_is_said_of_contact() -> None:
     def bare(scene: Scene) -> Result:
         result = back_and_forth(scene)
-        return replace(result, steps={name: c for name, c in result.steps.items() if name != "tip_opening"})
+        return replace(result, steps={name: c for name, c in result.steps.items() if name != "mouth_opening"})
 
     good = judged("unload-reload", world("unload-reload", make=bare))
     assert {name for name, _ in good} == {"secant", "return", "same-envelope"}

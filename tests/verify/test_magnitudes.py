@@ -97,7 +97,7 @@ LIMITS = [
     ("dolfinx.elements", 2, 100_000),
     ("dolfinx.layers", 1, 100),
     ("pose.angle", -360.0, 360.0),
-    ("load.opening", -0.4, 28.0),
+    ("load.opening", -0.2, 28.0),
 ]
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from doctored import SMOOTH, arch
+from doctored_meshes import SMOOTH, arch
 from hypothesis import given, settings
 from iga_files import REAL, SMALL, assert_same, real, small
 from test_iga_file import MALFORMED, mutated

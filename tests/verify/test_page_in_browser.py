@@ -1,9 +1,8 @@
-"""The report in a real browser: it asks for nothing, says nothing on the console, and can be read by everybody."""
+"""The report in a real browser, beside what holds of every page: by keyboard, by its landmarks, in print."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,70 +10,18 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
-import made_up_studies  # noqa: E402
 from browser import Browser, found  # noqa: E402
-from made_up_runs import ENVIRONMENT, made_up, scene_report  # noqa: E402
-
-from verify import report  # noqa: E402
-from verify.included import found_in  # noqa: E402
-from verify.verdict import SceneReport  # noqa: E402
+from pages import verification  # noqa: E402
 
 pytestmark = pytest.mark.skipif(found() is None, reason="there is no Chromium")
 
 #: Width of a page of A4 within its margins of 11 mm, in CSS pixels.
 PAPER = 710
 
-#: Contrast of the text of every element that has any with what is painted behind it (WCAG 2.1, 1.4.3).
-CONTRASTS = """
-(() => {
-  const canvas = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
-  const over = (colour, ground) => {
-    canvas.fillStyle = `rgb(${ground})`; canvas.fillRect(0, 0, 1, 1);
-    canvas.fillStyle = colour; canvas.fillRect(0, 0, 1, 1);
-    return [...canvas.getImageData(0, 0, 1, 1).data].slice(0, 3);
-  };
-  const light = (rgb) => {
-    const [r, g, b] = rgb.map((v) => v / 255).map((v) => (v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4));
-    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-  };
-  const ground = (node) => {
-    const behind = node.parentElement ? ground(node.parentElement) : [255, 255, 255];
-    return over(getComputedStyle(node).backgroundColor, behind);
-  };
-  const low = [];
-  for (const node of document.querySelectorAll("body *")) {
-    const own = [...node.childNodes].some((part) => part.nodeType === 3 && part.textContent.trim());
-    if (!own || !node.getClientRects().length || node.closest("script, style, option, title")) continue;
-    const inside = node.closest("svg"), style = getComputedStyle(node), behind = ground(inside || node);
-    const text = over(inside ? style.fill : style.color, behind);
-    const [a, b] = [light(text), light(behind)].sort((x, y) => y - x);
-    if ((a + 0.05) / (b + 0.05) < 4.5) low.push(`${node.tagName} ${node.textContent.trim()} ${text} on ${behind}`);
-  }
-  return low;
-})()
-"""
-
-
-def meshes(given: SceneReport) -> SceneReport:
-    """The scene with two coarser NURBS meshes, and with fields of two runs alone, as they take long to draw."""
-    fine = given.runs[0]
-    coarse = (
-        replace(fine, label=f"NURBS {n}", folder=f"{fine.folder}-{n}", result=made_up("nurbs", wobble, 1.0, n, n // 18))
-        for n, wobble in ((978, 1.6e-3), (489, 3.2e-3))
-    )
-    bare = [replace(run, result=replace(run.result, snapshots=())) for run in (given.runs[1], *given.runs[3:], *coarse)]
-    return replace(given, runs=(fine, given.runs[2], *bare))
-
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """One scene with everything, and the studies of all other commands."""
-    out = tmp_path_factory.mktemp("page")
-    made_up_studies.cost(out / "cost")
-    made_up_studies.effects(out / "effects")
-    made_up_studies.hard(out / "hard")
-    report.write((meshes(scene_report()),), out / "report.html", ENVIRONMENT, included=found_in(out))
-    return out / "report.html"
+    return verification(tmp_path_factory.mktemp("page"))
 
 
 @pytest.fixture(scope="module")
@@ -119,19 +66,6 @@ def test_tables_have_captions_and_heads_have_scopes(browser: Browser) -> None:
     assert browser.ask("[...document.querySelectorAll('th:not([scope])')].map((h) => h.textContent)") == []
 
 
-def test_no_word_of_a_figure_sticks_out_of_it(browser: Browser) -> None:
-    """In the font that the browser has found; the frames that the slider hides are shown for it."""
-    browser.ask("document.querySelectorAll('.frame, details').forEach((f) => { f.hidden = false; f.open = true; })")
-    cut = """[...document.querySelectorAll('svg.plot text')].filter((text) => {
-        const a = text.getBoundingClientRect(), b = text.closest('svg').getBoundingClientRect();
-        const out = [b.left - a.left, a.right - b.right, b.top - a.top, a.bottom - b.bottom];
-        return a.width && Math.max(...out) > 1;
-    }).map((text) => text.textContent)"""
-    found = browser.ask("document.querySelectorAll('svg.plot text').length"), browser.ask(cut)
-    browser.ask("location.reload()")
-    assert found[0] > 300 and found[1] == []
-
-
 def test_slider_shows_one_opening_at_a_time_by_keyboard(browser: Browser) -> None:
     shown = "[...document.querySelectorAll('.frame')].map((f) => f.getClientRects().length > 0)"
     assert browser.ask(shown) == [False, False, True]
@@ -162,17 +96,8 @@ def test_links_slider_and_runs_are_reached_by_tab_with_a_visible_focus(browser: 
     assert "path point" in seen  # the runs of the chart
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_text_stands_out_from_its_ground(browser: Browser, scheme: str) -> None:
-    browser.media(scheme=scheme)
-    ground = browser.ask("getComputedStyle(document.body).backgroundColor")
-    assert ground == {"light": "rgb(255, 255, 255)", "dark": "rgb(18, 22, 28)"}[scheme]
-    assert browser.ask(CONTRASTS) == []
-
-
-def test_is_readable_on_a_phone(browser: Browser) -> None:
+def test_letters_of_the_text_are_large_enough_on_a_phone(browser: Browser) -> None:
     browser.size(400)
-    assert browser.ask("document.scrollingElement.scrollWidth") <= 400
     small = """[...document.querySelectorAll('p, li, td, th, figcaption, dd')].filter(
         (one) => one.getClientRects().length && parseFloat(getComputedStyle(one).fontSize) < 12).length"""
     assert browser.ask(small) == 0

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.checks import growing, law_of, run_checks
+from verify.checks import growing, law_of, out_of_reach, run_checks
 from verify.methods import solve
 from verify.result import Result
 from verify.scene import Scene, load_scene
@@ -75,7 +75,7 @@ def test_a_good_peel_passes_all(scene: Scene) -> None:
     assert set(checks) == ALWAYS
     assert all(check.passed for check in checks.values()), [c for c in checks.values() if not c.passed]
     assert {check.kind for name, check in checks.items() if name != "growth-angle"} == {"exact"}
-    assert checks["growth-angle"].kind == "analytical" and abs(checks["growth-angle"].value) < 1e-12
+    assert checks["growth-angle"].kind == "analytical" and abs(checks["growth-angle"].value) < 1e-4
 
 
 EARLY, LATE = slice(20, 21), slice(50, 51)
@@ -117,7 +117,7 @@ def test_what_the_far_end_holds_is_not_released(scene: Scene) -> None:
     G = scene.interface.toughness
     assert law.area(held.steps["end_opening"][-1]) == pytest.approx(0.008 * G)
     value = {check.name: check.value for check in run_checks(scene, held)}["growth-angle"]
-    assert value == pytest.approx(1.0 / 0.992 - 1.0, rel=1e-6)
+    assert value == pytest.approx(1.0 / 0.992 - 1.0, rel=0.01)
     least = changed(held, "load", 0.0, 0.993 * G, last)
     assert "growth-load" not in failed(scene, least)
     assert "growth-load" in failed(scene, changed(held, "load", 0.0, 0.98 * G, last))
@@ -142,6 +142,32 @@ def test_the_load_on_a_growing_crack_comes_down_as_the_strip_rises() -> None:
     assert failed(scene, changed(result, "load", 0.98)) >= {"growth-angle", "j-integral"}
 
 
+def thick() -> Scene:
+    """A strip of 4 on a substrate of 10, bonded over 40: in the end its process zone stresses the flush end."""
+    changes = {
+        "specimen.strip_length": 60, "specimen.strip_thickness": 4, "specimen.substrate_length": 50,
+        "specimen.bond_length": 40, "strip.young": 70e3, "strip.poisson": 0.3, "substrate.young": 10e3,
+        "substrate.poisson": 0.3, "interface.strength": 20, "interface.toughness": 1, "interface.ductility": 10,
+        "interface.penalty": 1e5,
+        "load.opening": 3, "discretization.steps": 100,
+    }  # fmt: skip
+    return load_scene("peel-60", [f"{key}={value}" for key, value in changes.items()])
+
+
+@pytest.mark.parametrize("method", ["beam", "nurbs"])
+def test_a_zone_that_the_flush_end_feels_is_no_steady_growth(method: str) -> None:
+    scene = thick()
+    result = solve(scene, method)
+    angle = {check.name: check for check in run_checks(scene, result)}["growth-angle"]
+    assert angle.state == "holds" and abs(angle.value) < 0.002
+    steps, last = result.steps, np.flatnonzero(growing(scene, result.steps))[-1]
+    assert not out_of_reach(scene, steps)[last]
+    assert steps["load"][last] * abs(steps["face_slope_top"][last]) < 0.95 * scene.interface.toughness
+    for factor in (0.9, 1.1):
+        wrong = changed(changed(result, "face_slope_top", factor), "tip_opening", 2.0)
+        assert "growth-angle" in failed(scene, wrong), "ten times the tolerance"
+
+
 @pytest.mark.parametrize("method", ["beam", pytest.param("nurbs", marks=pytest.mark.slow)])
 def test_no_load_on_an_upright_strip_is_below_the_toughness(method: str) -> None:
     """All of the growth of peel-soft: the load is G_Ic w but for load / (2 E h w), and 2 % less is too little."""
@@ -161,10 +187,22 @@ def test_linear_kinematics_bounds_no_load() -> None:
     assert {check.name for check in run_checks(scene, made_up(scene))} == ALWAYS - {"growth-load"}
 
 
-def test_j_judges_no_solver_where_fewer_than_three_elements_span_the_zone(scene: Scene) -> None:
-    """4.3 mm over elements of 1.8 mm, cubic Lagrange with 3700 unknowns."""
-    names = {check.name for check in run_checks(scene, made_up(scene, "lagrange"))}
-    assert names == ALWAYS - {"j-integral", "growth-angle"}
+def test_a_deviation_that_too_few_elements_explain_is_unresolved_and_a_larger_one_broken(scene: Scene) -> None:
+    """4.3 mm over elements of 1.8 mm, cubic Lagrange with 3700 unknowns: up to 1 / 2.3^2 = 19 % are the mesh's."""
+    coarse = made_up(scene, "lagrange")
+    assert failed(scene, coarse) == set(), "within its tolerance a check holds, however coarse the mesh"
+    for column, slope, name in (("face_energy", 0.05, "j-integral"), ("face_slope_top", 1.04, "growth-angle")):
+        where = EARLY if name == "j-integral" else slice(-1, None)
+        energy = slope * scene.interface.toughness
+        off = changed(
+            coarse, column, 1.0 if name == "j-integral" else slope, energy if name == "j-integral" else 0.0, where
+        )
+        check = {check.name: check for check in run_checks(scene, off)}[name]
+        assert (
+            check.state == "unresolved" and "spans 2.3 elements of the mesh; discretization.dofs = " in check.unresolved
+        )
+    gross = changed(coarse, "face_energy", 1.0, 0.3 * scene.interface.toughness, EARLY)
+    assert {check.name: check.state for check in run_checks(scene, gross)}["j-integral"] == "broken"
 
 
 @pytest.mark.slow
@@ -181,5 +219,5 @@ def test_identities_of_a_peel_may_be_off_by_so_much(scene: Scene) -> None:
     found = {check.name: check.tolerance for check in run_checks(scene, made_up(scene))}
     balances = {"interface-force", "moment-balance", "clamp-moment", "lengthwise", "reactions"}
     of_the_mesh = {"j-integral": 0.005, "growth-load": 0.005, "growth-angle": 0.01, "energy-ledger": 0.005}
-    assert {name for name, tolerance in found.items() if tolerance == 1e-8} == balances
+    assert {name for name, tolerance in found.items() if 1e-8 <= tolerance < 1e-7} == balances
     assert {name: found[name] for name in of_the_mesh} == of_the_mesh and found["completed"] == 1e-9

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from doctored_meshes import SMOOTH, arch, function_halved, function_scaled, point_unused
 
 from iga.iga_file import from_mesh, write_iga
 from iga.polygon import polygon_mesh
-from tests.iga.doctored import SMOOTH, arch, function_halved, function_scaled, point_unused
 from tests.iga.test_plane import ring, square_mesh
 from verify import plane_study
 from verify.cli import FAILED, REFUSED, main

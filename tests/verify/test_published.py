@@ -39,6 +39,11 @@ BROKEN = {
     f"[{{{PEAK}, value = 1.0}}, {{{AT}, value = 1.0, opening = 3.1}}]": (
         "published[1].opening: must be <= 3, the largest load.opening, got 3.1"
     ),
+    f"[{{{PEAK}, value = 1.0, leg = 1}}]": "published[0].leg: must be left out for a peak, wherever it is, got 1",
+    f"[{{{AT}, value = 1.0, opening = 1.0, leg = 0}}]": "published[0].leg: must be >= 1, got 0",
+    f"[{{{AT}, value = 1.0, opening = 1.0, leg = 2}}]": (
+        "published[0].leg: must be <= 1, the number of legs of load.opening, got 2"
+    ),
     '[{quantity = "force", value = 1.0, tolerance = 0.03, source = "them"}]': (
         'published[0].quantity: must be "peak" or "load_at", got \'force\''
     ),
@@ -55,7 +60,7 @@ BROKEN = {
     f"[{{{PEAK}, value = 1.0, tolerence = 0.1}}]": (
         'published[0].tolerence: is not a key of a scene, got 0.1; did you mean "tolerance"?'
     ),
-    "[3]": "published[0]: must be a table of quantity, opening, value, tolerance, kind, source, got 3",
+    "[3]": "published[0]: must be a table of quantity, opening, leg, value, tolerance, kind, source, got 3",
     "3": "published: must be a list of tables, each under [[published]], got 3",
 }
 
@@ -206,3 +211,18 @@ def grown_J(scene: Scene, result: Result) -> np.ndarray:
     slopes = np.abs(steps["face_slope_top"]) + np.abs(steps["face_slope_bottom"])
     J = steps["load"] * slopes / scene.specimen.width - steps["face_energy"]
     return J[steps["tip_opening"] >= law_of(scene).g_open]
+
+
+def test_a_load_on_a_leg_of_the_programme() -> None:
+    """On the way down and back it is not that of the envelope; an opening off the leg is refused."""
+    values = [f"{{{AT}, value = 1.0, opening = 0.8{leg}}}" for leg in ("", ", leg = 1", ", leg = 2", ", leg = 3")]
+    programme = "load.opening=[1.5, 0.2, 3.0]"
+    scene = load_scene("dcb-czm1", [programme, f"published=[{', '.join(values)}]"])
+    names = ["published-load-0.8", *(f"published-load-0.8-leg-{leg}" for leg in (1, 2, 3))]
+    assert list(published_names(scene)) == names
+    opening = np.array([0.0, 1.0, 1.5, 0.2, 1.5, 3.0])
+    run = Result("nurbs", {"opening": opening, "load": np.array([0.0, 2.0, 1.5, 0.3, 1.4, 0.5])})
+    found = {check.name: 1.0 + check.value for check in published_checks(scene, {"nurbs": run})}
+    assert [found[name] for name in names] == pytest.approx([1.6, 1.6, 1.5 - 1.2 * 7 / 13, 0.3 + 1.1 * 6 / 13])
+    with pytest.raises(SceneError, match=re.escape("published[0].opening: must be >= 0.2 and <= 1.5, leg 2 of load")):
+        load_scene("dcb-czm1", [programme, f"published=[{{{AT}, value = 1.0, opening = 2.0, leg = 2}}]"])

@@ -116,7 +116,8 @@ def test_has_landmarks_and_described_figures(whole: tuple[str, Page]) -> None:
 def test_figures_follow_the_colours_of_the_page(whole: tuple[str, Page]) -> None:
     text, _ = whole
     assert "prefers-color-scheme: dark" in text
-    drawn = re.sub(r"<image[^>]*/?>", "", "".join(re.findall(r'<svg class="plot".*?</svg>', text, re.DOTALL)))
+    parts = re.findall(r'<svg class="plot".*?</svg>|[.]plot [.]s\d+[{][^}]*[}]', text, re.DOTALL)
+    drawn = re.sub(r"<image[^>]*/?>", "", "".join(parts))
     assert set(re.findall(r"#[0-9a-f]{6}\b", drawn)) <= {"#000000"}  # clip paths and markers' definitions
     assert "#ffffff" not in drawn and "var(--nurbs)" in drawn
 

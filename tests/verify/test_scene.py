@@ -70,7 +70,10 @@ BROKEN = {
     "load.opening=[1.0, 1.0]": (
         "load.opening[1]: must be different from the opening before it (the first one: from 0), got 1"
     ),
-    "load.opening=[1.0, -0.5]": "load.opening[1]: must be >= -0.4 (-2 arm_thickness) and <= 28 (2 length), got -0.5",
+    "load.opening=[1.0, -0.3, 1.5]": (
+        "load.opening[1]: must be >= -0.2 (-arm_thickness, at which both loaded faces would be in one place) and <= 28 "
+        "(2 length), got -0.3"
+    ),
     'load.opening=[1.0, "x"]': "load.opening[1]: must be a number, got 'x'",
     "effects.kinematics=large": 'effects.kinematics: must be "linear", "finite" or "auto", got \'large\'',
     "effects.symmetry=1": 'effects.symmetry: must be true, false or "auto", got 1',

@@ -163,15 +163,17 @@ def test_a_page_says_a_style_once() -> None:
     """As a class, whose rule is that style; what is no figure keeps its own."""
     figures = [drawn({"marker": "s", "color": colour}, limits=limits)[0].rstrip() for colour, limits in LOOKS]
     bar = '<b style="width: 3%"></b>'
-    page = with_classes(f"{bar}{bar}<p>{'</p><p>'.join(figures)}</p>")
+    page = with_classes(f"<style>p {{}}\n</style>{bar}{bar}<p>{'</p><p>'.join(figures)}</p>")
     assert page.count(bar) == 2 and page.count("<style>") == 1
     plots = re.findall(r'<svg class="plot".*?</svg>', page, re.DOTALL)
-    rules = dict(re.findall(r"[.]plot [.](s\d+)[{]([^}]*)[}]", plots[0]))
+    rules = dict(re.findall(r"[.]plot [.](s\d+)[{]([^}]*)[}]", page.partition("</style>")[0]))
     again = [re.sub(r' class="(s\d+)"', lambda m: f' style="{rules[m[1]]}"', plot) for plot in plots]
-    assert [re.sub("<style>.*?</style>", "", plot) for plot in again] == figures
+    assert again == figures
     styles = re.findall(r' style="([^"]*)"', "".join(plots))
     assert len(styles) == len(set(styles)) == 1 and "#abcdef" in styles[0] and rules
     assert with_classes(bar + bar) == bar + bar
+    with pytest.raises(ValueError, match="style sheet"):
+        with_classes("".join(figures))
 
 
 def test_an_image_of_too_many_colours_stays_what_it_was() -> None:

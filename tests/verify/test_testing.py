@@ -118,7 +118,8 @@ def test_the_message_says_where_and_by_how_much() -> None:
     with pytest.raises(AssertionError) as failure:
         assert_curves_close((1.02 * D, bump), (D, P), curve=0.01, peak=0.01, energy=0.5)
     first, head, *lines = str(failure.value).splitlines()
-    assert first.startswith("actual is not close to expected: curve error ") and first.endswith(" %, more than 1 %")
+    assert first.startswith("actual is not close to expected: curve error ") and " %, more than 1 %; " in first
+    assert "distance of the farthest point of actual, at opening 1.224, from expected: " in first
     assert head.split() == ["actual", "expected", "difference"]
     cells = {line.split("  ")[0]: line.split()[-7:] for line in lines}
     at = next(name for name in cells if name.startswith("largest deviation, at "))
@@ -148,6 +149,19 @@ def test_a_code_that_finds_no_load_is_wrong_and_not_invalid() -> None:
         assert_curves_close((D, -P), (D, P), curve=0.5)
 
 
+def test_a_programme_that_unloads() -> None:
+    """Its legs count; a path that snaps back shows no programme, which can be given."""
+    d = np.concatenate((np.linspace(0, 1.5, 100), np.linspace(1.5, 0.2, 50)[1:], np.linspace(0.2, 3, 200)[1:]))
+    grown = np.maximum.accumulate(d)
+    load = d / (0.1 + grown**2)
+    assert_curves_close((d, load), (d, load), curve=1e-12)
+    healed = np.where(np.arange(d.size) < 149, load, d / (0.1 + d**2))
+    with pytest.raises(AssertionError, match="along leg 3, reloading from 0.2 to 3"):
+        assert_curves_close((d, healed), (d, load), curve=0.01)
+    with pytest.raises(ValueError, match="programme: expected must turn, and end, at 1, 0.2, 3"):
+        assert_curves_close((d, load), (d, load), curve=0.01, programme=(1.0, 0.2, 3.0))
+
+
 GOOD = (D, P)
 INVALID = {
     "no tolerance": (GOOD, GOOD, {}, TypeError, "needs a tolerance: curve, peak or energy"),
@@ -157,6 +171,8 @@ INVALID = {
     "truth": (GOOD, GOOD, {"energy": True}, TypeError, "energy: must be a number, got True"),
     "end": (GOOD, GOOD, {"curve": 1, "end": 4}, ValueError, "end: must be > 0 and <= 3, the last opening of expected"),
     "end text": (GOOD, GOOD, {"curve": 1, "end": "3"}, TypeError, "end: must be a number, got '3'"),
+    "programme": (GOOD, GOOD, {"curve": 1, "programme": 3.0}, TypeError, "programme: must be openings, got 3.0"),
+    "programme text": (GOOD, GOOD, {"curve": 1, "programme": "3"}, TypeError, "programme: must be openings, got '3'"),
     "end nan": (GOOD, GOOD, {"curve": 1, "end": np.nan}, ValueError, "end: must be > 0"),
     "reading": (
         GOOD,

@@ -2,7 +2,8 @@
 for (const whole of document.querySelectorAll(".work-precision")) {
   const data = JSON.parse(whole.querySelector(".rows").textContent);
   const [chart, note, across, up] = [".chart", ".point-said", ".across", ".up"].map((name) => whole.querySelector(name));
-  const hidden = new Set(), W = 760, H = 420, L = 64, B = 44, T = 12, R = 16;
+  const hidden = new Set(), L = 64, B = 44, T = 12, R = 16;
+  let W = 760, H = 420;
   const make = (name, attributes, parent, text) => {
     const node = document.createElementNS("http://www.w3.org/2000/svg", name);
     for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
@@ -18,12 +19,14 @@ for (const whole of document.querySelectorAll(".work-precision")) {
   const scale = (values, from, to) => {
     const [low, high] = [Math.min(...values) / 1.2, Math.max(...values) * 1.2].map(Math.log10);
     const at = (v) => from + ((Math.log10(v) - low) / (high - low || 1)) * (to - from);
-    const ticks = [];
+    const ticks = [], steps = Math.abs(to - from) < 110 * (high - low) ? [1] : [1, 2, 5];
     for (let e = Math.floor(low); e <= high; e++)
-      for (const m of [1, 2, 5]) if (Math.log10(m) + e >= low && Math.log10(m) + e <= high) ticks.push(m * 10 ** e);
+      for (const m of steps) if (Math.log10(m) + e >= low && Math.log10(m) + e <= high) ticks.push(m * 10 ** e);
     return { at, ticks };
   };
   const draw = () => {
+    [W, H] = chart.clientWidth > 0 ? [Math.max(300, Math.min(760, chart.clientWidth)), chart.clientWidth < 560 ? 340 : 420] : [W, H];
+    chart.setAttribute("viewBox", `0 0 ${W} ${H}`);
     chart.replaceChildren();
     const value = (row, axis) => row[axis.value] * (axis.selectedOptions[0].dataset.scale || 1);
     const shown = data.rows.filter((row) => !hidden.has(row.method) && value(row, across) > 0 && value(row, up) > 0);
@@ -58,4 +61,7 @@ for (const whole of document.querySelectorAll(".work-precision")) {
   for (const axis of [across, up]) axis.addEventListener("change", draw);
   whole.querySelector(".interactive").hidden = false;
   draw();
+  // Letters keep their size where the window becomes narrow: the chart is drawn anew, not scaled.
+  let before = chart.clientWidth;
+  new ResizeObserver(() => { if (chart.clientWidth !== before) { before = chart.clientWidth; draw(); } }).observe(chart);
 }

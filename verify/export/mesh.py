@@ -18,6 +18,9 @@ BODIES: Mapping[str, tuple[str, str]] = {"dcb": ("upper", "lower"), "peel": ("st
 #: What the layers of a specimen are called by the problem of `fem_reference`.
 LAYERS: Mapping[str, str] = {"dcb": "elements_across", "peel": "strip_layers"}
 
+#: Part of a height by which a node may lie beside the middle of a face, by rounding.
+MIDDLE = 1e-9
+
 #: Integrals of the functions of a side of degree p over its length.
 SHARES: Mapping[int, np.ndarray] = {1: np.array([1, 1]) / 2, 2: np.array([1, 4, 1]) / 6}
 
@@ -107,7 +110,8 @@ def scene_mesh(scene: Scene, layers: int | None = None) -> SceneMesh:
         specimen = (replace(problem, **{LAYERS[kind]: layers}) if layers else problem).specimen()
     except ValueError as error:
         raise Refusal(f"dolfinx.{error}") from None
-    return _meshed(specimen, degree, BODIES[kind])
+    mesh = _meshed(specimen, degree, BODIES[kind])
+    return replace(mesh, loaded=tuple(_pulled(face, scene.load.at, mesh.X_nI) for face in mesh.loaded))
 
 
 def _of_degree(scene: Scene, degree: int) -> Scene:
@@ -152,6 +156,25 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
         loaded=tuple(loaded),
         supports=supports,
     )
+
+
+def _pulled(face: LoadedFace, at: str, X_nI: np.ndarray) -> LoadedFace:
+    """The face, or the one node of it that the load is at.
+
+    Raises
+    ------
+    Refusal : no node in its middle.
+    """
+    if at == "face":
+        return face
+    height = np.abs(X_nI[face.node_n, 1])
+    place = height.max() if at == "node" else 0.5 * (height.min() + height.max())
+    i = int(np.argmin(np.abs(height - place)))
+    if abs(height[i] - place) > MIDDLE * height.max():
+        raise Refusal(
+            'load.at: must be "face" or "node" where no node is in the middle of the loaded face, got "hinge"'
+        )
+    return replace(face, node_n=face.node_n[i : i + 1], weight_n=np.ones(1))
 
 
 @dataclass(frozen=True)

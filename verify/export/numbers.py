@@ -9,6 +9,7 @@ import numpy as np
 
 from verify.effects import simulated
 from verify.export.mesh import SceneMesh
+from verify.introduction import sentence
 from verify.law import Bilinear
 from verify.problems import counted_steps, elastic_constants
 from verify.schema import Scene
@@ -82,14 +83,29 @@ def notes(scene: Scene) -> list[str]:
     )
     damage = "damage stays" if simulate["irreversible"] else "there is no history: traction follows the gap"
     posed = scene.pose != type(scene.pose)()
+    beyond = ["debond presses faces beyond the bond together as well, below zero: contact that is not in this file"]
     return [
         f"{simulate['kinematics']} kinematics; {closing}; {damage}",
-        "a loaded face moves up by its part of the opening in the mean (weights times u_y), free to turn and to move "
-        "along x; its load is a uniform traction that keeps its direction",
+        *(beyond if bond.contact and min(scene.load.opening) < 0.0 else []),
+        *_load(scene),
         "the load of the curve is the force on one loaded face, of the whole width",
         "the pose of the scene is left out, as no answer depends on it"
         if posed
         else "the mesh stands as the scene says: X along the specimen, the bond on Y = 0",
+    ]
+
+
+def _load(scene: Scene) -> list[str]:
+    """Where the load acts, and what another place would change."""
+    free = "free to turn and to move along x; its load"
+    if scene.load.at != "face":
+        where = "corner away from the bond" if scene.load.at == "node" else "middle"
+        force = f"{free} is a force that keeps its direction"
+        return [f"the {where} of a loaded face moves up by its part of the opening, {force}"]
+    return [
+        "a loaded face moves up by its part of the opening in the mean (weights times u_y), "
+        f"{free} is a uniform traction that keeps its direction",
+        sentence(scene),
     ]
 
 

@@ -18,6 +18,11 @@ PER_ZONE = 5.0
 ZONES = 90.0
 
 
+def name_of(seed: int) -> str:
+    """What the scene of a seed is called, in commands as well."""
+    return f"random-{seed}"
+
+
 def random_scene(seed: int) -> Scene:
     """A scene of the family that every code has to solve.
 
@@ -47,7 +52,7 @@ def _scene(rng: np.random.Generator, seed: int, slenderness: float, zone: float,
     toughness = modulus * h**3 / 12.0 * (2.0 * rotation / a0) ** 2  # of the end of a beam on which a crack grows
     growth = a0 * rotation * 4.0 / 3.0  # opening at which it does
     scene: dict[str, Any] = {
-        "name": f"random-{seed}",
+        "name": name_of(seed),
         "specimen": {
             "kind": "dcb", "length": a0 + bond * h, "arm_thickness": h, "precrack": a0, "width": width, "plane": plane,
         },

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from verify.report.entry import Entry, short_names
+from verify.report.labels import name_points
 from verify.report.parts import phase_bars, plain
 from verify.report.style import HALF, PHASES, Panel, colour, drawing, panel, to_svg
 from verify.report.text import seconds
@@ -65,19 +66,17 @@ def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -
     with drawing():
         figure, axes = panel(HALF, 2.5)
         times = [max(time, 1e-3) for _, time, _ in points]
-        middle = (min(times) * max(times)) ** 0.5
-        for (entry, _, error), time in zip(points, times, strict=True):
-            ink = colour(entry.line.colour)
-            point = time, 100 * error
-            axes.plot(*point, "o", color=ink, markersize=6)
-            # into the figure, whose edge cuts, and not at the height of a name from the other side
-            at, ha = ((-7, -11), "right") if time > middle else ((7, 4), "left")
-            axes.annotate(names[entry], point, at, textcoords="offset points", color=ink, ha=ha)
+        places = [(time, 100 * error) for (_, _, error), time in zip(points, times, strict=True)]
+        inks = [colour(entry.line.colour) for entry, _, _ in points]
+        for place, ink in zip(places, inks, strict=True):
+            axes.plot(*place, "o", color=ink, markersize=6)
         axes.set(xscale="log", yscale="log", xlabel="wall time (s)", ylabel=f"distance to {base.name} (%)")
         axes.margins(0.3, 0.3)
         for part in (axes.xaxis, axes.yaxis):
             plain(part)
         axes.minorticks_off()
+        axes.autoscale_view()
+        name_points(axes, places, [names[entry] for entry, _, _ in points], inks)
         svg = to_svg(figure, key, f"Curve error against time, {scene.name}")
     return Panel(
         svg,

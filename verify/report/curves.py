@@ -80,9 +80,9 @@ def oscillation(scene: Scene, runs: Sequence[Entry], reference: Entry, key: str)
 
 
 def j_integral(scene: Scene, result: Result) -> np.ndarray | None:
-    """J / G_Ic at every step, from the loaded faces alone (n_steps,).
+    """J / G_Ic at every step, from the end faces alone (n_steps,).
 
-    J w = P (abs(s_top) + abs(s_bottom)) - w * face energy, after Rice 1968 on a contour along the loaded faces and
+    J w = P (abs(s_top) + abs(s_bottom)) - w * face energy, after Rice 1968 on a contour along the end faces and
     the free surfaces; None where the method does not know the slopes.
     """
     steps = result.steps

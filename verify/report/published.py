@@ -30,15 +30,16 @@ def compared(found: Sequence[Entry]) -> tuple[Entry, ...]:
 
 def rows(scene: Scene, found: Sequence[Entry]) -> tuple[PublishedRow, ...]:
     """One for each published value."""
-    return tuple(_row(known, Units.of(scene.units), compared(found)) for known in scene.published)
+    return tuple(_row(known, scene, compared(found)) for known in scene.published)
 
 
-def _row(known: Published, units: Units, found: Sequence[Entry]) -> PublishedRow:
-    low, high = known.value
-    loads = [published_load(known, entry.result) for entry in found]
+def _row(known: Published, scene: Scene, found: Sequence[Entry]) -> PublishedRow:
+    (low, high), units = known.value, Units.of(scene.units)
+    loads = [published_load(known, entry.result, scene.load.opening) for entry in found]
+    leg = f" on leg {known.leg}" if known.leg else ""
     value = quantity(low, units.force) if low == high else f"{number(low, 6)} to {quantity(high, units.force)}"
     return PublishedRow(
-        "peak load" if known.quantity == "peak" else f"load at {quantity(known.opening, units.length)}",
+        "peak load" if known.quantity == "peak" else f"load at {quantity(known.opening, units.length)}{leg}",
         value,
         percent(known.tolerance),
         tuple((quantity(load, units.force, 4), _signed(known.deviation(load))) for load in loads),

@@ -193,9 +193,14 @@ def _without_empty_groups(svg: str) -> str:
 
 
 def with_classes(page: str) -> str:
-    """Styles that come more than once in the figures of a page as classes, whose rules stand in the first figure.
+    """Styles that come more than once in the figures of a page as classes, whose rules end its style sheet.
 
+    The head is read by every browser; a figure may stand in ``<noscript>``, which is read without scripts alone.
     Two names in front of a rule let it win over that of the page for all paths, as a style would.
+
+    Raises
+    ------
+    ValueError : the page has no style sheet
     """
     figures = r'<svg class="plot".*?</svg>'
     styles = Counter(style for one in re.findall(figures, page, re.DOTALL) for style in _STYLE.findall(one))
@@ -209,8 +214,10 @@ def with_classes(page: str) -> str:
         return f' class="{names[match[1]]}"' if match[1] in names else match[0]
 
     page = re.sub(figures, lambda figure: _STYLE.sub(named, figure[0]), page, flags=re.DOTALL)
-    first = r'<svg class="plot"[^>]*><title[^>]*>[^<]*</title>'
-    return re.sub(first, lambda head: f"{head[0]}<style>{rules}</style>", page, count=1)
+    head, end, rest = page.partition("</style>")
+    if not end:
+        raise ValueError("the page must have a style sheet for the classes of its figures, got none")
+    return f"{head}{rules}\n{end}{rest}"
 
 
 def _few_colours(match: re.Match[str]) -> str:

@@ -32,7 +32,15 @@ UNITS: Mapping[str, str] = {
 
 #: Numbers for what a scene may have instead or besides.
 ORTHOTROPIC = {"E1": 120e3, "E2": 10e3, "G12": 5e3, "nu12": 0.3}
-PUBLISHED = {"quantity": "load_at", "opening": 2.0, "value": 1.0, "tolerance": 0.03, "kind": "cross-code", "source": ""}
+PUBLISHED = {
+    "quantity": "load_at",
+    "opening": 2.0,
+    "leg": 1,
+    "value": 1.0,
+    "tolerance": 0.03,
+    "kind": "cross-code",
+    "source": "",
+}
 
 
 def new_scene(kind: str) -> str:

@@ -1,0 +1,119 @@
+"""What steps keep that the path chooses: the straight line between its points, the largest load, the ledger."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from paths import column, loads, run
+
+import iga.path
+from iga.dcb import Problem
+from iga.promise import KEPT, LEDGER, PEAK, Kept, judged
+
+BEND = 0.005
+
+#: A stocky, finite, orthotropic specimen: at its peak the load falls at a kink, and rises and falls with every point.
+LEAPING = Problem(
+    length=84.2,
+    arm_thickness=1.0,
+    precrack=26.9,
+    E1=3680.6,
+    E2=1115.5,
+    G12=236.8,
+    nu12=0.0876,
+    strength=1.75,
+    toughness=0.069,
+    ductility=4.0,
+    penalty=2e4,
+    opening=(17.8,),
+    dofs=2500,
+    steps=None,
+)
+#: Teeth of the load so steep that it nearly snaps back at every point, in plane strain, one half of the specimen.
+LEAKING = Problem(
+    length=51.0,
+    arm_thickness=1.0,
+    precrack=26.0,
+    E1=16053.0,
+    E2=1780.8,
+    G12=3103.7,
+    nu12=0.137,
+    plane="strain",
+    strength=1.524,
+    toughness=4.18e-3,
+    ductility=10.27,
+    penalty=5e4,
+    opening=(2.37,),
+    symmetry=True,
+    dofs=2500,
+    steps=None,
+)
+
+
+@cache
+def drawn(problem: Problem, steps: int | None):
+    system, points, end = run(problem, steps)
+    assert end.status == "complete"
+    return column(points, "opening"), loads(points), points
+
+
+def ledger(points) -> float:
+    """Worst gap in parts of the largest work so far, as the check of a run has it."""
+    work = column(points, "external_work")
+    gap = np.abs(work - np.array([point.energies.total for point in points]))
+    return float(np.max(gap[1:] / np.maximum.accumulate(np.abs(work))[1:]))
+
+
+def off(curve, reference) -> float:
+    """Largest distance of the points of a path from a polyline; openings in parts of the one at the largest load."""
+    top = int(np.argmax(reference[1]))
+    size = np.array([reference[0][top], reference[1][top]])
+    a, x = np.stack(curve[:2], axis=1) / size, np.stack(reference[:2], axis=1) / size
+    start, chord = a[:-1], np.diff(a, axis=0)
+    part = np.sum((x[:, None] - start) * chord, axis=2) / np.sum(chord**2, axis=1)
+    near = start + np.clip(part, 0.0, 1.0)[..., None] * chord
+    return float(np.linalg.norm(x[:, None] - near, axis=2).min(axis=1).max())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("problem", [LEAPING, LEAKING], ids=["leaping", "leaking"])
+def test_the_polyline_of_chosen_steps_is_that_of_many_within_the_promise(problem):
+    few, many = drawn(problem, None), drawn(problem, 1000)
+    peak = few[1].max() / many[1].max() - 1.0
+    print(f"{len(few[0]) - 1} steps, off by {off(few, many):.1e}, peak {peak:+.1e}, ledger {ledger(few[2]):.1e}")
+    assert off(few, many) < 1.2 * BEND and abs(peak) < PEAK * BEND and ledger(few[2]) <= LEDGER
+
+
+def test_a_step_across_a_maximum_is_cut(monkeypatch):
+    """With the promise the largest load is met, without it steps leap over it."""
+    problem = replace(LEAPING, opening=(11.0,))
+    kept = drawn(problem, None)[1].max()
+    monkeypatch.setattr(iga.promise, "PEAK", np.inf)
+    monkeypatch.setattr(iga.path, "judged", lambda *given: replace(judged(*given[:-1], 1e6)))
+    loose = loads(run(problem, None)[1]).max()
+    print(f"without the cut the largest load is {loose / kept - 1.0:+.2%} off")
+    assert loose < (1.0 - 3.0 * PEAK * BEND) * kept
+
+
+def test_a_ledger_that_is_open_shortens_the_step_that_opens_it(monkeypatch):
+    """Of all that is promised the ledger alone is held: with a budget for the whole path, without it only each step."""
+
+    def worst(budget: float) -> float:
+        monkeypatch.setattr(iga.promise, "LEDGER", budget)
+        monkeypatch.setattr(iga.path, "judged", lambda *given: judged(*given[:-1], 1e6))
+        return ledger(run(replace(LEAKING, opening=(1.7,)), None)[1])
+
+    held, loose = worst(1e-3), worst(np.inf)
+    print(f"ledger {held:.1e}, without a budget {loose:.1e}")
+    assert held <= 1.05e-3 < 1.5e-3 < loose
+
+
+def test_a_short_step_keeps_everything_and_what_is_not_promised_costs_nothing():
+    system, points, _ = run(replace(LEAPING, opening=(4.0,)), 60)
+    assert judged(system, points[1], points[2], iga.path.Largest(), BEND) == Kept(
+        1.0, pytest.approx(0.0, abs=1e-2), True
+    )
+    assert KEPT.part == 1.0

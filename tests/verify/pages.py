@@ -1,0 +1,173 @@
+"""Every kind of page that a command writes, from made-up runs and studies, by the code that writes it for users."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from itertools import product
+from math import nan
+from pathlib import Path
+
+import made_up_studies
+import numpy as np
+import test_figure9
+import test_paper
+import test_plane_page
+import test_plane_rates
+import test_quadrature_study
+from iga_files import SMALL
+from made_up_costs import SCENE, a_row, against
+from made_up_runs import ENVIRONMENT, made_up, scene_report
+from test_hard import FAKE, faulty, stub
+
+from verify import report
+from verify.checks import run_checks
+from verify.cli import main
+from verify.cost import page as cost_page
+from verify.cost.study import Study as CostStudy
+from verify.hard import page as hard_page
+from verify.hard.case import BASES
+from verify.hard.one import run_case
+from verify.hard.suite import Cell
+from verify.included import found_in
+from verify.methods import solve
+from verify.report.style import METHOD_NAMES
+from verify.scaling import page as scaling_page
+from verify.scene import load_scene
+from verify.switches import page as effects_page
+from verify.switches.row import Row as EffectRow
+from verify.switches.study import Study as EffectsStudy
+from verify.verdict import Check, Run, SceneReport
+
+
+def meshes(given: SceneReport) -> SceneReport:
+    """The scene with two coarser NURBS meshes, and with fields of two runs alone, as they take long to draw."""
+    fine = given.runs[0]
+    coarse = (
+        replace(fine, label=f"NURBS {n}", folder=f"{fine.folder}-{n}", result=made_up("nurbs", wobble, 1.0, n, n // 18))
+        for n, wobble in ((978, 1.6e-3), (489, 3.2e-3))
+    )
+    bare = [replace(run, result=replace(run.result, snapshots=())) for run in (given.runs[1], *given.runs[3:], *coarse)]
+    return replace(given, runs=(fine, given.runs[2], *bare))
+
+
+def verification(out: Path) -> Path:
+    """One scene with everything and a check that fails, and the studies of all other commands."""
+    made_up_studies.cost(out / "cost")
+    made_up_studies.effects(out / "effects")
+    made_up_studies.scaling(out / "scaling")
+    made_up_studies.hard(out / "hard")
+    given = meshes(scene_report())
+    failing = Check("peak-load", "lagrange / dolfinx", 0.02, 5e-3, "cross-code", "Two codes find the same peak.")
+    runs = tuple(replace(run, key="0123456789abcdef" * 2) for run in given.runs)
+    runs += (Run("T-spline", "tspline", None, "not run: no mesh has so few unknowns"),)
+    given = replace(given, runs=runs, checks=(*given.checks, failing))
+    path = out / "report.html"
+    report.write((given,), path, ENVIRONMENT, included=found_in(out))
+    return path
+
+
+def peel(out: Path) -> Path:
+    """A coarse peel test by two bases, with T-junctions."""
+    scene = load_scene("peel-80", ("discretization.dofs=1100", "load.opening=2.0", "discretization.steps=10"))
+    found = {method: solve(scene, method) for method in ("nurbs", "tspline")}
+    runs = tuple(Run(METHOD_NAMES[method], method, one, "", f"peel-80/{method}") for method, one in found.items())
+    checks = tuple(check for one in found.values() for check in run_checks(scene, one))
+    report.write((SceneReport(scene, runs, checks),), out / "report.html", ENVIRONMENT)
+    return out / "report.html"
+
+
+def plane_problems(out: Path) -> Path:
+    """What mesh files from CAD add, and the rates of the bases."""
+    rates = tuple(test_plane_rates.made_up(i, rate) for i, rate in enumerate((4.0, 3.5, 2.5, 2.25)))
+    report.write((), out / "report.html", ENVIRONMENT, planes=(test_plane_page.made_up(),), rates=rates)
+    return out / "report.html"
+
+
+def paper(out: Path) -> Path:
+    """What ``--full`` adds."""
+    figures, peels = test_paper.world(), test_figure9.world()
+    quadrature = test_quadrature_study.made_up()
+    report.write((), out / "report.html", ENVIRONMENT, quadrature=quadrature, paper=figures, peels=peels)
+    return out / "report.html"
+
+
+def cost(out: Path) -> Path:
+    """Ladders of every method, one run that stopped."""
+    sizes = (300, 500, 900, 1700, 3200)
+    at = {"nurbs": (3, 6.0), "tspline": (3, 4.0), "lagrange": (3, 30.0), "dolfinx": (2, 9.0)}
+    rows = [
+        a_row(method, size * n**-1.2, 1e-3 * n**1.1 * (4.0 if method == "dolfinx" else 1.0), n, degree, asked)
+        for (method, (degree, size)), n, asked in product(at.items(), sizes, ("20", "80"))
+    ]
+    rows += [a_row("beam", 5e-4, 0.1, 0, 0), a_row("lagrange", nan, 0.1)]
+    cost_page.write(CostStudy(SCENE, against(), tuple(rows), ("lefm: only a limit",)), out / "report.html")
+    return out / "report.html"
+
+
+def effects(out: Path) -> Path:
+    """Every effect, of which one could not be switched."""
+    sizes = {"finite kinematics": 0.0035, "contact": -0.0061, "irreversible damage": 0.0, "symmetry": 1.2}
+    words = {"with_it": "on", "without": "off", "scene_has": True, "times": 3, "status": "complete"}
+    changes = ("curve_change", "peak_change", "end_change", "dissipated_change", "work_change")
+    times = {"seconds_with": 2.0, "seconds_without": 1.0, "time_ratio": 2.0, "time_spread": 1.1}
+    rows = [
+        EffectRow(effect=name, key=name.split()[-1], **words, **times, **dict.fromkeys(changes, size))
+        for name, size in sizes.items()
+    ]
+    rows.append(replace(rows[0], effect="search", key="search", status="with it: stopped"))
+    study = EffectsStudy(SCENE, "nurbs", tuple(rows), ("moments: left out: the scene has none",))
+    effects_page.write(study, out / "report.html")
+    return out / "report.html"
+
+
+def scaling(out: Path) -> Path:
+    """Two methods of many sizes, on one rank and on two."""
+    scaling_page.write(made_up_studies.scaling_study(), out / "report.html")
+    return out / "report.html"
+
+
+def hard(out: Path) -> Path:
+    """A case that holds on one basis, fails on another, and ends a third."""
+    solvers = {"nurbs": stub, "tspline": faulty(external_work=0.1)}
+    cells = [
+        Cell(FAKE, basis, run_case(FAKE, basis, out / "fake" / basis, solvers[basis]))
+        if basis in solvers
+        else Cell(FAKE, basis, None, "signal 9")
+        for basis in BASES
+    ]
+    hard_page.write(cells, out)
+    return out / "report.html"
+
+
+def comparison(out: Path) -> Path:
+    """Two curves, one with a peak that is off."""
+    d = np.linspace(0.0, 3.0, 60)
+    for name, scale in (("a very long name of a curve of another program", 1.01), ("b", 1.0)):
+        lines = [f"{x},{scale * x * np.exp(-x)}" for x in d.tolist()]
+        (out / f"{name}.csv").write_text("\n".join(["opening,load", *lines]) + "\n")
+    files = [str(path) for path in sorted(out.glob("*.csv"))]
+    assert main(["compare", *files, "--peak-tol", "1e-4", "--at", "0.5,1", "--out", str(out)]) == 1
+    return out / "comparison.html"
+
+
+def mesh(out: Path) -> Path:
+    """The picture of a file with a hanging node, with its control points."""
+    (out / "small.iga").write_text(SMALL)
+    assert main(["mesh", str(out / "small.iga"), "--control", "--out", str(out / "small.svg")]) == 0
+    return out / "small.svg"
+
+
+#: Name -> what writes the page into an empty folder, and says where it is.
+PAGES: Mapping[str, Callable[[Path], Path]] = {
+    "verify": verification,
+    "peel": peel,
+    "plane": plane_problems,
+    "paper": paper,
+    "cost": cost,
+    "effects": effects,
+    "scaling": scaling,
+    "hard": hard,
+    "compare": comparison,
+    "mesh": mesh,
+}

@@ -1,0 +1,71 @@
+"""Balances are held to what Newton's tolerance and rounding leave: no alarm on slender arms, every fault found."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from verify import balance
+from verify.checks import run_checks
+from verify.methods import dolfinx_installed, solve
+from verify.scene import load_scene
+from verify.verdict import Check
+
+COARSE = ["discretization.dofs=300", "interface.strength=7.5"]
+SLENDER = ["specimen.arm_thickness=0.05", "load.opening=8", "discretization.steps=40"]
+STIFF_CONTACT = ["interface.penalty=1e10", "discretization.steps=40"]
+LONG = [
+    "specimen.length=114.06236909598474", "specimen.arm_thickness=1", "specimen.precrack=56.228538432247156",
+    "material.young=1e5", "material.poisson=0.3244093595137369", "interface.toughness=0.48117285123914466",
+    "interface.strength=0.1628493795958447", "interface.ductility=2.017008049533789", "interface.penalty=1e5",
+    "load.opening=36.77040374733115", "discretization.steps=80",
+]  # fmt: skip
+VERY_SLENDER = ["specimen.arm_thickness=0.02", "load.opening=20", "discretization.steps=40"]
+
+BALANCES = {"interface-force": "interface_force", "moment-balance": "interface_moment", "reactions": "reaction_y"}
+
+
+def balances(scene, result) -> dict[str, Check]:
+    return {check.name: check for check in run_checks(scene, result) if check.name in BALANCES}
+
+
+@pytest.mark.parametrize(
+    ("name", "method", "changes"),
+    [
+        ("dcb-czm1", "lagrange", COARSE),
+        ("dcb-czm1", "dolfinx", SLENDER),
+        ("dcb-czm1-linear", "dolfinx", VERY_SLENDER),
+        ("dcb-czm1-linear", "lagrange", LONG),
+        ("dcb-czm1", "dolfinx", STIFF_CONTACT),
+        ("dcb-czm1", "nurbs", SLENDER),
+    ],
+)
+def test_long_elements_and_slender_arms_raise_no_alarm_and_ten_times_as_much_is_a_fault(name, method, changes) -> None:
+    if method == "dolfinx" and not dolfinx_installed():
+        pytest.skip("DOLFINx is not installed")
+    scene = load_scene(name, changes)
+    result = solve(scene, method)
+    found = balances(scene, result)
+    assert {check.state for check in found.values()} == {"holds"} and set(found) == set(BALANCES)
+    if method != "nurbs":
+        assert max(check.value for check in found.values()) > balance.LEAST, "what one tolerance for all would fail"
+    peak = abs(result.load).max()
+    for check, column in BALANCES.items():
+        lever = scene.specimen.free_length if check == "moment-balance" else 1.0
+        fault = 10.0 * found[check].tolerance * lever * peak
+        wrong = replace(result, steps={**result.steps, column: result.steps[column] + fault})
+        assert [one.name for one in balances(scene, wrong).values() if one.state == "broken"] == [check]
+
+
+def test_what_is_allowed_follows_from_the_scene() -> None:
+    """Two decimals from the usual scene to one of arms ten times thinner; nothing is known of other methods."""
+    scene, thin = load_scene("dcb-czm1"), load_scene("dcb-czm1", ["specimen.arm_thickness=0.02"])
+    result = replace(solve(scene, "beam"), method="nurbs", dofs=1952, elements=238)
+    assert balance.force_tolerance(scene, result) == balance.LEAST
+    assert balance.LEAST < balance.moment_tolerance(scene, result) < 5.0 * balance.LEAST
+    assert balance.LEAST < balance.force_tolerance(thin, result) <= balance.MOST
+    assert balance.force_tolerance(thin, result) < balance.moment_tolerance(thin, result) <= balance.MOST
+    for method in ("beam", "mycode"):
+        other = replace(result, method=method)
+        assert balance.force_tolerance(thin, other) == balance.moment_tolerance(thin, other) == balance.LEAST

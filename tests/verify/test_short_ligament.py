@@ -1,0 +1,58 @@
+"""J on ligaments so short that the far end takes part: its faces count, and what it cannot explain is a fault."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from verify.checks import J_TOLERANCE, held_at_the_end, j_deviation, run_checks
+from verify.methods import dolfinx_installed, solve
+from verify.result import Result
+from verify.scene import Scene, load_scene
+from verify.verdict import Check
+
+METHODS = ["beam", "nurbs", "tspline", "lagrange", pytest.param("dolfinx", marks=pytest.mark.skipif(
+    not dolfinx_installed(), reason="DOLFINx is not installed"))]  # fmt: skip
+
+
+def short(ligament: float, penalty: float) -> Scene:
+    """dcb-czm1 with a ligament as long as 0.8 to 3.4 process zones, on contact that is much stiffer than the bond."""
+    changes = (f"specimen.length={4.0 + ligament}", "load.opening=0.6", f"interface.penalty={penalty}")
+    return load_scene("dcb-czm1", [*changes, "discretization.dofs=1200", "discretization.steps=40"])
+
+
+def j_of(scene: Scene, result: Result) -> Check:
+    return next(check for check in run_checks(scene, result) if check.name == "j-integral")
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("ligament", "penalty"), [(0.7, 1e6), (0.7, 1e8), (1.5, 1e7), (3.0, 1e6)])
+def test_j_raises_no_alarm_and_no_wrong_j_passes(method: str, ligament: float, penalty: float) -> None:
+    scene = short(ligament, penalty)
+    result = solve(scene, method)
+    check = j_of(scene, result)
+    assert result.complete and check.state == "holds" or ligament < 1.0 and check.state == "unresolved"
+    if check.unresolved:
+        assert "a larger specimen.length resolves it" in check.unresolved or "elements of the mesh" in check.unresolved
+    for column in ("face_slope_top", "tip_opening"):
+        wrong = replace(result, steps={**result.steps, column: 1.2 * result.steps[column]})
+        assert j_of(scene, wrong).state in (
+            ("broken",) if method == "beam" or ligament > 1.0 else ("broken", "unresolved")
+        )
+    gross = replace(result, steps={**result.steps, "face_slope_top": 100.0 * result.steps["face_slope_top"]})
+    assert j_of(scene, gross).state == "broken", "more than the far end explains"
+
+
+@pytest.mark.parametrize("method", ["nurbs", "tspline"])
+def test_j_deviates_by_what_the_far_faces_hold_where_they_do_not_count(method: str) -> None:
+    """About as much as the contact does, where that is as stiff as the arm."""
+    scene = short(0.7, 1e7)
+    result = solve(scene, method)
+    early = {name: column[result.opening < 0.1] for name, column in result.steps.items()}
+    G, none = scene.interface.toughness, np.zeros_like(early["load"])
+    far = np.max(-early["face_energy"]) / G
+    assert far > 2.0 * J_TOLERANCE and np.max(held_at_the_end(scene, early)) > 1.3 * far
+    assert j_deviation(scene, early) == pytest.approx(0.0, abs=0.1 * far)
+    assert j_deviation(scene, {**early, "face_energy": none}) == pytest.approx(far, rel=0.1)
