@@ -27,7 +27,7 @@ from verify.effects import simulated
 from verify.folder import FILES, write_json
 from verify.frames import cleared
 from verify.leg_checks import leg_differences
-from verify.legs import only_opens, path, turns
+from verify.legs import path
 from verify.methods import WITH_DOFS
 from verify.plain import read_json
 from verify.process_zone import expected
@@ -39,6 +39,7 @@ from verify.say import say
 from verify.scene import parse_scene
 from verify.schema import Scene
 from verify.store import alone_in
+from verify.turns import only_opens, turns
 from verify.verdict import Check
 
 #: Elements along the specimen over those of the level before, and levels at most.
