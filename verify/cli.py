@@ -154,7 +154,7 @@ def _solve_options(sub: Parser) -> None:
     _scene_argument(sub)
     sub.add_argument("--method", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
     sub.add_argument("--dofs", type=positive, metavar="N", help="unknowns to aim at, for tspline, nurbs and lagrange")
-    what = "choose method and mesh for this error of the curve, like 0.3%%, and say how long it takes"
+    what = "choose method and mesh for this error of the curve, like 0.3%%, and verify it on finer meshes"
     sub.add_argument("--accuracy", type=accuracy, metavar="A", help=what)
     _set_option(sub)
     sub.add_argument("--out", type=Path, metavar="DIR", help="default: debond-out/SCENE-METHOD")

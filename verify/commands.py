@@ -15,20 +15,20 @@ from verify.say import say
 
 if TYPE_CHECKING:
     from verify.foreign import Curve
+    from verify.result import Result
+    from verify.schema import Scene
+    from verify.verdict import Check
 
 FAILED = 1
 
 
 def solve(options: argparse.Namespace) -> int:
-    from verify import neglected
-    from verify.effects import decided
     from verify.methods import NotRun, require
-    from verify.process_zone import warnings
     from verify.run import mpi_rank, mpi_size, run
     from verify.scene import load_scene
 
     if options.accuracy is not None:
-        _chosen(options)
+        return _accurate(options)
     options.method = options.method or "nurbs"
     _known_method(options.method, options.dofs)
     dofs = [f"discretization.dofs={options.dofs}"] if options.dofs else []
@@ -43,26 +43,20 @@ def solve(options: argparse.Namespace) -> int:
         return _not_run(error)
     _folder(options.out)
     if not quiet:
-        for remark in (*decided(scene, options.method), *warnings(scene, options.method)):
-            say(str(remark))
-        if options.fields and options.frames and options.method in ("beam", "lefm"):
-            say(f"--fields: the method {options.method} has no bodies to draw: no frames for ParaView")
+        _say_before(scene, options)
     result, checks = _watched(run, scene, options, quiet)
     if not quiet:
         _print_result(result, checks, options.out)
-        for remark in neglected.warnings(scene, result):
-            say(remark)
-    broken = [c.name for c in checks if c.state == "broken"]
-    if result.complete and broken and not quiet:
-        say(f"{result.method}: broken: {', '.join(broken)}; the run or the solver is at fault, not the mesh")
-    return 0 if result.complete and not broken else FAILED
+        _say_after(scene, result, checks)
+    return 0 if result.complete and not _broken(checks) else FAILED
 
 
-def _chosen(options: argparse.Namespace) -> None:
-    """Put the method and the mesh for an accuracy into the options, and say what and for how long."""
+def _accurate(options: argparse.Namespace) -> int:
+    """Solve to an accuracy: choose method and mesh, say what and for how long, and verify the solution."""
     from verify.cost.accuracy import choose
-    from verify.run import mpi_size
-    from verify.scene import load_scene
+    from verify.cost.verified import percent, planned, verified
+    from verify.run import mpi_size, run
+    from verify.scene import load_scene, parse_scene
 
     given = {"--method": options.method, "--dofs": options.dofs}
     for name, value in given.items():
@@ -70,9 +64,51 @@ def _chosen(options: argparse.Namespace) -> None:
             raise Refusal(f"{name}: must be left out with --accuracy, which chooses it, got {value!r}")
     if mpi_size() > 1:
         raise Refusal(f"--accuracy: must be asked for in 1 process, without mpirun, got {mpi_size()}")
-    choice = choose(load_scene(options.scene, options.overrides), options.accuracy, Path("debond-cost") / "cost.json")
-    say(choice.why)
-    options.method, options.overrides = choice.method, [*options.overrides, *choice.overrides]
+    scene = load_scene(options.scene, options.overrides)
+    first = choose(scene, options.accuracy, Path("debond-cost") / "cost.json")
+    say(planned(scene, first))
+    out = options.out or Path("debond-out") / f"{scene.name}-{first.method}"
+    _folder(out)
+    options.method = first.method
+    _say_before(parse_scene(scene.model_dump(), first.overrides), options)
+
+    def solved(level: Scene, method: str, folder: Path, delivers: bool):
+        own = {"method": method, "out": folder, "fields": options.fields and delivers}
+        return _watched(run, level, argparse.Namespace(**{**vars(options), **own}), False)
+
+    found = verified(scene, first, options.accuracy, out, solved)
+    last = found.delivered
+    _print_result(last.result, last.checks, out)
+    print(found.sentence)
+    _say_after(last.scene, last.result, last.checks)
+    if not found.close:
+        remedy = "ask for less, or refine with --dofs and discretization.steps"
+        say(f"--accuracy: {percent(found.asked)} has not been reached: {found.why}; {found.sentence}; {remedy}")
+    return 0 if found.holds else FAILED
+
+
+def _say_before(scene: Scene, options: argparse.Namespace) -> None:
+    from verify.effects import decided
+    from verify.process_zone import warnings
+
+    for remark in (*decided(scene, options.method), *warnings(scene, options.method)):
+        say(str(remark))
+    if options.fields and options.frames and options.method in ("beam", "lefm"):
+        say(f"--fields: the method {options.method} has no bodies to draw: no frames for ParaView")
+
+
+def _say_after(scene: Scene, result: Result, checks: Sequence[Check]) -> None:
+    from verify import neglected
+
+    for remark in neglected.warnings(scene, result):
+        say(remark)
+    broken = _broken(checks)
+    if result.complete and broken:
+        say(f"{result.method}: broken: {', '.join(broken)}; the run or the solver is at fault, not the mesh")
+
+
+def _broken(checks: Sequence[Check]) -> list[str]:
+    return [check.name for check in checks if check.state == "broken"]
 
 
 def _watched(run, scene, options: argparse.Namespace, quiet: bool):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -100,16 +101,22 @@ def test_a_study_is_begun_by_one_process(
 def test_an_accuracy_becomes_a_method_and_a_mesh(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
-    choice = SimpleNamespace(why="NURBS, 300 unknowns", method="lagrange", overrides=("discretization.dofs=300",))
+    """300 unknowns are 9 % off, 4 times as many on the next level 1 %, and so on."""
+    overrides = ("discretization.dofs=300", "discretization.steps=40")
+    choice = accuracy.Choice("lagrange", overrides, 1.0, "Lagrange, 300 unknowns")
     asked: list[tuple] = []
     monkeypatch.setattr(accuracy, "choose", lambda *what: asked.append(what) or choice)
-    words = ["solve", "dcb-czm1", "--accuracy", "0.3%", "--set", "load.opening=0.1"]
+    words = ["solve", "dcb-czm1", "--accuracy", "4%", "--set", "load.opening=0.6"]
     assert main([*words, "--out", str(tmp_path / "out")]) == 0
     said = capsys.readouterr()
-    assert "NURBS, 300 unknowns" in said.err and "peak load" in said.out
+    assert "Lagrange, 300 unknowns; with a second run on a finer mesh, to verify it, about " in said.err
+    assert "level-0 took " in said.err and "level-1: degree 4 with " in said.err
+    assert "peak load" in said.out and ", asked 4 %" in said.out
     scene, wanted, where = asked[0]
-    assert scene.load.opening == (0.1,) and wanted == pytest.approx(0.003) and where.name == "cost.json"
-    assert '"lagrange"' in (tmp_path / "out" / "result.json").read_text()
+    assert scene.load.opening == (0.6,) and wanted == pytest.approx(0.04) and where.name == "cost.json"
+    found = json.loads((tmp_path / "out" / "result.json").read_text())
+    assert found["method"] == "lagrange" and found["accuracy"]["holds"] and found["accuracy"]["asked"] == 0.04
+    assert found["accuracy"]["levels"][-1]["folder"] == "."
     monkeypatch.setattr("verify.run.mpi_size", lambda: 4)
     assert main([*words, "--out", str(tmp_path / "other")]) == REFUSED
     assert "--accuracy: must be asked for in 1 process, without mpirun, got 4" in capsys.readouterr().err

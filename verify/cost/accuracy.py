@@ -1,8 +1,9 @@
-"""``debond solve --accuracy``: method and mesh from what is known of the cost, and how long the run will take.
+"""``debond solve --accuracy``: the first guess of method and mesh, and how long a run on it will take.
 
 Where a study of the same scene is at hand its front decides. Otherwise the elements that must span the process zone
 are read off `known.csv`, which says where its numbers come from; a trial of a few steps on the chosen mesh tells the
-time of an iteration, on this machine and now, and the length of the crack to be grown how many there will be.
+time of an iteration, on this machine and now, and the length of the crack to be grown how many there will be. The guess
+is verified by solving on finer meshes (`verify.cost.verified`).
 """
 
 from __future__ import annotations
@@ -17,14 +18,16 @@ from typing import Any
 
 import numpy as np
 
-from verify.cost.ladder import FAMILIES, STEPS, Try, size_of_an_element
+from verify.cost.ladder import MORE_POINTS
 from verify.effects import simulated
 from verify.estimate import steps
 from verify.fingerprint import source
-from verify.methods import NotRun, known_methods, require, solve
+from verify.methods import WITH_DOFS, NotRun, require, solve
 from verify.plain import Damaged, read_json
+from verify.problems import STEPS, iga_problem
 from verify.process_zone import expected
 from verify.progress import duration
+from verify.reference_mesh import thickness_error
 from verify.refusal import Refusal
 from verify.run import machine
 from verify.say import say
@@ -33,14 +36,24 @@ from verify.schema import Scene
 
 KNOWN = Path(__file__).with_name("known.csv")
 
-#: The family that is chosen where only the table is known.
-FAMILY = next(family for family in FAMILIES if family.name == "nurbs-p2")
+#: The method that is chosen where only the table is known, and the methods whose meshes can be refined.
+METHOD, REFINED = "nurbs", (*WITH_DOFS, "dolfinx")
+
+#: Unknowns that a scene may have at most.
+LARGEST = 1_000_000
+
+#: A quadratic element through an arm is chosen where it costs at most this part of the accuracy.
+THROUGH = 0.25
+
+#: For steps "auto": how far off its tangent the load may be, as a part of the accuracy.
+BEND = 1.0
 
 #: Accuracies that can be asked for; from the table more elements than it says are taken.
 FINEST, COARSEST, SAFETY = 0.0005, 0.05, 1.2
 
-#: Newton iterations a step: of finite kinematics measured on ``dcb-czm1`` and ``peel-120``; a linear bulk takes one.
-ITERATIONS_PER_STEP = {"finite": 3.2, "linear": 1.0}
+#: Newton iterations a step, as long as those of the trial: 3.0 to 4.0 on random scenes of finite kinematics, and those
+#: after damage begins take longer; a linear bulk takes one.
+ITERATIONS_PER_STEP = {"finite": 4.2, "linear": 1.0}
 
 #: A trial goes this part of the way in about so many steps.
 TRIAL, TRIAL_STEPS = 0.02, 10
@@ -64,7 +77,7 @@ _STUDY = {
 
 @dataclass(frozen=True)
 class Choice:
-    """What to run for an accuracy: overrides of the scene, and the sentence that says so beforehand."""
+    """What to run first for an accuracy: overrides of the scene, and the words that say so beforehand."""
 
     method: str
     overrides: tuple[str, ...]
@@ -73,7 +86,7 @@ class Choice:
 
 
 def choose(scene: Scene, accuracy: float, study: Path) -> Choice:
-    """Method and mesh for a curve error of at most ``accuracy``.
+    """First guess of method and mesh for a curve error of at most ``accuracy``, with the effects of the scene.
 
     Parameters
     ----------
@@ -91,15 +104,16 @@ def choose(scene: Scene, accuracy: float, study: Path) -> Choice:
 def _from_study(scene: Scene, accuracy: float, path: Path) -> Choice | None:
     known = _same_study(scene, path)
     for run in known:
-        if run["curve_error"] > accuracy or run["solver"] == "beam" or run["solver"] not in known_methods():
+        if run["curve_error"] > accuracy or run["solver"] not in REFINED:
             continue
+        overrides = tuple(one for one in run["overrides"] if not one.startswith("effects."))
         try:
-            require(parse_scene(scene.model_dump(), run["overrides"]), run["solver"])
+            require(parse_scene(scene.model_dump(), overrides), run["solver"])
         except (NotRun, Refusal):
             continue
         what = f"{run['method']} of degree {run['degree']} with {run['dofs']} unknowns"
         took = f"took {duration(run['seconds'])} in {path} and was within {run['curve_error']:.2g}"
-        return Choice(run["solver"], tuple(run["overrides"]), run["seconds"], f"{what}: {took}")
+        return Choice(run["solver"], overrides, run["seconds"], f"{what}: {took}")
     return None
 
 
@@ -121,15 +135,27 @@ def _same_study(scene: Scene, path: Path) -> Sequence[Mapping[str, Any]]:
 
 def _from_table(scene: Scene, accuracy: float) -> Choice:
     elements = SAFETY * elements_for(accuracy)
-    one = Try(FAMILY, 0, unknowns_for(scene, elements), STEPS)
-    overrides = one.job(scene.name, scene).overrides
+    degree = 2 if thickness_error(scene, 2, 1) <= THROUGH * accuracy else 3
+    overrides = (*_steps(scene, accuracy), *with_elements(scene, METHOD, degree, elements))
     chosen = parse_scene(scene.model_dump(), overrides)
-    require(chosen, FAMILY.solver)
-    number = steps(chosen, FAMILY.solver)
-    each = ITERATIONS_PER_STEP[simulated(chosen, FAMILY.solver)["kinematics"]]
-    seconds = run_seconds(chosen, FAMILY.solver, each * number)
-    mesh = f"NURBS of degree {FAMILY.degree} with {one.size} unknowns, {elements:.1f} elements in the process zone"
-    return Choice(FAMILY.solver, overrides, seconds, f"{mesh}: about {duration(seconds)}, {number} steps")
+    require(chosen, METHOD)
+    seconds = run_seconds(chosen, METHOD, iterations(chosen, METHOD))
+    mesh = f"NURBS of degree {degree} with {chosen.discretization.dofs} unknowns"
+    zone = f"{expected(chosen, METHOD).elements:.1f} elements in the process zone"
+    return Choice(METHOD, overrides, seconds, f"{mesh}, {zone}: about {duration(seconds)}")
+
+
+def _steps(scene: Scene, accuracy: float) -> tuple[str, ...]:
+    """At least as many steps as the scene asks for, or steps by accuracy that are as short as the scene's."""
+    asked = scene.discretization
+    if asked.steps == "auto":
+        return (f"discretization.bend={min(asked.bend, max(BEND * accuracy, 1e-5))!r}",)
+    return (f"discretization.steps={max(asked.steps, STEPS)}",)
+
+
+def iterations(scene: Scene, method: str) -> float:
+    """Newton iterations of a whole run, about."""
+    return ITERATIONS_PER_STEP[simulated(scene, method)["kinematics"]] * steps(scene, method)
 
 
 def elements_for(accuracy: float) -> float:
@@ -153,19 +179,36 @@ def _crossing(rows: Sequence[Mapping[str, str]], accuracy: float) -> float:
     return float(np.exp(np.interp(-np.log(accuracy), -error, e)))
 
 
-def unknowns_for(scene: Scene, elements: float) -> int:
-    """Unknowns with which at least so many elements span the process zone."""
-    size = round(size_of_an_element(scene, FAMILY) * elements)
-    for _ in range(40):
+def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tuple[str, ...]:
+    """Overrides for a mesh of a method of `iga` with at least so many elements in the process zone.
+
+    The mesh has the degree through the arms, too: coarse meshes of higher degree are quadratic there.
+
+    Raises
+    ------
+    Refusal : no mesh is fine enough.
+    """
+    points = max(degree + MORE_POINTS, scene.discretization.interface_points)
+    of_degree = (f"discretization.degree={degree}", f"discretization.interface_points={points}")
+    now = expected(scene, method).elements
+    size = min(round(scene.discretization.dofs * (elements / now if now > 0.0 else 1.0)), LARGEST)
+    for _ in range(60):
+        overrides = (*of_degree, f"discretization.dofs={size}")
         try:
-            chosen = parse_scene(scene.model_dump(), Try(FAMILY, 0, size, STEPS).job(scene.name, scene).overrides)
+            chosen = parse_scene(scene.model_dump(), overrides)
         except SceneError:  # more unknowns than a scene may have
             break
-        there = expected(chosen, FAMILY.solver).elements
-        if there >= elements:
-            return size
-        size = round(size * (min(elements / there, 1.5) if there > 0.0 else 1.2)) + 8
+        there = expected(chosen, method).elements
+        if there >= elements and _degree_through(chosen, method) >= degree:
+            return overrides
+        size = round(size * (min(elements / there, 1.5) if 0.0 < there < elements else 1.2)) + 8
     raise Refusal(f"--accuracy: no mesh is known with {elements:.1f} elements in the process zone of {scene.name}")
+
+
+def _degree_through(scene: Scene, method: str) -> int:
+    """Lowest degree of the elements in any direction."""
+    solver, problem = iga_problem(scene, method)
+    return min(min(block.degrees) for mesh in solver.build(problem).meshes for block in mesh.blocks)
 
 
 def run_seconds(scene: Scene, method: str, iterations: float) -> float:

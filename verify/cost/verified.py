@@ -1,0 +1,311 @@
+"""``debond solve --accuracy``, verified: solutions on ever finer meshes until two of them agree.
+
+Level 0 is the first guess (`verify.cost.accuracy`). Every further level has `RATIO` times the elements along the
+specimen, a higher degree, so that the thickness of the arms is resolved better, too, and another number of steps. The
+distance of the last two levels bounds the error of the finer one where the error of the coarser one is at least twice
+as large: with `RATIO` 1.5 from an order of 1.7 on.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from math import ceil, inf, isfinite
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from verify import estimate
+from verify.cost.accuracy import Choice, with_elements
+from verify.cost.reference import cubics, distance
+from verify.curve import peak
+from verify.effects import simulated
+from verify.folder import FILES, write_json
+from verify.frames import cleared
+from verify.leg_checks import leg_differences
+from verify.legs import path
+from verify.methods import WITH_DOFS
+from verify.plain import read_json
+from verify.process_zone import expected
+from verify.progress import duration
+from verify.reference_mesh import reference_mesh
+from verify.refusal import Refusal
+from verify.result import Result
+from verify.say import say
+from verify.scene import parse_scene
+from verify.schema import Scene
+from verify.store import alone_in
+from verify.turns import only_opens, turns
+from verify.verdict import Check
+
+#: Elements along the specimen over those of the level before, and levels at most.
+RATIO, LEVELS = 1.5, 4
+
+#: Highest degree of a method.
+HIGHEST = {"nurbs": 5, "lagrange": 5, "tspline": 3, "dolfinx": 4}
+
+#: The error of the straight lines between the steps may be this part of the accuracy; the next level has more steps
+#: where it is larger, and some more in any case, so that they end in other places.
+STRAIGHT, MORE_STEPS, MOST_STEPS = 0.25, 1.1, 3.0
+
+#: Largest factor by which the error is expected to fall from one level to the next.
+GAIN = 20.0
+
+#: Power of the unknowns with which the time of a run grows where a linear bulk is condensed.
+CONDENSED = 0.3
+
+#: What solves a scene by a method into a folder, the last one, and draws fields where it is asked to.
+Solve = Callable[[Scene, str, Path, bool], tuple[Result, tuple[Check, ...]]]
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """A run: ``distance`` is that to the level before, infinite where there is none to compare."""
+
+    folder: str
+    scene: Scene
+    method: str
+    overrides: tuple[str, ...]
+    result: Result
+    checks: tuple[Check, ...]
+    seconds: float
+    distance: float = inf
+
+    def summary(self) -> dict[str, Any]:
+        keys = ("folder", "method", "overrides", "seconds", "distance")
+        return {key: getattr(self, key) for key in keys} | {"status": self.result.status}
+
+
+@dataclass(frozen=True, eq=False)
+class Verified:
+    """The levels of a solution with the accuracy ``asked``, coarse to fine; ``why`` they end before it is reached."""
+
+    asked: float
+    levels: tuple[Level, ...]
+    why: str = ""
+
+    @property
+    def delivered(self) -> Level:
+        """The finest level that came to its end; the last one where no level did."""
+        return next((one for one in reversed(self.levels) if one.result.complete), self.levels[-1])
+
+    @property
+    def reached(self) -> tuple[float, float] | None:
+        """Interval of the error of the delivered level, None where it is compared with no other level.
+
+        The distance of two levels is at least ``GAIN - 1`` and, if their errors are opposite, at most ``GAIN + 1``
+        times the error of the finer one, for an error that falls by `GAIN`.
+        """
+        high = self.delivered.distance
+        return (high / (GAIN + 1.0), high) if isfinite(high) else None
+
+    @property
+    def close(self) -> bool:
+        """Whether the last two curves agree within what was asked."""
+        return self.delivered.distance <= self.asked
+
+    @property
+    def holds(self) -> bool:
+        """Whether they do, and no identity is broken: on a finer mesh it may hold."""
+        return self.close and all(check.state != "broken" for check in self.delivered.checks)
+
+    @property
+    def sentence(self) -> str:
+        """What was reached, of what was asked."""
+        asked = f"asked {percent(self.asked)}"
+        if self.reached is None:
+            return f"error of the curve unknown, {asked}"
+        low, high = self.reached
+        return f"curve and peak load within {percent(high)} (between {percent(low)} and {percent(high)}), {asked}"
+
+    def summary(self) -> dict[str, Any]:
+        """The entry ``accuracy`` of result.json."""
+        number = self.levels.index(self.delivered)
+        return {
+            "asked": self.asked,
+            "holds": self.holds,
+            "reached": self.reached,
+            "against": self.levels[number - 1].folder if self.reached else None,
+            "why": self.why,
+            "levels": [one.summary() | ({"folder": "."} if one is self.delivered else {}) for one in self.levels],
+        }
+
+
+def verified(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Solve) -> Verified:
+    """Solve on finer and finer meshes until two agree within ``accuracy``, each in a folder of its own in ``out``.
+
+    The files of the delivered run are moved to ``out`` itself; so are those of a run that is interrupted.
+
+    Raises
+    ------
+    Refusal : another run is at work in ``out``.
+    """
+    with alone_in(out):
+        _clear(out)
+        with _kept_if_interrupted(out):
+            found = _refined(scene, first, accuracy, out, solve)
+        _deliver(out, found)
+    return found
+
+
+def _refined(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Solve) -> Verified:
+    overrides, levels = first.overrides, []
+    for number in range(LEVELS):
+        folder = f"level-{number}"
+        chosen = parse_scene(scene.model_dump(), overrides)
+        begun = perf_counter()
+        result, checks = solve(chosen, first.method, out / folder, number > 0)
+        seconds = perf_counter() - begun
+        level = Level(folder, chosen, first.method, overrides, result, checks, seconds)
+        if levels and result.complete:
+            level = replace(level, distance=apart(result, levels[-1].result, scene.load.opening))
+        levels.append(level)
+        found = Verified(accuracy, tuple(levels))
+        if not result.complete:
+            return replace(found, why=f"{folder} {result.status}")
+        if found.holds:
+            return found
+        if number + 1 == LEVELS:
+            break
+        try:
+            overrides = finer(chosen, first.method, overrides, _more_steps(result, accuracy))
+            _announce(level, parse_scene(scene.model_dump(), overrides), number + 1)
+        except Refusal as error:
+            return replace(found, why=f"no mesh is finer than that of {folder}: {error}")
+    return replace(found, why=f"{LEVELS} levels are the most")
+
+
+def apart(fine: Result, coarse: Result, programme: Sequence[float]) -> float:
+    """Distance of the curve of a run, straight between its steps, from the path of another, relative.
+
+    The largest one of: L2 of the load over the opening, of every leg where the programme turns; and of the peak loads.
+    Infinite where they cannot be compared.
+    """
+    curve, known = (fine.opening, fine.load), cubics(coarse)
+    if min(len(curve[0]), len(coarse.load)) < 2:
+        return inf
+    size = float(np.max(np.abs(known[1])))
+    found = [abs(peak(curve)[1] - peak(known)[1]) / size if size > 0.0 else inf]
+    if only_opens(programme):
+        found.append(distance(curve, coarse))
+    else:
+        legs = leg_differences(path(curve, programme), path(known, programme))
+        found += [leg.error for leg in legs] if len(legs) == len(turns(programme)) else [inf]
+    return max(one if isfinite(one) else inf for one in found)
+
+
+def finer(scene: Scene, method: str, overrides: Sequence[str], more: float = MORE_STEPS) -> tuple[str, ...]:
+    """Overrides of the next level.
+
+    Parameters
+    ----------
+    scene, overrides : of this level, the scene with its overrides
+    more : number of steps over that of this level
+
+    Raises
+    ------
+    Refusal : there is no finer mesh.
+    """
+    asked = scene.discretization
+    if method in WITH_DOFS:
+        degree = min(asked.degree + 1, HIGHEST[method])
+        mesh = with_elements(scene, method, degree, RATIO * expected(scene, method).elements)
+    else:
+        own = reference_mesh(scene)
+        degree = min(own.degree + 1, HIGHEST[method])
+        layers = own.layers + (degree == own.degree)
+        finest = {"degree": degree, "elements": ceil(RATIO * own.elements), "layers": layers}
+        mesh = tuple(f"dolfinx.{key}={value}" for key, value in finest.items())
+    steps = f"discretization.steps={ceil(more * asked.steps)}" if asked.steps != "auto" else ""
+    pace = steps or f"discretization.bend={max(asked.bend / more**2, 1e-5)!r}"
+    found = {one.partition("=")[0]: one for one in (*overrides, pace, *mesh)}
+    return tuple(found.values())
+
+
+def _more_steps(result: Result, accuracy: float) -> float:
+    """So many times the steps that straight lines between them are good enough."""
+    straight = distance((result.opening, result.load), result)
+    wanted = (straight / (STRAIGHT * accuracy)) ** 0.5 if isfinite(straight) else MOST_STEPS
+    return min(max(wanted, MORE_STEPS), MOST_STEPS)
+
+
+def growth(scene: Scene, following: Scene, method: str) -> float:
+    """How much longer a run on a finer mesh takes: in proportion to steps and unknowns.
+
+    A linear bulk that is condensed onto the interface counts for less: 1.1 to 1.6 times the time for twice the
+    unknowns on random scenes.
+    """
+    unknowns, steps = (of(following, method) / of(scene, method) for of in (estimate.unknowns, estimate.steps))
+    if scene.discretization.steps == "auto":
+        steps *= (scene.discretization.bend / following.discretization.bend) ** 0.5
+    condensed = method in WITH_DOFS and simulated(scene, method)["kinematics"] == "linear"
+    return steps * unknowns ** (CONDENSED if condensed else 1.0)
+
+
+def planned(scene: Scene, first: Choice) -> str:
+    """What is said before the first run: the guess, and the time of the two levels that are needed at least.
+
+    Raises
+    ------
+    Refusal : there is no finer mesh to verify it with.
+    """
+    guess = parse_scene(scene.model_dump(), first.overrides)
+    following = parse_scene(scene.model_dump(), finer(guess, first.method, first.overrides))
+    total = duration(first.seconds * (1.0 + growth(guess, following, first.method)))
+    return f"{first.why}; with a second run on a finer mesh, to verify it, about {total} in all"
+
+
+def _announce(level: Level, following: Scene, number: int) -> None:
+    took = f"{level.folder} took {duration(level.seconds)}"
+    if isfinite(level.distance):
+        took += f" and is {percent(level.distance)} from the level before"
+    degree = following.discretization.degree if level.method in WITH_DOFS else reference_mesh(following).degree
+    unknowns = estimate.unknowns(following, level.method)
+    about = duration(level.seconds * growth(level.scene, following, level.method))
+    say(f"{took}; level-{number}: degree {degree} with {unknowns} unknowns, about {about}")
+
+
+@contextmanager
+def _kept_if_interrupted(out: Path) -> Iterator[None]:
+    """Move the files of a run that is interrupted to where those of a whole one are."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        last = max(out.glob("level-[0-9]"), default=None)
+        if last is not None:
+            _move(last, out)
+        raise
+
+
+def _deliver(out: Path, found: Verified) -> None:
+    _move(out / found.delivered.folder, out)
+    file = out / "result.json"
+    if file.exists():
+        write_json(file, {**read_json(file, {}), "accuracy": found.summary()})
+
+
+def _move(folder: Path, out: Path) -> None:
+    for item in folder.glob("*"):
+        if (out / item.name).is_dir():
+            shutil.rmtree(out / item.name)
+        item.replace(out / item.name)
+    if folder.is_dir():
+        folder.rmdir()
+
+
+def _clear(out: Path) -> None:
+    """Remove earlier runs."""
+    for folder in out.glob("level-[0-9]"):
+        if (folder / "curve.csv").exists():
+            shutil.rmtree(folder)
+    cleared(out)
+    for name in FILES:
+        (out / name).unlink(missing_ok=True)
+
+
+def percent(part: float) -> str:
+    return f"{100.0 * part:.2g} %"
