@@ -107,8 +107,13 @@ def test_an_accuracy_becomes_a_method_and_a_mesh(
     asked: list[tuple] = []
     monkeypatch.setattr(accuracy, "choose", lambda *what: asked.append(what) or choice)
     words = ["solve", "dcb-czm1", "--accuracy", "4%", "--set", "load.opening=0.6"]
-    assert main([*words, "--out", str(tmp_path / "out")]) == 0
+    assert main([*words, "--fields", "--frames", "2", "--out", str(tmp_path / "out")]) == 0
     said = capsys.readouterr()
+    drawn = {"fields.npz", "fields.pvd", "frames"}
+    of_level_0, of_the_delivered = (
+        {path.name for path in (tmp_path / "out" / name).iterdir()} for name in ("level-0", "")
+    )
+    assert drawn <= of_the_delivered and not drawn & of_level_0
     assert "Lagrange, 300 unknowns; with a second run on a finer mesh, to verify it, about " in said.err
     assert "level-0 took " in said.err and "level-1: degree 4 with " in said.err
     assert "peak load" in said.out and ", asked 4 %" in said.out

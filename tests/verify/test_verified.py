@@ -15,12 +15,13 @@ from verify import run as run_module
 from verify.cli import FAILED, INTERRUPTED, main
 from verify.cost import accuracy
 from verify.cost.accuracy import Choice
-from verify.cost.verified import LEVELS, apart, finer, verified
+from verify.cost.verified import LEVELS, apart, bound, finer, verified
 from verify.hard.random_scenes import random_scene
 from verify.methods import solve
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
 from verify.run import run
 from verify.scene import load_scene, parse_scene
+from verify.verdict import Check
 
 FIRST = Choice("nurbs", ("discretization.dofs=300", "discretization.degree=2"), 1.0, "a guess")
 
@@ -65,21 +66,21 @@ def solved(out: Path, asked: str = "0.3%") -> tuple[int, dict]:
 
 
 def test_two_levels_that_agree_are_enough(solving, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    solving([0.003, 0.001])
+    solving([0.002, 0.0004])
     code, found = solved(tmp_path)
     about = found["accuracy"]
     assert code == 0 and about["holds"] and about["against"] == "level-0" and about["asked"] == 0.003
-    assert about["reached"] == pytest.approx([0.002 / 21.0, 0.002], rel=0.02)
+    assert about["reached"] == pytest.approx([0.0016 / 21.0, 0.0024], rel=0.02)
     assert [level["folder"] for level in about["levels"]] == ["level-0", "."]
-    assert about["levels"][0]["distance"] is None and about["levels"][1]["distance"] == about["reached"][1]
-    assert "curve and peak load within 0.2 % (between 0.0095 % and 0.2 %), asked 0.3 %" in capsys.readouterr().out
+    assert about["levels"][0]["distance"] is None and about["levels"][1]["distance"] == pytest.approx(0.0016, rel=0.02)
+    assert "curve and peak load within 0.24 % (between 0.0076 % and 0.24 %), asked 0.3 %" in capsys.readouterr().out
     assert sorted(path.name for path in tmp_path.iterdir()) == ["curve.csv", "evidence.csv", "level-0", "result.json"]
     assert (tmp_path / "level-0" / "curve.csv").exists()
     assert found["scene"]["discretization"]["degree"] == 3, "the finer one is delivered"
 
 
 def test_levels_go_on_until_two_agree(solving, tmp_path: Path) -> None:
-    solving([0.05, 0.01, 0.0005])
+    solving([0.05, 0.01, 0.004])  # the last two 0.6 % apart
     code, found = solved(tmp_path, "1%")
     assert code == 0 and found["accuracy"]["against"] == "level-1" and len(found["accuracy"]["levels"]) == 3
     (tmp_path / "mine.txt").write_text("stays")
@@ -92,12 +93,20 @@ def test_levels_go_on_until_two_agree(solving, tmp_path: Path) -> None:
 def test_an_error_that_does_not_fall_is_not_accepted(solving, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     solving([0.01, -0.01] * LEVELS)
     code, found = solved(tmp_path)
-    assert code == FAILED and not found["accuracy"]["holds"] and found["status"] == "complete"
-    assert len(found["accuracy"]["levels"]) == LEVELS and found["accuracy"]["reached"][1] == pytest.approx(
-        0.02, rel=0.05
-    )
+    about = found["accuracy"]
+    assert code == FAILED and not about["holds"] and found["status"] == "complete"
+    assert len(about["levels"]) == LEVELS and 0.02 < about["reached"][1] < 0.11
     said = capsys.readouterr().err
-    assert "--accuracy: 0.3 % has not been reached: 4 levels are the most; curve and peak load within 2 %" in said
+    assert "--accuracy: 0.3 % has not been reached: 4 levels are the most; curve and peak load within " in said
+
+
+def test_an_error_that_falls_slowly_is_bounded_by_what_is_still_to_come(solving, tmp_path: Path) -> None:
+    """1.2 % after distances of 0.4, 0.3 and 0.2 %: 1.5 times the last one is not enough."""
+    solving([0.021, 0.017, 0.014, 0.012])
+    code, found = solved(tmp_path)
+    assert code == FAILED and found["accuracy"]["reached"][1] == pytest.approx(0.004, rel=0.15)
+    assert [bound(0.001), bound(0.001, 0.01), bound(0.001, 0.001)] == pytest.approx([0.0015, 0.0015, 0.005])
+    assert [bound(0.001, 0.00125), bound(0.0, 0.0), bound(inf)] == pytest.approx([0.004, 0.0, inf])
 
 
 @pytest.mark.parametrize(("errors", "load"), [([np.nan], 0.5), ([0.02, 0.01, np.nan], 1.01 * 0.5625)])
@@ -120,6 +129,25 @@ def test_an_interrupt_leaves_what_is_done(errors: list[float], solving, tmp_path
     assert (tmp_path / "level-0" / "curve.csv").exists() == (len(errors) == 2)
 
 
+def test_a_level_with_a_broken_identity_is_refined(tmp_path: Path) -> None:
+    """Its curve may be right; the mesh is too coarse for the check, or the solver is at fault on every one."""
+
+    def by(broken: Sequence[bool]):
+        left = iter(broken)
+
+        def solve(scene, method: str, folder: Path, keep_fields: bool):
+            value = 1.0 if next(left) else 0.0
+            return a_curve(0.0, scene, method, lambda _: None), (Check("j", method, value, 0.5, "exact", "It holds."),)
+
+        return solve
+
+    scene = load_scene("dcb-czm1", ["load.opening=1.0"])
+    found = verified(scene, FIRST, 0.003, tmp_path, by([True, True, False]))
+    assert found.holds and len(found.levels) == 3
+    found = verified(scene, FIRST, 0.003, tmp_path, by([True] * LEVELS))
+    assert found.close and not found.holds and len(found.levels) == LEVELS
+
+
 def test_where_there_is_no_finer_mesh_it_says_so(solving, tmp_path: Path, monkeypatch, capsys) -> None:
     solving([0.02, 0.01])
     monkeypatch.setattr(accuracy, "LARGEST", 500)
@@ -131,7 +159,7 @@ def test_where_there_is_no_finer_mesh_it_says_so(solving, tmp_path: Path, monkey
 
     monkeypatch.setattr("verify.cost.verified.with_elements", few)
     code, found = solved(tmp_path)
-    assert code == FAILED and found["accuracy"]["reached"][1] == pytest.approx(0.01, rel=0.05)
+    assert code == FAILED and found["accuracy"]["reached"][1] == pytest.approx(0.015, rel=0.05)
     assert "no mesh is finer than that of level-1" in capsys.readouterr().err
 
 
