@@ -52,12 +52,7 @@ def odd_one(results: Mapping[str, Result], end: float, models: float = 0.0) -> s
     end : largest opening of the programme
     models : what keeping pairs of points changes of the curve
     """
-    apart = {
-        frozenset(pair): max(
-            0.0, distance(*(results[name] for name in pair), end) - models * (len(KEPT & set(pair)) == 1)
-        )
-        for pair in combinations(results, 2)
-    }
+    apart = {frozenset(pair): _far(results, pair, end, models) for pair in combinations(results, 2)}
     ranked = sorted(_groups(list(results), {pair for pair, far in apart.items() if far <= AGREE}), key=_weight)[::-1]
     main = ranked[0]
     if len(ranked) > 1 and _weight(main) > _weight(ranked[1]):
@@ -71,6 +66,14 @@ def odd_one(results: Mapping[str, Result], end: float, models: float = 0.0) -> s
     far = max(mean, key=lambda name: mean[name])
     rest = float(np.mean([mean[name] for name in results if name != far]))
     return f"{ODD}, though not by much: {far}, on average {mean[far]:.2%} from the other runs, those {rest:.2%}"
+
+
+def _far(results: Mapping[str, Result], pair: tuple[str, str], end: float, models: float) -> float:
+    """Distance of the later run to the earlier one, less what their models differ; infinite where it is no number."""
+    with np.errstate(all="ignore"):  # a curve of another code may bear nothing
+        far = distance(results[pair[1]], results[pair[0]], end)
+    far -= models * (len(KEPT & set(pair)) == 1)
+    return max(0.0, far) if np.isfinite(far) else np.inf
 
 
 def _groups(names: Sequence[str], agree: set[frozenset[str]]) -> list[list[str]]:

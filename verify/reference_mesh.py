@@ -47,7 +47,9 @@ def reference_mesh(scene: Scene) -> ReferenceMesh:
     degree = asked.degree if asked.degree != "auto" else 2 if thickness_error(scene, 2, one_layer) <= TARGET else 3
     if asked.layers != "auto":
         return ReferenceMesh(degree, asked.elements, asked.layers)
-    fine = (m for m in range(1, MOST_LAYERS) if thickness_error(scene, degree, m) <= TARGET)
+    hinged = scene.load.at == "hinge"  # which needs a node in the middle of the face
+    enough = [m for m in range(1, MOST_LAYERS) if not (hinged and degree * m % 2)]
+    fine = (m for m in enough if thickness_error(scene, degree, m) <= TARGET)
     return ReferenceMesh(degree, asked.elements, next(fine, MOST_LAYERS))
 
 

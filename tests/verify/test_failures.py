@@ -206,14 +206,16 @@ def test_an_identity_that_does_not_hold_fails_a_run(
 ) -> None:
     import verify.run
 
-    def judged(kind: str):
-        return lambda *_: (Check("energy-ledger", "lefm", 0.1, 0.01, kind, "The energies add up."),)
+    def judged(unresolved: str = ""):
+        check = Check("energy-ledger", "lefm", 0.1, 0.01, "exact", "The energies add up.", unresolved=unresolved)
+        return lambda *_: (check,)
 
-    monkeypatch.setattr(verify.run, "run_checks", judged("exact"))
+    monkeypatch.setattr(verify.run, "run_checks", judged())
     assert main([*SOLVE, "--out", str(tmp_path)]) == 1
-    assert "lefm: identities that must hold do not: energy-ledger" in capsys.readouterr().err
-    monkeypatch.setattr(verify.run, "run_checks", judged("analytical"))  # may be for the mesh to answer
+    assert "lefm: broken: energy-ledger" in capsys.readouterr().err
+    monkeypatch.setattr(verify.run, "run_checks", judged("2 elements in the process zone"))
     assert main([*SOLVE, "--out", str(tmp_path)]) == 0
+    assert ": 2 elements in the process zone" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("number", ["0.8.0", "0.12.0"])

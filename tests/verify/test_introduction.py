@@ -93,5 +93,5 @@ def test_an_export_pulls_where_the_scene_says() -> None:
             assert mesh.X_nI[face.node_n[0]] == pytest.approx((0.0, part * place[1]))
     assert any("the corner away from the bond" in note for note in notes(stocky("load.at=node")))
     with pytest.raises(Refusal, match="degree: must be even for a load in the middle of a face of 1 element, got 1"):
-        scene_mesh(stocky("load.at=hinge", "dolfinx.degree=1"))
-    assert len(scene_mesh(stocky("dolfinx.degree=2")).loaded[0].node_n) == 3
+        scene_mesh(stocky("load.at=hinge", "dolfinx.degree=1", "dolfinx.layers=1"))
+    assert len(scene_mesh(stocky("dolfinx.degree=2", "dolfinx.layers=1")).loaded[0].node_n) == 3

@@ -54,7 +54,7 @@ def study() -> PlaneStudy:
 def test_the_table_has_errors_and_rates_of_every_mesh(study: PlaneStudy, monkeypatch: pytest.MonkeyPatch) -> None:
     Drawn(monkeypatch, plane)
     section = plane.section(study, "plane-1")
-    assert [row.name for row in section.rows] == [one.name for one in study.levels] and section.failed == 1
+    assert [row.name for row in section.rows] == [one.name for one in study.levels] and section.counts.broken == 1
     for row, one in zip(section.rows, study.levels, strict=True):
         elements, unknowns, displacement, rate, energy, energy_rate, stress = row.cells
         assert (int(elements), int(unknowns)) == (one.elements, one.unknowns)

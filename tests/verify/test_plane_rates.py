@@ -63,13 +63,13 @@ def test_the_section_tells_errors_and_rates_of_every_family(monkeypatch: pytest.
         (made_up(0, 4.0), made_up(1, 3.5), made_up(2, 2.5), made_up(3, 2.25)),
     )
     found = plane_rates.section(known, "rates")
-    assert found.failed == 1 and len(found.checks) == 2 and found.panel.svg == "<svg>rates-errors</svg>"
+    assert found.counts.broken == 1 and len(found.checks) == 2 and found.panel.svg == "<svg>rates-errors</svg>"
     assert found.sentence == (
         "Rates in L2 of cubic bases in plane elasticity: NURBS 4.00, T-spline with T-junctions 3.50, "
         "around extraordinary points 2.25 to 2.50."
     )
     only = plane_rates.section(known[:1], "rates")
-    assert only.sentence.endswith("elasticity: NURBS 4.00.") and only.failed == 0
+    assert only.sentence.endswith("elasticity: NURBS 4.00.") and only.counts.broken == 0
     _, names, cells = zip(*found.rows, strict=True)
     assert list(names) == [family.name for family in FAMILIES[:4]]
     assert cells[0][0] == "1600" and cells[0][2:4] == ("4.00", "4") and cells[0][5] == "3.00"

@@ -180,7 +180,7 @@ def test_a_check_shows_how_much_of_its_tolerance_it_uses(
     page = section(replace(report, runs=runs, checks=(check,)), NAME)
     ((group,),) = [groups for _, groups in page.checks if groups]
     (row,) = group.rows
-    assert row.used == used and page.failed == (not check.passed)
+    assert row.used == used and page.counts.broken == (not check.passed)
     assert [(word, one is not None) for word, one in row.parts] == [("nurbs", True), ("dolfinx", True)]
 
 
@@ -190,7 +190,7 @@ def test_checks_of_one_name_stand_together_in_the_order_in_which_they_came(page:
     assert groups["cross-code"] == ["curve"] and groups["analytical"] == ["beam-curve"] and groups["regression"] == []
     ((first, *_),) = [found for tally, found in page.checks if tally.kind == "exact"]
     assert [row.check.subject for row in first.rows] == ["nurbs", "dolfinx"]
-    assert {tally.kind: tally.total for tally, _ in page.checks} == {
+    assert {tally.kind: tally.counts.total for tally, _ in page.checks} == {
         "exact": 4, "analytical": 1, "cross-code": 1, "regression": 0,
     }  # fmt: skip
 
