@@ -25,8 +25,8 @@ def frame(model: Model, sample: Sampler, state: State) -> dict[str, Any] | None:
     """
     values_euvc = sample(state)
     p_q, _ = model.traction(state.g_q, state.k_q)
-    values = model.X_q, model.bonded_q, state.g_q, p_q, model.damage(state.k_q), state.k_q
-    s_q, X_q, bonded_q, *values = ordered_along(model, *values)
+    of_bond = state.g_q, p_q, model.damage(state.k_q), state.k_q
+    s_q, X_q, bonded_q, *values = ordered_along(model, model.X_q, model.bonded_q, *of_bond)
     if values_euvc is None:
         return None
     cells = [_cells(number, values_euvc) for number in range(len(model.specimen.bodies))]

@@ -252,6 +252,11 @@ def separated(model: Model, before: State, state: State, goal: float) -> bool:
     Unloading to zero is none: no damage grows there, and the secants bring the load back.
     """
     grew_q = state.k_q > np.maximum(before.k_q, model.law.g_peak)
-    gain = max(0.0, state.heading * state.slope) * abs(goal - state.opening)
+    way = float(np.sign(goal))
+    gain = max(0.0, way * state.heading * state.slope) * abs(goal - state.opening)
     carried = abs(state.load) + gain
-    return goal > state.opening and carried < SEPARATED * state.peak and bool(model.norm(grew_q.astype(float)) > 0)
+    return (
+        way * (goal - state.opening) > 0.0
+        and carried < SEPARATED * state.peak
+        and bool(model.norm(grew_q.astype(float)) > 0)
+    )

@@ -87,7 +87,7 @@ def _of_contact(model: Model, state: State, p_q: np.ndarray) -> dict[str, float]
 def face_gaps(model: Model, state: State) -> np.ndarray:
     """Gaps (n,) at all nodes of the faces that are opposite to each other, bonded or not, along the specimen."""
     sides, first = [], 0
-    place = tuple(sorted(model.specimen.facing)), (0.0, 0.0)
+    place = (min(model.specimen.facing), max(model.specimen.facing)), (0.0, 0.0)
     for u in model.displacement:
         dofs = dofs_on(u, place, model.specimen.near, 1)
         own = first + dofs[dofs < owned(u)]

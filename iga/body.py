@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -126,6 +127,22 @@ def mean_row(face: tuple[BlockBasis, ...], direction_i: np.ndarray, n_dof: int) 
         weights_ea = np.einsum("eqa,eq->ea", basis.N_eqa, basis.dV_eq)
         np.add.at(row_Ai, basis.conn_ea, weights_ea[..., None] * direction_i)
     return row_Ai.ravel() / face_length(face)
+
+
+def edge_row(face: tuple[BlockBasis, ...], depth: Callable, direction_i: np.ndarray, n_dof: int) -> np.ndarray:
+    """Row (n_dof,) that gives the displacement of a face in one direction as the straight line nearest to it has it at
+    the depth 0: the force that belongs to it is spread over the face, and acts there.
+
+    Parameters
+    ----------
+    depth : of places (..., 2) in the face, (...,), from 0 to its length
+    """
+    row_Ai, height = np.zeros((n_dof // 2, 2)), face_length(face)
+    for basis in face:
+        share_eq = (4.0 - 6.0 * depth(basis.X_eqI) / height) * basis.dV_eq
+        weights_ea = np.einsum("eqa,eq->ea", basis.N_eqa, share_eq)
+        np.add.at(row_Ai, basis.conn_ea, weights_ea[..., None] * direction_i)
+    return row_Ai.ravel() / height
 
 
 def slope_row(face: tuple[BlockBasis, ...], along_I: np.ndarray, across_i: np.ndarray, n_dof: int) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 
 from iga.adaptive import Window, adapted_tmeshes, carried, first_window, followed
 from iga.arms import arm_meshes, crack_path, tmeshes
-from iga.body import Body, bodies, mean_row, point_row
+from iga.body import Body, bodies, edge_row, mean_row, point_row
 from iga.bond import bond, control_points, faces, probe, slave_number
 from iga.load import pulled_row
 from iga.material import orthotropic
@@ -163,8 +163,9 @@ def _supports(problem: Problem, arms: tuple[Body, ...], pose: Pose) -> tuple[np.
 
     The lower arm's corner of interface and far end is held along and across the specimen, and how far the two loaded
     faces are out of line takes the rotation: the rigid motions of the whole, so that these springs carry no force. An
-    interface without friction leaves one arm free to slide along the other, which is tied at these corners, too: the
-    tie carries what the tractions of a bent interface amount to lengthwise. One arm alone is held along the specimen.
+    interface without friction leaves one arm free to slide along the other. A tie between their far faces carries what
+    the tractions of a bent interface amount to lengthwise, at the interface, but spread over the faces: in a corner it
+    would hold energy without bound. One arm alone is held along the specimen.
     """
     P_AI, (along_i, across_i) = control_points(arms), pose.axes_kI
     corner = pose.place(np.array([problem.length, 0.0]))
@@ -174,5 +175,6 @@ def _supports(problem: Problem, arms: tuple[Body, ...], pose: Pose) -> tuple[np.
     if len(arms) == 1:
         return np.array(along_rd), np.array([soft])
     upper_d, lower_d = (mean_row(arm.face("left"), along_i, P_AI.size) for arm in arms)
-    rows = [along_rd[1], point_row(at[1], across_i, P_AI.size), upper_d - lower_d, along_rd[0] - along_rd[1]]
+    ends_d = [edge_row(arm.face("right"), lambda X: np.abs(pose.own(X)[..., 1]), along_i, P_AI.size) for arm in arms]
+    rows = [along_rd[1], point_row(at[1], across_i, P_AI.size), upper_d - lower_d, ends_d[0] - ends_d[1]]
     return np.array(rows), np.array([soft, soft, soft, TIE * problem.E1 * problem.width])

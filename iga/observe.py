@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from iga.bulk import energy, gradient, relative
-from iga.interface import contact
+from iga.interface import Interface, contact
 from iga.kinematics import KINEMATICS
 from iga.path import Point
 from iga.specimen import Specimen
@@ -47,7 +47,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         "bulk_energy": energies.bulk,
         "cohesive_energy": energies.cohesive,
         "contact_energy": energies.contact,
-        **({} if specimen.faces is None else _closing(specimen, point)),
+        **({} if specimen.faces is None else _closing(specimen, specimen.faces, point)),
     }
 
 
@@ -75,12 +75,12 @@ def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
     return float(g_q[0]), float(g_q[-1])
 
 
-def _closing(specimen: Specimen, point: Point) -> dict[str, float]:
+def _closing(specimen: Specimen, faces: Interface, point: Point) -> dict[str, float]:
     """How deep the faces are in each other, between the interface's points as well, and what pushes them apart.
 
     Where they may touch beyond the bond, the gap at the end of the faces next to the load as well.
     """
-    faces, interface = specimen.faces, specimen.system.interface
+    interface = specimen.system.interface
     if faces.at_rest is not None:
         g_q, on_q = faces.at_rest.gaps(point.state.u_d), faces.at_rest.on_q
     else:
@@ -89,7 +89,11 @@ def _closing(specimen: Specimen, point: Point) -> dict[str, float]:
     return {
         "penetration": max(0.0, -float(np.min(g_q, where=on_q, initial=0.0))),
         "contact_pressure": max(0.0, -float(np.min(point.response.p_q))),
-        **({} if interface.bonded_q is None else {"mouth_opening": float(g_q[specimen.mouth])}),
+        **(
+            {}
+            if interface.bonded_q is None
+            else {"mouth_opening": float(g_q[np.argmin(specimen.distance(faces.X_qi))])}
+        ),
     }
 
 

@@ -48,7 +48,8 @@ def follow(
     steps : number of steps asked for over the whole programme; None lets the path choose them, few and by accuracy,
         and so does a number too small to draw the curve. A step that fails is made to end at the next kink of the law,
         then tried with other controls, then halved, down to 1/4096, and grows again afterwards.
-    bend : by how much of the peak the load may leave the tangent of a step that the path chooses.
+    bend : by how much of the peak the load may leave the tangent of a step that the path chooses; what such a step
+        keeps (see `iga.promise`) follows from it.
     renew : may answer a converged point with another system, and its state in equilibrium at the same opening.
     """
     pace = paced(np.array(programme), steps, bend, system.kinematics == "linear")
@@ -97,7 +98,7 @@ def follow(
             pace = pace.after(point, reached, largest.load, kept)
             point = replace(reached, opening=goal) if asked.exact else reached
             yield point
-            if direction > 0.0 and point.opening > 0.0 and _separated(system, point, reach, largest.load):
+            if direction * point.opening > 0.0 and _separated(system, point, reach, largest.load, direction):
                 yield End("complete", rejected, separated=True)
                 return
             renewed = renew(point) if renew is not None else None
@@ -120,13 +121,16 @@ def by_way_of_zero(programme: Sequence[float]) -> tuple[float, ...]:
     return tuple(way)
 
 
-def _separated(system: System, point: Point, reach: float, peak: float) -> bool:
-    """Most of the bond is broken, and nothing is left that carries: no load, and none that the path is to bring."""
+def _separated(system: System, point: Point, reach: float, peak: float, direction: float) -> bool:
+    """Most of the bond is broken, and nothing is left that carries: no load, and none that the path is to bring.
+
+    Pressing may pry a bond open as pulling does.
+    """
     interface = system.interface
     area_q = interface.dA_q if interface.bonded_q is None else interface.dA_q * interface.bonded_q
     broken = float(area_q @ (point.state.k_q >= interface.law.g_u)) / float(area_q.sum())
     small = SEPARATED * peak
-    falling = point.tangent.d_load < 0.0 or abs(point.slope) * reach <= small
+    falling = direction * point.tangent.d_load < 0.0 or abs(point.slope) * reach <= small
     return broken > 0.5 and abs(point.state.load) <= small and falling
 
 

@@ -23,6 +23,8 @@ LEDGER = 2.5e-3
 TIP = 2.0
 #: Part of the height of teeth by which they may leave their mean: both ends stand anywhere on theirs.
 PHASE = 1.0
+#: Part of the promised distance that a step may use: the height of teeth is an estimate, of some wider than others.
+WITHIN = 0.8
 #: Step that is tried after one that has failed to keep its promise, in parts of it: least, largest, and of what is due.
 SHORTEST, LONGEST, SAFELY = 0.25, 0.75, 0.9
 
@@ -90,7 +92,7 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
     over = ends[0, 1] + float(y.max()) - 1.0 + max(TIP * above, above + PHASE * tooth)
     open_ = abs(end.external_work - end.energies.total) > LEDGER * largest.work
     leak = abs(work - spent) / (LEDGER * abs(work)) if open_ and work != 0.0 else 0.0
-    excess = max(away / length / bend, over / (PEAK * bend), leak)
+    excess = max(away / length / (WITHIN * bend), over / (PEAK * bend), leak)
     part = 1.0 if excess <= 1.0 else float(np.clip(SAFELY * excess**-0.5, SHORTEST, LONGEST))
     g_max = system.interface.law.g_max
     begun = np.count_nonzero((end.state.k_q > g_max) & (start.state.k_q <= g_max))

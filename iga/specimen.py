@@ -102,11 +102,6 @@ class Specimen:
         return self.system.interface.beside(self.probe.X_qi)
 
     @cached_property
-    def mouth(self) -> int:
-        """The sample of the faces that is nearest to the load."""
-        return int(np.argmin(self.distance(self.faces.X_qi)))
-
-    @cached_property
     def ordered(self) -> tuple[np.ndarray, np.ndarray]:
         """Distances (n_q,) of the interface's points, rising, and the points in this order."""
         s_q = self.distance(self.system.interface.X_qi)

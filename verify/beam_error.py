@@ -29,11 +29,14 @@ POISSON, ACROSS, APART, MARGIN = 0.12, 0.126, 0.15, 1.5
 
 
 def tolerance(scene: Scene) -> float | None:
-    """Distance that a curve may keep from the beam's (relative L2); None where the beam is no judge."""
+    """Distance that a curve may keep from the beam's (relative L2); None where the beam is no judge.
+
+    What a finite beam lacks besides is there on stocky arms as well.
+    """
     if scene.specimen.kind == "peel":
         return ON_SUBSTRATE
-    error = theory_error(scene)
-    return None if error > NO_JUDGE else max(ANALYTICAL[simulated(scene, "beam")["kinematics"]], error)
+    error, slender = theory_error(scene), ANALYTICAL[simulated(scene, "beam")["kinematics"]]
+    return None if error > NO_JUDGE else max(slender, error + slender - ANALYTICAL["linear"])
 
 
 def meaning(scene: Scene) -> str:

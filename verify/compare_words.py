@@ -52,13 +52,14 @@ def rows(comparison: Comparison, loads: Loads, found: Sequence[Check] = ()) -> l
 
 def _leg(leg: LegDifference) -> list[tuple[str, str, str, str, str]]:
     """What can be told of one leg."""
+    first = (f"leg {leg.number}, {leg.words}", f"curve-leg-{leg.number}", "", "", _percent(leg.error))
     cells = [
-        (f"leg {leg.number}, {leg.words}", "curve", leg.error),
         ("  secant stiffness", "slope", leg.slope),
         ("  residual opening", "residual", leg.residual),
         ("  work lost there and back", "loop", leg.loop),
     ]
-    return [(name, f"{key}-leg-{leg.number}", "", "", _change(value)) for name, key, value in cells if value == value]
+    told = [(name, f"{key}-leg-{leg.number}", "", "", _change(value)) for name, key, value in cells if value == value]
+    return [first, *told]
 
 
 def remarks(comparison: Comparison) -> list[str]:

@@ -58,10 +58,13 @@ class Farthest:
     load: float
 
 
+@np.errstate(all="ignore")  # numbers near the ends of the range end as inf or NaN, and so fail
 def leg_differences(a: Path, b: Path) -> tuple[LegDifference, ...]:
     """Every leg that both have."""
     size = _size(b)
     least = LEAST_LOAD * size[1]
+    if not least > 0.0:
+        return ()
     pairs = [pair for pair in zip(a.legs, b.legs, strict=False) if _range(*pair) is not None]
     return tuple(
         LegDifference(
@@ -75,13 +78,16 @@ def leg_differences(a: Path, b: Path) -> tuple[LegDifference, ...]:
     )
 
 
+@np.errstate(all="ignore")
 def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthest | None:
     """The point of A that is farthest from B, leg by leg, as far as B goes; see `verify.nearness.distances`.
 
     Without ``snap_backs`` only the envelope of A counts, as where B may show vertical drops.
     """
     size = _size(b)
-    found = []
+    found: list[Farthest] = []
+    if not min(size) > 0.0:
+        return None
     for i, (mine, other) in enumerate(zip(a.legs, b.legs, strict=False), 1):
         if _range(mine, other) is None:
             continue
@@ -94,6 +100,7 @@ def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthe
     return max(found, key=lambda one: one.value, default=None)
 
 
+@np.errstate(all="ignore")
 def stiffness(a: Leg, b: Leg) -> float:
     """Secant stiffness of A over that of B, less one, where each first bears half the largest load of B, or the last
     load of A before that: the nearer one counts, see `_where`. NaN where B bears nothing, infinite where A does not.
@@ -104,7 +111,7 @@ def stiffness(a: Leg, b: Leg) -> float:
         return np.nan if half == 0.0 else np.inf
     before = a.heading * a.load[max(int(np.argmax(there)) - 1, 0)]
     loads = [load for load in (half, before) if load >= TELLS_STIFFNESS * half]
-    found = [_first_at(b, load) / _first_at(a, load) - 1.0 for load in loads]
+    found = [np.divide(_first_at(b, load), _first_at(a, load)) - 1.0 for load in loads]
     return float(min(found, key=abs))
 
 

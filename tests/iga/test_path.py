@@ -99,9 +99,10 @@ def test_what_has_come_apart_carries_nothing_and_will_not(broken, load, d_load, 
     if bonded:  # as many points that only touch count for nothing
         k_q, area_q, bonded_q = np.append(k_q, np.zeros(10)), np.ones(20), np.arange(20) < 10
     interface = SimpleNamespace(dA_q=area_q, bonded_q=bonded_q, law=SimpleNamespace(g_u=2.0))
-    tangent = SimpleNamespace(d_load=d_load)
-    point = SimpleNamespace(state=SimpleNamespace(k_q=k_q, load=load), tangent=tangent, slope=slope)
-    assert iga.path._separated(SimpleNamespace(interface=interface), point, 3.0, 1.0) == separated
+    for way in (1.0, -1.0):  # by pulling, or by pressing
+        state, tangent = SimpleNamespace(k_q=k_q, load=way * load), SimpleNamespace(d_load=way * d_load)
+        point = SimpleNamespace(state=state, tangent=tangent, slope=slope)
+        assert iga.path._separated(SimpleNamespace(interface=interface), point, 3.0, 1.0, way) == separated
 
 
 @pytest.mark.parametrize(

@@ -88,7 +88,7 @@ def test_curves_between_two_ends_have_their_values_and_slopes_and_stay_between_t
 
 def point(opening: float, load: float, d_opening: float, d_load: float) -> SimpleNamespace:
     tangent = SimpleNamespace(du_d=np.array([d_opening]), d_load=d_load, growing_q=np.array([True]))
-    slope = d_load / d_opening if d_opening else np.inf
+    tangent.arrival = tangent.departure = slope = d_load / d_opening if d_opening else np.inf
     return SimpleNamespace(opening=opening, state=SimpleNamespace(load=load), tangent=tangent, slope=slope)
 
 
@@ -104,8 +104,9 @@ def test_work_along_cubics_is_exact_though_the_path_turns_back() -> None:
 def test_work_over_the_opening_is_exact_for_cubics() -> None:
     P = np.polynomial.Polynomial([1.0, 2.0, -0.5, 0.3])
     a, b = (point(d, P(d), 1.0, P.deriv()(d)) for d in (0.5, 1.7))
-    assert straight_work(a, b) == pytest.approx(P.integ()(1.7) - P.integ()(0.5), rel=1e-12)
-    assert straight_work(b, a) == pytest.approx(-straight_work(a, b))
+    for several in (False, True):
+        assert straight_work(a, b, several) == pytest.approx(P.integ()(1.7) - P.integ()(0.5), rel=1e-12)
+        assert straight_work(b, a, several) == pytest.approx(-straight_work(a, b, several))
 
 
 @pytest.mark.parametrize("left", [0.3, 0.5, 0.8])
@@ -134,8 +135,8 @@ def test_the_way_off_the_master_goes_on_as_its_share_does(left: float) -> None:
 def test_work_up_to_where_damage_begins_knows_nothing_of_what_comes_then() -> None:
     """Along a line whose end tells a mean slope, as it is where a point stands on its strength."""
     a, b = point(0.0, 0.0, 1.0, 2.0), point(0.5, 1.0, 1.0, 1.2)
-    a.tangent.growing_q, b.tangent.arrival = np.array([False]), 2.0
-    assert straight_work(a, b) == pytest.approx(0.25, rel=1e-15)
+    b.tangent.arrival = 2.0
+    assert straight_work(a, b, several=False) == pytest.approx(0.25, rel=1e-15)
 
 
 def test_a_point_lets_go_between_a_tenth_and_three_tenths_of_a_side_beyond_the_end() -> None:

@@ -157,12 +157,13 @@ def test_tsplines_are_sound(mesh):
     assert faults(body) == () and unity_fault(body) == ()
 
 
-@pytest.mark.parametrize("kind", SMOOTH)
-@pytest.mark.parametrize("degree", [2, 3])
-def test_what_is_wrong_in_a_smooth_mesh_is_named(kind, degree):
+#: With quadratic elements the exchange of rows folds the element, which the reader refuses before.
+FOLDED = (2, "rows of one element exchanged")
+
+
+@pytest.mark.parametrize(("degree", "kind"), [(p, kind) for p in (2, 3) for kind in SMOOTH if (p, kind) != FOLDED])
+def test_what_is_wrong_in_a_smooth_mesh_is_named(degree, kind):
     doctor, words = SMOOTH[kind]
-    if (kind, degree) == ("rows of one element exchanged", 2):
-        pytest.skip("the element is folded")
     body = doctor(arch(degree))
     found = (*faults(body), *unity_fault(body))
     assert any(words.removesuffix(" 4.4") in sentence for sentence in found), found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import doctored
@@ -143,3 +144,23 @@ def test_distances_are_those_of_the_definition() -> None:
     assert off(1.0, 1.0, kink) == pytest.approx(0.0, abs=1e-15)
     snap = np.array([0.0, 1.0, 0.5, 2.0]), np.array([0.0, 1.0, 0.4, 0.4])
     assert off(0.75, 0.7, snap) == pytest.approx(0.0, abs=1e-15) == off(1.0, 0.7, snap)
+
+
+def test_odd_curves_are_judged_without_a_warning() -> None:
+    """A vertical beginning, a curve without a load, numbers at the end of the range."""
+    d = np.linspace(0.0, 3.0, 31)
+    scene = load_scene("dcb-czm1", [f"load.opening={list(PROGRAMME)}"])
+    way = np.concatenate((d[:16], d[15:1:-1], d[3:]))
+    reference = {"nurbs": Result("nurbs", {"opening": way, "load": way})}
+    for opening, load in (
+        (np.append(0.0, way), np.append(0.0, 1.0 + way)),
+        (way, 0.0 * way),
+        (way, 1e30 * way),
+        (np.array([0.0, 1.5]), np.array([0.0, 1.0])),
+        (np.array([1.5, 0.2]), np.array([1.0, 1.0])),
+        (-way, way),
+    ):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            found = checks_of(scene, "mine", Result("mine", {"opening": opening, "load": load}), reference)
+        assert not all(check.passed for check in found)
