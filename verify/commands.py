@@ -23,7 +23,9 @@ FAILED = 1
 
 
 def solve(options: argparse.Namespace) -> int:
+    from verify.effects import decided
     from verify.methods import NotRun, require
+    from verify.process_zone import warnings
     from verify.run import mpi_rank, mpi_size, run
     from verify.scene import load_scene
 
@@ -43,7 +45,10 @@ def solve(options: argparse.Namespace) -> int:
         return _not_run(error)
     _folder(options.out)
     if not quiet:
-        _say_before(scene, options)
+        for remark in (*decided(scene, options.method), *warnings(scene, options.method)):
+            say(str(remark))
+        if options.fields and options.frames and options.method in ("beam", "lefm"):
+            say(f"--fields: the method {options.method} has no bodies to draw: no frames for ParaView")
     result, checks = _watched(run, scene, options, quiet)
     if not quiet:
         _print_result(result, checks, options.out)
@@ -55,6 +60,8 @@ def _accurate(options: argparse.Namespace) -> int:
     """Solve to an accuracy: choose method and mesh, say what and for how long, and verify the solution."""
     from verify.cost.accuracy import choose
     from verify.cost.verified import percent, planned, verified
+    from verify.effects import decided
+    from verify.process_zone import warnings
     from verify.run import mpi_size, run
     from verify.scene import load_scene, parse_scene
 
@@ -69,8 +76,8 @@ def _accurate(options: argparse.Namespace) -> int:
     say(planned(scene, first))
     out = options.out or Path("debond-out") / f"{scene.name}-{first.method}"
     _folder(out)
-    options.method = first.method
-    _say_before(parse_scene(scene.model_dump(), first.overrides), options)
+    for decision in decided(parse_scene(scene.model_dump(), first.overrides), first.method):
+        say(str(decision))
 
     def solved(level: Scene, method: str, folder: Path, delivers: bool):
         own = {"method": method, "out": folder, "fields": options.fields and delivers}
@@ -80,21 +87,13 @@ def _accurate(options: argparse.Namespace) -> int:
     last = found.delivered
     _print_result(last.result, last.checks, out)
     print(found.sentence)
+    for remark in warnings(last.scene, last.method):
+        say(remark)
     _say_after(last.scene, last.result, last.checks)
     if not found.close:
         remedy = "ask for less, or refine with --dofs and discretization.steps"
         say(f"--accuracy: {percent(found.asked)} has not been reached: {found.why}; {found.sentence}; {remedy}")
     return 0 if found.holds else FAILED
-
-
-def _say_before(scene: Scene, options: argparse.Namespace) -> None:
-    from verify.effects import decided
-    from verify.process_zone import warnings
-
-    for remark in (*decided(scene, options.method), *warnings(scene, options.method)):
-        say(str(remark))
-    if options.fields and options.frames and options.method in ("beam", "lefm"):
-        say(f"--fields: the method {options.method} has no bodies to draw: no frames for ParaView")
 
 
 def _say_after(scene: Scene, result: Result, checks: Sequence[Check]) -> None:
