@@ -8,6 +8,8 @@ from itertools import combinations
 from math import nan
 from pathlib import Path
 
+import numpy as np
+
 from verify.crosschecks import distance
 from verify.folder import write_csv
 from verify.hard.random_scenes import name_of
@@ -54,8 +56,9 @@ class Row:
 def campaign(seeds: Sequence[int], out: Path, jobs: int, scheduler: str | None = None) -> bool:
     """Run the scenes of the seeds, write ``out``/random.csv, print a table; whether no row has a fault.
 
-    A fault is *silent* where all checks hold and two plane codes differ by more than `APART`, *unnamed* where a check
-    is broken and no run is named as the odd one out, *stopped* where a run did not come to the end of its programme.
+    A fault is *silent* where all checks hold and two plane codes differ by more than `APART` or were not compared,
+    *unnamed* where a check is broken and no run is named as the odd one out, *stopped* where a run did not come to the
+    end of its programme.
     """
     plan = {seed: list(_jobs(seed)) for seed in seeds}
     outcomes = {
@@ -79,12 +82,11 @@ def row(report: SceneReport) -> Row:
     scene, counts = report.scene, counted(report.checks)
     results = {run.name: run.result for run in report.runs if run.result is not None and run.result.load.size > 1}
     end = max(scene.load.opening)
-    apart = max(
-        (_between(results, pair, end) for group in _models(scene) for pair in combinations(group, 2)), default=nan
-    )
+    pairs = [pair for group in _models(scene) for pair in combinations(group, 2) if set(pair) <= set(results)]
+    apart = float(np.max([_between(results, pair, end) for pair in pairs])) if pairs else nan  # NaN stays NaN
     odd = next((remark for remark in report.remarks if remark.startswith(ODD)), "")
     stopped = [run.name for run in report.runs if run.name != SECOND and not (run.result and run.result.complete)]
-    silent = counts.held == counts.total and apart > APART
+    silent = counts.held == counts.total and not apart <= APART
     fault = "stopped" if stopped else "silent" if silent else "unnamed" if counts.broken and not odd else ""
     zone = 1.0 / (1.0 / slender_length(scene) + 1.0 / bulk_length(scene))
     return Row(

@@ -1,0 +1,299 @@
+"""Random scenes: a family that stays in its ranges; the campaign on it tells every kind of fault from none."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from verify.arguments import seeds
+from verify.cli import FAILED, REFUSED, main
+from verify.crosschecks import cross_checks
+from verify.hard import campaign
+from verify.hard.campaign import APART, METHODS, Row, row, table
+from verify.hard.random_scenes import ZONES, random_scene
+from verify.jobs import Job, Outcome
+from verify.odd_one_out import odd_one_out
+from verify.process_zone import expected
+from verify.proof import MATCHED, REFERENCE, SECOND
+from verify.result import Result
+from verify.scene import SceneError, load_scene
+from verify.schema import Scene
+from verify.specimen import Orthotropic
+from verify.verdict import Check, Run, SceneReport
+
+FINITE, LINEAR = load_scene("dcb-czm1"), load_scene("dcb-czm1-linear")
+
+
+# --- the scenes
+
+
+@pytest.fixture(scope="module")
+def family() -> list[Scene]:
+    return [random_scene(seed) for seed in range(200)]
+
+
+def slenderness(scene: Scene) -> float:
+    return scene.specimen.free_length / scene.specimen.arm_thickness
+
+
+def zone(scene: Scene) -> float:
+    """Length of the process zone; the beam has no mesh to be made for it."""
+    return expected(scene, "beam").length
+
+
+def test_a_seed_gives_one_scene(family: list[Scene]) -> None:
+    assert [random_scene(seed) for seed in (0, 7, 199)] == [family[seed] for seed in (0, 7, 199)]
+    assert len({scene.model_dump_json() for scene in family}) == len(family)
+    assert [scene.name for scene in family[:3]] == ["random-0", "random-1", "random-2"]
+
+
+def test_slenderness_and_zone_stay_in_their_ranges_and_fill_them(family: list[Scene]) -> None:
+    rounding = 1e-9
+    slender = np.array([slenderness(scene) for scene in family])
+    zones = np.array([zone(scene) / scene.specimen.arm_thickness for scene in family])
+    along = np.array([scene.specimen.length / zone(scene) for scene in family])
+    growth = np.array([(scene.specimen.length - scene.specimen.free_length) / zone(scene) for scene in family])
+    assert np.all((slender >= 4.0 * (1.0 - rounding)) & (slender <= 85.0 * (1.0 + rounding)))
+    assert np.all((zones >= 0.3 * (1.0 - rounding)) & (zones <= 10.0 * (1.0 + rounding)))
+    assert np.all(along <= ZONES * (1.0 + rounding)) and np.all(growth >= 6.0 * (1.0 - rounding))
+    assert slender.min() < 5.0 and slender.max() > 70.0 and zones.min() < 0.4 and zones.max() > 8.0
+    bulky = slender < 13.0
+    assert zones[bulky].min() < 0.5 and zones[bulky].max() > 5.0, "short and long zones on stocky arms as well"
+
+
+def test_every_kind_of_specimen_is_among_them(family: list[Scene]) -> None:
+    kinds = {
+        (isinstance(scene.material, Orthotropic), scene.specimen.plane, scene.effects.kinematics) for scene in family
+    }
+    assert len(kinds) == 8
+    ductility = np.array([scene.interface.ductility for scene in family])
+    assert 1.5 <= ductility.min() < 2.0 and 40.0 < ductility.max() <= 50.0
+    lengths = np.array([scene.specimen.arm_thickness for scene in family])
+    assert lengths.min() < 0.01 and lengths.max() > 100.0, "units of length"
+
+
+def test_a_random_scene_is_named_like_a_packaged_one_and_takes_overrides() -> None:
+    assert load_scene("random-7") == random_scene(7)
+    other = load_scene("random-7", ["discretization.dofs=900", "specimen.width=2.0"])
+    assert (other.discretization.dofs, other.specimen.width, other.name) == (900, 2.0, "random-7")
+    assert other.interface == random_scene(7).interface
+    with pytest.raises(SceneError, match="interface.strength"):
+        load_scene("random-7", ["interface.strength=-1"])
+    for name in ("random-", "random--1", "random-x", "random-1234567890"):
+        with pytest.raises(SceneError):
+            load_scene(name)
+
+
+# --- the command
+
+
+def test_numbers_of_seeds() -> None:
+    assert [seeds(text) for text in ("3", "1", "40-79", "5-5")] == [(0, 2), (0, 0), (40, 79), (5, 5)]
+
+
+@pytest.mark.parametrize(
+    ("words", "asked"), [([], range(40)), (["--seeds", "3"], range(3)), (["--seeds", "40-79"], range(40, 80))]
+)
+def test_the_command_takes_the_seeds(words: list[str], asked: range, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[range] = []
+    monkeypatch.setattr(campaign, "would_run", lambda seeds, out, jobs: seen.append(seeds) or [])
+    assert main(["hard", "random", "--dry-run", *words]) == 0 and seen == [asked]
+
+
+def test_a_dry_run_lists_every_run_and_makes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    out = tmp_path / "out"
+    assert main(["hard", "random", "--seeds", "3", "--dry-run", "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    for seed in range(3):
+        finite = random_scene(seed).effects.kinematics == "finite"
+        for method in METHODS:
+            assert (f"random-{seed}/{method} " in said) == (finite or method != MATCHED)
+    assert "random-3" not in said and "lagrange" not in said and not out.exists()
+
+
+def code_of(words: list[str]) -> int:
+    """The exit code, also where the parser itself refuses."""
+    try:
+        return main(words)
+    except SystemExit as end:
+        return int(end.code or 0)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        *[
+            (["random", "--seeds", text], f"--seeds: must be a number >= 1, or two like 40-79, got '{text}'")
+            for text in ("0", "9-3", "x", "-3", "3-", "1.5", "1-2-3", "1234567890")
+        ],
+        (["--seeds", "3"], "--seeds: is for random scenes; debond hard random --seeds 40"),
+        (["big-steps", "--seeds", "3"], "--seeds: is for random scenes; debond hard random --seeds 40"),
+        (["random", "big-steps"], "random: must be the only NAME, it is a campaign of its own"),
+        (["big-steps", "random", "--seeds", "3"], "random: must be the only NAME, it is a campaign of its own"),
+    ],
+)
+def test_what_the_command_refuses(
+    words: list[str], sentence: str, tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    out = tmp_path / "out"
+    assert code_of(["hard", *words, "--out", str(out)]) == REFUSED
+    said = capsys.readouterr()
+    assert sentence in said.err and said.out == "" and not out.exists()
+
+
+# --- the rows
+
+
+def curve(scene: Scene, method: str, factor: float = 1.0) -> Result:
+    """A load that rises, and falls along an unloaded crack."""
+    end = max(scene.load.opening)
+    opening = np.linspace(0.0, end, 300)
+    load = np.minimum(opening, (end / 3.0) ** 1.5 * np.maximum(opening, 0.01 * end) ** -0.5)
+    return Result(method.partition("-")[0], {"opening": opening, "load": factor * load})
+
+
+def report(scene: Scene, results: dict[str, Result | None], *more: Check) -> SceneReport:
+    """Runs with all checks between them, judged as a verification judges."""
+    runs = tuple(Run(name, name.partition("-")[0], one, folder=f"{scene.name}/{name}") for name, one in results.items())
+    there = {name: result for name, result in results.items() if result is not None}
+    checks = (*cross_checks(scene, there), *more)
+    return SceneReport(scene, runs, checks, odd_one_out(scene, checks, there))
+
+
+def runs(scene: Scene, **factors: float) -> dict[str, Result | None]:
+    """Runs of plane codes; names with dashes are written with underscores."""
+    return {
+        name: curve(scene, name, part) for key, part in factors.items() for name in (key.replace("_", "-"),)
+    }  # fmt: skip
+
+
+RIGHT = {"tspline": 1.0, "nurbs": 1.0, "nurbs_matched": 1.0, "dolfinx": 1.0, "dolfinx_second": 1.0002}
+
+
+def row_of(scene: Scene, *more: Check, **factors: float) -> Row:
+    made = runs(scene, **{**RIGHT, **factors})
+    if scene.effects.kinematics == "linear":
+        del made[MATCHED]  # there is no search that could be left out
+    return row(report(scene, made, *more))
+
+
+def broken_j() -> Check:
+    return Check("j-integral", "nurbs", 0.02, 0.005, "exact", "")
+
+
+def test_a_right_scene_has_no_fault() -> None:
+    found = row_of(FINITE, beam=1.001)
+    assert (found.fault, found.names, found.odd, found.broken, found.unresolved) == ("", "", "", 0, 0)
+    assert found.checks > 0 and found.apart == 0.0 and found.beam == pytest.approx(0.001, rel=0.01)
+    assert (found.scene, found.plane, found.kinematics) == ("dcb-czm1", "stress", "finite") and not found.orthotropic
+    assert found.slenderness == pytest.approx(slenderness(FINITE))
+    assert found.zone == pytest.approx(zone(FINITE) / FINITE.specimen.arm_thickness)
+
+
+def test_codes_that_differ_while_all_checks_hold_are_silently_wrong() -> None:
+    """Both are within the tolerance of the reference, one above and one below it."""
+    found = row_of(FINITE, tspline=0.997, nurbs=1.0031, nurbs_matched=1.0)
+    assert (found.fault, found.broken, found.unresolved) == ("silent", 0, 0)
+    assert APART < found.apart == pytest.approx(0.0061, rel=0.02)
+    assert row_of(FINITE, tspline=0.998, nurbs=1.002).fault == "", "as much as is allowed"
+
+
+def test_codes_that_differ_are_not_silent_where_a_check_says_so() -> None:
+    named = row_of(FINITE, nurbs=1.03, nurbs_matched=1.03)
+    assert named.fault == "" and named.broken and "odd one out: nurbs" in named.odd and named.apart > APART
+    assert "curve:nurbs/dolfinx" in named.names
+    unsure = row_of(FINITE, dolfinx=1.02)
+    assert unsure.fault == "" and unsure.broken == 0 < unsure.unresolved and "odd one out: dolfinx" in unsure.odd
+
+
+def test_a_difference_of_models_is_no_distance_of_codes() -> None:
+    """The reference keeps its pairs of points, and so does one of the NURBS runs; linear kinematics is one model."""
+    factors = {"tspline": 1.01, "nurbs": 1.01, "nurbs_matched": 1.0005}
+    assert row_of(FINITE, **factors).apart == pytest.approx(0.0005, rel=0.01)
+    assert row_of(LINEAR, **factors).apart == pytest.approx(0.01, rel=0.01)
+
+
+def test_a_fault_of_no_pair_names_nobody() -> None:
+    found = row_of(FINITE, broken_j())
+    assert (found.fault, found.broken, found.odd, found.names) == ("unnamed", 1, "", "j-integral:nurbs")
+    unresolved = replace(broken_j(), unresolved="the process zone spans 2 elements")
+    assert row_of(FINITE, unresolved).fault == ""
+
+
+@pytest.mark.parametrize("name", ["tspline", "nurbs", MATCHED, REFERENCE])
+@pytest.mark.parametrize(
+    "stop", [lambda run: None, lambda run: replace(run, status="stopped")], ids=["gone", "stopped"]
+)
+def test_a_run_that_stopped_is_a_fault(name: str, stop) -> None:
+    made = runs(FINITE, **RIGHT)
+    found = row(report(FINITE, {**made, name: stop(made[name])}))
+    assert found.fault == f"stopped {name}"
+
+
+def test_the_second_mesh_may_stop() -> None:
+    made = runs(FINITE, **RIGHT)
+    found = row(report(FINITE, {**made, SECOND: replace(made[SECOND], status="stopped")}))
+    assert found.fault == "" and found.unresolved > 0
+
+
+def test_a_pair_that_is_not_there_does_not_hide_the_others() -> None:
+    made = runs(FINITE, **{**RIGHT, "nurbs_matched": 1.02})
+    del made["tspline"]
+    assert row(report(FINITE, made)).apart == pytest.approx(0.02, rel=0.01)
+
+
+def test_where_no_two_codes_were_compared_a_scene_is_not_right() -> None:
+    found = row(report(FINITE, runs(FINITE, nurbs=1.0)))
+    assert found.fault == "silent" and np.isnan(found.apart)
+
+
+def test_the_table_has_a_line_for_every_scene() -> None:
+    lines = table([row_of(FINITE), row_of(FINITE, broken_j()), row_of(LINEAR, nurbs=1.03)])
+    assert len(lines) == 4 and lines[1].rstrip().endswith("12/12")
+    assert "unnamed; j-integral:nurbs" in lines[2] and "odd one out: nurbs" in lines[3] and "stress linear" in lines[3]
+
+
+# --- the campaign
+
+
+def solved_with(**factors: float):
+    """In place of the solvers: curves of every run that differ by factors."""
+
+    def run_all(plan: Iterable[Job], out: Path, jobs: int, scheduler: str | None = None) -> Iterator[Outcome]:
+        for job in plan:
+            factor = factors.get(job.variant.replace("-", "_"), 1.0) if job.scene.name == "random-8" else 1.0
+            yield Outcome(job, curve(job.scene, job.variant, factor))
+
+    return run_all
+
+
+@pytest.mark.parametrize(
+    ("off", "code"), [({}, 0), ({"beam": 1.0001}, 0), ({"tspline": 0.997, "nurbs": 1.003}, FAILED)]
+)
+def test_the_campaign_writes_its_rows_and_fails_for_a_fault(
+    off: dict[str, float], code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    monkeypatch.setattr(campaign, "run_all", solved_with(**off))
+    monkeypatch.setattr("verify.beam_error.tolerance", lambda scene: None)  # the beam judges nobody
+    assert main(["hard", "random", "--seeds", "7-8", "--out", str(tmp_path)]) == code
+    said = capsys.readouterr().out
+    with (tmp_path / "random.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [one["scene"] for one in rows] == ["random-7", "random-8"]
+    assert [one["fault"] for one in rows] == ["", "silent" if code else ""]
+    assert f"{2 - bool(code)} of 2 random scenes without a fault" in said
+
+
+@pytest.mark.slow
+def test_two_random_scenes_by_every_code(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
+    assert main(["hard", "random", "--seeds", "11-12", "--jobs", "1", "--out", str(tmp_path)]) == 0
+    with (tmp_path / "random.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [one["scene"] for one in rows] == ["random-11", "random-12"]
+    assert all(one["fault"] == "" and float(one["apart"]) <= APART for one in rows), capsys.readouterr().out
