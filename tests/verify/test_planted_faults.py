@@ -152,6 +152,11 @@ def test_a_fault_in_a_run(name: str, runs: Mapping[str, Result]) -> None:
     assert first(found) == name and of_that_size(found, name)
 
 
+def test_what_pressed_faces_may_be_off_by(runs: Mapping[str, Result]) -> None:
+    tolerances = {check.name: check.tolerance for check in of_run("pressed", runs["pressed"])}
+    assert (tolerances["penetration"], tolerances["j-pressed"]) == (0.5, 0.1)
+
+
 def of_that_size(found: Iterable[Check], name: str) -> bool:
     """Whether a fault is as large as it claims, for the check that finds it."""
     return any(0.5 <= abs(check.value) / (SIZE * check.tolerance) <= 2.0 for check in found if check.name == name)

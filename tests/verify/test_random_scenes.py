@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -50,6 +50,13 @@ def test_a_seed_gives_one_scene(family: list[Scene]) -> None:
     assert [random_scene(seed) for seed in (0, 7, 199)] == [family[seed] for seed in (0, 7, 199)]
     assert len({scene.model_dump_json() for scene in family}) == len(family)
     assert [scene.name for scene in family[:3]] == ["random-0", "random-1", "random-2"]
+
+
+def test_a_seed_gives_the_scene_that_it_gave_elsewhere(family: list[Scene]) -> None:
+    scene = family[7]
+    assert (scene.specimen.plane, scene.effects.kinematics) == ("stress", "linear")
+    found = slenderness(scene), scene.specimen.arm_thickness, scene.interface.strength, scene.load.opening[-1]
+    assert found == pytest.approx((27.0262658054, 45.0935203962, 1.59025806771e-7, 57.653493031), rel=1e-8)
 
 
 def test_slenderness_and_zone_stay_in_their_ranges_and_fill_them(family: list[Scene]) -> None:
@@ -229,7 +236,7 @@ def test_a_fault_of_no_pair_names_nobody() -> None:
 @pytest.mark.parametrize(
     "stop", [lambda run: None, lambda run: replace(run, status="stopped")], ids=["gone", "stopped"]
 )
-def test_a_run_that_stopped_is_a_fault(name: str, stop) -> None:
+def test_a_run_that_stopped_is_a_fault(name: str, stop: Callable[[Result], Result | None]) -> None:
     made = runs(FINITE, **RIGHT)
     found = row(report(FINITE, {**made, name: stop(made[name])}))
     assert found.fault == f"stopped {name}"
@@ -261,7 +268,7 @@ def test_the_table_has_a_line_for_every_scene() -> None:
 # --- the campaign
 
 
-def solved_with(**factors: float):
+def solved_with(**factors: float) -> Callable[..., Iterator[Outcome]]:
     """In place of the solvers: curves of every run that differ by factors."""
 
     def run_all(plan: Iterable[Job], out: Path, jobs: int, scheduler: str | None = None) -> Iterator[Outcome]:
