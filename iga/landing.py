@@ -75,11 +75,11 @@ def next_kink(system: System, old: State, start: Contact, touch: Contact, g_q: n
     for column, kink in enumerate(law.kinks):
         passes_q = (old.k_q < kink) & (g_q >= kink) & (g0_q < kink)
         part_qk[passes_q, column] = (kink - g0_q[passes_q]) / (g_q - g0_q)[passes_q]
-    q, column = np.unravel_index(int(np.argmin(part_qk)), part_qk.shape)
-    if not np.isfinite(part_qk[q, column]):
+    q, which = (int(i) for i in np.unravel_index(int(np.argmin(part_qk)), part_qk.shape))
+    if not np.isfinite(part_qk[q, which]):
         return None
-    kink = law.kinks[column]
-    return Landing(int(q), kink * (1.0 + BEYOND), kink, Kink(int(q), law.jump(kink)))
+    kink = law.kinks[which]
+    return Landing(q, kink * (1.0 + BEYOND), kink, Kink(q, law.jump(kink)))
 
 
 def travelled(interface: Interface, g_q: np.ndarray, q: int, target: float) -> np.ndarray | None:

@@ -41,7 +41,7 @@ def dolfinx_problem(scene: Scene) -> Any:
     from verify.reference_mesh import reference_mesh
 
     mesh = reference_mesh(scene)
-    own = {"degree": mesh.degree, "elements": mesh.elements}
+    own: dict[str, Any] = {"degree": mesh.degree, "elements": mesh.elements}
     if scene.specimen.kind == "peel":
         keys = {**_peel_keys(scene, Moduli), **_common_keys(scene, "dolfinx"), "steps": counted_steps(scene)}
         return peel.Problem(**keys, **own, strip_layers=mesh.layers)

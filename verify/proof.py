@@ -13,12 +13,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import inf
 
+import numpy as np
+
 from verify.curve import Curve, curve_error, dense, peak
 from verify.result import Result
 from verify.verdict import Check
 
 #: Names of runs: the reference, the same on its second mesh, NURBS, and NURBS with the pairs of points kept.
 REFERENCE, SECOND, SEARCHING, MATCHED = "dolfinx", "dolfinx-second", "nurbs", "nurbs-matched"
+
+#: Another basis that searches, and the distance to NURBS within which it confirms these.
+CONFIRMING, CONFIRMED = "tspline", 0.005
+#: Largest difference of models that is taken for one: 0.1 to 0.7 % were measured, most on stocky arms.
+MOST_OF_MODELS = 0.02
 
 #: A reference judges where its error is at most this part of the tolerance.
 PROVEN = 0.5
@@ -56,13 +63,26 @@ def proof(results: Mapping[str, Result], end: float) -> Proof:
     results : by name
     end : largest opening of the programme
     """
-    kept = MATCHED in results and SEARCHING in results
-    models = _apart(results[MATCHED], results[SEARCHING], end) if kept else Distance(0.0, 0.0)
+    models = _models(results, end)
     if SECOND not in results:
         return Proof(Distance(inf, inf), models, "has not been solved on a second mesh")
     if results[REFERENCE].complete and not results[SECOND].complete:
         return Proof(Distance(inf, inf), models, "stopped on its second mesh")
     return Proof(_apart(results[SECOND], results[REFERENCE], end), models)
+
+
+def _models(results: Mapping[str, Result], end: float) -> Distance:
+    """What the search changes in NURBS; nothing where another basis does not confirm it, or it is beyond all reason.
+
+    A difference of models must not excuse a fault of the search: T-splines, where they are there, find the same curve.
+    """
+    same = Distance(0.0, 0.0)
+    if MATCHED not in results or SEARCHING not in results:
+        return same
+    found = _apart(results[MATCHED], results[SEARCHING], end)
+    if CONFIRMING in results and _apart(results[CONFIRMING], results[SEARCHING], end).curve > CONFIRMED:
+        return same
+    return found if found.curve <= MOST_OF_MODELS else same
 
 
 def drawn(result: Result) -> Curve:
@@ -79,8 +99,8 @@ def held_against(check: Check, known: Proof) -> Check:
     The tolerance stays. Where the uncertainty is beyond `PROVEN` of it, the check is broken if the value is beyond both
     together, holds if value and uncertainty are within it, and is unresolved otherwise.
     """
-    matched = check.subject.startswith(MATCHED)
-    error, models = known.error.of(check), 0.0 if matched else known.models.of(check)
+    one_model = check.subject.startswith(MATCHED) or check.name == "stiffness"  # before anything turns
+    error, models = known.error.of(check), 0.0 if one_model else known.models.of(check)
     tolerance, value, uncertainty = check.tolerance, abs(check.value), error + models
     found = replace(check, uncertainty=uncertainty if uncertainty < inf else 0.0)
     robust = uncertainty <= PROVEN * tolerance or value > tolerance + uncertainty
@@ -95,6 +115,6 @@ def held_against(check: Check, known: Proof) -> Check:
 
 
 def _apart(a: Result, b: Result, end: float) -> Distance:
-    curves = drawn(a), drawn(b)
-    end = min(end, *(float(max(curve[0])) for curve in curves))
-    return Distance(curve_error(*curves, end), abs(peak(curves[0])[1] / peak(curves[1])[1] - 1.0))
+    one, other = drawn(a), drawn(b)
+    end = min(end, float(np.max(one[0])), float(np.max(other[0])))
+    return Distance(curve_error(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0))

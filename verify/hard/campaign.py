@@ -139,4 +139,5 @@ def _models(scene: Scene) -> Sequence[Sequence[str]]:
 
 
 def _between(results: dict[str, Result], pair: Sequence[str], end: float) -> float:
-    return distance(*(results[name] for name in pair), end) if all(name in results for name in pair) else nan
+    a, b = pair
+    return distance(results[a], results[b], end) if a in results and b in results else nan
