@@ -23,9 +23,9 @@ FAILED = 1
 
 
 def solve(options: argparse.Namespace) -> int:
+    from verify import process_zone, through_thickness
     from verify.effects import decided
     from verify.methods import NotRun, require
-    from verify.process_zone import warnings
     from verify.run import mpi_rank, mpi_size, run
     from verify.scene import load_scene
 
@@ -45,7 +45,8 @@ def solve(options: argparse.Namespace) -> int:
         return _not_run(error)
     _folder(options.out)
     if not quiet:
-        for remark in (*decided(scene, options.method), *warnings(scene, options.method)):
+        coarse = (*process_zone.warnings(scene, options.method), *through_thickness.warnings(scene, options.method))
+        for remark in (*decided(scene, options.method), *coarse):
             say(str(remark))
         if options.fields and options.frames and options.method in ("beam", "lefm"):
             say(f"--fields: the method {options.method} has no bodies to draw: no frames for ParaView")
@@ -58,10 +59,10 @@ def solve(options: argparse.Namespace) -> int:
 
 def _accurate(options: argparse.Namespace) -> int:
     """Solve to an accuracy: choose method and mesh, say what and for how long, and verify the solution."""
+    from verify import process_zone
     from verify.cost.accuracy import choose
     from verify.cost.verified import percent, planned, verified
     from verify.effects import decided
-    from verify.process_zone import warnings
     from verify.run import mpi_size, run
     from verify.scene import load_scene, parse_scene
 
@@ -87,7 +88,7 @@ def _accurate(options: argparse.Namespace) -> int:
     last = found.delivered
     _print_result(last.result, last.checks, out)
     print(found.sentence)
-    for remark in warnings(last.scene, last.method):
+    for remark in process_zone.warnings(last.scene, last.method):
         say(remark)
     _say_after(last.scene, last.result, last.checks)
     if not found.close:

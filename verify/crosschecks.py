@@ -9,11 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from verify import beam_error, introduction
+from verify import beam_error, introduction, process_zone, through_thickness
 from verify.curve import curve_error, from_origin, load_at, peak
 from verify.leg_checks import farthest_check, programme_checks, stiffness_check
 from verify.legs import path
-from verify.process_zone import warnings
 from verify.proof import MATCHED, REFERENCE, drawn, held_against, proof
 from verify.published import Published
 from verify.result import Result
@@ -63,7 +62,12 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
     if found.state != "broken" or not abs(found.value) <= COARSE:
         return found
     methods = dict.fromkeys(results[name].method for name in pair if name in results)
-    coarse = [f"{method}: {text}" for method in methods for text in warnings(scene, method)]
+    coarse = [
+        f"{method}: {text}"
+        for method in methods
+        for about in (process_zone, through_thickness)
+        for text in about.warnings(scene, method)
+    ]
     return replace(found, unresolved="; ".join(coarse))
 
 

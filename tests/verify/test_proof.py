@@ -7,6 +7,7 @@ from math import inf
 import numpy as np
 import pytest
 
+from verify import through_thickness
 from verify.crosschecks import cross_checks
 from verify.odd_one_out import odd_one, odd_one_out
 from verify.proof import MATCHED, SECOND, held_against, proof
@@ -91,6 +92,22 @@ def test_nothing_is_said_where_all_checks_of_pairs_hold() -> None:
     assert odd_one_out(scene, cross_checks(scene, given), given) == ()
     bad = {**given, **runs(nurbs=1.05)}
     assert len(odd_one_out(scene, cross_checks(scene, bad), bad)) == 1
+
+
+def test_a_mesh_that_is_too_coarse_through_the_thickness_says_so_before_a_run() -> None:
+    coarse = stocky(degree=2, layers=1)
+    (said,) = through_thickness.warnings(coarse, "dolfinx")
+    assert (
+        said.startswith("1 element of degree 2 through the arm: the load may be off by 4.1%")
+        and "dolfinx.layers" in said
+    )
+    assert through_thickness.warnings(stocky(), "dolfinx") == through_thickness.warnings(coarse, "nurbs") == ()
+    quadratic = coarse.model_copy(update={"discretization": coarse.discretization.model_copy(update={"degree": 2})})
+    assert "discretization.degree = 3 resolves it" in through_thickness.warnings(quadratic, "nurbs")[0]
+    assert through_thickness.warnings(load_scene("dcb-czm1", ["discretization.degree=2"]), "nurbs") == ()
+    pair = runs(nurbs=1.0, dolfinx=1.02, dolfinx_second=1.02)
+    found = next(check for check in cross_checks(quadratic, pair) if check.name == "curve")
+    assert found.state == "unresolved" and "through the arm" in found.unresolved
 
 
 def test_the_mesh_through_the_thickness_follows_the_geometry_and_a_scene_may_set_it() -> None:

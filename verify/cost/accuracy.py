@@ -24,7 +24,7 @@ from verify.estimate import steps
 from verify.fingerprint import source
 from verify.methods import WITH_DOFS, NotRun, require, solve
 from verify.plain import Damaged, read_json
-from verify.problems import STEPS, iga_problem
+from verify.problems import STEPS
 from verify.process_zone import expected
 from verify.progress import duration
 from verify.reference_mesh import thickness_error
@@ -33,6 +33,7 @@ from verify.run import machine
 from verify.say import say
 from verify.scene import SceneError, parse_scene
 from verify.schema import Scene
+from verify.through_thickness import degree_through
 
 KNOWN = Path(__file__).with_name("known.csv")
 
@@ -199,16 +200,10 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
         except SceneError:  # more unknowns than a scene may have
             break
         there = expected(chosen, method).elements
-        if there >= elements and _degree_through(chosen, method) >= degree:
+        if there >= elements and degree_through(chosen, method) >= degree:
             return overrides
         size = round(size * (min(elements / there, 1.5) if 0.0 < there < elements else 1.2)) + 8
     raise Refusal(f"--accuracy: no mesh is known with {elements:.1f} elements in the process zone of {scene.name}")
-
-
-def _degree_through(scene: Scene, method: str) -> int:
-    """Lowest degree of the elements in any direction."""
-    solver, problem = iga_problem(scene, method)
-    return min(min(block.degrees) for mesh in solver.build(problem).meshes for block in mesh.blocks)
 
 
 def run_seconds(scene: Scene, method: str, iterations: float) -> float:
