@@ -16,6 +16,8 @@ from math import inf
 import numpy as np
 
 from verify.curve import Curve, curve_error, dense, peak
+from verify.leg_checks import stiffness
+from verify.legs import path
 from verify.result import Result
 from verify.verdict import Check
 
@@ -24,8 +26,9 @@ REFERENCE, SECOND, SEARCHING, MATCHED = "dolfinx", "dolfinx-second", "nurbs", "n
 
 #: Another basis that searches, and the distance to NURBS within which it confirms these.
 CONFIRMING, CONFIRMED = "tspline", 0.005
-#: Largest difference of models that is taken for one: 0.1 to 0.7 % were measured, most on stocky arms.
-MOST_OF_MODELS = 0.02
+#: Largest difference of models that is taken for one: 0.0 to 0.7 % were measured on most of 60 random scenes, 2.0 % on
+#: stocky arms with a soft bond whose ends turn by 23 degrees.
+MOST_OF_MODELS = 0.03
 
 #: A reference judges where its error is at most this part of the tolerance.
 PROVEN = 0.5
@@ -33,14 +36,15 @@ PROVEN = 0.5
 
 @dataclass(frozen=True)
 class Distance:
-    """Of two curves, relative: L2 of the load over the opening, and of the peak loads."""
+    """Of two curves, relative: L2 of the load over the opening, of the peak loads, of the stiffness before the peak."""
 
     curve: float
     peak: float
+    stiffness: float
 
     def of(self, check: Check) -> float:
         """The one that a check is about."""
-        return self.peak if check.name == "peak" else self.curve
+        return {"peak": self.peak, "stiffness": self.stiffness}.get(check.name, self.curve)
 
 
 @dataclass(frozen=True)
@@ -65,9 +69,9 @@ def proof(results: Mapping[str, Result], end: float) -> Proof:
     """
     models = _models(results, end)
     if SECOND not in results:
-        return Proof(Distance(inf, inf), models, "has not been solved on a second mesh")
+        return Proof(Distance(inf, inf, inf), models, "has not been solved on a second mesh")
     if results[REFERENCE].complete and not results[SECOND].complete:
-        return Proof(Distance(inf, inf), models, "stopped on its second mesh")
+        return Proof(Distance(inf, inf, inf), models, "stopped on its second mesh")
     return Proof(_apart(results[SECOND], results[REFERENCE], end), models)
 
 
@@ -76,7 +80,7 @@ def _models(results: Mapping[str, Result], end: float) -> Distance:
 
     A difference of models must not excuse a fault of the search: T-splines, where they are there, find the same curve.
     """
-    same = Distance(0.0, 0.0)
+    same = Distance(0.0, 0.0, 0.0)
     if MATCHED not in results or SEARCHING not in results:
         return same
     found = _apart(results[MATCHED], results[SEARCHING], end)
@@ -99,8 +103,8 @@ def held_against(check: Check, known: Proof) -> Check:
     The tolerance stays. Where the uncertainty is beyond `PROVEN` of it, the check is broken if the value is beyond both
     together, holds if value and uncertainty are within it, and is unresolved otherwise.
     """
-    one_model = check.subject.startswith(MATCHED) or check.name == "stiffness"  # before anything turns
-    error, models = known.error.of(check), 0.0 if one_model else known.models.of(check)
+    matched = check.subject.startswith(MATCHED)
+    error, models = known.error.of(check), 0.0 if matched else known.models.of(check)
     tolerance, value, uncertainty = check.tolerance, abs(check.value), error + models
     found = replace(check, uncertainty=uncertainty if uncertainty < inf else 0.0)
     robust = uncertainty <= PROVEN * tolerance or value > tolerance + uncertainty
@@ -117,4 +121,5 @@ def held_against(check: Check, known: Proof) -> Check:
 def _apart(a: Result, b: Result, end: float) -> Distance:
     one, other = drawn(a), drawn(b)
     end = min(end, float(np.max(one[0])), float(np.max(other[0])))
-    return Distance(curve_error(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0))
+    softer = stiffness(*(path(curve, (end,)).legs[0] for curve in (one, other)))
+    return Distance(curve_error(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0), abs(np.nan_to_num(softer)))

@@ -68,7 +68,6 @@ def test_a_difference_of_models_is_named_and_equal_models_are_held_against_each_
     found = {check.subject: check for check in cross_checks(scene, given) if check.name == "curve"}
     assert found[f"{MATCHED} / dolfinx"].state == "holds" and found["nurbs / dolfinx"].state == "unresolved"
     assert "difference of models of 0.0059" in found["nurbs / dolfinx"].unresolved
-    assert all(check.state != "unresolved" for check in cross_checks(scene, given) if check.name == "stiffness")
     alone = {**given, **runs(tspline=1.0)}
     found = {check.subject: check for check in cross_checks(scene, alone) if check.name == "curve"}
     assert found["nurbs / dolfinx"].state == "broken", "T-splines search as well, and do not find that difference"
