@@ -14,7 +14,7 @@ from verify import beam_error, introduction, process_zone, through_thickness
 from verify.curve import curve_error, first_drop, from_origin, load_at, peak
 from verify.leg_checks import farthest_check, programme_checks, stiffness_check
 from verify.legs import path
-from verify.proof import MATCHED, REFERENCE, drawn, held_against, proof
+from verify.proof import MATCHED, REFERENCE, beside_models, difference_of_models, drawn, held_against, proof
 from verify.published import Published
 from verify.result import Result
 from verify.schema import Scene
@@ -45,7 +45,8 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
     if "beam" in usable and fine is not None and not no_beam(scene):
         for method in (name for name in dict.fromkeys((*CROSS_CODE, *CLOSE)) if name in usable):
             tolerance = fine if method in CLOSE else max(fine, CROSS_CODE[method])
-            checks.append(beam_check(scene, method, usable[method], usable["beam"], tolerance))
+            check = beam_check(scene, method, usable[method], usable["beam"], tolerance)
+            checks.append(proven(scene, check, usable))
     for method, tolerance in CROSS_CODE.items():
         if method in usable and REFERENCE in usable:
             pair = pair_checks(scene, f"{method} / {REFERENCE}", usable[method], usable[REFERENCE], tolerance)
@@ -62,6 +63,8 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
     pair, found = check.subject.split(" / "), check
     if pair[-1] == REFERENCE:
         found = held_against(check, proof(results, max(scene.load.opening)))
+    if pair[-1] == "beam":
+        found = beside_models(check, difference_of_models(results, max(scene.load.opening)))
     if found.state != "broken" or not abs(found.value) <= COARSE:
         return found
     methods = dict.fromkeys(results[name].method for name in pair if name in results)

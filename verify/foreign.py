@@ -166,7 +166,7 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
     fine = beam_error.tolerance(scene)
     if "beam" in usable and fine is not None and not no_beam(scene):
         beam = usable["beam"]
-        checks.append(beam_check(scene, name, curve, beam, fine))
+        checks.append(proven(scene, beam_check(scene, name, curve, beam, fine), usable))
         curves = (curve.opening, curve.load), (beam.opening, beam.load)
         checks += farthest_check(f"{name} / beam", *curves, programme, fine, "analytical")
     for known_name, known in zip(published_names(scene), scene.published, strict=True):
