@@ -18,7 +18,7 @@ from verify.schema import Scene
 ANALYTICAL = {"linear": 0.002, "finite": 0.005}
 #: Under a strip it leaves out how the corner of a substrate gives way: 0.41 % of the curve where the bond begins there.
 ON_SUBSTRATE = 0.015
-#: Error of the theory from which on it judges nobody.
+#: Error of the theory beyond which no curve is held against the beam.
 NO_JUDGE = 0.03
 #: What is stated at the least: NURBS and beam were 1e-4 to 8e-4 apart where there is nothing that the beam leaves out.
 LEAST = 0.001

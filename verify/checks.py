@@ -172,7 +172,7 @@ def felt_from_the_start(scene: Scene, steps: Steps) -> bool:
 
 
 def held_at_the_end(scene: Scene, steps: Steps) -> np.ndarray:
-    """Part of G_Ic that the far end holds (n_steps,), NaN on a branch of the law that nobody has stated.
+    """Part of G_Ic that the far end holds (n_steps,), NaN on a branch of a law without a closed form here.
 
     That is the area under the law there and, of a dcb, the strain energy of its faces, beside which that of the loaded
     ones is nothing. A traction p that fades through the arms gives them no more than ``p^2 h / E2``.
@@ -299,7 +299,7 @@ def _turn(scene: Scene, steps: Steps) -> np.ndarray:
 
 
 def zone_is_new(scene: Scene, steps: Steps) -> np.ndarray:
-    """Steps (n_steps,) at which nothing in the process zone was damaged on an earlier leg of the programme, as is told.
+    """Steps (n_steps,) at which nothing in the process zone was damaged on an earlier leg of the programme.
 
     Pressed arms gape in another shape than opened ones: points of an old zone come back to the envelope one after the
     other, and until the zone has gone on by its own length J is not the area under the law. Of a programme that never
