@@ -51,7 +51,7 @@ def step_work(system: System, start: Point, end: Point, away: float, back: float
 def straight_work(start: Point, end: Point, several: bool) -> float:
     """The same over the opening itself, for a step that does not turn round.
 
-    With the slopes behind its start and before its end; over ``several`` arcs of the load with the mean slopes of both ends.
+    With the slopes behind its start and before its end; over ``several`` arcs of the load with their mean slopes.
     """
     move = end.opening - start.opening
     first, last = (start.slope, end.slope) if several else (start.tangent.departure, end.tangent.arrival)

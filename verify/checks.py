@@ -172,7 +172,7 @@ def felt_from_the_start(scene: Scene, steps: Steps) -> bool:
 
 
 def held_at_the_end(scene: Scene, steps: Steps) -> np.ndarray:
-    """Part of G_Ic that the far end holds (n_steps,), NaN on a branch of a law without a closed form here.
+    """Part of G_Ic that the far end holds (n_steps,), NaN where the law is not known here.
 
     That is the area under the law there and, of a dcb, the strain energy of its faces, beside which that of the loaded
     ones is nothing. A traction p that fades through the arms gives them no more than ``p^2 h / E2``.

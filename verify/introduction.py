@@ -77,7 +77,7 @@ def matters(scene: Scene) -> bool:
 
 
 def sentence(scene: Scene) -> str:
-    """What a user who compares a code with this scene must know of the load; empty where the scene's is a point load."""
+    """What to know of the load before a code is compared with this scene; empty where the scene's is a point load."""
     if scene.load.at != "face":
         return ""
     solved = matters(scene) and scene.specimen.kind == "dcb" and max(scene.load.opening) > 0.0
