@@ -17,9 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import expm
 
-#: What lies deeper than so many reciprocal wave numbers is not felt: exp(-2 x 10) of the pressure's work gets there.
-DEEPEST = 10.0
-
 #: Least shear coupling as a part of k / (1/t^2 + q^2): a layer that barely contracts along its length has less than
 #: none by the tangent, where a foundation would be unstable.
 LEAST_COUPLING = 0.01
@@ -54,14 +51,16 @@ class Layer:
 
     def stiffness(self, q: complex) -> complex:
         """Pressure over deflection K (force per area and length) of the wave number ``q`` > 0 (1 / length)."""
-        depth = q * self.thickness if abs(q) * self.thickness < DEEPEST else DEEPEST
         c11, c12, c66 = (c / self.C22 for c in (self.C11, self.C12, self.C66))
         across = np.array(  # of u sin, v cos, shear sin, stress cos; stresses over C22 q, depth over 1 / q
             [[0.0, 1.0, 1.0 / c66, 0.0], [-c12, 0.0, 0.0, 1.0], [c11 - c12**2, 0.0, 0.0, c12], [0.0, 0.0, -1.0, 0.0]]
         )
-        v, shear, stress = expm(across * depth)[1:, 2:]  # by the shear and the stress at the base
-        base = np.array([-shear[1], shear[0]])  # such that no shear is left at the surface
-        return self.C22 * q * (stress @ base) / (v @ base)
+        depth = q * self.thickness
+        growth = abs(depth) * np.max(np.abs(np.linalg.eigvals(across)))  # exponent of the steepest wave
+        halvings = max(0, int(np.ceil(np.log2(growth))))
+        surface = _stiffness_of_surface(expm(across * (depth / 2**halvings)), halvings)
+        free = surface[1, 1] - surface[1, 0] * surface[0, 1] / surface[0, 0]  # no shear at the surface
+        return self.C22 * q * free
 
     def parameters(self, q: float) -> tuple[float, float]:
         """k (force per volume) and g (force per length) of the tangent at ``q``, by the complex step."""
@@ -77,3 +76,18 @@ class Layer:
         """
         winkler = self.C22 / self.thickness
         return self.parameters((1.0 / (1.0 / winkler + 1.0 / stiffness) / bending) ** 0.25)
+
+
+def _stiffness_of_surface(transfer: np.ndarray, doublings: int) -> np.ndarray:
+    """Tractions at the surface by its displacements, shape (2, 2), of 2^``doublings`` equal sheets on a clamped base.
+
+    ``transfer`` (4, 4) takes displacements and tractions through one sheet. Transfer matrices of thick layers lose the
+    decaying waves beside the growing ones; stiffnesses of two sheets, tied at their common face, lose nothing.
+    """
+    b = np.linalg.inv(transfer[:2, 2:])
+    a = -b @ transfer[:2, :2]  # with b: tractions at the lower face, by displacements of the lower and the upper one
+    c, d = transfer[2:, :2] + transfer[2:, 2:] @ a, transfer[2:, 2:] @ b  # at the upper face
+    for _ in range(doublings):
+        middle = np.linalg.inv(d - a)
+        a, b, c, d = a - b @ middle @ c, b @ middle @ b, -c @ middle @ c, d + c @ middle @ b
+    return d
