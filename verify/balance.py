@@ -20,6 +20,9 @@ LEAST = 1e-8
 MOST = 1e-3
 #: Rounding of the forces of an element of ``iga``, in units of the machine epsilon, as ``iga.system.rounding`` has it.
 ROUNDING = 40.0
+#: Rounding of a whole assembled system, in units of the machine epsilon: equal elements round alike, and their errors
+#: add up (up to 2.4 were measured).
+ALIKE = 5.0
 #: Displacement of closed points in DOLFINx, in units of the opening that breaks the bond.
 CONTACT = 10.0
 
@@ -52,7 +55,7 @@ def _residual(scene: Scene, result: Result) -> float:
     length, h, eps = process_zone.element_length(scene, result.method), body.loaded_thickness, np.finfo(float).eps
     modulus = max(process_zone.bending_modulus(material, body.plane) for material in scene.materials)
     stiffness, moved = modulus * body.width * (h / length + length / h), float(np.max(np.abs(result.opening)))
-    whole = float(np.sqrt(result.dofs)) * eps * stiffness * moved / load
+    whole = ALIKE * float(np.sqrt(result.dofs)) * eps * stiffness * moved / load
     if result.method == "dolfinx":
         law = scene.interface
         closed = CONTACT * law.penalty * length * body.width * 2.0 * law.toughness / law.strength
