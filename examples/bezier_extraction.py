@@ -17,8 +17,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from iga.bspline import KnotVector, bezier_extraction, cox_de_boor
-from iga.lagrange import lagrange_extraction
+from iga.bases.bspline import KnotVector, bezier_extraction, cox_de_boor
+from iga.bases.lagrange import lagrange_extraction
 
 p = 3
 knots = np.array([0, 0, 0, 0, 1, 2, 3.5, 4, 4, 4, 4], dtype=float)
@@ -116,10 +116,10 @@ figure.savefig(Path(__file__).with_suffix(".png"), dpi=110)
 # %% [markdown]
 # ## The solver's own, and one of another kind
 #
-# `iga.bspline.bezier_extraction` makes all operators at once without inserting anything, as values of the splines'
-# polar forms. Both ways must come to the same numbers. Lagrange elements pass through the same seam: their operator
-# is one and the same for all elements, the inverse of the Bernstein polynomials at the nodes. In the solver nothing
-# that comes after this point knows which of the bases it is working with.
+# `iga.bases.bspline.bezier_extraction` makes all operators at once without inserting anything, as values of the
+# splines' polar forms. Both ways must come to the same numbers. Lagrange elements pass through the same seam: their
+# operator is one and the same for all elements, the inverse of the Bernstein polynomials at the nodes. In the solver
+# nothing that comes after this point knows which of the bases it is working with.
 
 # %%
 elements = len(np.unique(knots)) - 1

@@ -12,8 +12,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from verify.checks import j_deviation, law_of, loading
-from verify.methods import solve
+from verify.checks.identities import j_deviation, law_of, loading
+from verify.methods.solve import solve
 from verify.scene import load_scene
 
 scene = load_scene("dcb-czm1", ["discretization.dofs=1120"])

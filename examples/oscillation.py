@@ -11,9 +11,9 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from verify.curve import load_at, oscillation, peak
-from verify.methods import solve
-from verify.process_zone import element_length, expected
+from verify.curves.curve import load_at, oscillation, peak
+from verify.methods.solve import solve
+from verify.methods.zone_resolution import element_length, expected
 from verify.scene import load_scene
 
 coarse = load_scene("dcb-czm2", ["discretization.dofs=280"])

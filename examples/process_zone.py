@@ -11,10 +11,11 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from verify.curve import oscillation, peak
-from verify.methods import solve
-from verify.process_zone import ENOUGH, bulk_length, element_length, expected, measured, slender_length, warnings
+from verify.curves.curve import oscillation, peak
+from verify.methods.solve import solve
+from verify.methods.zone_resolution import ENOUGH, element_length, expected, measured, warnings
 from verify.scene import load_scene
+from verify.scene.process_zone import bulk_length, slender_length
 
 # %% [markdown]
 # ## How long it is

@@ -11,12 +11,12 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from iga.control import dissipation_control, load_control, opening_control
-from iga.newton import DEFAULT, equilibrium
-from iga.system import energies, respond, untimed
-from verify.curve import envelope
-from verify.methods import solve
-from verify.problems import iga_problem
+from iga.path.control import dissipation_control, load_control, opening_control
+from iga.path.newton import DEFAULT, equilibrium
+from iga.system.system import energies, respond, untimed
+from verify.curves.curve import envelope
+from verify.methods.problems import iga_problem
+from verify.methods.solve import solve
 from verify.scene import load_scene
 
 # %% [markdown]
@@ -112,9 +112,9 @@ for name, change in (("load", 0.01 * load[first]), ("opening", 0.01 * d[first]),
 # ## What a test would show
 #
 # A testing machine prescribes the opening. It cannot go back, and where the path does the load drops at once
-# (`verify.curve.envelope`). The area between the path and that drop is energy that neither the bond nor the specimen
-# takes: in the machine it is a bang. In a table of energies it is missing, so a code that jumps across a snap-back
-# cannot close its ledger, and one that follows can.
+# (`verify.curves.curve.envelope`). The area between the path and that drop is energy that neither the bond nor the
+# specimen takes: in the machine it is a bang. In a table of energies it is missing, so a code that jumps across a
+# snap-back cannot close its ledger, and one that follows can.
 
 # %%
 work = np.append(0.0, np.cumsum(np.diff(d) * (load[1:] + load[:-1]) / 2))

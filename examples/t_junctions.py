@@ -10,8 +10,9 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-from verify.curve import curve_error
-from verify.methods import dolfinx_installed, solve
+from verify.curves.curve import curve_error
+from verify.methods.dolfinx import dolfinx_installed
+from verify.methods.solve import solve
 from verify.scene import load_scene
 
 few = load_scene("dcb-czm1", ["discretization.dofs=280"])

@@ -14,9 +14,10 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
-from verify.methods import solve
+from verify.curves.read import Reading
+from verify.methods.solve import solve
 from verify.scene import load_scene
-from verify.testing import Reading, assert_curves_close
+from verify.testing import assert_curves_close
 
 # %% [markdown]
 # The two arms open alike, so that the gap is twice the deflection of one: $g = 2 w$. The arm obeys

@@ -11,8 +11,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from verify.curve import curve_error, dense
-from verify.methods import solve
+from verify.curves.curve import curve_error, dense
+from verify.methods.solve import solve
 from verify.scene import load_scene
 
 # %% [markdown]
@@ -20,7 +20,7 @@ from verify.scene import load_scene
 #
 # Cubic NURBS, cubic Lagrange elements, and quadratic ones. All runs take the same number of steps, so that time
 # compares meshes and not step control. Between two steps the curve is drawn by a cubic with the exact slopes of both
-# (`verify.curve.dense`), lest the error of a straight line is taken for that of the mesh.
+# (`verify.curves.curve.dense`), lest the error of a straight line is taken for that of the mesh.
 
 # %%
 ladder = {"cubic NURBS": ("nurbs", 3), "cubic Lagrange": ("lagrange", 3), "quadratic Lagrange": ("lagrange", 2)}

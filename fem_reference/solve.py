@@ -11,17 +11,17 @@ from typing import Any
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fem_reference.assembled import owned
-from fem_reference.fields import field_sampler, snapshot
-from fem_reference.frames import frame
-from fem_reference.model import build_model
-from fem_reference.path import Failure, Separation, path
-from fem_reference.problem import Debonding
-from fem_reference.state import row_of
+from fem_reference.model.assembled import owned
+from fem_reference.model.model import build_model
+from fem_reference.output.frames import frame
+from fem_reference.output.snapshots import field_sampler, snapshot
+from fem_reference.path.path import Failure, Separation, path
+from fem_reference.path.state import row_of
+from fem_reference.problem.problem import Debonding
 
 OnStep = Callable[[Mapping[str, float]], None]
 
-#: Called with the opening of every converged step, and with what makes its frame (see `fem_reference.frames`).
+#: Called with the opening of every converged step, and with what makes its frame (see `fem_reference.output.frames`).
 OnFrame = Callable[[float, Callable[[], dict[str, Any] | None]], None]
 
 
@@ -47,7 +47,7 @@ def solve_debonding(
     comm: MPI.Intracomm = MPI.COMM_WORLD,
     on_frame: OnFrame | None = None,
 ) -> Solution:
-    """Solve a `fem_reference.dcb.Problem` or a `fem_reference.peel.Problem`.
+    """Solve a `fem_reference.problem.dcb.Problem` or a `fem_reference.problem.peel.Problem`.
 
     Parameters
     ----------

@@ -1,7 +1,10 @@
-"""The arrows of the design: verify -> iga, verify -> fem_reference, and nothing else."""
+"""The arrows of the design: a package imports from the floors below its own alone."""
 
 import ast
 import sys
+from collections import Counter
+from collections.abc import Mapping
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -45,6 +48,120 @@ def broken(folder: str, *, forbidden: frozenset[str] = frozenset(), only: frozen
     return {file: names for file, names in found.items() if names}
 
 
+#: Packages, and files that stand outside of one, floor by floor from the top. An import leads to a lower floor or stays
+#: within its package.
+FLOORS = (
+    ("verify.cli", "verify.testing"),
+    ("verify.command_line",),
+    ("verify.verification",),
+    ("verify.report",),
+    ("verify.report.studies",),
+    ("verify.report.figures",),
+    ("verify.studies", "verify.export"),
+    (
+        "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.paper",
+        "verify.studies.plane", "verify.studies.scaling",
+    ),
+    ("verify.runs",),
+    ("verify.checks",),
+    ("verify.pages",),
+    ("verify.fields",),
+    ("verify.methods",),
+    ("verify.curves",),
+    ("verify.verdict",),
+    ("verify.scene",),
+    ("verify.result",),
+    ("verify.theory.beam",),
+    ("verify.theory",),
+    ("verify.support",),
+    ("verify",),
+    ("fem_reference.solve",),
+    ("fem_reference.output",),
+    ("fem_reference.path",),
+    ("fem_reference.model",),
+    ("fem_reference.dolfinx_api",),
+    ("fem_reference.problem",),
+    ("iga.dcb", "iga.peel"),
+    ("iga.run",),
+    ("iga.output",),
+    ("iga.specimen",),
+    ("iga.path",),
+    ("iga.system",),
+    ("iga.interface", "iga.elements", "iga.files", "iga.tsplines"),
+    ("iga.bases",),
+    ("iga.mesh", "iga.algebra"),
+)  # fmt: skip
+FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
+
+#: Modules of a package at most, its ``__init__`` included.
+MOST_MODULES = 14
+
+
+def modules(project: Path) -> dict[str, Path]:
+    """Dotted name -> file, for the product code."""
+    files = [file for name in ("iga", "verify", "fem_reference") for file in sorted((project / name).rglob("*.py"))]
+    return {".".join(f.relative_to(project).with_suffix("").parts).removesuffix(".__init__"): f for f in files}
+
+
+def room(module: str) -> str:
+    """The package, or the file outside of one, that a module belongs to."""
+    while module not in FLOOR:
+        module = module.rpartition(".")[0]
+    return module
+
+
+def targets(source: str, known: Mapping[str, Path]) -> set[str]:
+    """Modules of the project that ``source`` imports, wherever the import stands."""
+    found = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            inner = {f"{node.module}.{alias.name}" for alias in node.names}
+            found |= (inner & set(known)) or {node.module}
+    return found & set(known)
+
+
+def arrows_up(project: Path) -> list[str]:
+    """Imports that lead to the same floor or a higher one, or to a package that stands on no floor."""
+    known = modules(project)
+    arrows = [(module, to) for module, file in known.items() for to in targets(file.read_text(), known) if to != module]
+    return [f"{a} -> {b}" for a, b in arrows if room(a) != room(b) and FLOOR[room(a)] >= FLOOR[room(b)]]
+
+
+def circles(project: Path) -> tuple[str, ...]:
+    """Modules that import each other in a circle; a package's face may import what is in it."""
+    known = modules(project)
+    graph = {module: targets(file.read_text(), known) for module, file in known.items() if file.stem != "__init__"}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return tuple(error.args[1])
+    return ()
+
+
+def test_imports_lead_down_and_never_in_a_circle() -> None:
+    assert arrows_up(PROJECT) == [] and circles(PROJECT) == ()
+
+
+def test_an_arrow_up_and_a_circle_are_found(tmp_path: Path) -> None:
+    for name in ("iga/mesh/bezier", "iga/mesh/rank", "iga/path/step"):
+        file = tmp_path / f"{name}.py"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text("import numpy\n")
+    (tmp_path / "iga/mesh/bezier.py").write_text(
+        "def f():\n    from iga.path.step import g\n\n\nfrom iga.mesh import rank\n"
+    )
+    (tmp_path / "iga/mesh/rank.py").write_text("from iga.mesh.bezier import f\n")
+    assert arrows_up(tmp_path) == ["iga.mesh.bezier -> iga.path.step"]
+    assert set(circles(tmp_path)) == {"iga.mesh.bezier", "iga.mesh.rank"}
+
+
+def test_a_package_has_few_modules() -> None:
+    sizes = Counter(file.parent.relative_to(PROJECT) for file in modules(PROJECT).values())
+    assert {str(folder): size for folder, size in sizes.items() if size > MOST_MODULES} == {}
+
+
 def test_iga_needs_numpy_and_scipy_only() -> None:
     assert broken("iga", only=STANDARD | {"iga", "numpy", "scipy"}) == {}
 
@@ -55,6 +172,10 @@ def test_fem_reference_knows_neither_iga_nor_verify() -> None:
 
 def test_verify_never_imports_dolfinx() -> None:
     assert broken("verify", forbidden=DOLFINX) == {}
+
+
+def test_problems_of_fem_reference_need_no_dolfinx() -> None:
+    assert broken("fem_reference/problem", forbidden=DOLFINX) == {}
 
 
 def test_launcher_runs_before_anything_is_installed() -> None:

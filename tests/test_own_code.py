@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 from verify import verification
+from verify.checks.foreign_curves import checks_of
 from verify.cli import main
-from verify.curve_file import Reading, read_curve
-from verify.foreign import checks_of
-from verify.methods import solve
-from verify.scene import load_scene
+from verify.curves.read import Reading, read_curve
+from verify.methods.solve import solve
+from verify.scene.load import load_scene
+from verify.studies import one_scene
 
 PROJECT = Path(__file__).resolve().parents[1]
 EXAMPLE = PROJECT / "examples" / "own_code"
@@ -78,8 +79,8 @@ def test_the_file_of_the_example_gets_its_verdict(tmp_path, monkeypatch, capsys)
     (line,) = re.findall(r"^    ./debond (verify .*--with.*)$", (EXAMPLE / "README.md").read_text(), re.M)
     monkeypatch.chdir(EXAMPLE)
     monkeypatch.setattr(verification, "write_page", lambda *what: None)
-    planned = verification.planned
+    planned = one_scene.planned
     beam_alone = lambda *given: (job for job in planned(*given) if job.method == "beam")  # noqa: E731
-    monkeypatch.setattr(verification, "planned", beam_alone)
+    monkeypatch.setattr(one_scene, "planned", beam_alone)
     assert main([*line.split(), "--out", str(tmp_path)]) == 0
     assert "history" in capsys.readouterr().out.splitlines()[0]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import verify
-from verify import doctor
+from verify.command_line import doctor
 
 PROJECT = Path(__file__).resolve().parent.parent
 

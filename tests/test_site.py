@@ -138,7 +138,7 @@ def test_the_whole_site_is_built_and_has_no_bad_link(tmp_path):
     assert "<math" in (site / "theory" / "law.html").read_text()
     page = (site / "examples" / "bezier_extraction.html").read_text()
     assert "13 Bezier points from 7 control points" in page and "bezier_extraction-1.png" in page
-    assert "bezier_extraction" in (site / "modules" / "iga.bspline.html").read_text()
+    assert "bezier_extraction" in (site / "modules" / "iga.bases.bspline.html").read_text()
     assert links.wrong(site) == []
     browsed(site, tmp_path / "profile")
 

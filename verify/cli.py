@@ -14,12 +14,12 @@ import re  # noqa: E402
 from collections.abc import Callable, Sequence  # noqa: E402
 from pathlib import Path  # noqa: E402
 
-from verify import commands  # noqa: E402
-from verify.arguments import accuracy, column, count, fraction, number, numbers, positive, scale, seeds  # noqa: E402
-from verify.commands import FAILED  # noqa: E402
-from verify.refusal import Refusal  # noqa: E402
-from verify.say import say  # noqa: E402
-from verify.shell.spelling import Help, parsed  # noqa: E402
+from verify.command_line import commands  # noqa: E402
+from verify.command_line.arguments import accuracy, column, count, fraction, number, numbers, positive, scale, seeds  # noqa: E402
+from verify.command_line.commands import FAILED  # noqa: E402
+from verify.command_line.spelling import Help, parsed  # noqa: E402
+from verify.support.refusal import Refusal  # noqa: E402
+from verify.support.say import say  # noqa: E402
 
 REFUSED, INTERRUPTED = 2, 130
 
@@ -45,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except OSError as error:
-        from verify.folder import NO_ROOM  # here, as it brings NumPy along
+        from verify.runs.folder import NO_ROOM  # here, as it brings NumPy along
 
         if error.errno not in (*NO_ROOM, errno.EACCES):
             raise

@@ -8,8 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import nan
 
 import numpy as np
+
+
+def run_seconds(result: Result) -> float:
+    """Wall time of a run without what it compiled."""
+    return (result.seconds or {}).get("total", nan) - result.jit_seconds
+
 
 #: Columns of ``curve.csv``, in order: the contract with other people's scripts.
 CURVE_COLUMNS = (
@@ -78,7 +85,7 @@ class Result:
     method knows. ``status`` is ``complete`` or ``stopped: <cause and what to do>``. ``ending`` says what else is worth
     saying of it: "separated at opening 5.2". ``condition`` is the largest condition number (1-norm, estimated) of the
     tangents that were looked at, 0 where none was. ``between`` are more openings, coarsely sampled, for
-    drawings alone (`verify.moments`). ``nonzeros`` counts the entries of a sparse tangent, 0 where the
+    drawings alone (`verify.fields.moments`). ``nonzeros`` counts the entries of a sparse tangent, 0 where the
     method does not say; ``jit_seconds`` is the part of ``seconds["basis"]`` that compiling at run time took.
     """
 

@@ -11,9 +11,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from verify.compare import Points, checks, compare
-from verify.compare_words import complaints, remarks, table
-from verify.curve_file import Column, CurveError, Reading, read_curve, sound
+from verify.curves.compare import Points, checks, compare
+from verify.curves.read import Column, CurveError, Reading, read_curve, sound
+from verify.curves.wording import complaints, remarks, table
 
 __all__ = ["CurveError", "CurveLike", "Reading", "assert_curves_close"]
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 
 if TYPE_CHECKING:
     from verify.result import Result
-    from verify.scene import Scene
+    from verify.scene.schema import Scene
 
 Kind = Literal["exact", "analytical", "cross-code", "regression"]
 
@@ -66,7 +66,7 @@ class Run:
     folder: str = ""  # relative to the report
     command: str = ""  # repeats this run
     scene: Scene | None = None  # as this run had it; that of the report where left out
-    key: str = ""  # hash of what the result rests on (`verify.fingerprint`)
+    key: str = ""  # hash of what the result rests on (`verify.runs.fingerprint`)
     missing: bool = False  # left out because this machine lacks the method
 
     @property

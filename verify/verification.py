@@ -3,51 +3,29 @@
 from __future__ import annotations
 
 import os
-import shlex
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
 
-from verify import given_meshes, introduction, neglected, verdict_file
-from verify.checks import run_checks
-from verify.crosschecks import cross_checks, remarks
-from verify.effects import simulated
-from verify.foreign import Curve, joined
-from verify.included import Included, found_in
-from verify.jobs import Job, Outcome, dry_run, is_missing, run_all
-from verify.judgement import NO_DEMANDS, Demands, judged
-from verify.mesh_sequences import sequences
-from verify.methods import METHODS, WITH_DOFS, known_methods
-from verify.odd_one_out import odd_one_out
-from verify.paper import peel, peel_statements, statements
-from verify.paper import plan as figures
-from verify.paper.comparison import lines
-from verify.paper.study import measured
-from verify.plane_rates import rate_checks, rates
-from verify.plane_study import Plate
-from verify.plane_study import lines as plane_lines
-from verify.plane_study import study as plane_study
-from verify.progress import telling
-from verify.proof import MATCHED, REFERENCE, SEARCHING, SECOND
-from verify.quadrature_study import finding, study
-from verify.reference_mesh import reference_mesh, second_mesh
-from verify.run import environment
-from verify.say import say, write_page
-from verify.scene import Scene
-from verify.table import check_table, not_held, overview
-from verify.verdict import Check, Run, SceneReport
-
-NAMES = {
-    "tspline": "T-spline",
-    "nurbs": "NURBS",
-    "lagrange": "Lagrange",
-    "dolfinx": "DOLFINx",
-    "beam": "cohesive beam",
-    "lefm": "LEFM",
-}
-
-#: T-splines that follow the process zone, with at most a third of the unknowns that the meshes at rest have.
-ADAPTIVE = ("discretization.adaptive=true", "discretization.dofs=700")
+from verify.checks.foreign_curves import Curve, joined
+from verify.checks.judgement import NO_DEMANDS, Demands, judged
+from verify.checks.table import check_table, not_held, overview
+from verify.runs import verdict_file
+from verify.runs.environment import environment
+from verify.runs.jobs import Job, dry_run, run_all
+from verify.scene.schema import Scene
+from verify.studies.found import Included, found_in
+from verify.studies.interface_rules import finding, study
+from verify.studies.one_scene import convergence, planned, scene_report
+from verify.studies.paper import peel, peel_statements, statements
+from verify.studies.paper import plan as figures
+from verify.studies.paper.comparison import lines
+from verify.studies.paper.study import measured
+from verify.studies.plane.rates import rate_checks, rates
+from verify.studies.plane.study import Plate
+from verify.studies.plane.study import lines as plane_lines
+from verify.studies.plane.study import study as plane_study
+from verify.support.progress import telling
+from verify.support.say import say, write_page
 
 #: About how long interface rules, figures and rates take after the runs, and each mesh from CAD.
 STUDIES_SECONDS, PLATE_SECONDS = 15.0, 3.0
@@ -124,75 +102,3 @@ def _plans(scenes: Sequence[tuple[str, Scene]], full: bool) -> tuple[list[Job], 
 
 def _all_jobs(plan: Sequence[Job], beams: figures.Plan, strips: peel.PeelPlan) -> list[Job]:
     return list(dict.fromkeys([*plan, *beams.jobs, *strips.jobs]))
-
-
-def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
-    """The runs of one scene; those that do not take its mesh files make meshes of their own."""
-    own = (given_meshes.OWN,) if scene.specimen.mesh else ()
-    for method in known_methods():
-        takes = method == given_meshes.METHOD or method not in METHODS
-        yield Job(source, scene, method, method, () if takes else own)
-    yield Job(source, scene, REFERENCE, SECOND, (*own, *second_mesh(scene)), fields=False)
-    effects = simulated(scene, SEARCHING)
-    if scene.specimen.kind == "dcb" and effects["kinematics"] == "finite" and effects["search"]:
-        yield Job(source, scene, SEARCHING, MATCHED, (*own, "effects.search=false"), fields=False)
-    if full and scene.specimen.kind == "dcb":
-        cubic = figures.cubic(source, scene)
-        yield replace(cubic, overrides=(*own, *cubic.overrides))
-        yield Job(source, scene, "tspline", "tspline-adaptive", (*own, *ADAPTIVE))
-    if full:
-        for parts in (2, 4):
-            dofs = scene.discretization.dofs // parts
-            yield Job(source, scene, "nurbs", f"nurbs-{dofs}", (*own, f"discretization.dofs={dofs}"))
-
-
-def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneReport:
-    """Runs and checks of one scene."""
-    runs = tuple(_as_run(outcome, out) for outcome in outcomes)
-    checks: list[Check] = []
-    for outcome in outcomes:
-        if outcome.result is not None:
-            on = _with_its_mesh(scene, outcome.job)
-            checks += [c for c in run_checks(on, outcome.result, outcome.job.variant) if outcome.job.meant_for(c)]
-        elif outcome.failed:
-            meaning = "The run ended with a result."
-            checks.append(Check("completed", outcome.job.variant, float("nan"), 1e-9, "exact", meaning))
-    results = {o.job.variant: o.result for o in outcomes if o.result is not None}
-    on_their_own = [o.job.variant for o in outcomes if o.job.variant in results and given_meshes.OWN in o.job.overrides]
-    given, own = ({k: r for k, r in results.items() if (k in on_their_own) == other} for other in (False, True))
-    left_out = (*neglected.remarks(scene, given), *neglected.remarks(given_meshes.own_mesh(scene), own))
-    said = (*remarks(scene, results), *given_meshes.remarks(on_their_own), *left_out, *introduction.remarks(scene))
-    checks += cross_checks(scene, results)
-    return SceneReport(scene, runs, tuple(checks), (*said, *odd_one_out(scene, checks, results)))
-
-
-def _with_its_mesh(scene: Scene, job: Job) -> Scene:
-    """The scene as far as its mesh files are concerned: without them where the job is."""
-    return given_meshes.own_mesh(scene) if given_meshes.OWN in job.overrides else scene
-
-
-def convergence(reports: Sequence[SceneReport]) -> list[str]:
-    """Observed order and grid convergence index of the peak load, where there are three meshes or more."""
-    return [
-        f"{report.scene.name}: {one.quantity} of {len(one.runs)} {NAMES.get(one.method, one.method)} meshes: order "
-        f"{one.found.order:.2f}, limit {one.found.limit:.6g}, GCI {one.found.gci:.2%}; {one.found.verdict}"
-        for report in reports
-        for one in sequences(report)
-        if one.quantity == "peak load"
-    ]
-
-
-def _as_run(outcome: Outcome, out: Path) -> Run:
-    job, result = outcome.job, outcome.result
-    scene = job.solved
-    degrees = {"dolfinx": reference_mesh(scene).degree, **dict.fromkeys(WITH_DOFS, scene.discretization.degree)}
-    degree = degrees.get(job.method)
-    name = NAMES.get(job.method, job.method) + (f" p={degree}" if degree else "")
-    adaptive = job.method == "tspline" and scene.discretization.adaptive
-    name, most = (f"{name}, adaptive", "at most ") if adaptive else (name, "")
-    name += {SECOND: ", second mesh", MATCHED: ", pairs kept"}.get(job.variant, "")
-    label = f"{name}, {most}{result.dofs} unknowns" if result is not None and result.dofs else name
-    folder, done = str(job.folder(out).relative_to(out)), result is not None or outcome.failed
-    command = shlex.join(["debond", *job.command(out)])
-    key, missing = job.task().key if done else "", not done and is_missing(job)
-    return Run(label, job.method, result, outcome.left_out, folder, command, scene, key, missing)

@@ -6,7 +6,8 @@ of the specimen, which moves down. Run it with `pytest examples/regression_test`
 
 from pathlib import Path
 
-from verify.testing import Reading, assert_curves_close
+from verify.curves.read import Reading
+from verify.testing import assert_curves_close
 
 HERE = Path(__file__).parent
 

@@ -12,12 +12,12 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 from mpi4py import MPI
 
-from fem_reference.control import opening_control
-from fem_reference.dcb import Problem
-from fem_reference.law import Law
-from fem_reference.model import build_model
-from fem_reference.newton import find_equilibrium
-from fem_reference.path import path
+from fem_reference.model.model import build_model
+from fem_reference.path.control import opening_control
+from fem_reference.path.newton import find_equilibrium
+from fem_reference.path.path import path
+from fem_reference.problem.dcb import Problem
+from fem_reference.problem.law import Law
 from fem_reference.solve import solve_debonding
 
 CZM1 = Problem(

@@ -12,12 +12,12 @@ from dolfinx import geometry
 from ranks import on_ranks
 from vtu_files import arrays
 
-from fem_reference.dcb import Problem
-from fem_reference.material import Moduli
-from fem_reference.peel import Problem as Peel
+from fem_reference.problem.dcb import Problem
+from fem_reference.problem.material import Moduli
+from fem_reference.problem.peel import Problem as Peel
 from fem_reference.solve import solve_debonding
-from verify.frames import solid_cells
-from verify.vtu import grid, vtk_order
+from verify.fields.cells import grid, vtk_order
+from verify.fields.frames import solid_cells
 
 DCB = Problem(
     length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, E2=60e3, G12=30e3, nu12=0.2, plane="strain", strength=4.0,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem_reference.law import Law
+from fem_reference.problem.law import Law
 
 G_IC = 0.1
 LAW = Law(strength=4.0, toughness=G_IC, ductility=12.5, penalty=1e5)

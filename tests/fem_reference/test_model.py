@@ -10,10 +10,10 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 from dolfinx import fem
 from mpi4py import MPI
 
-from fem_reference import peel
-from fem_reference.dcb import Problem
-from fem_reference.material import Moduli
-from fem_reference.model import build_model
+from fem_reference.model.model import build_model
+from fem_reference.problem import peel
+from fem_reference.problem.dcb import Problem
+from fem_reference.problem.material import Moduli
 
 SMALL = Problem(
     length=6.0,

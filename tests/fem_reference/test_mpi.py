@@ -11,7 +11,7 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 PROGRAM = """
 import json, sys
 from dataclasses import replace
-from fem_reference.dcb import Problem
+from fem_reference.problem.dcb import Problem
 from fem_reference.solve import solve_debonding
 from mpi4py import MPI
 rows = []
@@ -30,8 +30,8 @@ if MPI.COMM_WORLD.rank == 0:
 
 PEEL = """
 import json
-from fem_reference.material import Moduli
-from fem_reference.peel import Problem
+from fem_reference.problem.material import Moduli
+from fem_reference.problem.peel import Problem
 from fem_reference.solve import solve_debonding
 from mpi4py import MPI
 problem = Problem(strip_length=150.0, strip_thickness=2.0, substrate_length=120.0, substrate_thickness=10.0,

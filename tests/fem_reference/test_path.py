@@ -12,15 +12,15 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 from mpi4py import MPI
 from scipy.interpolate import CubicHermiteSpline
 
-from fem_reference import newton
-from fem_reference.control import front_of, gap_row
-from fem_reference.dcb import Problem
-from fem_reference.law import Law
-from fem_reference.model import build_model
-from fem_reference.path import Failure, departing, path
+from fem_reference.model.model import build_model
+from fem_reference.path import newton
+from fem_reference.path.control import front_of, gap_row
+from fem_reference.path.path import Failure, departing, path
+from fem_reference.path.state import State
+from fem_reference.path.work import work_along
+from fem_reference.problem.dcb import Problem
+from fem_reference.problem.law import Law
 from fem_reference.solve import solve_debonding
-from fem_reference.state import State
-from fem_reference.work import work_along
 
 COARSE = Problem(
     length=14.0,

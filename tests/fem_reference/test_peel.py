@@ -9,9 +9,9 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
-from fem_reference.law import Law
-from fem_reference.material import Moduli
-from fem_reference.peel import Problem
+from fem_reference.problem.law import Law
+from fem_reference.problem.material import Moduli
+from fem_reference.problem.peel import Problem
 from fem_reference.solve import solve_debonding
 
 

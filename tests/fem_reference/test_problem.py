@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fem_reference import peel
-from fem_reference.dcb import Problem
-from fem_reference.material import Moduli, in_plane_stiffness
+from fem_reference.problem import peel
+from fem_reference.problem.dcb import Problem
+from fem_reference.problem.material import Moduli, in_plane_stiffness
 
 DCB = dict(
     length=14.0,

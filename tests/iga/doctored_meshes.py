@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from iga.bspline import open_knots
-from iga.extraction import ElementBlock, Mesh
-from iga.nurbs import nurbs_rectangle
+from iga.bases.bspline import open_knots
+from iga.bases.nurbs import nurbs_rectangle
+from iga.mesh.extraction import ElementBlock, Mesh
 
 
 def arch(degree: int = 3, spans: int = 4) -> Mesh:

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from iga.extraction import ElementBlock
-from iga.iga_file import IgaFile, NamedSet
+from iga.files.iga_format import IgaFile, NamedSet
+from iga.mesh.extraction import ElementBlock
 
 REAL = ("arch_nurbs", "arch_tsplines", "plate_with_hole", "square_structured", "square_unstructured")
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.cohesive import TractionLaw
+from iga.interface.laws import TractionLaw
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from specimens import PAPER
 
-from iga.dcb import build
-from iga.newton import residual_norm
-from iga.path import follow
-from iga.system import respond
+from iga.dcb.dcb import build
+from iga.path.follow import follow
+from iga.path.newton import residual_norm
+from iga.system.system import respond
 
 CZM1 = replace(PAPER, opening=(3.0,))
 BOTH = [("nurbs", "finite"), ("lagrange", "linear")]

@@ -7,14 +7,14 @@ import numpy as np
 from scipy.sparse import block_diag, coo_array
 from scipy.sparse.linalg import splu
 
-from iga.bond import between, everywhere
-from iga.cohesive import BilinearLaw
-from iga.extraction import Mesh
-from iga.interface import Contact, Interface, contact, forces, settled, stiffness, traction
-from iga.plane import Fixed
-from iga.plane import stiffness as bulk_stiffness
-from iga.quadrature import gauss
-from iga.surface import surface
+from iga.elements.plane_elasticity import Fixed
+from iga.elements.plane_elasticity import stiffness as bulk_stiffness
+from iga.interface.interface import Contact, Interface, contact, forces, settled, stiffness, traction
+from iga.interface.laws import BilinearLaw
+from iga.interface.surface import surface
+from iga.mesh.extraction import Mesh
+from iga.mesh.quadrature import gauss
+from iga.specimen.bond import between, everywhere
 
 ITERATIONS = 40
 

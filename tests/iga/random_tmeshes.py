@@ -3,11 +3,11 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from iga.bisection import Bisection, initial
-from iga.strip import Strip, strip_tmesh
-from iga.suitable import made_suitable
-from iga.tmesh import TMesh
-from iga.tmesh_lines import from_rectangles, tensor_grid, with_line
+from iga.specimen.tmesh_strip import Strip, strip_tmesh
+from iga.tsplines.bisection import Bisection, initial
+from iga.tsplines.lines import from_rectangles, tensor_grid, with_line
+from iga.tsplines.suitable import made_suitable
+from iga.tsplines.tmesh import TMesh
 
 SPANS = st.lists(st.floats(0.2, 5.0), min_size=1, max_size=4)
 FRACTIONS = st.floats(0.0, 1.0, exclude_max=True)

@@ -6,15 +6,16 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-import iga.adaptive
-from iga.adaptive import Window, carried, first_window, followed, strip
-from iga.dcb import build, solve
-from iga.path import End, Point, follow
-from iga.point import Point as Converged
-from iga.specimen import Specimen
-from iga.state import State
-from iga.surface import surface
-from iga.system import untimed
+import iga.dcb.adaptive
+from iga.dcb.adaptive import Window, carried, first_window, followed, strip
+from iga.dcb.dcb import build, solve
+from iga.interface.surface import surface
+from iga.path.follow import follow
+from iga.path.point import End, Point
+from iga.path.point import Point as Converged
+from iga.specimen.specimen import Specimen
+from iga.system.state import State
+from iga.system.system import untimed
 
 ADAPTIVE = replace(PAPER, basis="tspline", adaptive=True, opening=(1.2,), dofs=800, steps=40)
 
@@ -48,10 +49,10 @@ def changes(problem) -> tuple[list[Change], list[Converged], End]:
         specimen = new
         return new.system, state
 
-    search = iga.adaptive.equilibrium
+    search = iga.dcb.adaptive.equilibrium
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
-            iga.adaptive, "equilibrium", lambda s, trial, *rest: sought.append(trial) or search(s, trial, *rest)
+            iga.dcb.adaptive, "equilibrium", lambda s, trial, *rest: sought.append(trial) or search(s, trial, *rest)
         )
         *points, end = follow(specimen.system, problem.opening, problem.steps, renew=renew)
     return made, points, end

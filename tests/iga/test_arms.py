@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from specimens import PAPER, E
 from test_peel import PEEL
 
-from iga.arms import (
+from iga.dcb.dcb import build, solve
+from iga.dcb.meshes import (
     COARSENING,
     FEW,
     LEAST_COARSENING,
@@ -22,10 +23,9 @@ from iga.arms import (
     tmeshes,
     zone_length,
 )
-from iga.dcb import build, solve
-from iga.peel_meshes import tmeshes as peel_tmeshes
-from iga.surface import surface
-from iga.tspline import tspline_rectangle
+from iga.interface.surface import surface
+from iga.peel.meshes import tmeshes as peel_tmeshes
+from iga.tsplines.tspline import tspline_rectangle
 
 some = settings(max_examples=40, deadline=None)
 BASES = ("tspline", "nurbs", "lagrange")

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_tmeshes import bisections, breaks, marked, markings
 
-from iga.bisection import Bisection, initial
-from iga.tspline import faces, tspline_rectangle
+from iga.tsplines.bisection import Bisection, initial
+from iga.tsplines.tspline import faces, tspline_rectangle
 
 some = settings(max_examples=60, deadline=None)
 
@@ -39,7 +39,7 @@ def test_the_closure_is_that_of_the_definition(drawn):
 def test_a_smaller_patch_would_not_do(monkeypatch, name, shorter):
     """One element less in either direction and extensions meet: the closure is what keeps them apart."""
     assert all(marked_at_will(seed).tmesh.suitable for seed in range(20))
-    monkeypatch.setattr(f"iga.bisection.{name}", shorter)
+    monkeypatch.setattr(f"iga.tsplines.bisection.{name}", shorter)
     assert not all(marked_at_will(seed).tmesh.suitable for seed in range(20))
 
 

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-import iga.body
-from iga.basis import block_basis
-from iga.body import Body
-from iga.bulk import gradient
-from iga.dcb import build
-from iga.extraction import Mesh
-from iga.kinematics import KINEMATICS
-from iga.observe import face_energy
-from iga.quadrature import gauss, square
+import iga.specimen.body
+from iga.dcb.dcb import build
+from iga.elements.bulk import gradient
+from iga.elements.kinematics import KINEMATICS
+from iga.elements.shape_functions import block_basis
+from iga.mesh.extraction import Mesh
+from iga.mesh.quadrature import gauss, square
+from iga.output.rows import face_energy
+from iga.specimen.body import Body
 
 LENGTH, THICKNESS = PAPER.length, PAPER.arm_thickness
 
@@ -94,7 +94,7 @@ def test_a_body_that_is_another_one_moved_has_the_bases_that_it_would_make_itsel
     problem = replace(PAPER, **({"basis": "nurbs", "dofs": 480} | changes))
     _, lower = build(problem).bodies
     assert (lower.original is not None) == alike
-    monkeypatch.setattr(iga.body, "_alike", lambda *_: False)
+    monkeypatch.setattr(iga.specimen.body, "_alike", lambda *_: False)
     _, own = build(problem).bodies
     pairs = [(a.basis, b.basis) for a, b in zip(lower.solids + lower.sampled, own.solids + own.sampled, strict=True)]
     for name in ("left", "right", "top"):

@@ -6,17 +6,18 @@ import numpy as np
 import pytest
 from iga_files import SMALL, real, small
 
-from iga.basis import chain_basis
-from iga.bernstein import bernstein
-from iga.boundary import RECTANGLE, body_mesh, boundary_chains
-from iga.bspline import open_knots
-from iga.extraction import ElementBlock, Mesh
-from iga.iga_file import from_mesh, mesh, write_iga
-from iga.iga_read import read_iga
-from iga.neighbours import chains_of, element_sides
-from iga.nurbs import nurbs_rectangle
-from iga.quadrature import gauss
-from iga.surface import normal, surface
+from iga.bases.bspline import open_knots
+from iga.bases.nurbs import nurbs_rectangle
+from iga.elements.shape_functions import chain_basis
+from iga.files.cad_body import RECTANGLE, body_mesh
+from iga.files.iga_format import from_mesh, mesh, write_iga
+from iga.files.iga_reader import read_iga
+from iga.interface.surface import normal, surface
+from iga.mesh.bernstein import bernstein
+from iga.mesh.boundary import boundary_chains
+from iga.mesh.edges import chains_of, element_sides
+from iga.mesh.extraction import ElementBlock, Mesh
+from iga.mesh.quadrature import gauss
 
 
 def strip():

@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from iga.basis import block_basis
-from iga.bspline import open_knots
-from iga.bulk import all_values, element_forces, element_stiffness, full_matrices, gradient, stiffness_entries
-from iga.extraction import Mesh
-from iga.interface import dofs
-from iga.kinematics import KINEMATICS, PAIRS, cauchy_stress, finite_moduli, finite_stress, small_moduli
-from iga.lagrange import lagrange_rectangle
-from iga.material import isotropic, orthotropic
-from iga.nurbs import nurbs_rectangle
-from iga.quadrature import gauss, square
-from iga.strip import Strip, strip_tmesh
-from iga.tspline import tspline_rectangle
+from iga.bases.bspline import open_knots
+from iga.bases.lagrange import lagrange_rectangle
+from iga.bases.nurbs import nurbs_rectangle
+from iga.elements.bulk import all_values, element_forces, element_stiffness, full_matrices, gradient, stiffness_entries
+from iga.elements.elasticity import isotropic, orthotropic
+from iga.elements.kinematics import KINEMATICS, PAIRS, cauchy_stress, finite_moduli, finite_stress, small_moduli
+from iga.elements.shape_functions import block_basis
+from iga.interface.interface import dofs
+from iga.mesh.extraction import Mesh
+from iga.mesh.quadrature import gauss, square
+from iga.specimen.tmesh_strip import Strip, strip_tmesh
+from iga.tsplines.tspline import tspline_rectangle
 
 D_GENERIC = orthotropic(130.0, 9.0, 5.0, 0.3, "stress")
 

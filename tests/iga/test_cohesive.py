@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from made_up_laws import MADE_UP, TrapezoidalLaw
 
-from iga.cohesive import LAWS, BilinearLaw, TractionLaw
+from iga.interface.laws import LAWS, BilinearLaw, TractionLaw
 
 LAW = BilinearLaw(strength=4.0, toughness=0.1, ductility=12.5, penalty=1e5)
 EVERY = {**LAWS, **MADE_UP}

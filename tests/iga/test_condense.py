@@ -8,13 +8,13 @@ import pytest
 from specimens import PAPER
 from test_peel import PEEL
 
-import iga.condense
-import iga.interface
+import iga.interface.interface
+import iga.path.condensation
 from iga import dcb, peel
-from iga.condense import _rigid_motions, _rows, _without, condensed
-from iga.path import follow
-from iga.point import End
-from iga.system import respond
+from iga.path.condensation import _rigid_motions, _rows, _without, condensed
+from iga.path.follow import follow
+from iga.path.point import End
+from iga.system.system import respond
 
 BEAM = replace(PAPER, kinematics="linear", steps=40, dofs=600, opening=(1.5,))
 STRIP = replace(PEEL, kinematics="linear", steps=40, dofs=900)
@@ -42,7 +42,7 @@ def test_the_condensed_path_is_that_of_the_whole(name, monkeypatch):
     """All that a run tells, at all its steps, to a part of 1e-7 of the largest value of its kind."""
     problem = CASES[name]
     small = solver(problem).solve(problem)
-    monkeypatch.setattr(iga.solve, "condensed", lambda system: None)
+    monkeypatch.setattr(iga.run, "condensed", lambda system: None)
     whole = solver(problem).solve(problem)
     assert small.status == whole.status == "complete" and len(small.rows) == len(whole.rows)
     for key in small.rows[0]:
@@ -57,7 +57,7 @@ def test_unloading_and_closing_come_to_the_same_ends(monkeypatch):
     """Where the programme turns, rounding decides how long the first steps are, and nothing else."""
     problem = replace(BEAM, opening=(1.0, -0.002, 1.5))
     small = dcb.solve(problem)
-    monkeypatch.setattr(iga.solve, "condensed", lambda system: None)
+    monkeypatch.setattr(iga.run, "condensed", lambda system: None)
     whole = dcb.solve(problem)
     assert small.status == whole.status == "complete"
     for goal in (1.0, -0.002, 0.0, 1.5):
@@ -89,7 +89,7 @@ PAIRS = {"cubic": BEAM, "quadratic": replace(BEAM, degree=2, dofs=504), "peel": 
 @pytest.mark.parametrize("problem", PAIRS.values(), ids=PAIRS)
 def test_an_opening_that_a_gap_tells_already_is_not_condensed(problem, narrow, monkeypatch):
     """Two rows say the same, exactly or but for rounding: then the stiffness of what is kept has no bound."""
-    monkeypatch.setattr(iga.condense, "NARROW", narrow)
+    monkeypatch.setattr(iga.path.condensation, "NARROW", narrow)
     system = solver(problem).build(problem).system
     rows, small = _rows(system, system.interface.at_rest)[0].tocsr(), condensed(system)
     stiffest = max(np.abs(K).max() for K in system.linear_matrices)
@@ -152,8 +152,8 @@ def test_a_rigid_motion_asks_for_no_force(name):
     """Of what is kept of it, to the last digit of the stiffness: more would be lost of the balance of forces."""
     system = solver(CASES[name]).build(CASES[name]).system
     small = condensed(system).system
-    rest = iga.interface.contact(system.interface, np.zeros(system.n_dof), system.interface.pairing)
-    B_rd, _, _ = iga.condense._rows(system, rest)
+    rest = iga.interface.interface.contact(system.interface, np.zeros(system.n_dof), system.interface.pairing)
+    B_rd, _, _ = iga.path.condensation._rows(system, rest)
     rigid_rm, _ = np.linalg.qr(B_rd @ _without(system.springs_rd, _rigid_motions(system)))
     assert rigid_rm.shape[1] == 2 and np.array_equal(small.bulk_dd, small.bulk_dd.T)
     assert np.abs(small.bulk_dd @ rigid_rm).max() < 5e-16 * np.abs(small.bulk_dd).max()
@@ -166,14 +166,14 @@ def test_dense_equations_pay_where_they_are_less_work_than_the_band(kept, pays, 
     few = 6 if told == "elements" else 2
     system = SimpleNamespace(element_dofs=(np.zeros((3, few)), np.zeros((1, 2))), free_d=np.ones(100, dtype=bool))
     system.band = SimpleNamespace(n=100, k=5 if told == "band" else 0)
-    assert iga.condense._pays(system, kept) == pays
+    assert iga.path.condensation._pays(system, kept) == pays
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_banded_and_a_sparse_factorisation_give_one_stiffness(name, monkeypatch):
     system, found = solver(CASES[name]).build(CASES[name]).system, []
     for narrow in (np.inf, 0.0):
-        monkeypatch.setattr(iga.condense, "NARROW", narrow)
+        monkeypatch.setattr(iga.path.condensation, "NARROW", narrow)
         found.append(condensed(system))
     banded, sparse = (one.system.bulk_dd for one in found)
     assert np.abs(banded - sparse).max() < 1e-11 * np.abs(sparse).max()

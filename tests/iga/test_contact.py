@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from pressed import loose, press
 
-from iga.bspline import insert_knot, open_knots
-from iga.extraction import Mesh
-from iga.kinematics import elasticity_tensor
-from iga.lagrange import lagrange_rectangle
-from iga.material import orthotropic
-from iga.nurbs import nurbs_mesh, nurbs_rectangle
-from iga.plane import Fixed, bulk_bases, prescribed, symmetry, traction_forces
+from iga.bases.bspline import insert_knot, open_knots
+from iga.bases.lagrange import lagrange_rectangle
+from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
+from iga.elements.elasticity import orthotropic
+from iga.elements.kinematics import elasticity_tensor
+from iga.elements.plane_elasticity import Fixed, bulk_bases, prescribed, symmetry, traction_forces
+from iga.mesh.extraction import Mesh
 
 E, NU = 1000.0, 0.3
 STRESS, STRAIN = (orthotropic(E, E, E / (2.0 * (1.0 + NU)), NU, plane) for plane in ("stress", "strain"))

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from iga_files import SMALL, real, small
 
-from iga.bspline import KnotVector, open_knots
-from iga.continuity import jumps, space_derivatives
-from iga.iga_file import mesh
-from iga.iga_read import read_iga
-from iga.lagrange import lagrange_rectangle
-from iga.neighbours import element_sides
-from iga.nurbs import nurbs_mesh
-from iga.tmesh_lines import tensor_grid, with_lines
-from iga.tspline import tspline_rectangle
+from iga.bases.bspline import KnotVector, open_knots
+from iga.bases.lagrange import lagrange_rectangle
+from iga.bases.nurbs import nurbs_mesh
+from iga.files.iga_format import mesh
+from iga.files.iga_reader import read_iga
+from iga.mesh.continuity import jumps, space_derivatives
+from iga.mesh.edges import element_sides
+from iga.tsplines.lines import tensor_grid, with_lines
+from iga.tsplines.tspline import tspline_rectangle
 
 ZERO = 1e-11
 

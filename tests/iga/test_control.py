@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from specimens import PAPER, E
 
-from iga.control import arc_length_control, dissipation_control, gap_control, load_control, opening_control
-from iga.dcb import build
-from iga.newton import DEFAULT, equilibrium
-from iga.path import Point, follow
-from iga.system import respond, untimed
+from iga.dcb.dcb import build
+from iga.path.control import arc_length_control, dissipation_control, gap_control, load_control, opening_control
+from iga.path.follow import follow
+from iga.path.newton import DEFAULT, equilibrium
+from iga.path.point import Point
+from iga.system.system import respond, untimed
 
 CZM1 = replace(PAPER, dofs=400)
 NAMES = ("opening", "load", "gap", "dissipation", "arc length")

@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 from specimens import PAPER, E
 
-import iga.pace
-import iga.path
-from iga.cohesive import BilinearLaw
-from iga.control import opening_control
-from iga.dcb import build, solve
-from iga.newton import DEFAULT, Newton, equilibrium
-from iga.observe import reach
-from iga.path import Point, follow
-from iga.system import untimed
+import iga.path.follow
+import iga.path.step_length
+from iga.dcb.dcb import build, solve
+from iga.interface.laws import BilinearLaw
+from iga.output.rows import reach
+from iga.path.control import opening_control
+from iga.path.follow import follow
+from iga.path.newton import DEFAULT, Newton, equilibrium
+from iga.path.point import Point
+from iga.system.system import untimed
 
 CZM1 = replace(PAPER, opening=(3.0,), dofs=1956)
 SHORT = replace(CZM1, opening=(1.0,), dofs=800, steps=40)
@@ -167,8 +168,8 @@ def test_closing_altogether_and_opening_again(kinematics):
 
 def test_external_work_is_integrated_to_fourth_order(monkeypatch):
     """Nothing is lost while the interface stays elastic: twice the steps, a sixteenth of the gap in the ledger."""
-    monkeypatch.setattr(iga.pace, "FEWEST", 1)  # steps of equal length,
-    monkeypatch.setattr(iga.path, "leaks", lambda *_: False)  # however long
+    monkeypatch.setattr(iga.path.step_length, "FEWEST", 1)  # steps of equal length,
+    monkeypatch.setattr(iga.path.follow, "leaks", lambda *_: False)  # however long
 
     def gap(steps: int) -> float:
         last = solve(replace(SHORT, strength=1e3, toughness=1e2, ductility=1.01, opening=(2.0,), steps=steps)).rows[-1]

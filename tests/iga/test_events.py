@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from iga.cohesive import BilinearLaw
-from iga.events import BEYOND, next_event
+from iga.interface.laws import BilinearLaw
+from iga.path.kinks import BEYOND, next_event
 
 LAW = BilinearLaw(strength=4.0, toughness=0.1, ductility=12.5, penalty=1e5)  # g_u 0.05, g_max 0.004
 HAIR = BEYOND * LAW.g_max

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from iga.kinematics import cauchy_stress, finite_stress, material_stress
-from iga.material import orthotropic
+from iga.elements.elasticity import orthotropic
+from iga.elements.kinematics import cauchy_stress, finite_stress, material_stress
 
 
 def test_stress_in_the_axes_of_the_material():

@@ -8,20 +8,20 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from iga_files import real
 
-from iga.bond import between, everywhere
-from iga.boundary import body_mesh
-from iga.bspline import open_knots
-from iga.cohesive import BilinearLaw
-from iga.extraction import Mesh
-from iga.iga_file import from_mesh, write_iga
-from iga.interface import Interface, contact, forces, stiffness, traction
-from iga.lagrange import lagrange_rectangle
-from iga.nurbs import nurbs_rectangle
-from iga.projection import FREE, HELD
-from iga.quadrature import gauss
-from iga.strip import Strip, strip_tmesh
-from iga.surface import surface
-from iga.tspline import tspline_rectangle
+from iga.bases.bspline import open_knots
+from iga.bases.lagrange import lagrange_rectangle
+from iga.bases.nurbs import nurbs_rectangle
+from iga.files.cad_body import body_mesh
+from iga.files.iga_format import from_mesh, write_iga
+from iga.interface.closest_point import FREE, HELD
+from iga.interface.interface import Interface, contact, forces, stiffness, traction
+from iga.interface.laws import BilinearLaw
+from iga.interface.surface import surface
+from iga.mesh.extraction import Mesh
+from iga.mesh.quadrature import gauss
+from iga.specimen.bond import between, everywhere
+from iga.specimen.tmesh_strip import Strip, strip_tmesh
+from iga.tsplines.tspline import tspline_rectangle
 from tests.iga.test_splines import quarter_annulus
 
 LAW = BilinearLaw(strength=4.0, toughness=0.4, ductility=4.0, penalty=5e3)

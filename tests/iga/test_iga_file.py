@@ -9,12 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from iga_files import REAL, SMALL, assert_same, random_file, real, small
 
-from iga.basis import block_basis
-from iga.bezier import homogeneous, jacobian
-from iga.extraction import SIDES
-from iga.iga_file import from_mesh, mesh, write_iga
-from iga.iga_read import IgaError, read_iga
-from iga.quadrature import gauss, square
+from iga.elements.shape_functions import block_basis
+from iga.files.iga_format import from_mesh, mesh, write_iga
+from iga.files.iga_reader import IgaError, read_iga
+from iga.mesh.bezier import homogeneous, jacobian
+from iga.mesh.extraction import SIDES
+from iga.mesh.quadrature import gauss, square
 
 LINES = SMALL.splitlines()
 

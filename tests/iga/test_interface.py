@@ -7,12 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from iga.dcb import Problem, build
-from iga.extraction import Mesh
-from iga.interface import contact, forces, rounding, settled, stiffness, traction
-from iga.lagrange import lagrange_rectangle
-from iga.projection import FREE, closest_points, nearest_samples
-from iga.surface import surface
+from iga.bases.lagrange import lagrange_rectangle
+from iga.dcb.dcb import build
+from iga.dcb.problem import Problem
+from iga.interface.closest_point import FREE, closest_points, nearest_samples
+from iga.interface.interface import contact, forces, rounding, settled, stiffness, traction
+from iga.interface.surface import surface
+from iga.mesh.extraction import Mesh
 from tests.iga.test_splines import quarter_annulus
 
 
@@ -220,7 +221,7 @@ def test_a_surface_must_have_one_degree():
 def test_partners_that_stay_are_searched_for_once(monkeypatch):
     """Where gaps change in proportion all is known of the points, and what reads them asks for no search."""
     probe = build(replace(PROBLEM, kinematics="linear")).probe
-    monkeypatch.setattr("iga.interface.nearest_samples", lambda *given: pytest.fail("searched for again"))
+    monkeypatch.setattr("iga.interface.interface.nearest_samples", lambda *given: pytest.fail("searched for again"))
     assert probe.at_rest is not None and np.array_equal(probe.pairing.c_q, probe.at_rest.pairing.c_q)
 
 

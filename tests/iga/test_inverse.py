@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-from iga.banded import Band, BandCholesky, BandLU, Skew, number
-from iga.dcb import build
-from iga.dense import Dense, DenseCholesky, DenseLU
-from iga.path import Point, follow
-from iga.system import factorise, respond, tangent_matrix, untimed
+from iga.algebra.banded import Band, BandCholesky, BandLU, Skew, number
+from iga.algebra.dense import Dense, DenseCholesky, DenseLU
+from iga.dcb.dcb import build
+from iga.path.follow import follow
+from iga.path.point import Point
+from iga.system.system import factorise, respond, tangent_matrix, untimed
 
 CZM1 = replace(PAPER, opening=(1.5,), dofs=400)
 

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-from iga.control import gap_control
-from iga.dcb import build
-from iga.landing import SEVERAL, broken_between, slope_over_arcs, travelled
-from iga.newton import DEFAULT, equilibrium
-from iga.pace import Pace
-from iga.path import End, follow
-from iga.system import untimed
+from iga.dcb.dcb import build
+from iga.path.control import gap_control
+from iga.path.follow import follow
+from iga.path.kinks import SEVERAL, broken_between, slope_over_arcs, travelled
+from iga.path.newton import DEFAULT, equilibrium
+from iga.path.point import End
+from iga.path.step_length import Pace
+from iga.system.system import untimed
 
 CZM1 = replace(PAPER, opening=(1.2,), dofs=1956, steps=None)
 

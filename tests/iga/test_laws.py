@@ -7,13 +7,12 @@ import pytest
 from made_up_laws import MADE_UP, TrapezoidalLaw
 from specimens import PAPER
 
-from iga.cohesive import LAWS
-from iga.control import dissipation_control
-from iga.dcb import build, solve
-from iga.events import BEYOND, next_event
-from iga.landing import landing
-from iga.path import follow
-from iga.system import respond
+from iga.dcb.dcb import build, solve
+from iga.interface.laws import LAWS
+from iga.path.control import dissipation_control
+from iga.path.follow import follow
+from iga.path.kinks import BEYOND, landing, next_event
+from iga.system.system import respond
 
 #: Unknowns by basis with which the J-integral is met within its tolerance.
 DOFS = {"tspline": 1200, "nurbs": 1200}

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from iga.bond import control_points
-from iga.dcb import Problem, build
-from iga.load import pulled_row
+from iga.dcb.dcb import build
+from iga.dcb.problem import Problem
+from iga.specimen.bond import control_points
+from iga.specimen.load import pulled_row
 
 PLACES = {"face": 0.5, "node": 1.0, "hinge": 0.5}
 

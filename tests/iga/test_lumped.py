@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.arms import arm_meshes
-from iga.dcb import Problem, build, solve
-from iga.interface import Interface, contact, forces, stiffness, traction
-from iga.lagrange import lagrange_rectangle
-from iga.lumped import lumped
-from iga.surface import surface
+from iga.bases.lagrange import lagrange_rectangle
+from iga.dcb.dcb import build, solve
+from iga.dcb.meshes import arm_meshes
+from iga.dcb.problem import Problem
+from iga.interface.interface import Interface, contact, forces, stiffness, traction
+from iga.interface.lumping import lumped
+from iga.interface.surface import surface
 
 PROBLEM = Problem(
     length=6.0,

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.arms import arm_meshes, crack_path
-from iga.dcb import build, solve
-from iga.sizes import element_length
+from iga.dcb.dcb import build, solve
+from iga.dcb.meshes import arm_meshes, crack_path
+from iga.specimen.specimen import element_length
 from tests.iga.test_dcb import CZM1
 
 END = 0.8

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-import iga.newton
-import iga.system
-from iga.control import gap_control, load_control, opening_control
-from iga.dcb import build
-from iga.grading import rectangle
-from iga.newton import (
+import iga.path.newton
+import iga.system.system
+from iga.dcb.dcb import build
+from iga.path.control import gap_control, load_control, opening_control
+from iga.path.follow import TRIFLE, follow
+from iga.path.newton import (
     DEFAULT,
     PATIENT,
     SLACK,
@@ -24,9 +24,10 @@ from iga.newton import (
     equilibrium,
     residual_norm,
 )
-from iga.path import TRIFLE, Point, follow
-from iga.system import respond, untimed
-from iga.tangent import tangent
+from iga.path.point import Point
+from iga.path.tangent import tangent
+from iga.specimen.grading import rectangle
+from iga.system.system import respond, untimed
 
 CZM1 = replace(PAPER, opening=(0.9,), dofs=400)
 
@@ -108,7 +109,7 @@ def test_stiff_contact_is_found_where_full_steps_go_round_in_circles(kinematics,
     # hardly knows
     assert residual_norm(system, found.state.load, response) < 1e-3, "gaps and contact disagree"
     assert 0 < np.sum(found.state.closed_q) < found.state.closed_q.size
-    monkeypatch.setattr(iga.newton, "_searched", iga.newton._full)
+    monkeypatch.setattr(iga.path.newton, "_searched", iga.path.newton._full)
     assert search() is None, "full steps do as well: this test has nothing to say"
 
 
@@ -197,16 +198,16 @@ def test_a_search_that_finds_nothing_ends():
 
 def test_what_rounding_leaves_counts_in_parts_of_the_forces_in_play(monkeypatch):
     """Where there are none, the tolerance alone does."""
-    monkeypatch.setattr(iga.newton, "rounding", lambda system, u_d, response: 3e-9)
+    monkeypatch.setattr(iga.path.newton, "rounding", lambda system, u_d, response: 3e-9)
     for scale, floor in ((0.0, 1e-12), (2.0, 1.5e-9), (1e6, 1e-12)):
         trial, response = SimpleNamespace(u_d=np.zeros(2)), SimpleNamespace(scale=scale)
-        assert iga.newton._floor(None, trial, response, Newton(tolerance=1e-12)) == pytest.approx(floor)
+        assert iga.path.newton._floor(None, trial, response, Newton(tolerance=1e-12)) == pytest.approx(floor)
 
 
 @pytest.mark.parametrize("name", ["factorise", "correction"])
 def test_without_a_tangent_or_a_load_that_is_felt_there_is_no_equilibrium(name, peak, monkeypatch):
     system, before, _ = peak
-    monkeypatch.setattr(iga.newton, name, lambda *given: None)
+    monkeypatch.setattr(iga.path.newton, name, lambda *given: None)
     target = 1.01 * before.opening
     assert equilibrium(system, before.state, opening_control(system), target, 0.01, DEFAULT, untimed) is None
 
@@ -218,7 +219,7 @@ def test_a_gap_worth_no_force_leaves_contact_as_it_was():
     for law in (SimpleNamespace(penalty=10.0, stiffness=2.0), SimpleNamespace(penalty=2.0, stiffness=10.0)):
         system = SimpleNamespace(interface=SimpleNamespace(law=law, dA_q=np.full(5, 0.5)))
         touch, trial = SimpleNamespace(g_q=g_q), SimpleNamespace(closed_q=before_q)
-        assert iga.system._closed(system, touch, trial, 100.0).tolist() == [True, False, False, True, True]
+        assert iga.system.system._closed(system, touch, trial, 100.0).tolist() == [True, False, False, True, True]
 
 
 def test_of_a_condensed_bulk_forces_that_rounding_hides_are_none():
@@ -227,9 +228,9 @@ def test_of_a_condensed_bulk_forces_that_rounding_hides_are_none():
     """
     small = replace(build(CZM1).system, bulk_dd=3e6 * np.array([[1.0, -1.0], [-1.0, 1.0]]))
     u_d, held, eps = np.ones(2), 6e6, np.finfo(float).eps
-    forces_d, scale, stored, _ = iga.system._condensed_bulk(small, u_d)
+    forces_d, scale, stored, _ = iga.system.system._condensed_bulk(small, u_d)
     assert not forces_d.any() and stored == 0.0 and scale == pytest.approx(10.0 * eps / 5e-12 * held)
-    assert iga.system.rounding(small, u_d, None) == pytest.approx(10.0 * eps * held)
+    assert iga.system.system.rounding(small, u_d, None) == pytest.approx(10.0 * eps * held)
     stretched_d = np.array([0.0, 2.0])
-    forces_d, scale, stored, _ = iga.system._condensed_bulk(small, stretched_d)
+    forces_d, scale, stored, _ = iga.system.system._condensed_bulk(small, stretched_d)
     assert forces_d.tolist() == [-6e6, 6e6] and scale == pytest.approx(6e6 * np.sqrt(2.0)) and stored == 6e6

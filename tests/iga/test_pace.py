@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from iga.pace import BEND, CAREFUL, CORNERED, FEWEST, Pace, paced
-from iga.promise import Kept
+from iga.path.polyline import Kept
+from iga.path.step_length import BEND, CAREFUL, CORNERED, FEWEST, Pace, paced
 
 
 @pytest.mark.parametrize(("programme", "whole"), [((3.0,), 3.0), ((1.5, -0.5, 1.0), 5.0), ((-2.0,), 2.0)])

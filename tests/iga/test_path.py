@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from paths import BOTH, CZM1, column, decided, ledger, loads, run
 
-import iga.path
-from iga.newton import DEFAULT
+import iga.path.follow
+from iga.path.newton import DEFAULT
 
 SNAPPING = [
     pytest.param(
@@ -102,7 +102,7 @@ def test_what_has_come_apart_carries_nothing_and_will_not(broken, load, d_load, 
     for way in (1.0, -1.0):  # by pulling, or by pressing
         state, tangent = SimpleNamespace(k_q=k_q, load=way * load), SimpleNamespace(d_load=way * d_load)
         point = SimpleNamespace(state=state, tangent=tangent, slope=slope)
-        assert iga.path._separated(SimpleNamespace(interface=interface), point, 3.0, 1.0, way) == separated
+        assert iga.path.follow._separated(SimpleNamespace(interface=interface), point, 3.0, 1.0, way) == separated
 
 
 @pytest.mark.parametrize(
@@ -115,4 +115,4 @@ def test_what_has_come_apart_carries_nothing_and_will_not(broken, load, d_load, 
     ],
 )
 def test_a_programme_stops_wherever_it_passes_through_zero(programme, way):
-    assert iga.path.by_way_of_zero(programme) == way
+    assert iga.path.follow.by_way_of_zero(programme) == way

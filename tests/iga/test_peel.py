@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.peel import Moduli, Problem, build, solve
+from iga.peel.peel import build, solve
+from iga.peel.problem import Moduli, Problem
 
 
 def isotropic(young: float, poisson: float) -> Moduli:

@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.bond import between, everywhere
-from iga.interface import contact
-from iga.path import Point, follow
-from iga.peel import build, solve
-from iga.quadrature import gauss
+from iga.interface.interface import contact
+from iga.mesh.quadrature import gauss
+from iga.path.follow import follow
+from iga.path.point import Point
+from iga.peel.peel import build, solve
+from iga.specimen.bond import between, everywhere
 from tests.iga.test_peel import PEEL, column
 
 #: The crack runs some 20 mm, and then the strip's end is pressed down on what it has left.

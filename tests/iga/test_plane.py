@@ -6,19 +6,27 @@ import numpy as np
 import pytest
 from tmeshes import half_fine
 
-from iga.boundary import boundary_chains
-from iga.bspline import KnotVector, insert_knot, open_knots
-from iga.iga_file import mesh as mesh_of
-from iga.iga_read import read_iga
-from iga.material import isotropic
-from iga.nurbs import nurbs_mesh, nurbs_rectangle
-from iga.plane import body_forces, no_rigid_motion, prescribed, solve, stiffness, symmetry, traction_forces
-from iga.polygon import polygon_mesh
-from iga.subdivide import bezier_refined
-from iga.tspline import tspline_rectangle
+from iga.bases.bspline import KnotVector, insert_knot, open_knots
+from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
+from iga.bases.unstructured import polygon_mesh
+from iga.elements.elasticity import isotropic
+from iga.elements.plane_elasticity import (
+    body_forces,
+    no_rigid_motion,
+    prescribed,
+    solve,
+    stiffness,
+    symmetry,
+    traction_forces,
+)
+from iga.files.iga_format import mesh as mesh_of
+from iga.files.iga_reader import read_iga
+from iga.mesh.boundary import boundary_chains
+from iga.mesh.refinement import bezier_refined
+from iga.tsplines.tspline import tspline_rectangle
 from tests.iga.test_subdivide import two_degrees
-from verify.plane_errors import errors
-from verify.plane_exact import kirsch, smooth, uniform
+from verify.studies.plane.errors import errors
+from verify.theory.plane_fields import kirsch, smooth, uniform
 
 SOLID = {"young": 100.0, "poisson": 0.3, "plane": "stress"}
 D = isotropic(**SOLID)

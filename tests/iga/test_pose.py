@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.dcb import Problem, build, solve
-from iga.pose import Pose, from_behind
+from iga.dcb.dcb import build, solve
+from iga.dcb.problem import Problem
+from iga.mesh.mirror import from_behind
+from iga.specimen.pose import Pose
 from tests.iga.test_bulk import D_GENERIC, unit_square, warped
 
 #: Orthotropic, so that the axes of the material have to turn with the specimen.

@@ -9,18 +9,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from iga import projection
-from iga.bond import between, everywhere
-from iga.boundary import boundary_chains
-from iga.bspline import open_knots
-from iga.cohesive import BilinearLaw
-from iga.extraction import Chain
-from iga.interface import Interface, contact
-from iga.lagrange import lagrange_rectangle
-from iga.nurbs import nurbs_rectangle
-from iga.projection import MOST, Pairing, closest_points, nearest_samples
-from iga.quadrature import gauss
-from iga.surface import Surface, surface
+from iga.bases.bspline import open_knots
+from iga.bases.lagrange import lagrange_rectangle
+from iga.bases.nurbs import nurbs_rectangle
+from iga.interface import closest_point
+from iga.interface.closest_point import MOST, Pairing, closest_points, nearest_samples
+from iga.interface.interface import Interface, contact
+from iga.interface.laws import BilinearLaw
+from iga.interface.surface import Surface, surface
+from iga.mesh.boundary import boundary_chains
+from iga.mesh.extraction import Chain
+from iga.mesh.quadrature import gauss
+from iga.specimen.bond import between, everywhere
 from tests.iga.test_splines import quarter_annulus
 
 
@@ -75,7 +75,7 @@ def test_points_that_cross_to_the_next_side_are_followed_with_all_others(monkeyp
     points = [np.stack([here + slid, np.full(here.size, 0.9)], -1) for slid in (0.0, 0.3, -0.3)]
     start = closest_points(top, points[0], y, nearest_samples(top, points[0], y))
     wanted = [closest_points(top, x, y, nearest_samples(top, x, y)) for x in points[1:]]
-    monkeypatch.setattr(projection, "_walk", None)
+    monkeypatch.setattr(closest_point, "_walk", None)
     for x, far in zip(points[1:], wanted, strict=True):
         near = closest_points(top, x, y, start)
         assert np.count_nonzero(near.c_q != start.c_q) > 8

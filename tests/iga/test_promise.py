@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from paths import column, loads, run
 
-import iga.path
-from iga.dcb import Problem
-from iga.promise import LEDGER, PEAK, Kept, Largest, judged
+import iga.path.follow
+from iga.dcb.problem import Problem
+from iga.path.polyline import LEDGER, PEAK, Kept, Largest, judged
 
 BEND = 0.005
 
@@ -91,8 +91,8 @@ def test_a_step_across_a_maximum_is_cut(monkeypatch):
     """Of all that is promised the largest load alone is held; without it steps leap over it."""
 
     def largest(part: float) -> float:
-        monkeypatch.setattr(iga.promise, "PEAK", part / 1e6)
-        monkeypatch.setattr(iga.path, "judged", lambda *given: judged(*given[:-1], 1e6))
+        monkeypatch.setattr(iga.path.polyline, "PEAK", part / 1e6)
+        monkeypatch.setattr(iga.path.follow, "judged", lambda *given: judged(*given[:-1], 1e6))
         return loads(run(replace(LEAPING, opening=(11.0,)), None)[1]).max()
 
     kept, loose = largest(PEAK * BEND), largest(np.inf)
@@ -104,8 +104,8 @@ def test_a_ledger_that_is_open_shortens_the_step_that_opens_it(monkeypatch):
     """Of all that is promised the ledger alone is held: with a budget for the whole path, without it only each step."""
 
     def worst(budget: float) -> float:
-        monkeypatch.setattr(iga.promise, "LEDGER", budget)
-        monkeypatch.setattr(iga.path, "judged", lambda *given: judged(*given[:-1], 1e6))
+        monkeypatch.setattr(iga.path.polyline, "LEDGER", budget)
+        monkeypatch.setattr(iga.path.follow, "judged", lambda *given: judged(*given[:-1], 1e6))
         return ledger(run(replace(LEAKING, opening=(1.7,)), None)[1])
 
     held, loose = worst(5e-4), worst(np.inf)

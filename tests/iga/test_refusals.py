@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from iga.bspline import KnotVector, insert_knot, open_knots
-from iga.material import orthotropic
-from iga.nurbs import nurbs_mesh
-from iga.quadrature import gauss, lobatto
+from iga.bases.bspline import KnotVector, insert_knot, open_knots
+from iga.bases.nurbs import nurbs_mesh
+from iga.elements.elasticity import orthotropic
+from iga.mesh.quadrature import gauss, lobatto
 
 LINE = open_knots(np.linspace(0.0, 1.0, 3), 2)
 

@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 from paths import CZM1, column, decided, run
 
-import iga.inner
-import iga.path
-import iga.work
-from iga.cohesive import BilinearLaw
-from iga.dcb import build
-from iga.newton import DEFAULT, Newton
-from iga.path import End, follow
-from iga.promise import KEPT
+import iga.path.energy
+import iga.path.follow
+import iga.path.gap_newton
+from iga.dcb.dcb import build
+from iga.interface.laws import BilinearLaw
+from iga.path.follow import follow
+from iga.path.newton import DEFAULT, Newton
+from iga.path.point import End
+from iga.path.polyline import KEPT
 
 
 def test_a_path_that_cannot_go_on_says_why_and_keeps_what_it_has(monkeypatch):
@@ -23,7 +24,7 @@ def test_a_path_that_cannot_go_on_says_why_and_keeps_what_it_has(monkeypatch):
 
     On the gaps alone, too: else a linear bulk never needs any.
     """
-    monkeypatch.setattr(iga.inner, "MOST", 0)
+    monkeypatch.setattr(iga.path.gap_newton, "MOST", 0)
     problem = replace(CZM1, kinematics="linear")
     system, points, end = run(problem, 30, newton=Newton(tolerance=1e-9, iterations=0))
     _, whole, _ = run(problem, 30)
@@ -50,11 +51,11 @@ def test_no_step_leaks_energy(basis, strength, kinematics, steps, monkeypatch):
         return float(np.max(np.abs(np.diff(work - energy)) / np.maximum.accumulate(np.abs(work))[1:]))
 
     guarded = leak()
-    monkeypatch.setattr(iga.path, "leaks", lambda *_: False)
-    monkeypatch.setattr(iga.path, "judged", lambda *_: KEPT)
+    monkeypatch.setattr(iga.path.follow, "leaks", lambda *_: False)
+    monkeypatch.setattr(iga.path.follow, "judged", lambda *_: KEPT)
     loose = leak()
     print(f"largest leak {guarded:.1e}, were it let pass {loose:.1e}")
-    assert guarded <= iga.work.LEAK < loose
+    assert guarded <= iga.path.energy.LEAK < loose
 
 
 class Rounded(BilinearLaw):
@@ -77,25 +78,25 @@ def test_rounding_in_the_energies_does_not_refuse_the_step_on_which_damage_begin
 
 
 def test_bodies_that_nothing_holds_are_refused(monkeypatch):
-    monkeypatch.setattr(iga.path, "_departing", lambda *given: None)
+    monkeypatch.setattr(iga.path.follow, "_departing", lambda *given: None)
     with pytest.raises(ValueError, match="singular: the supports or the interface do not hold the bodies"):
         next(follow(build(CZM1).system, (1.0,), 10))
 
 
 def test_a_new_mesh_that_nothing_can_be_solved_on_ends_the_path(monkeypatch):
-    system, departing, asked = build(replace(CZM1, kinematics="linear")).system, iga.path._departing, []
+    system, departing, asked = build(replace(CZM1, kinematics="linear")).system, iga.path.follow._departing, []
 
     def once(*given):
         asked.append(given)
         return departing(*given) if len(asked) == 1 else None
 
-    monkeypatch.setattr(iga.path, "_departing", once)
+    monkeypatch.setattr(iga.path.follow, "_departing", once)
     *points, end = follow(system, (0.1,), 50, renew=lambda point: (system, point.state))
     assert end.status == "stopped: the new mesh at opening 0.1 has a singular tangent" and len(points) == 2
 
 
 def test_a_path_that_leaps_however_short_the_step_is_told_what_to_do(monkeypatch):
-    monkeypatch.setattr(iga.path, "leaks", lambda system, before, after, most: before.opening > 0.0)
+    monkeypatch.setattr(iga.path.follow, "leaks", lambda system, before, after, most: before.opening > 0.0)
     problem = replace(CZM1, kinematics="linear", opening=(0.1,))
     _, points, end = run(problem, 50)
     assert end.status.startswith(f"stopped: the energy jumps at opening {points[-1].opening:.6g}, however short")
@@ -105,7 +106,7 @@ def test_a_path_that_leaps_however_short_the_step_is_told_what_to_do(monkeypatch
 @pytest.mark.parametrize(("steps", "again"), [(None, True), (60, False)])
 def test_a_shorter_step_is_foreseen_with_the_law_and_a_careful_one_along_the_tangent(steps, again, monkeypatch):
     """What the tangent was read from is read once more where steps are chosen by accuracy; it is the same."""
-    known, refused, foresee, leaks = [], [], iga.path.foresee, iga.path.leaks
+    known, refused, foresee, leaks = [], [], iga.path.follow.foresee, iga.path.follow.leaks
 
     def recorded(*given):
         known.append(given[4])
@@ -117,8 +118,8 @@ def test_a_shorter_step_is_foreseen_with_the_law_and_a_careful_one_along_the_tan
             refused.append(len(known) - 1)
         return refuse or leaks(system, before, after, most)
 
-    monkeypatch.setattr(iga.path, "foresee", recorded)
-    monkeypatch.setattr(iga.path, "leaks", once)
+    monkeypatch.setattr(iga.path.follow, "foresee", recorded)
+    monkeypatch.setattr(iga.path.follow, "leaks", once)
     _, points, end = run(replace(CZM1, kinematics="linear", opening=(0.5,)), steps)
     (at,) = refused
     first, second = known[at], known[at + 1]
@@ -139,10 +140,10 @@ def test_contact_too_stiff_to_be_found_is_searched_for_from_softer_on(monkeypatc
             return None
         return SimpleNamespace(state=replace(trial, load=10.0 * len(asked), k_q=None))
 
-    monkeypatch.setattr(iga.path, "equilibrium", search)
+    monkeypatch.setattr(iga.path.follow, "equilibrium", search)
     start = system.start()
     history = start.k_q
-    found = iga.path._touching(system, start, 0.1, 0.1, lambda name: None)
+    found = iga.path.follow._touching(system, start, 0.1, 0.1, lambda name: None)
     parts, loads_before, same = zip(*asked, strict=True)
     assert parts == pytest.approx((1.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)) and all(same)
     assert loads_before == (0.0, 0.0, 20.0, 20.0, 40.0, 50.0, 60.0, 70.0) and found.state.load == 80.0

@@ -19,16 +19,16 @@ from hypothesis import given, settings
 from iga_files import REAL, SMALL, real, small
 from random_tmeshes import suitable_tmeshes
 
-from iga.boundary import body_mesh
-from iga.bspline import open_knots
-from iga.extraction import Chain, ElementBlock, Mesh
-from iga.iga_file import from_mesh, mesh, write_iga
-from iga.iga_read import read_iga
-from iga.nurbs import nurbs_rectangle
-from iga.polygon import polygon_mesh
-from iga.sound import UNITY, dependence, faults, missed_unity, unity_fault
-from iga.subdivide import bezier_refined
-from iga.tspline import tspline_rectangle
+from iga.bases.bspline import open_knots
+from iga.bases.nurbs import nurbs_rectangle
+from iga.bases.unstructured import polygon_mesh
+from iga.files.cad_body import body_mesh
+from iga.files.iga_format import from_mesh, mesh, write_iga
+from iga.files.iga_reader import read_iga
+from iga.mesh.extraction import Chain, ElementBlock, Mesh
+from iga.mesh.refinement import bezier_refined
+from iga.mesh.soundness import UNITY, dependence, faults, missed_unity, unity_fault
+from iga.tsplines.tspline import tspline_rectangle
 
 
 def quads(*corners) -> Mesh:

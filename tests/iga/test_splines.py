@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from iga.basis import block_basis, chain_basis
-from iga.bernstein import bernstein, bernstein_derivative
-from iga.bspline import KnotVector, bezier_extraction, cox_de_boor, insert_knot, open_knots
-from iga.lagrange import lagrange_extraction, lagrange_rectangle
-from iga.nurbs import nurbs_mesh, nurbs_rectangle
-from iga.quadrature import gauss, lobatto, square
+from iga.bases.bspline import KnotVector, bezier_extraction, cox_de_boor, insert_knot, open_knots
+from iga.bases.lagrange import lagrange_extraction, lagrange_rectangle
+from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
+from iga.elements.shape_functions import block_basis, chain_basis
+from iga.mesh.bernstein import bernstein, bernstein_derivative
+from iga.mesh.quadrature import gauss, lobatto, square
 
 
 @st.composite

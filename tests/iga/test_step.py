@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-import iga.path
-import iga.step
-from iga.dcb import build
-from iga.newton import DEFAULT
-from iga.pace import paced
-from iga.path import follow
-from iga.step import Foreseen, advance, foresee
+import iga.path.follow
+import iga.path.step
+from iga.dcb.dcb import build
+from iga.path.follow import follow
+from iga.path.newton import DEFAULT
+from iga.path.step import Foreseen, advance, foresee
+from iga.path.step_length import paced
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def asked():
     """What is known where a step sets out from a growing front, as the path asks for it."""
     given = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(iga.path, "foresee", lambda *words: given.append(words) or foresee(*words))
+        patch.setattr(iga.path.follow, "foresee", lambda *words: given.append(words) or foresee(*words))
         list(follow(build(replace(PAPER, opening=(1.0,), dofs=400)).system, (1.0,), 20))
     return next(words for words in reversed(given) if words[4] is not None and words[1].tangent.growing_q.any())
 
@@ -36,9 +36,9 @@ def foreseen(asked, part, monkeypatch):
         moved.append((q, goal - g_q[q]))
         return travelled(interface, g_q, q, goal)
 
-    travelled = iga.step.travelled
+    travelled = iga.path.step.travelled
     with monkeypatch.context() as patch:
-        patch.setattr(iga.step, "travelled", recorded)
+        patch.setattr(iga.path.step, "travelled", recorded)
         return foresee(system, point, replace(step, away=away), False, known, phase), moved
 
 
@@ -84,7 +84,7 @@ def made(asked, monkeypatch, **changed):
     ahead = foresee(system, point, step, pace.by_kinks and not step.exact, known, phase)
     with monkeypatch.context() as patch:
         for name, value in changed.items():
-            patch.setattr(iga.step, name, value)
+            patch.setattr(iga.path.step, name, value)
         return advance(system, point, step, ahead, 1.0, pace, DEFAULT, phase)
 
 
@@ -121,6 +121,6 @@ def test_a_landing_short_of_its_kink_is_none(asked, gap, lands, monkeypatch):
     place = SimpleNamespace(q=3, target=1.05, least=1.0, kink="kink")
     contact = SimpleNamespace(g_q=np.full(system.interface.points, gap))
     found = SimpleNamespace(response=SimpleNamespace(contact=contact))
-    monkeypatch.setattr(iga.step, "equilibrium", lambda *given: found)
+    monkeypatch.setattr(iga.path.step, "equilibrium", lambda *given: found)
     expected = (found, "kink") if lands else (None, None)
-    assert iga.step._landed(system, point, point.state, place, DEFAULT, phase) == expected
+    assert iga.path.step._landed(system, point, point.state, place, DEFAULT, phase) == expected

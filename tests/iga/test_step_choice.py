@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from paths import CZM1, column, curve, decided, ledger, loads, run
 
-from iga.dcb import build
-from iga.newton import DEFAULT
-from iga.pace import SPARED
-from iga.path import follow
+from iga.dcb.dcb import build
+from iga.path.follow import follow
+from iga.path.newton import DEFAULT
+from iga.path.step_length import SPARED
 
 
 @pytest.mark.slow

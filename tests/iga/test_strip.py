@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_tmeshes import strips, walked_values
 
-from iga.bspline import cox_de_boor, open_knots
-from iga.strip import STOCKY, Strip, functions_of_halves, strip_tmesh
-from iga.tmesh import DEGREE
-from iga.tspline import faces
+from iga.bases.bspline import cox_de_boor, open_knots
+from iga.specimen.tmesh_strip import STOCKY, Strip, functions_of_halves, strip_tmesh
+from iga.tsplines.tmesh import DEGREE
+from iga.tsplines.tspline import faces
 
 some = settings(max_examples=25, deadline=None)
 

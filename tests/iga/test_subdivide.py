@@ -8,19 +8,18 @@ from hypothesis import given
 from random_tmeshes import suitable_tmeshes
 from tmeshes import half_fine
 
-from iga.basis import block_basis, chain_basis
-from iga.bernstein import bernstein
-from iga.boundary import boundary_chains
-from iga.bspline import KnotVector, open_knots
-from iga.conform import conforming
-from iga.cut import halved
-from iga.extraction import Chain, ElementBlock, Mesh
-from iga.neighbours import element_sides
-from iga.nurbs import nurbs_mesh, nurbs_rectangle
-from iga.polygon import polygon_mesh
-from iga.quadrature import gauss, square
-from iga.subdivide import bezier_refined
-from iga.tspline import tspline_rectangle
+from iga.bases.bspline import KnotVector, open_knots
+from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
+from iga.bases.unstructured import polygon_mesh
+from iga.elements.shape_functions import block_basis, chain_basis
+from iga.mesh.bernstein import bernstein
+from iga.mesh.bezier import halved
+from iga.mesh.boundary import boundary_chains
+from iga.mesh.edges import element_sides
+from iga.mesh.extraction import Chain, ElementBlock, Mesh
+from iga.mesh.quadrature import gauss, square
+from iga.mesh.refinement import bezier_refined, conforming
+from iga.tsplines.tspline import tspline_rectangle
 
 
 def area(mesh):
@@ -149,7 +148,7 @@ def test_cuts_that_do_not_end_are_given_up(monkeypatch):
     """Each round crosses one element; what needs more rounds than are allowed is refused in words."""
     mesh = _rows_of(np.array([1, 3, 6]))
     assert conforming(conforming(mesh)).elements == 18
-    monkeypatch.setattr("iga.conform.ROUNDS", 1)
+    monkeypatch.setattr("iga.mesh.refinement.ROUNDS", 1)
     with pytest.raises(ValueError, match="hanging nodes are left after 1 rounds of cuts, at 1[0-9] elements"):
         conforming(mesh)
 

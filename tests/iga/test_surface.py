@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.boundary import boundary_chains
-from iga.bspline import open_knots
-from iga.extraction import ElementBlock
-from iga.lagrange import lagrange_rectangle
-from iga.nurbs import nurbs_mesh, nurbs_rectangle
-from iga.surface import normal, surface
+from iga.bases.bspline import open_knots
+from iga.bases.lagrange import lagrange_rectangle
+from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
+from iga.interface.surface import normal, surface
+from iga.mesh.boundary import boundary_chains
+from iga.mesh.extraction import ElementBlock
 
 
 def curved(rng):

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-from iga.control import gap_control, opening_control
-from iga.dcb import build
-from iga.grading import rectangle
-from iga.newton import DEFAULT, equilibrium
-from iga.path import Point, follow
-from iga.system import respond, untimed
-from iga.tangent import on_envelope, tangent
+from iga.dcb.dcb import build
+from iga.path.control import gap_control, opening_control
+from iga.path.follow import follow
+from iga.path.newton import DEFAULT, equilibrium
+from iga.path.point import Point
+from iga.path.tangent import on_envelope, tangent
+from iga.specimen.grading import rectangle
+from iga.system.system import respond, untimed
 
 #: The path is followed to a third of the opening that the mesh is made for: elements are so long that it snaps back.
 SNAPPING = replace(PAPER, strength=6.0, opening=(3.0,))
@@ -183,5 +184,5 @@ def test_of_a_matrix_that_is_singular_there_is_no_tangent(monkeypatch):
     system = build(PAPER).system
     start = system.start()
     response = respond(system, start, decide=False)
-    monkeypatch.setattr("iga.tangent.factorise", lambda *given: None)
+    monkeypatch.setattr("iga.path.tangent.factorise", lambda *given: None)
     assert tangent(system, start, response, 1.0, untimed) is None

@@ -19,11 +19,11 @@ from random_tmeshes import (
     walked_knots,
 )
 
-from iga.strip import strip_tmesh
-from iga.suitable import made_suitable
-from iga.tmesh import NotSuitable, TMesh, require_suitable
-from iga.tmesh_lines import band, from_rectangles, tensor_grid, with_line
-from iga.tspline import bezier_elements, faces
+from iga.specimen.tmesh_strip import strip_tmesh
+from iga.tsplines.lines import band, from_rectangles, tensor_grid, with_line
+from iga.tsplines.suitable import made_suitable
+from iga.tsplines.tmesh import NotSuitable, TMesh, require_suitable
+from iga.tsplines.tspline import bezier_elements, faces
 
 some = settings(max_examples=60, deadline=None)
 UNIT = np.array([0.0, 1.0])

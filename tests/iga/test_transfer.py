@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 from random_tmeshes import breaks, marked, markings, walked_values
 from scipy.sparse.linalg import spsolve
 
-from iga.bisection import initial
-from iga.strip import Strip, strip_tmesh
-from iga.tmesh import DEGREE
-from iga.tmesh_lines import tensor_grid
-from iga.transfer import collocation, nesting_error, transfer, transferred
-from iga.tspline import extracted, greville, tspline_mesh
+from iga.specimen.tmesh_strip import Strip, strip_tmesh
+from iga.tsplines.bisection import initial
+from iga.tsplines.lines import tensor_grid
+from iga.tsplines.tmesh import DEGREE
+from iga.tsplines.transfer import collocation, nesting_error, transfer, transferred
+from iga.tsplines.tspline import extracted, greville, tspline_mesh
 
 some = settings(max_examples=40, deadline=None)
 few = settings(max_examples=15, deadline=None)

@@ -8,18 +8,18 @@ from random_tmeshes import bisections, breaks, marked, markings, suitable_tmeshe
 from scipy.sparse import csr_array, vstack
 from scipy.sparse.linalg import spsolve
 
-from iga.basis import block_basis, chain_basis
-from iga.bernstein import bernstein, bernstein_derivative, tensor
-from iga.bisection import initial
-from iga.bspline import open_knots
-from iga.extraction import Mesh
-from iga.nurbs import nurbs_mesh
-from iga.quadrature import gauss, square
-from iga.suitable import made_suitable
-from iga.tmesh import NotSuitable, TMesh
-from iga.tmesh_lines import tensor_grid, with_line
-from iga.transfer import nesting_error, transfer, transferred
-from iga.tspline import extracted, greville, tspline_mesh, tspline_rectangle, unchecked_mesh
+from iga.bases.bspline import open_knots
+from iga.bases.nurbs import nurbs_mesh
+from iga.elements.shape_functions import block_basis, chain_basis
+from iga.mesh.bernstein import bernstein, bernstein_derivative, tensor
+from iga.mesh.extraction import Mesh
+from iga.mesh.quadrature import gauss, square
+from iga.tsplines.bisection import initial
+from iga.tsplines.lines import tensor_grid, with_line
+from iga.tsplines.suitable import made_suitable
+from iga.tsplines.tmesh import NotSuitable, TMesh
+from iga.tsplines.transfer import nesting_error, transfer, transferred
+from iga.tsplines.tspline import extracted, greville, tspline_mesh, tspline_rectangle, unchecked_mesh
 
 some = settings(max_examples=40, deadline=None)
 few = settings(max_examples=20, deadline=None)

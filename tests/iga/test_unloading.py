@@ -8,8 +8,8 @@ from paths import BOTH, CZM1, ledger, loads, run, stops
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import spsolve
 
-from iga.path import End
-from iga.system import respond
+from iga.path.point import End
+from iga.system.system import respond
 
 
 def test_a_programme_that_unloads_to_zero_has_not_come_apart():

@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-from iga.basis import block_basis, chain_basis
-from iga.bspline import open_knots
-from iga.nurbs import nurbs_rectangle
-from iga.polygon import polygon_control, polygon_mesh
-from iga.quadrature import gauss, square
-from iga.unstructured import unstructured_mesh
+from iga.bases.bspline import open_knots
+from iga.bases.nurbs import nurbs_rectangle
+from iga.bases.unstructured import polygon_control, polygon_mesh, unstructured_mesh
+from iga.elements.shape_functions import block_basis, chain_basis
+from iga.mesh.quadrature import gauss, square
 
 #: Bernstein indices of a bicubic element on its four sides counterclockwise, from the side inwards (3 layers, 4).
 TABLE = np.arange(16).reshape(4, 4)

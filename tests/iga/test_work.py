@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from test_peel import PEEL, column, isotropic
 
-from iga.cohesive import BilinearLaw
-from iga.peel import solve
-from iga.state import Energies
-from iga.work import leaks, slid_off
+from iga.interface.laws import BilinearLaw
+from iga.path.energy import leaks, slid_off
+from iga.peel.peel import solve
+from iga.system.state import Energies
 
 #: So soft that the bond hardly gives: strip and substrate stretch, slide on each other and tilt.
 SOFT = replace(PEEL, strip=isotropic(250.0, 0.2), substrate=isotropic(5.0, 0.2), dofs=900)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from iga.tmesh import TMesh
+from iga.tsplines.tmesh import TMesh
 
 
 def half_fine(n: int) -> TMesh:

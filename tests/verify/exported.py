@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from verify.cli import main
-from verify.scene import load_scene
+from verify.scene.load import load_scene
 
 DCB, PEEL = "dcb-czm1-linear", "peel-60"
 

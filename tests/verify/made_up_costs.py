@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from verify.cost.ladder import FAMILIES, Family, Try
-from verify.cost.reference import Reference
-from verify.cost.row import Row, row
-from verify.jobs import Job, Outcome
 from verify.result import Result
-from verify.scene import load_scene
+from verify.runs.jobs import Job, Outcome
+from verify.scene.load import load_scene
+from verify.studies.cost.ladder import FAMILIES, Family, Try
+from verify.studies.cost.reference import Reference
+from verify.studies.cost.row import Row, row
 
 SCENE = load_scene("dcb-czm1")
 NURBS = next(family for family in FAMILIES if family.name == "nurbs-p3")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from verify.result import Result, Snapshot
-from verify.scene import load_scene
+from verify.scene.load import load_scene
 from verify.verdict import Check, Run, SceneReport
 
 LENGTH, ARM, PRECRACK = 14.0, 0.2, 4.0

@@ -6,13 +6,13 @@ import json
 from dataclasses import asdict, fields, replace
 from pathlib import Path
 
-from verify.cost.row import Row as CostRow
-from verify.folder import write_csv, write_json
-from verify.hard.one import Line, Verdict
-from verify.scaling.row import Row as ScalingRow
-from verify.scaling.study import Study
-from verify.scene import load_scene
-from verify.switches.row import Row as EffectRow
+from verify.runs.folder import write_csv, write_json
+from verify.scene.load import load_scene
+from verify.studies.cost.row import Row as CostRow
+from verify.studies.effects.row import Row as EffectRow
+from verify.studies.hard.one import Line, Verdict
+from verify.studies.scaling.row import Row as ScalingRow
+from verify.studies.scaling.study import Study
 from verify.verdict import Check
 
 

@@ -21,22 +21,22 @@ from made_up_runs import ENVIRONMENT, made_up, scene_report
 from test_hard import FAKE, faulty, stub
 
 from verify import report
-from verify.checks import run_checks
+from verify.checks.identities import run_checks
 from verify.cli import main
-from verify.cost import page as cost_page
-from verify.cost.study import Study as CostStudy
-from verify.hard import page as hard_page
-from verify.hard.case import BASES
-from verify.hard.one import run_case
-from verify.hard.suite import Cell
-from verify.included import found_in
-from verify.methods import solve
-from verify.report.style import METHOD_NAMES
-from verify.scaling import page as scaling_page
-from verify.scene import load_scene
-from verify.switches import page as effects_page
-from verify.switches.row import Row as EffectRow
-from verify.switches.study import Study as EffectsStudy
+from verify.methods.solve import solve
+from verify.pages.style import METHOD_NAMES
+from verify.scene.load import load_scene
+from verify.studies.cost import page as cost_page
+from verify.studies.cost.study import Study as CostStudy
+from verify.studies.effects import page as effects_page
+from verify.studies.effects.row import Row as EffectRow
+from verify.studies.effects.study import Study as EffectsStudy
+from verify.studies.found import found_in
+from verify.studies.hard import page as hard_page
+from verify.studies.hard.case import BASES
+from verify.studies.hard.one import run_case
+from verify.studies.hard.suite import Cell
+from verify.studies.scaling import page as scaling_page
 from verify.verdict import Check, Run, SceneReport
 
 

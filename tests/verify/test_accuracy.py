@@ -10,18 +10,20 @@ import numpy as np
 import pytest
 
 from verify.cli import main
-from verify.cost import accuracy
-from verify.cost.accuracy import METHOD, choose, elements_for, with_elements
-from verify.cost.reference import distance
-from verify.cost.verified import growth, verified
-from verify.fingerprint import source
-from verify.hard.random_scenes import random_scene
-from verify.methods import solve
-from verify.problems import iga_problem
-from verify.process_zone import expected
-from verify.refusal import Refusal
-from verify.run import machine, run
-from verify.scene import load_scene, parse_scene
+from verify.curves.of_run import distance
+from verify.methods.problems import iga_problem
+from verify.methods.solve import solve
+from verify.methods.zone_resolution import expected
+from verify.runs.environment import machine
+from verify.runs.fingerprint import source
+from verify.runs.run import run
+from verify.scene.load import load_scene
+from verify.scene.parse import parse_scene
+from verify.scene.random_scenes import random_scene
+from verify.studies.cost import accuracy
+from verify.studies.cost.accuracy import METHOD, choose, elements_for, with_elements
+from verify.studies.cost.verified import growth, verified
+from verify.support.refusal import Refusal
 
 NOWHERE = Path("no-such-study.json")
 
@@ -160,7 +162,7 @@ def test_the_time_of_a_run_is_that_of_its_beginning_and_of_its_iterations(monkey
 
 def test_what_cannot_be_solved_here_is_passed_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A mesh that the scene does not take, a method that is missing or unknown; then comes the next, however slow."""
-    monkeypatch.setattr("verify.methods.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
 
     def one(solver: str, seconds: float, *overrides: str) -> dict:
         about = {"method": solver, "degree": 3, "dofs": 500, "curve_error": 0.001}

@@ -12,15 +12,16 @@ from scipy.interpolate import CubicHermiteSpline
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
-from verify import process_zone  # noqa: E402
+from verify.methods import zone_resolution  # noqa: E402
+from verify.pages.style import METHODS, WIDE, line  # noqa: E402
+from verify.pages.text import number  # noqa: E402
 from verify.report import published, zones  # noqa: E402
-from verify.report.agreement import agreement, branch, path, reference_run, usable  # noqa: E402
-from verify.report.entry import entries, rank, short_names  # noqa: E402
-from verify.report.layout import CLOSE, GAP, LEFT, WHOLE, rows, zoom  # noqa: E402
-from verify.report.style import METHODS, WIDE, line  # noqa: E402
-from verify.report.text import number  # noqa: E402
+from verify.report.figures.agreement import agreement, branch, path, reference_run, usable  # noqa: E402
+from verify.report.figures.entry import entries, rank, short_names  # noqa: E402
+from verify.report.figures.layout import CLOSE, GAP, LEFT, WHOLE, rows, zoom  # noqa: E402
 from verify.result import Result, Snapshot  # noqa: E402
-from verify.scene import Scene, load_scene  # noqa: E402
+from verify.scene.load import load_scene  # noqa: E402
+from verify.scene.schema import Scene
 from verify.verdict import Run, SceneReport  # noqa: E402
 
 SCENE = load_scene("dcb-czm1")
@@ -134,7 +135,7 @@ def test_published_values_stand_beside_what_runs_found() -> None:
         {"quantity": "load_at", "opening": 2.0, "value": [0.6, 0.7], "tolerance": 0.02, "kind": "cross-code",
          "source": "another"},
     ]  # fmt: skip
-    from verify.scene import parse_scene
+    from verify.scene.parse import parse_scene
 
     scene = parse_scene({**{k: v for k, v in SCENE.model_dump().items() if v is not None}, "published": known})
     found = entries(SceneReport(scene, (run("nurbs", 1.1), Run("x", "beam", None, "not run")), ()))
@@ -191,7 +192,7 @@ def test_what_is_enlarged_is_to_scale_around_the_zone(start: float, end: float) 
 
 def test_the_process_zone_is_told_in_lengths_and_in_elements() -> None:
     """Estimated for the mesh, measured as the median while the crack runs; without a mesh there is none to tell of."""
-    expected = process_zone.expected(SCENE, "nurbs")
+    expected = zone_resolution.expected(SCENE, "nurbs")
     one = run("nurbs")
     crack = np.where(one.result.opening > 1.0, 5.0, 4.0)
     steps = {

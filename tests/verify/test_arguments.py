@@ -4,7 +4,7 @@ import argparse
 
 import pytest
 
-from verify.arguments import accuracy, column, count, fraction, number, numbers, positive, scale
+from verify.command_line.arguments import accuracy, column, count, fraction, number, numbers, positive, scale
 
 
 def test_the_least_whole_numbers_are_taken() -> None:

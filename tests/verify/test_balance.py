@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from verify import balance
-from verify.checks import run_checks
-from verify.methods import dolfinx_installed, solve
-from verify.scene import load_scene
+from verify.checks import balance
+from verify.checks.identities import run_checks
+from verify.methods.dolfinx import dolfinx_installed
+from verify.methods.solve import solve
+from verify.scene.load import load_scene
 from verify.verdict import Check
 
 COARSE = ["discretization.dofs=300", "interface.strength=7.5"]

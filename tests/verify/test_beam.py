@@ -9,13 +9,15 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from verify import equilibrium, front
-from verify.arm import Arm
-from verify.beam import BeamProblem, solve
-from verify.curve import curve_error, hermite, load_at, peak
-from verify.lefm import LefmProblem
-from verify.lefm import solve as solve_lefm
+from verify.curves.curve import curve_error, hermite, load_at, peak
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Snapshot, steps_from_rows
+from verify.theory.beam import equilibrium
+from verify.theory.beam import path as front
+from verify.theory.beam.arm import Arm
+from verify.theory.beam.problem import BeamProblem
+from verify.theory.beam.solve import solve
+from verify.theory.lefm import LefmProblem
+from verify.theory.lefm import solve as solve_lefm
 
 REFERENCE = Path(__file__).parents[2] / "../shared/reference"
 CZM1 = BeamProblem(14.0, 0.2, 4.0, 1.0, 120e3, 50e3, 4.0, 0.1, 12.5, 1e5, opening=3.0)

@@ -7,12 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify import beam_error
-from verify.crosschecks import beam_check, cross_checks, distance, remarks
-from verify.foreign import checks_of
-from verify.methods import solve
+from verify.checks import beam_error
+from verify.checks.between_codes import beam_check, cross_checks, distance, remarks
+from verify.checks.foreign_curves import checks_of
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene import Scene, load_scene
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
 
 #: h, a0 / h, nu, strength, toughness, ductility, plane, kinematics: none of the scenes that the bound was fitted to.
 STOCKY = [

@@ -15,17 +15,17 @@ from figures import Drawn, legend, unreadable  # noqa: E402
 from made_up_costs import a_row  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 
-from verify.compare import compare  # noqa: E402
-from verify.cost import figures as charts  # noqa: E402
-from verify.curve import envelope  # noqa: E402
+from verify.curves.compare import compare  # noqa: E402
+from verify.curves.curve import envelope  # noqa: E402
+from verify.pages.labels import name_points  # noqa: E402
+from verify.pages.style import HALF, PHASES, colour, drawing, panel  # noqa: E402
 from verify.report import comparison  # noqa: E402
-from verify.report.labels import name_points  # noqa: E402
-from verify.report.style import HALF, PHASES, colour, drawing, panel  # noqa: E402
-from verify.scaling import page as scaling  # noqa: E402
-from verify.scaling.growth import fit  # noqa: E402
-from verify.scaling.row import PARTS  # noqa: E402
-from verify.scaling.row import Row as ScalingRow  # noqa: E402
-from verify.scaling.study import Study  # noqa: E402
+from verify.studies.cost import figures as charts  # noqa: E402
+from verify.studies.scaling import page as scaling  # noqa: E402
+from verify.studies.scaling.growth import fit  # noqa: E402
+from verify.studies.scaling.row import PARTS  # noqa: E402
+from verify.studies.scaling.row import Row as ScalingRow  # noqa: E402
+from verify.studies.scaling.study import Study  # noqa: E402
 
 #: Error, seconds and unknowns of a ladder of each of two methods, and one run off the ladders.
 ROWS = [

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.checks import dissipation_gap, law_of, loading, run_checks
-from verify.crosschecks import cross_checks
-from verify.methods import solve
+from verify.checks.between_codes import cross_checks
+from verify.checks.identities import dissipation_gap, law_of, loading, run_checks
+from verify.methods.solve import solve
 from verify.result import Result, steps_from_rows
-from verify.scene import Scene, load_scene
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
 
 
 @pytest.fixture(scope="module")

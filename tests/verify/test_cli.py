@@ -14,12 +14,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify import lefm, methods, problems
 from verify.cli import main, parser
-from verify.complaints import one_of
-from verify.plugins import plugins
-from verify.shell.completion import Command, commands
-from verify.shell.spelling import parsed
+from verify.command_line.completion import Command, commands
+from verify.command_line.spelling import parsed
+from verify.methods import dolfinx, names, problems
+from verify.methods import solve as methods
+from verify.methods.plugins import plugins
+from verify.scene.tables import one_of
+from verify.theory import lefm
 
 PROJECT = Path(__file__).resolve().parents[2]
 PROGRAM = [sys.executable, "-P", "-m", "verify.cli"]
@@ -125,10 +127,11 @@ def test_bad_input_is_refused_before_any_work(line: str, folder: Path, capsys: p
 
 
 def test_the_smallest_mesh_is_the_one_that_the_solver_takes() -> None:
-    from iga.dcb import Problem, arm_meshes
-    from verify.scene import load_scene
+    from iga.dcb.meshes import arm_meshes
+    from iga.dcb.problem import Problem
+    from verify.scene.load import load_scene
 
-    for method in methods.WITH_DOFS:
+    for method in names.WITH_DOFS:
         for degree in (3,) if method == "tspline" else (1, 2, 3, 4, 5):
             keys = problems.problem_keys(load_scene("dcb-czm1"), method)
             least = methods.least_dofs(method, degree)
@@ -193,7 +196,7 @@ def test_a_specimen_that_separates_is_complete(folder: Path, capsys: pytest.Capt
 def test_without_dolfinx_there_is_a_sentence_and_three_ways(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
-    monkeypatch.setattr(methods, "dolfinx_installed", lambda: False)
+    monkeypatch.setattr(dolfinx, "dolfinx_installed", lambda: False)
     assert main(["solve", "dcb-czm1", "--method", "dolfinx"]) == 1
     said = capsys.readouterr().err
     assert "not run: DOLFINx is not installed" in said
@@ -252,7 +255,7 @@ def test_under_mpi_only_the_first_rank_writes(tmp_path: Path) -> None:
     assert refused.returncode == 2 and "--method: must be dolfinx under mpirun" in refused.stderr
     assert as_process("verify", **many).returncode == 2
     one = (
-        "from pathlib import Path; from verify.run import run; from verify.scene import load_scene\n"
+        "from pathlib import Path; from verify.runs.run import run; from verify.scene.load import load_scene\n"
         f"run(load_scene('dcb-czm1'), 'lefm', Path({str(tmp_path / 'rank1')!r}))"
     )
     assert subprocess.run([sys.executable, "-c", one], env=ENVIRONMENT | many).returncode == 0

@@ -7,12 +7,12 @@ import pytest
 
 import iga.dcb
 import iga.peel
-from verify.checks import penetration, run_checks, zone_is_new
-from verify.methods import solve
-from verify.neglected import of_run
+from verify.checks.identities import penetration, run_checks, zone_is_new
+from verify.checks.neglected import of_run
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene import load_scene
-from verify.schema import Scene
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
 
 #: Press, open until a crack grows, press again, and open on; linear kinematics, for speed.
 DCB = ("dcb-czm1-linear", "discretization.steps=60", "load.opening=[-0.002, 0.8, -0.004, 1.0]")
@@ -138,7 +138,7 @@ def test_both_codes_press_alike(words: tuple[str, ...], openings: tuple[float, .
 
 def test_faces_that_pass_through_each_other_are_found_in_dolfinx(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
-    from fem_reference.dcb import Problem
+    from fem_reference.problem.dcb import Problem
 
     scene = scene_of(*DCB, "load.opening=[0.3, -0.004, 0.4]")
     monkeypatch.setattr(Problem, "presses", False)

@@ -10,19 +10,21 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from verify import commands, compare_command
-from verify.cli import FAILED, INTERRUPTED, REFUSED, main
-from verify.compare_command import Source
-from verify.cost import accuracy
-from verify.cost import study as cost_study
-from verify.curve_file import Reading
-from verify.hard import suite
-from verify.methods import DOLFINX_MISSING, Unsuitable
-from verify.refusal import Refusal
+from verify.cli import INTERRUPTED, REFUSED, main
+from verify.command_line import commands, compare
+from verify.command_line.commands import FAILED
+from verify.command_line.compare import Source
+from verify.curves.read import Reading
+from verify.methods.dolfinx import DOLFINX_MISSING
+from verify.methods.names import Unsuitable
 from verify.result import Result
-from verify.scaling import study as scaling_study
-from verify.scene import load_scene
-from verify.switches import study as effects_study
+from verify.scene.load import load_scene
+from verify.studies.cost import accuracy
+from verify.studies.cost import study as cost_study
+from verify.studies.effects import study as effects_study
+from verify.studies.hard import suite
+from verify.studies.scaling import study as scaling_study
+from verify.support.refusal import Refusal
 
 COMMANDS = ("cost", "effects", "scaling", "hard")
 
@@ -77,7 +79,7 @@ def test_effects_of_what_cannot_be_solved_are_not_begun(
     asked, out = studied(True), tmp_path / "out"
     turning = ["effects", "dcb-czm1", "--method", "beam", "--set", "load.opening=[1.0, 0.5]", "--out", str(out), *dry]
     assert main(turning) == REFUSED and "must only increase" in capsys.readouterr().err
-    monkeypatch.setattr("verify.methods.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     assert main(["effects", "dcb-czm1", "--method", "dolfinx", "--out", str(out), *dry]) == FAILED
     assert DOLFINX_MISSING.split(": ")[1] in capsys.readouterr().err
     assert asked == [] and not out.exists()
@@ -93,7 +95,7 @@ def test_a_study_is_begun_by_one_process(
     name: str, studied, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     asked = studied(True)
-    monkeypatch.setattr("verify.run.mpi_size", lambda: 2)
+    monkeypatch.setattr("verify.runs.environment.mpi_size", lambda: 2)
     assert main([name, "dcb-czm1", "--out", str(tmp_path)]) == REFUSED
     assert asked == [] and "mpirun" in capsys.readouterr().err
 
@@ -122,7 +124,7 @@ def test_an_accuracy_becomes_a_method_and_a_mesh(
     found = json.loads((tmp_path / "out" / "result.json").read_text())
     assert found["method"] == "lagrange" and found["accuracy"]["holds"] and found["accuracy"]["asked"] == 0.04
     assert found["accuracy"]["levels"][-1]["folder"] == "."
-    monkeypatch.setattr("verify.run.mpi_size", lambda: 4)
+    monkeypatch.setattr("verify.runs.environment.mpi_size", lambda: 4)
     assert main([*words, "--out", str(tmp_path / "other")]) == REFUSED
     assert "--accuracy: must be asked for in 1 process, without mpirun, got 4" in capsys.readouterr().err
     assert len(asked) == 1
@@ -199,8 +201,8 @@ def test_numbers_of_a_comparison_name_both_sides(tmp_path: Path) -> None:
         rows = "\n".join(f"{d},{factor * d * (2 - d)}" for d in np.linspace(0, 1.5, 40))
         (tmp_path / f"{name}.csv").write_text(f"opening,load\n{rows}\n")
     sources = tuple(Source(tmp_path / f"{name}.csv", Reading()) for name in "ab")
-    comparison, loads = compare_command.held_against(*sources, None, [0.75])
-    found = compare_command.numbers(sources, comparison, loads, [])
+    comparison, loads = compare.held_against(*sources, None, [0.75])
+    found = compare.numbers(sources, comparison, loads, [])
     assert found["a"]["file"].endswith("a.csv") and found["b"]["file"].endswith("b.csv") and found["passed"]
     assert found["a"]["peak_load"] == pytest.approx(1.01, rel=1e-3) and found["b"]["peak_load"] == pytest.approx(
         1.0, rel=1e-3

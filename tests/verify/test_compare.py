@@ -7,10 +7,10 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from verify.compare import checks, compare
-from verify.compare_words import complaints, remarks, table
-from verify.curve import curve_error, load_at
-from verify.curve_file import CurveError
+from verify.curves.compare import checks, compare
+from verify.curves.curve import curve_error, load_at
+from verify.curves.read import CurveError
+from verify.curves.wording import complaints, remarks, table
 
 
 def bond(d):

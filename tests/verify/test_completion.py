@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 from verify.cli import main, parser
-from verify.hard.cases import CASES
-from verify.methods import METHODS
-from verify.plugins import plugins
-from verify.scene import packaged_scenes
-from verify.shell.completion import SHELLS, commands, script
-from verify.shell.keys import dotted_keys
+from verify.command_line.completion import SHELLS, commands, script
+from verify.methods.names import METHODS
+from verify.methods.plugins import plugins
+from verify.scene.keys import dotted_keys
+from verify.scene.load import packaged_scenes
+from verify.studies.hard.cases import CASES
 
 
 @pytest.fixture(scope="module")

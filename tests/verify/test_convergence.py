@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.convergence import assess, observed_order
+from verify.curves.convergence import assess, observed_order
 
 NARROW = (1.0, 1.5, 2.0)
 WIDE = (1.0, 2.0, 2.0 * np.sqrt(4500 / 980))  # 18000, 4500 and 980 cells

@@ -12,15 +12,16 @@ import numpy as np
 import pytest
 from made_up_costs import NURBS, SCENE, a_row, against, made_up, outcome
 
-from verify.cost.findings import cheapest, growth, of_equal_steps, orders, pareto, table
-from verify.cost.ladder import Try
-from verify.cost.nonzeros import nonzeros
-from verify.cost.reference import _index, distance, reference
-from verify.cost.row import Row, errors, read_csv, row, traction_error
-from verify.cost.study import CLOSE, LATE, ONCE, Study, _best
-from verify.folder import write_csv
+from verify.curves.of_run import distance
 from verify.result import Snapshot
-from verify.scene import load_scene
+from verify.runs.folder import write_csv
+from verify.scene.load import load_scene
+from verify.studies.cost.findings import cheapest, growth, of_equal_steps, orders, pareto, table
+from verify.studies.cost.ladder import Try
+from verify.studies.cost.nonzeros import nonzeros
+from verify.studies.cost.reference import _index, reference
+from verify.studies.cost.row import Row, errors, read_csv, row, traction_error
+from verify.studies.cost.study import CLOSE, LATE, ONCE, Study, _best
 
 # --- the reference
 
@@ -157,7 +158,7 @@ def test_orders_and_growth_are_those_that_were_put_in() -> None:
 def test_the_page_says_it_and_carries_the_rows(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
-    from verify.cost.page import write
+    from verify.studies.cost.page import write
 
     study = Study(SCENE, against(), tuple(ROWS), ("lefm: a <limit>",))
     write(study, tmp_path / "report.html")
@@ -199,8 +200,8 @@ def test_cost_json_names_the_cheapest_and_the_front(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("name", "dofs"), [("dcb-czm1", 280), ("peel-60", 600)])
 def test_entries_of_the_tangent_are_those_that_forces_depend_on(name: str, dofs: int) -> None:
     """Counted against differences of the residual at a state without symmetry, column after column."""
-    from iga.system import respond
-    from verify.problems import iga_problem
+    from iga.system.system import respond
+    from verify.methods.problems import iga_problem
 
     scene = load_scene(name, [f"discretization.dofs={dofs}"])
     solver, problem = iga_problem(scene, "nurbs")

@@ -13,17 +13,17 @@ import pytest
 from made_up_costs import NURBS, SCENE, a_row, made_up
 
 from verify.cli import main
-from verify.cost import ladder as ladder_of
-from verify.cost import reference as reference_of
-from verify.cost import study as study_of
-from verify.cost.findings import LEVELS, cheapest
-from verify.cost.ladder import BEAM, FAMILIES, RATIO, Family, Try, ladder, ladders
-from verify.cost.reference import reference_jobs
-from verify.cost.row import Row, read_csv
-from verify.cost.study import climb
-from verify.jobs import Job, Outcome
-from verify.process_zone import expected
-from verify.scene import load_scene
+from verify.methods.zone_resolution import expected
+from verify.runs.jobs import Job, Outcome
+from verify.scene.load import load_scene
+from verify.studies.cost import ladder as ladder_of
+from verify.studies.cost import reference as reference_of
+from verify.studies.cost import study as study_of
+from verify.studies.cost.findings import LEVELS, cheapest
+from verify.studies.cost.ladder import BEAM, FAMILIES, RATIO, Family, Try, ladder, ladders
+from verify.studies.cost.reference import reference_jobs
+from verify.studies.cost.row import Row, read_csv
+from verify.studies.cost.study import climb
 
 
 def test_rungs_divide_the_process_zone_as_they_say() -> None:
@@ -48,7 +48,7 @@ def test_every_run_repeats_what_the_study_was_given() -> None:
 def test_methods_that_cannot_are_left_out_with_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     few = tuple(f for f in FAMILIES if f.name in ("tspline-adaptive", "nurbs-p2", "dolfinx-p1", "dolfinx-p2"))
     monkeypatch.setattr(ladder_of, "FAMILIES", few)
-    monkeypatch.setattr("verify.methods.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     found, why = ladders("peel-60", load_scene("peel-60"), ())
     assert [family.name for family in found] == ["nurbs-p2", "beam"]
     assert why == [
@@ -210,7 +210,7 @@ def test_families_are_the_methods_with_the_degrees_that_they_have() -> None:
 
 def test_the_reference_is_cubic_whatever_code_it_is_of(monkeypatch: pytest.MonkeyPatch) -> None:
     """And of one arm where both are alike."""
-    monkeypatch.setattr("verify.cost.reference.dolfinx_installed", lambda: True)
+    monkeypatch.setattr("verify.studies.cost.reference.dolfinx_installed", lambda: True)
     own, other = reference_jobs("dcb-czm1", load_scene("dcb-czm1"), ())
     assert {job.method for job in own} == {"nurbs"} and {job.method for job in other} == {"dolfinx"}
     assert {job.solved.discretization.degree for job in own} == {3} == {job.solved.dolfinx.degree for job in other}
@@ -220,7 +220,7 @@ def test_the_reference_is_cubic_whatever_code_it_is_of(monkeypatch: pytest.Monke
     assert all(job.variant.startswith("reference/") for job in (*own, *other))
     strip, _ = reference_jobs("peel-60", load_scene("peel-60"), ())
     assert not any("symmetry" in key for job in strip for key in job.overrides)
-    monkeypatch.setattr("verify.cost.reference.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.studies.cost.reference.dolfinx_installed", lambda: False)
     assert reference_jobs("dcb-czm1", load_scene("dcb-czm1"), ())[1] == ()
 
 

@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 from test_cost import NURBS, SCENE, a_row, against, made_up, profile
 
-from verify.cost import reference as reference_of
-from verify.cost import study as study_of
-from verify.cost.findings import cheapest
-from verify.cost.ladder import Try
-from verify.cost.row import Row, _middle, traction_error
-from verify.jobs import Outcome
-from verify.scene import load_scene
+from verify.runs import environment
+from verify.runs.jobs import Outcome
+from verify.scene.load import load_scene
+from verify.studies.cost import reference as reference_of
+from verify.studies.cost import study as study_of
+from verify.studies.cost.findings import cheapest
+from verify.studies.cost.ladder import Try
+from verify.studies.cost.row import Row, _middle, traction_error
 
 
 def test_of_a_theory_alone_nothing_is_called_the_cheapest() -> None:
@@ -39,11 +40,11 @@ def test_without_a_zone_there_is_no_error_of_tractions() -> None:
 def test_without_a_reference_nothing_is_measured(last, why: str, tmp_path: Path, monkeypatch, capsys) -> None:
     """What stands in the way is said; whatever is run has one thread."""
     threads = []
-    for name in study_of.THREADS:
+    for name in environment.THREADS:
         monkeypatch.setenv(name, "7")
 
     def run_all(plan, out, jobs):
-        threads.append([study_of.os.environ[name] for name in study_of.THREADS])
+        threads.append([study_of.os.environ[name] for name in environment.THREADS])
         for i, job in enumerate(plan):
             whole = i + 1 < len(plan)
             yield Outcome(job, made_up() if whole else last, "" if whole or last is not None else why)
@@ -99,7 +100,7 @@ def test_the_chart_shows_errors_in_per_cent_and_everything_else_as_it_is() -> No
     """Every axis is a column of the rows, and its name says its unit."""
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
-    from verify.cost.page import ACROSS, UP
+    from verify.studies.cost.page import ACROSS, UP
 
     columns = {field.name for field in fields(Row)}
     assert {key for key, _, _ in (*ACROSS, *UP)} <= columns

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.curve import curve_error, dense, envelope, hermite, load_at, oscillation, peak
+from verify.curves.curve import curve_error, dense, envelope, hermite, load_at, oscillation, peak
 
 CHECKS = Path(__file__).parents[2] / "../shared/accept/checks.py"
 

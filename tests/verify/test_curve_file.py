@@ -9,8 +9,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from verify.curve_file import CurveError, Reading, read_curve
-from verify.curve_text import Dialect, read_table
+from verify.curves.read import CurveError, Reading, read_curve
+from verify.curves.text_table import Dialect, read_table
 
 OPENING, LOAD = [0.0, 1.5, 3.0], [0.0, 2.5, 1.25]
 

@@ -19,14 +19,14 @@ from odd_inputs import SOME, VALUES, answered
 from test_accuracy import a_study
 
 from verify import report, verification
-from verify.cost import accuracy
-from verify.folder import _append, damage, read_fields, read_result, write_fields
-from verify.included import found_in, named
-from verify.jobs import Job, Outcome, run_all
-from verify.plain import Damaged, read_json, read_table
-from verify.refusal import Refusal
 from verify.result import Result
-from verify.scene import load_scene
+from verify.runs.folder import _append, damage, read_fields, read_result, write_fields
+from verify.runs.jobs import Job, Outcome, run_all
+from verify.scene.load import load_scene
+from verify.studies.cost import accuracy
+from verify.studies.found import found_in, named
+from verify.support.checked_files import Damaged, read_json, read_table
+from verify.support.refusal import Refusal
 
 SCENE = "dcb-czm1-linear"
 STUDIES = {
@@ -108,7 +108,7 @@ def test_include_refuses_a_damaged_study_before_any_run(
         else:
             (study,) = named([studies / name])
             pytest.importorskip("matplotlib")
-            from verify.report.included import section
+            from verify.report.studies.included import section
 
             section(study, out, "study")
     finally:

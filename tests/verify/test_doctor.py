@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from verify import doctor
 from verify.cli import main
-from verify.methods import NotRun
+from verify.command_line import doctor
+from verify.methods.names import NotRun
 
 
 def said(capsys: pytest.CaptureFixture) -> dict[str, str]:

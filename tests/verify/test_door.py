@@ -15,9 +15,10 @@ from hypothesis import strategies as st
 from iga_files import SMALL
 from odd_inputs import DCB, KEYS, LINES, MANY, METHODS, OVERRIDES, QUIET, SCENES, SOME, answered, as_toml
 
-from verify import run
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
-from verify.scene import SceneError, load_scene, packaged_scenes
+from verify.runs import run
+from verify.scene.load import load_scene, packaged_scenes
+from verify.scene.parse import SceneError
 
 PROJECT = Path(__file__).resolve().parents[2]
 
@@ -25,12 +26,12 @@ PROJECT = Path(__file__).resolve().parents[2]
 @pytest.fixture
 def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder to stand in, with all that takes long replaced by nothing."""
-    import verify.cost.accuracy
-    import verify.cost.study
     import verify.export.command
-    import verify.hard.suite
-    import verify.scaling.study
-    import verify.switches.study
+    import verify.studies.cost.accuracy
+    import verify.studies.cost.study
+    import verify.studies.effects.study
+    import verify.studies.hard.suite
+    import verify.studies.scaling.study
     import verify.verification
 
     def nothing(scene, method: str, *_: object, **__: object):
@@ -39,11 +40,14 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(run, "run", nothing)
     monkeypatch.setattr(verify.verification, "verify", lambda *_: True)
-    monkeypatch.setattr(verify.cost.study, "cost", lambda *_: None)
-    monkeypatch.setattr(verify.cost.accuracy, "run_seconds", lambda *_: 1.0)
-    monkeypatch.setattr(verify.hard.suite, "hard", lambda *_: True)
+    monkeypatch.setattr(verify.studies.costies.cost.study, "cost", lambda *_: None)
+    monkeypatch.setattr(verify.studies.costies.cost.accuracy, "run_seconds", lambda *_: 1.0)
+    monkeypatch.setattr(verify.studies.hardies.hard.suite, "hard", lambda *_: True)
     monkeypatch.setattr(verify.export.command, "export", lambda *_: [])
-    for study, name in ((verify.switches.study, "effects"), (verify.scaling.study, "scaling")):
+    for study, name in (
+        (verify.studies.effectseffects.study, "effects"),
+        (verify.studies.scaling.scaling.study, "scaling"),
+    ):
         monkeypatch.setattr(study, name, lambda *_: type("Study", (), {"complete": True}))
     (tmp_path / "own.toml").write_text("\n".join(f"{key} = {as_toml(value)}" for key, value in DCB.items()))
     (tmp_path / "broken.toml").write_text("[specimen\n")

@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 from made_up_runs import ENVIRONMENT, curve, limit, scene_report
 from odd_inputs import CURVES, DRAWN, MANY, QUIET, SOME, answered
 
-from verify import plugins, verification
-from verify.curve_file import Reading
-from verify.foreign import joined, read_curves
-from verify.jobs import Job, Outcome
-from verify.refusal import Refusal
+from verify import verification
+from verify.checks.foreign_curves import joined, read_curves
+from verify.curves.read import Reading
+from verify.methods import plugins
 from verify.result import Result
+from verify.runs.jobs import Job, Outcome
+from verify.support.refusal import Refusal
 
 PLAIN = b"opening,load\n0,0\n1,2\n3,1\n"
 SCENE = "dcb-czm1-linear"

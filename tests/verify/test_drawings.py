@@ -12,9 +12,10 @@ pytest.importorskip("matplotlib")
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.patches import Polygon, Rectangle  # noqa: E402
 
-from verify.report import drawing, peel_drawing  # noqa: E402
-from verify.report.style import colour  # noqa: E402
-from verify.scene import Scene, load_scene  # noqa: E402
+from verify.pages.style import colour  # noqa: E402
+from verify.report.figures import drawing, peel_drawing  # noqa: E402
+from verify.scene.load import load_scene  # noqa: E402
+from verify.scene.schema import Scene
 
 NUMBER = r"([\d.]+)"
 

@@ -13,15 +13,17 @@ from scipy.integrate import quad
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from verify import effects, neglected
+from verify.checks import neglected
 from verify.cli import main
-from verify.cost.reference import cubics, distance
-from verify.effects import GROWING, RIGID, STANDING, decided, load_of_squeezing, simulated, squeezed, stiffer
-from verify.jobs import Job, Outcome
-from verify.methods import solve
+from verify.curves.of_run import cubics, distance
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene import Scene, load_scene
-from verify.verification import scene_report
+from verify.runs.jobs import Job, Outcome
+from verify.scene import effects
+from verify.scene.effects import GROWING, RIGID, STANDING, decided, load_of_squeezing, simulated, squeezed, stiffer
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
+from verify.studies.one_scene import scene_report
 
 COARSE = ("discretization.dofs=300", "discretization.steps=12", "effects.kinematics=linear")
 ALL_AUTO = tuple(f"effects.{key}=auto" for key in ("kinematics", "contact", "irreversible", "symmetry", "search"))
@@ -234,9 +236,9 @@ def test_what_is_said_of_the_turn_is_what_finite_kinematics_changes(opening: flo
 
 
 def test_two_meshes_that_differ_are_no_symmetry(tmp_path: Path) -> None:
-    from iga.arms import arm_meshes
-    from iga.iga_file import from_mesh, write_iga
-    from verify.problems import iga_problem
+    from iga.dcb.meshes import arm_meshes
+    from iga.files.iga_format import from_mesh, write_iga
+    from verify.methods.problems import iga_problem
 
     _, problem = iga_problem(load_scene("dcb-czm1", ["discretization.dofs=400"]), "nurbs")
     _, finer = iga_problem(load_scene("dcb-czm1", ["discretization.dofs=500"]), "nurbs")
@@ -283,6 +285,6 @@ def test_the_report_has_one_remark_an_effect(tmp_path: Path) -> None:
 
 
 def test_the_limit_is_the_one_of_two_codes() -> None:
-    from verify import matched
+    from verify.checks import matched
 
     assert matched.NEGLIGIBLE is effects.NEGLIGIBLE == 0.005

@@ -15,20 +15,21 @@ from time import process_time
 import numpy as np
 import pytest
 
-from iga import interface as interface_of
-from iga import system as system_of
-from iga import tangent as tangent_of
-from iga.cohesive import BilinearLaw
-from iga.condense import condensed
-from iga.dcb import Problem, build
-from iga.interface import Contact, Interface
-from iga.path import follow
-from iga.point import End, Point
-from iga.solve import Solution, run
-from iga.specimen import Specimen
-from iga.system import untimed
-from verify.problems import iga_problem
-from verify.scene import load_scene
+from iga.dcb.dcb import build
+from iga.dcb.problem import Problem
+from iga.interface import interface as interface_of
+from iga.interface.interface import Contact, Interface
+from iga.interface.laws import BilinearLaw
+from iga.path import tangent as tangent_of
+from iga.path.condensation import condensed
+from iga.path.follow import follow
+from iga.path.point import End, Point
+from iga.run import Solution, run
+from iga.specimen.specimen import Specimen
+from iga.system import system as system_of
+from iga.system.system import untimed
+from verify.methods.problems import iga_problem
+from verify.scene.load import load_scene
 
 #: How much longer a step with the effect off may take than one without its code, and runs to tell.
 WITHIN, REPEATS = 0.03, 8
@@ -58,7 +59,7 @@ def solved(problem: Problem, law: BilinearLaw | None = None) -> Solution:
 
 
 def steps_of(problem: Problem, law: BilinearLaw | None = None) -> Iterator[Point | End]:
-    """The path, step by step, as `iga.solve.run` follows it."""
+    """The path, step by step, as `iga.run.run` follows it."""
     system = built(problem, law).system
     small = condensed(system)
     return follow(system if small is None else small.system, problem.opening, problem.steps)

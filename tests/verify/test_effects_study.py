@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from verify.cli import main
-from verify.cost.reference import cubics, distance
-from verify.jobs import Job, Outcome
+from verify.curves.of_run import cubics, distance
 from verify.result import Result
-from verify.scene import load_scene
-from verify.switches import study as study_of
-from verify.switches.plan import TIMES, Plan, planned
-from verify.switches.row import Row, apart, change, changes, legs, row, signed
-from verify.switches.study import effects
+from verify.runs.jobs import Job, Outcome
+from verify.scene.load import load_scene
+from verify.studies.effects import study as study_of
+from verify.studies.effects.plan import TIMES, Plan, planned
+from verify.studies.effects.row import Row, apart, change, changes, legs, row, signed
+from verify.studies.effects.study import effects
 
 SCENE = load_scene("dcb-czm1")
 
@@ -230,7 +230,7 @@ def test_a_small_study_for_real(tmp_path: Path, capsys: pytest.CaptureFixture) -
 
 
 def test_what_cannot_be_run_here_is_left_out_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("verify.switches.plan.left_out", lambda job: "not run: too large")
+    monkeypatch.setattr("verify.studies.effects.plan.left_out", lambda job: "not run: too large")
     plan = planned("dcb-czm1", SCENE, "nurbs")
     assert plan.pairs == () and len(plan.reasons) == 5
     assert all(reason.endswith(": left out: not run: too large") for reason in plan.reasons)

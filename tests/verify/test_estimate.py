@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from verify.estimate import BESIDES, PER_STEP, STEPS_CHOSEN, UNKNOWN, seconds, steps, unknowns
-from verify.process_zone import bulk_length, slender_length
-from verify.scene import load_scene
+from verify.runs.estimate import BESIDES, PER_STEP, STEPS_CHOSEN, UNKNOWN, seconds, steps, unknowns
+from verify.scene.load import load_scene
+from verify.scene.process_zone import bulk_length, slender_length
 
 #: Arms in which the process zone is as long as in an unbounded body.
 THICK = ("load.opening=28", "specimen.arm_thickness=3.0", "interface.strength=120")

@@ -13,8 +13,8 @@ from scipy.sparse import bmat, coo_matrix, csr_matrix
 from scipy.sparse.linalg import spsolve
 
 from verify.cli import main
-from verify.methods import solve
-from verify.scene import load_scene
+from verify.methods.solve import solve
+from verify.scene.load import load_scene
 
 Tables = tuple[dict[str, list[dict[str, str]]], dict]
 

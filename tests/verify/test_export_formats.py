@@ -12,7 +12,7 @@ from vtu_files import arrays
 
 from verify.cli import main
 from verify.export.mesh import scene_mesh
-from verify.scene import load_scene
+from verify.scene.load import load_scene
 
 
 def abaqus_blocks(text: str) -> list[tuple[str, dict[str, str], list[list[str]]]]:

@@ -17,13 +17,13 @@ import numpy as np
 import pytest
 
 from verify.cli import main
-from verify.folder import CurveWriter, damage, read_columns, write_json
-from verify.methods import METHODS
-from verify.refusal import Refusal
+from verify.methods.names import METHODS
 from verify.result import CURVE_COLUMNS, Result
-from verify.run import run
-from verify.scene import load_scene
-from verify.store import NAME, alone_in
+from verify.runs.folder import CurveWriter, damage, read_columns, write_json
+from verify.runs.run import run
+from verify.runs.store import NAME, alone_in
+from verify.scene.load import load_scene
+from verify.support.refusal import Refusal
 from verify.verdict import Check
 
 PROJECT = Path(__file__).resolve().parents[2]
@@ -89,7 +89,7 @@ def test_half_a_row_is_taken_back(tmp_path: Path) -> None:
     """The last number of half a row would be another, and the row no shorter."""
     code = (
         "import resource, signal, sys; from pathlib import Path; from test_failures import row\n"
-        "from verify.folder import CurveWriter; writer = CurveWriter(Path(sys.argv[1])); writer(row(0.0))\n"
+        "from verify.runs.folder import CurveWriter; writer = CurveWriter(Path(sys.argv[1])); writer(row(0.0))\n"
         "most = (Path(sys.argv[1]) / 'curve.csv').stat().st_size + 100\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))\n"
         "try:\n    writer(row(0.5))\n"
@@ -164,7 +164,7 @@ def test_damage_is_found(name: str, content: bytes | None, tmp_path: Path) -> No
 
 def test_a_damaged_result_in_the_store_is_done_again(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     """A result that was whole, and of which half is left; and what nobody has put there."""
-    from verify.jobs import Job, run_all
+    from verify.runs.jobs import Job, run_all
 
     plan = [Job("dcb-czm1-linear", load_scene("dcb-czm1-linear"), "lefm", "lefm", fields=False)]
     (first,) = run_all(plan, tmp_path, 1)
@@ -204,16 +204,16 @@ def test_two_processes_into_one_folder(tmp_path: Path, capsys: pytest.CaptureFix
 def test_an_identity_that_does_not_hold_fails_a_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
-    import verify.run
+    import verify.runs.run
 
     def judged(unresolved: str = ""):
         check = Check("energy-ledger", "lefm", 0.1, 0.01, "exact", "The energies add up.", unresolved=unresolved)
         return lambda *_: (check,)
 
-    monkeypatch.setattr(verify.run, "run_checks", judged())
+    monkeypatch.setattr(verify.runs.run, "run_checks", judged())
     assert main([*SOLVE, "--out", str(tmp_path)]) == 1
     assert "lefm: broken: energy-ledger" in capsys.readouterr().err
-    monkeypatch.setattr(verify.run, "run_checks", judged("2 elements in the process zone"))
+    monkeypatch.setattr(verify.runs.run, "run_checks", judged("2 elements in the process zone"))
     assert main([*SOLVE, "--out", str(tmp_path)]) == 0
     assert ": 2 elements in the process zone" in capsys.readouterr().out
 

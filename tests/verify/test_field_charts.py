@@ -18,12 +18,13 @@ from made_up_runs import scene_report  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.textpath import TextPath  # noqa: E402
 
-from verify.report import fields, meshes, opening, paint, style, undeformed  # noqa: E402
-from verify.report.entry import entries  # noqa: E402
-from verify.report.fields import process_zone, shared_snapshots, traction  # noqa: E402
-from verify.report.opening import frames  # noqa: E402
-from verify.report.style import STRESS_MAP, colour  # noqa: E402
-from verify.report.text import Units  # noqa: E402
+from verify.pages import paint, style  # noqa: E402
+from verify.pages.style import STRESS_MAP, colour  # noqa: E402
+from verify.pages.text import Units  # noqa: E402
+from verify.report.figures import fields, meshes, opening, undeformed
+from verify.report.figures.entry import entries  # noqa: E402
+from verify.report.figures.fields import process_zone, shared_snapshots, traction  # noqa: E402
+from verify.report.figures.opening import frames  # noqa: E402
 from verify.result import Snapshot  # noqa: E402
 
 

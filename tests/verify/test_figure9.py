@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify import verification
-from verify.jobs import Outcome
-from verify.methods import solve
-from verify.paper import peel
-from verify.paper.comparison import lines
-from verify.paper.peel import BONDS, PeelCase, PeelStudy, branch_distance, measured, planned
-from verify.paper.peel_statements import statements
-from verify.paper.study import Reference, Trial, limit, trial
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene import load_scene
+from verify.runs.jobs import Outcome
+from verify.scene.load import load_scene
+from verify.studies import one_scene
+from verify.studies.paper import peel
+from verify.studies.paper.comparison import lines
+from verify.studies.paper.peel import BONDS, PeelCase, PeelStudy, branch_distance, measured, planned
+from verify.studies.paper.peel_statements import statements
+from verify.studies.paper.study import Reference, Trial, limit, trial
 
 BASES = ("tspline", "nurbs", "lagrange")
 SCENES = {bond: load_scene(bond) for bond in BONDS}
@@ -138,7 +138,7 @@ def test_what_the_reference_cannot_tell_is_undecided():
 
 def test_the_runs_are_those_that_are_made_anyway(monkeypatch):
     scenes = list(SCENES.items())
-    usual = {job for source, scene in scenes for job in verification.planned(source, scene)}
+    usual = {job for source, scene in scenes for job in one_scene.planned(source, scene)}
     monkeypatch.setattr(peel, "dolfinx_installed", lambda: True)
     more = set(planned(scenes).jobs) - usual
     assert {job.method for job in more} == {"dolfinx"} and len(more) == len(BONDS)
@@ -153,7 +153,7 @@ def test_the_runs_are_those_that_are_made_anyway(monkeypatch):
 
 def test_a_full_verification_of_a_peel_asks_for_nothing_that_it_refuses():
     for source, scene in SCENES.items():
-        for job in verification.planned(source, scene, full=True):
+        for job in one_scene.planned(source, scene, full=True):
             assert load_scene(source, job.overrides).name == source
 
 

@@ -10,16 +10,18 @@ import numpy as np
 import pytest
 
 from verify import verification
+from verify.checks.foreign_curves import Curve, checks_of, joined, read_curves
+from verify.checks.table import overview
 from verify.cli import main
-from verify.curve_file import Reading, read_curve
-from verify.foreign import Curve, checks_of, joined, read_curves
-from verify.methods import METHODS, solve
+from verify.curves.read import Reading, read_curve
+from verify.methods.names import METHODS
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene import load_scene
-from verify.store import NAME
-from verify.table import overview
+from verify.runs.store import NAME
+from verify.scene.load import load_scene
+from verify.studies import one_scene
+from verify.studies.one_scene import planned
 from verify.verdict import Check, Run, SceneReport
-from verify.verification import planned
 
 LINEAR = "dcb-czm1-linear"
 
@@ -46,9 +48,7 @@ AS = ("--opening", "U2", "--load", "RF2", "--opening-scale", "-2", "--load-scale
 
 
 def only(monkeypatch: pytest.MonkeyPatch, *methods: str) -> None:
-    monkeypatch.setattr(
-        verification, "planned", lambda *given: (job for job in planned(*given) if job.method in methods)
-    )
+    monkeypatch.setattr(one_scene, "planned", lambda *given: (job for job in planned(*given) if job.method in methods))
 
 
 def test_a_file_becomes_a_method_of_the_report(

@@ -9,21 +9,23 @@ import pytest
 from iga_files import real
 from vtu_files import arrays
 
-from iga.arms import arm_meshes
-from iga.basis import block_basis
-from iga.bernstein import bernstein, tensor
-from iga.boundary import body_mesh
-from iga.bulk import gradient
-from iga.kinematics import cauchy_stress
-from iga.surface import surface
+from iga.dcb.meshes import arm_meshes
+from iga.elements.bulk import gradient
+from iga.elements.kinematics import cauchy_stress
+from iga.elements.shape_functions import block_basis
+from iga.files.cad_body import body_mesh
+from iga.interface.surface import surface
+from iga.mesh.bernstein import bernstein, tensor
 from verify.cli import main, parser
-from verify.frames import Frames, bezier_values, cleared, solid_cells, through_thickness
-from verify.jobs import Job
-from verify.problems import iga_problem
+from verify.fields.cells import vtk_order
+from verify.fields.frames import Frames, bezier_values, cleared, solid_cells, through_thickness
+from verify.methods.problems import iga_problem
 from verify.result import Result, steps_from_rows
-from verify.run import run
-from verify.scene import Scene, load_scene, parse_scene
-from verify.vtu import vtk_order
+from verify.runs.jobs import Job
+from verify.runs.run import run
+from verify.scene.load import load_scene
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
 
 ORTHOTROPIC = {"E1": 140e3, "E2": 10e3, "G12": 5e3, "nu12": 0.3}
 PEEL = {
@@ -272,7 +274,7 @@ def stub(scene, method, on_step, on_frame=None):
 
 
 def test_a_run_leaves_the_frames_that_are_asked_for(tmp_path, monkeypatch):
-    monkeypatch.setattr("verify.run._finish", lambda *_: ())
+    monkeypatch.setattr("verify.runs.run._finish", lambda *_: ())
     run(dcb(), "nurbs", tmp_path, solver=stub, frames=1)
     assert [time for time, _ in series(tmp_path)] == [0.0, 0.3]  # the last state as well, though it came short
     run(dcb(), "nurbs", tmp_path, solver=stub)

@@ -13,16 +13,17 @@ import pyvista as pv
 from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 
-from iga.basis import block_basis
-from iga.bezier import homogeneous, jacobian
-from iga.bspline import open_knots
-from iga.extraction import Mesh
-from iga.nurbs import nurbs_mesh
-from iga.quadrature import gauss, square
-from verify.frames import Frames
-from verify.problems import iga_problem
-from verify.scene import Scene, load_scene
-from verify.vtu import write_vtu
+from iga.bases.bspline import open_knots
+from iga.bases.nurbs import nurbs_mesh
+from iga.elements.shape_functions import block_basis
+from iga.mesh.bezier import homogeneous, jacobian
+from iga.mesh.extraction import Mesh
+from iga.mesh.quadrature import gauss, square
+from verify.fields.cells import write_vtu
+from verify.fields.frames import Frames
+from verify.methods.problems import iga_problem
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
 
 
 def scene(*overrides: str, name: str = "dcb-czm1") -> Scene:

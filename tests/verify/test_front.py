@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify import front
-from verify.arm import FORCE, V
-from verify.beam import BeamProblem, model
-from verify.equilibrium import MAX_ITERATIONS, State, intact
-from verify.front import LITTLE, SMALLEST_STEP, Pace, follow
-from verify.rows import Units
-from verify.zones import OPEN, SOFTENING
+from verify.theory.beam import path as front
+from verify.theory.beam.arm import FORCE, V
+from verify.theory.beam.equilibrium import MAX_ITERATIONS, State, intact
+from verify.theory.beam.path import LITTLE, SMALLEST_STEP, Pace, follow
+from verify.theory.beam.problem import BeamProblem
+from verify.theory.beam.rows import Units
+from verify.theory.beam.solve import model
+from verify.theory.beam.zones import OPEN, SOFTENING
 
 PROBLEM = BeamProblem(14.0, 0.2, 4.0, 1.0, 120e3, 50e3, 4.0, 0.1, 12.5, 1e5, opening=1.0, points=60)
 MODEL = model(PROBLEM)

@@ -9,19 +9,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from iga.arms import arm_meshes
-from iga.extraction import ElementBlock, Mesh
-from iga.iga_file import from_mesh, write_iga
-from iga.peel_meshes import tmeshes as peel_tmeshes
-from iga.tspline import tspline_rectangle
+from iga.dcb.meshes import arm_meshes
+from iga.files.iga_format import from_mesh, write_iga
+from iga.mesh.extraction import ElementBlock, Mesh
+from iga.peel.meshes import tmeshes as peel_tmeshes
+from iga.tsplines.tspline import tspline_rectangle
 from verify import verification
-from verify.checks import OF_THE_ZONE
+from verify.checks.identities import OF_THE_ZONE
 from verify.cli import REFUSED, main
-from verify.given_meshes import OWN, given_meshes, own_mesh
-from verify.methods import METHODS, require, solve
-from verify.problems import iga_problem
-from verify.refusal import Refusal
-from verify.scene import Scene, load_scene
+from verify.methods.given_meshes import OWN, given_meshes, own_mesh
+from verify.methods.names import METHODS
+from verify.methods.problems import iga_problem
+from verify.methods.solve import require, solve
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
+from verify.studies import one_scene
+from verify.support.refusal import Refusal
 from verify.verdict import Check, SceneReport
 
 DCB = ("discretization.dofs=400", "load.opening=0.5", "discretization.steps=4")
@@ -184,9 +187,9 @@ def test_verify_holds_the_mesh_against_methods_on_meshes_of_their_own(
     """Both arms from files are solved as two, the others as the scene without files would be."""
     seen: list[SceneReport] = []
     monkeypatch.setattr(verification, "write_page", lambda module, reports, *others: seen.extend(reports))
-    every = verification.planned
+    every = one_scene.planned
     few = ("tspline", "nurbs", "lefm")
-    monkeypatch.setattr(verification, "planned", lambda *what: [job for job in every(*what) if job.variant in few])
+    monkeypatch.setattr(one_scene, "planned", lambda *what: [job for job in every(*what) if job.variant in few])
     source = scene_file(tmp_path, [Path(file).name for file in written(tmp_path, *arms)])
     scene = load_scene(source)
     verification.verify([(source, scene)], tmp_path / "out", 1)
@@ -200,7 +203,7 @@ def test_verify_holds_the_mesh_against_methods_on_meshes_of_their_own(
 
 def test_a_full_verification_takes_files_for_tspline_alone(arms: tuple[Mesh, ...], tmp_path: Path) -> None:
     scene = scene_with(written(tmp_path, *arms))
-    jobs = list(verification.planned("mine.toml", scene, full=True))
+    jobs = list(one_scene.planned("mine.toml", scene, full=True))
     assert [job.variant for job in jobs if OWN not in job.overrides and job.method in METHODS] == ["tspline"]
     assert all(job.solved.specimen.mesh == () for job in jobs if OWN in job.overrides)
     (coarse,) = [job for job in jobs if job.variant == "nurbs-978"]

@@ -11,18 +11,19 @@ import numpy as np
 import pytest
 
 from verify.cli import main
-from verify.hard import suite
-from verify.hard.case import BASES, Case, Number, Trial, Trials, Variant, variant
-from verify.hard.cases import CASES, chosen
-from verify.hard.criteria import common, difference, distance, ledger, missing
-from verify.hard.invariance import NOISE, every_number, in_units
-from verify.hard.one import read_verdict, run_case
-from verify.hard.programmes import legs
-from verify.hard.strength import broken_area
-from verify.hard.suite import Cell, hard, matrix
-from verify.methods import solve
+from verify.methods.solve import solve
 from verify.result import Result, steps_from_rows
-from verify.scene import Scene, load_scene
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
+from verify.studies.hard import suite
+from verify.studies.hard.case import BASES, Case, Number, Trial, Trials, Variant, variant
+from verify.studies.hard.cases import CASES, chosen
+from verify.studies.hard.criteria import common, difference, distance, ledger, missing
+from verify.studies.hard.invariance import NOISE, every_number, in_units
+from verify.studies.hard.one import read_verdict, run_case
+from verify.studies.hard.programmes import legs
+from verify.studies.hard.strength import broken_area
+from verify.studies.hard.suite import Cell, hard, matrix
 from verify.verdict import Check
 
 ROWS = (
@@ -274,7 +275,7 @@ GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
 
 def test_the_area_of_a_crack_is_that_of_its_points() -> None:
     """Two points in each of two elements, 4 and 6 long: the first has broken, one of the other is half way there."""
-    from verify.checks import law_of
+    from verify.checks.identities import law_of
     from verify.result import Snapshot
 
     scene = load_scene("dcb-czm1", ["specimen.width=2.0"])

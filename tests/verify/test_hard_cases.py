@@ -11,13 +11,13 @@ import made_up_studies
 import pytest
 from test_hard import FAKE, stub
 
-from verify.hard import one, suite
-from verify.hard.cases import CASES
-from verify.methods import Unsuitable
-from verify.plain import Damaged
-from verify.scene import load_scene
-from verify.schema import Scene
-from verify.sweep import Done
+from verify.methods.names import Unsuitable
+from verify.runs.sweep import Done
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
+from verify.studies.hard import one, suite
+from verify.studies.hard.cases import CASES
+from verify.support.checked_files import Damaged
 
 
 def test_what_is_tried_is_what_the_page_tells() -> None:

@@ -10,15 +10,16 @@ import pytest
 from scipy.optimize import brentq
 from test_hard import fake_rows
 
-from verify.checks import law_of
-from verify.curve import PROPAGATION
-from verify.hard import bodies, interfaces
-from verify.hard.case import Number, Trial, Trials
-from verify.hard.cases import CASES
-from verify.hard.interfaces import variation
-from verify.methods import solve
+from verify.checks.identities import law_of
+from verify.curves.curve import PROPAGATION
+from verify.methods.solve import solve
 from verify.result import Result, Snapshot, steps_from_rows
-from verify.scene import Scene, load_scene
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
+from verify.studies.hard import bodies, interfaces
+from verify.studies.hard.case import Number, Trial, Trials
+from verify.studies.hard.cases import CASES
+from verify.studies.hard.interfaces import variation
 from verify.verdict import Check
 
 Change = Callable[[str, Result], Result]
@@ -409,7 +410,7 @@ def test_without_the_opening_at_the_mouth_nothing_is_said_of_contact() -> None:
 
 def test_a_path_is_drawn_with_points_between_its_steps_where_its_slopes_are_known() -> None:
     pytest.importorskip("matplotlib")
-    from verify.hard.page import _path
+    from verify.studies.hard.page import _path
 
     few, many = made_up(load_scene("dcb-czm1")), steps_from_rows(fake_rows(3.0, 700))
     x, y = _path(replace(few, steps=steps_from_rows(fake_rows(3.0, 20))))

@@ -17,10 +17,10 @@ from made_up_runs import ENVIRONMENT, made_up, scene_report  # noqa: E402
 
 from verify import report  # noqa: E402
 from verify.cli import main  # noqa: E402
-from verify.included import found_in, named  # noqa: E402
-from verify.refusal import Refusal  # noqa: E402
-from verify.report.included import _reference  # noqa: E402
 from verify.report.markdown import code, plain, table  # noqa: E402
+from verify.report.studies.included import _reference  # noqa: E402
+from verify.studies.found import found_in, named  # noqa: E402
+from verify.support.refusal import Refusal  # noqa: E402
 
 
 @pytest.fixture

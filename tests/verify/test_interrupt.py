@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from verify.store import NAME
+from verify.runs.store import NAME
 
 PROJECT = Path(__file__).resolve().parents[2]
 SMALL = ["--set", "discretization.dofs=200", "--set", "discretization.steps=6", "--set", "load.opening=0.5"]
@@ -73,7 +73,8 @@ def test_the_same_command_again_does_the_rest(study: str, tmp_path: Path) -> Non
 
 
 def test_work_without_a_folder_starts_over(capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
-    from verify import cli, commands
+    from verify import cli
+    from verify.command_line import commands
 
     def stops(*_: object) -> int:
         raise KeyboardInterrupt

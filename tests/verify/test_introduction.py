@@ -7,16 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify import introduction
-from verify.checks import run_checks
-from verify.crosschecks import cross_checks, remarks
+from verify.checks import load_introduction
+from verify.checks.between_codes import cross_checks, remarks
+from verify.checks.foreign_curves import joined
+from verify.checks.identities import run_checks
 from verify.export.mesh import scene_mesh
 from verify.export.numbers import notes
-from verify.foreign import joined
-from verify.methods import dolfinx_installed, solve
-from verify.refusal import Refusal
+from verify.methods.dolfinx import dolfinx_installed
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene import Scene, load_scene, parse_scene
+from verify.scene.load import load_scene
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
+from verify.support.refusal import Refusal
 from verify.verdict import SceneReport
 
 
@@ -37,7 +40,7 @@ def stocky(*overrides: str) -> Scene:
 def test_a_corner_gives_way_and_comes_closer_to_the_crack(kinematics: str) -> None:
     """The estimate is of the size of what two runs say; without large displacements the lever stays."""
     scene = stocky(f"effects.kinematics={kinematics}")
-    found, about = introduction.measured(scene), introduction.estimate(scene)
+    found, about = load_introduction.measured(scene), load_introduction.estimate(scene)
     assert about.stiffness / 2.5 > found.stiffness > 2.5 * about.stiffness and about.stiffness < -0.003
     if kinematics == "finite":
         assert about.peak / 2 < found.peak < 2 * about.peak and found.peak > 0.02
@@ -47,14 +50,17 @@ def test_a_corner_gives_way_and_comes_closer_to_the_crack(kinematics: str) -> No
 
 def test_it_is_said_where_it_matters_and_to_whoever_compares() -> None:
     slender = load_scene("dcb-czm1")
-    assert introduction.remarks(slender) == () and not introduction.matters(slender)
-    (said,) = introduction.remarks(stocky("effects.kinematics=linear"))
+    assert load_introduction.remarks(slender) == () and not load_introduction.matters(slender)
+    (said,) = load_introduction.remarks(stocky("effects.kinematics=linear"))
     assert 'load.at = "node"' in said and "(two runs of this scene)" in said
     assert any("peak load by +0.18 % (an estimate)" in note for note in notes(slender))
     report = SceneReport(slender, (), ())
     assert joined(report, [], None).remarks == ()
-    assert introduction.sentence(stocky("load.at=node")) == "" and introduction.remarks(stocky("load.at=node")) == ()
-    assert "what is not known" in introduction.sentence(load_scene("peel-soft")), "a strip that turns upright"
+    assert (
+        load_introduction.sentence(stocky("load.at=node")) == ""
+        and load_introduction.remarks(stocky("load.at=node")) == ()
+    )
+    assert "what is not known" in load_introduction.sentence(load_scene("peel-soft")), "a strip that turns upright"
 
 
 @pytest.mark.parametrize("at", ["node", "hinge"])

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.law import Bilinear, Law
+from verify.theory.law import Bilinear, Law
 
 positive = st.floats(0.01, 100.0)
 

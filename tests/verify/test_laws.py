@@ -10,17 +10,20 @@ import numpy as np
 import pytest
 from made_up_laws import MADE_UP, TrapezoidalLaw
 
-from iga.cohesive import LAWS
-from verify.checks import J_OF_ANY_LAW, J_OF_LAW, run_checks
+from iga.interface.laws import LAWS
+from verify.checks.between_codes import cross_checks
+from verify.checks.identities import J_OF_ANY_LAW, J_OF_LAW, run_checks
 from verify.cli import main
-from verify.crosschecks import cross_checks
-from verify.laws import known, laws_of
-from verify.methods import METHODS, Unsuitable, require, solve
-from verify.problems import iga_problem
-from verify.report.text import inputs
+from verify.methods.names import METHODS, Unsuitable
+from verify.methods.problems import iga_problem
+from verify.methods.solve import require, solve
+from verify.pages.text import inputs
 from verify.result import Result
-from verify.scene import Scene, SceneError, load_scene, parse_scene
-from verify.section import one_of
+from verify.scene.laws import known, laws_of
+from verify.scene.load import load_scene
+from verify.scene.parse import SceneError, parse_scene
+from verify.scene.schema import Scene
+from verify.scene.tables import one_of
 from verify.verdict import Check
 
 NAME = "a-trapezoid"

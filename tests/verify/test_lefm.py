@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.special import ellipeinc, ellipkinc, logit
 
-from verify import elastica
-from verify.curve import curve_error
-from verify.lefm import THEORIES as ALL
-from verify.lefm import LefmProblem, chi, solve
+from verify.curves.curve import curve_error
 from verify.result import CURVE_COLUMNS, steps_from_rows
+from verify.theory import elastica
+from verify.theory.lefm import THEORIES as ALL
+from verify.theory.lefm import LefmProblem, chi, solve
 
 THEORIES = ALL[2]
 DCB = LefmProblem(14.0, 0.2, 4.0, 1.0, 120e3, 120e3, 50e3, 0.1, 3.0)
@@ -229,7 +229,7 @@ def test_a_factor_that_rounding_keeps_from_settling_is_taken() -> None:
     """Two neighbours of a fixed point that follow each other for ever; further apart than 1e-12 they are none."""
     from itertools import cycle
 
-    from verify.lefm import _fixed_point
+    from verify.theory.lefm import _fixed_point
 
     for apart, settles in ((1e-14, True), (1e-9, False)):
         values = cycle((2.0, 2.0 * (1.0 + apart)))

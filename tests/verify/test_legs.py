@@ -11,14 +11,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.curve_file import read_curve
-from verify.foreign import checks_of
-from verify.legs import path, programme_of
-from verify.methods import solve
-from verify.nearness import distances
+from verify.checks.foreign_curves import checks_of
+from verify.curves.legs import path, programme_of
+from verify.curves.nearness import distances
+from verify.curves.read import read_curve
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene import load_scene
-from verify.turns import only_opens, turns
+from verify.scene.load import load_scene
+from verify.scene.schema import only_opens, turns
 from verify.verdict import Check
 
 PROGRAMME = (1.5, 0.2, 3.0)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from verify.complaints import _shown
-from verify.magnitudes import too_large
-from verify.scene import SceneError, load_scene, parse_scene
+from verify.scene.complaints import _shown
+from verify.scene.load import load_scene
+from verify.scene.magnitudes import too_large
+from verify.scene.parse import SceneError, parse_scene
 
 #: Scene, key, and the ends of its range in N and mm, beside what they are held against.
 RANGES = [

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.checks import law_of
-from verify.law import Bilinear
-from verify.matched import left_out, summary
-from verify.neglected import of_run
+from verify.checks.identities import law_of
+from verify.checks.matched import left_out, summary
+from verify.checks.neglected import of_run
 from verify.result import Result, Snapshot, steps_from_rows
-from verify.scene import load_scene
+from verify.scene.load import load_scene
+from verify.theory.law import Bilinear
 
 LAW = Bilinear(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0, contact=True)
 LENGTH, LOADED_AT, TILT, SLIP, LOAD = 6.0, 8.0, 0.03, 0.2, 3.0

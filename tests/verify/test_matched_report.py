@@ -15,12 +15,14 @@ pytest.importorskip("jinja2")
 
 from tests.verify.test_peel_checks import made_up  # noqa: E402
 from verify import report  # noqa: E402
-from verify.checks import law_of  # noqa: E402
-from verify.matched import NEGLIGIBLE, of_run  # noqa: E402
-from verify.report.entry import entries  # noqa: E402
+from verify.checks.identities import law_of  # noqa: E402
+from verify.checks.matched import of_run  # noqa: E402
+from verify.report.figures.entry import entries  # noqa: E402
 from verify.report.matched import sentences  # noqa: E402
 from verify.result import Result, Snapshot  # noqa: E402
-from verify.scene import Scene, load_scene  # noqa: E402
+from verify.scene.effects import NEGLIGIBLE
+from verify.scene.load import load_scene  # noqa: E402
+from verify.scene.schema import Scene
 from verify.verdict import Run, SceneReport  # noqa: E402
 
 LABEL = "DOLFINx p=2, 150 elements"

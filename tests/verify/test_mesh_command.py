@@ -13,20 +13,22 @@ from hypothesis import given, settings
 from iga_files import REAL, SMALL, assert_same, real, small
 from test_iga_file import MALFORMED, mutated
 
-from iga import rank
-from iga.bspline import open_knots
-from iga.extraction import ElementBlock, Mesh
-from iga.iga_file import from_mesh, mesh, write_iga
-from iga.iga_read import read_iga
-from iga.nurbs import nurbs_rectangle
-from iga.polygon import polygon_mesh
-from iga.tmesh_lines import tensor_grid, with_lines
-from iga.tspline import tspline_rectangle
-from verify import mesh_command, mesh_facts, progress
+from iga.bases.bspline import open_knots
+from iga.bases.nurbs import nurbs_rectangle
+from iga.bases.unstructured import polygon_mesh
+from iga.files.iga_format import from_mesh, mesh, write_iga
+from iga.files.iga_reader import read_iga
+from iga.mesh import rank
+from iga.mesh.extraction import ElementBlock, Mesh
+from iga.tsplines.lines import tensor_grid, with_lines
+from iga.tsplines.tspline import tspline_rectangle
 from verify.cli import main
-from verify.mesh_command import _continuity, _sets, _unity, examine
-from verify.mesh_facts import MeshFacts, independent
-from verify.refusal import Refusal
+from verify.command_line import mesh as mesh_command
+from verify.command_line import mesh_facts
+from verify.command_line.mesh import _continuity, _sets, _unity, examine
+from verify.command_line.mesh_facts import MeshFacts, independent
+from verify.support import progress
+from verify.support.refusal import Refusal
 
 #: control points, elements, T-junctions, valences, inner edges that are C0, C1, C2, area
 FACTS = {
@@ -247,7 +249,7 @@ def test_semi_standard_functions(tmp_path, capsys):
 def test_without_matplotlib(tmp_path, monkeypatch, capsys):
     """The facts all the same; a picture that was asked for is refused."""
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    monkeypatch.delitem(sys.modules, "verify.mesh_drawing", raising=False)
+    monkeypatch.delitem(sys.modules, "verify.command_line.mesh_drawing", raising=False)
     path = str(small(tmp_path))
     assert main(["mesh", path]) == 0
     said = capsys.readouterr()
@@ -315,8 +317,8 @@ def test_continuity_is_told_from_the_smoothest_on() -> None:
 
 def test_a_picture_that_fails_for_want_of_something_else_is_an_error(tmp_path, monkeypatch):
     """Only what is optional may be missing."""
-    monkeypatch.setitem(sys.modules, "verify.mesh_drawing", None)
-    with pytest.raises(ModuleNotFoundError, match="verify.mesh_drawing"):
+    monkeypatch.setitem(sys.modules, "verify.command_line.mesh_drawing", None)
+    with pytest.raises(ModuleNotFoundError, match="verify.command_line.mesh_drawing"):
         main(["mesh", str(small(tmp_path)), "--out", str(tmp_path / "a.svg")])
 
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.mesh_sequences import QUANTITIES, sequences
 from verify.result import Result
-from verify.scene import load_scene
+from verify.scene.load import load_scene
+from verify.studies.mesh_sequences import QUANTITIES, sequences
 from verify.verdict import Run, SceneReport
 
 SCENE = load_scene("dcb-czm1")

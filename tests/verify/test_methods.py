@@ -7,20 +7,21 @@ from dataclasses import MISSING, fields
 import numpy as np
 import pytest
 
-from iga.material import orthotropic
-from verify.methods import METHODS, least_dofs, solve
-from verify.problems import (
+from iga.elements.elasticity import orthotropic
+from verify.methods.names import METHODS
+from verify.methods.problems import (
     SNAPSHOT_FRACTIONS,
-    axial_modulus,
     beam_problem,
-    counted_steps,
     dolfinx_problem,
-    elastic_constants,
     iga_problem,
     lefm_problem,
     problem_keys,
 )
-from verify.scene import load_scene, parse_scene
+from verify.methods.solve import least_dofs, solve
+from verify.scene.bodies import axial_modulus, elastic_constants
+from verify.scene.load import load_scene
+from verify.scene.parse import parse_scene
+from verify.scene.schema import counted_steps
 
 
 @pytest.mark.parametrize("plane", ["stress", "strain"])
@@ -97,7 +98,7 @@ def test_fracture_mechanics_goes_beyond_its_factors_by_the_elastica(name: str) -
 def test_a_call_that_another_dolfinx_does_not_have_is_its_error(installed, whose: str, monkeypatch) -> None:
     from types import SimpleNamespace
 
-    from verify import methods
+    from verify.methods import solve as methods
 
     monkeypatch.setitem(__import__("sys").modules, "dolfinx", installed and SimpleNamespace(__version__=installed))
     error = TypeError("no such keyword")
@@ -112,7 +113,7 @@ def test_an_error_of_dolfinx_comes_out_with_whose_it_is(monkeypatch: pytest.Monk
     import sys
     from types import SimpleNamespace
 
-    from verify import methods
+    from verify.methods import solve as methods
 
     def broken(problem, **how) -> None:
         raise broken.error

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from made_up_runs import scene_report, snapshot
 
-from verify.folder import read_result
-from verify.methods import solve
-from verify.moments import FRACTIONS, Moments
-from verify.moments import snapshot as drawn
-from verify.run import run
-from verify.scene import load_scene
+from verify.fields.moments import FRACTIONS, Moments
+from verify.fields.moments import snapshot as drawn
+from verify.methods.solve import solve
+from verify.runs.folder import read_result
+from verify.runs.run import run
+from verify.scene.load import load_scene
 
 SMALL = ("discretization.dofs=600", "discretization.steps=60")
 

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from verify import neglected
-from verify.checks import law_of
-from verify.effects import stiffer
+from verify.checks import neglected
+from verify.checks.identities import law_of
 from verify.result import Result, Snapshot
-from verify.scene import load_scene
+from verify.scene.effects import stiffer
+from verify.scene.load import load_scene
 
 N = 11
 OPENING = np.linspace(0.0, 1.0, N)
@@ -104,13 +104,13 @@ def test_what_a_damaged_bond_gives_back_counts_from_its_damage_on() -> None:
 def test_meshes_that_mirror_each_other_may_differ_by_rounding(off: float, same: bool, monkeypatch) -> None:
     points = np.random.default_rng(2).random((30, 2))
     upper, lower = SimpleNamespace(P_AI=points[::-1]), SimpleNamespace(P_AI=points + [0.0, off * 50.0])
-    monkeypatch.setattr("verify.given_meshes.given_meshes", lambda scene: (upper, lower))
-    monkeypatch.setattr("iga.pose.upside_down", lambda mesh: mesh)
+    monkeypatch.setattr("verify.methods.given_meshes.given_meshes", lambda scene: (upper, lower))
+    monkeypatch.setattr("iga.mesh.mirror.upside_down", lambda mesh: mesh)
     scene = SimpleNamespace(specimen=SimpleNamespace(mesh=("a", "b"), arm_thickness=50.0))
     said = neglected._other_arm(scene, SimpleNamespace(method="tspline"))
     assert said.negligible == same and said.value == pytest.approx(off, rel=1e-3)
     more = SimpleNamespace(P_AI=np.concatenate([points, points[:1]]))
-    monkeypatch.setattr("verify.given_meshes.given_meshes", lambda scene: (upper, more))
+    monkeypatch.setattr("verify.methods.given_meshes.given_meshes", lambda scene: (upper, more))
     assert not neglected._other_arm(scene, SimpleNamespace(method="tspline")).negligible
 
 

@@ -9,15 +9,16 @@ from pathlib import Path
 import pytest
 
 from verify.cli import main
-from verify.complaints import _bounds
-from verify.published import Published
-from verify.scene import load_scene, packaged_scenes, parse_scene
-from verify.schema import Scene
-from verify.shell.keys import SPECIMENS, keys, keys_of
-from verify.shell.new_scene import PUBLISHED, new_scene
-from verify.shell.scene_list import line, page
-from verify.shell.sketch import sketch
-from verify.specimen import MATERIALS, Orthotropic
+from verify.command_line.new_scene import PUBLISHED, new_scene
+from verify.command_line.scene_list import line, page
+from verify.command_line.sketch import sketch
+from verify.scene.bodies import MATERIALS, Orthotropic
+from verify.scene.complaints import _bounds
+from verify.scene.keys import SPECIMENS, keys, keys_of
+from verify.scene.load import load_scene, packaged_scenes
+from verify.scene.parse import parse_scene
+from verify.scene.published import Published
+from verify.scene.schema import Scene
 
 KINDS = tuple(SPECIMENS)
 

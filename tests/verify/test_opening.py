@@ -12,10 +12,10 @@ pytest.importorskip("matplotlib")
 from figures import Drawn  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 
-from verify.report import opening  # noqa: E402
-from verify.report.entry import entries  # noqa: E402
-from verify.report.fields import shared_snapshots  # noqa: E402
-from verify.report.layout import HIGHEST, LOWEST, WHOLE, frame  # noqa: E402
+from verify.report.figures import opening  # noqa: E402
+from verify.report.figures.entry import entries  # noqa: E402
+from verify.report.figures.fields import shared_snapshots  # noqa: E402
+from verify.report.figures.layout import HIGHEST, LOWEST, WHOLE, frame  # noqa: E402
 from verify.result import Snapshot  # noqa: E402
 
 

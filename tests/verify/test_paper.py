@@ -10,17 +10,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify.curve import curve_error
-from verify.folder import read_columns
-from verify.jobs import Job, Outcome, run_all
-from verify.methods import WITH_DOFS
-from verify.paper import plan as plans
-from verify.paper import statements
-from verify.paper.comparison import lines
-from verify.paper.plan import LAWS, Case, planned
-from verify.paper.study import Reference, Study, Trial, distance, limit, measured, trial
+from verify.curves.curve import curve_error
+from verify.methods.names import WITH_DOFS
 from verify.result import Result
-from verify.scene import load_scene
+from verify.runs.folder import read_columns
+from verify.runs.jobs import Job, Outcome, run_all
+from verify.scene.load import load_scene
+from verify.studies.paper import plan as plans
+from verify.studies.paper import statements
+from verify.studies.paper.comparison import lines
+from verify.studies.paper.plan import LAWS, Case, planned
+from verify.studies.paper.study import Reference, Study, Trial, distance, limit, measured, trial
 
 SHARED = Path(__file__).parents[3] / "shared" / "reference"
 BASES, MESHES, POINTS, PENALTIES = ("tspline", "nurbs", "lagrange"), (280, 1956), (2, 8), (1e3, 1e5)

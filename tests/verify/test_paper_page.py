@@ -17,14 +17,14 @@ from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.colors import to_hex  # noqa: E402
 from test_paper import as_stated, stopped_in, world  # noqa: E402
 
-from verify.curve import envelope  # noqa: E402
-from verify.methods import METHODS  # noqa: E402
-from verify.paper.peel import BONDS, PeelCase  # noqa: E402
-from verify.paper.plan import LAWS, Case  # noqa: E402
-from verify.paper.study import Study, Trial  # noqa: E402
-from verify.report import paper_figures, paper_section, peel_figures, peel_section  # noqa: E402
-from verify.report.style import METHOD_NAMES, colour, line  # noqa: E402
-from verify.scene import load_scene  # noqa: E402
+from verify.curves.curve import envelope  # noqa: E402
+from verify.methods.names import METHODS  # noqa: E402
+from verify.pages.style import METHOD_NAMES, colour, line  # noqa: E402
+from verify.report.studies import paper_figures, paper_section, peel_figures, peel_section  # noqa: E402
+from verify.scene.load import load_scene  # noqa: E402
+from verify.studies.paper.peel import BONDS, PeelCase  # noqa: E402
+from verify.studies.paper.plan import LAWS, Case  # noqa: E402
+from verify.studies.paper.study import Study, Trial  # noqa: E402
 
 STOPPED = Case("nurbs", "dcb-czm2", 280)
 NEVER_RUN = Case("lagrange", "dcb-czm1", 280, 8)

@@ -8,19 +8,20 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
 
-from iga.material import orthotropic
-from verify import methods
-from verify.arm import Arm
-from verify.beam import BeamProblem, model, solve
-from verify.checks import run_checks
-from verify.curve import curve_error, peak
-from verify.equilibrium import intact
-from verify.front import Pace, follow
-from verify.layer import Layer
+from iga.elements.elasticity import orthotropic
+from verify.checks.identities import run_checks
+from verify.curves.curve import curve_error, peak
+from verify.methods import solve as methods
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, steps_from_rows
-from verify.rows import Units
-from verify.scene import load_scene
-from verify.strip import Strip
+from verify.scene.load import load_scene
+from verify.theory.beam.arm import Arm
+from verify.theory.beam.equilibrium import intact
+from verify.theory.beam.path import Pace, follow
+from verify.theory.beam.peeled_strip import Strip
+from verify.theory.beam.problem import BeamProblem
+from verify.theory.beam.rows import Units
+from verify.theory.beam.solve import model, solve
+from verify.theory.beam.substrate import Layer
 
 REFERENCE = Path(__file__).parents[2] / "../shared/reference"
 PEEL = Layer.of(120.0, 10.0, 5e3, 5e3, 5e3 / 2.4, 0.2)

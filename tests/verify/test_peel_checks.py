@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.checks import growing, law_of, out_of_reach, run_checks
-from verify.methods import solve
+from verify.checks.identities import growing, law_of, out_of_reach, run_checks
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene import Scene, load_scene
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
 
 BALANCES = {"interface-force", "moment-balance", "clamp-moment", "lengthwise", "reactions"}
 ALWAYS = {"completed", "j-integral", "growth-load", "growth-angle", "energy-ledger", "dissipation", *BALANCES}

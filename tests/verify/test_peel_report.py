@@ -10,10 +10,11 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
 from verify import report  # noqa: E402
-from verify.methods import solve  # noqa: E402
-from verify.report.layout import zoom  # noqa: E402
-from verify.report.undeformed import zone_at  # noqa: E402
-from verify.scene import Scene, load_scene  # noqa: E402
+from verify.methods.solve import solve  # noqa: E402
+from verify.report.figures.layout import zoom  # noqa: E402
+from verify.report.figures.undeformed import zone_at  # noqa: E402
+from verify.scene.load import load_scene  # noqa: E402
+from verify.scene.schema import Scene
 from verify.verdict import Run, SceneReport  # noqa: E402
 
 OVERRIDES = ("discretization.dofs=1100", "load.opening=2.0", "discretization.steps=10")

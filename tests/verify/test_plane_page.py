@@ -12,10 +12,10 @@ pytest.importorskip("jinja2")
 
 from figures import Drawn  # noqa: E402
 
-from verify.plane_errors import Errors  # noqa: E402
-from verify.plane_study import Level, PlaneStudy  # noqa: E402
-from verify.report import plane  # noqa: E402
-from verify.report.style import colour  # noqa: E402
+from verify.pages.style import colour  # noqa: E402
+from verify.report.studies import plane  # noqa: E402
+from verify.studies.plane.errors import Errors  # noqa: E402
+from verify.studies.plane.study import Level, PlaneStudy  # noqa: E402
 from verify.verdict import Check  # noqa: E402
 
 NAN = float("nan")

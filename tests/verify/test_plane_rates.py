@@ -3,8 +3,8 @@
 import pytest
 
 from verify import report
-from verify.plane_errors import Errors
-from verify.plane_rates import FAMILIES, Convergence, half_fine, rate_checks, rates
+from verify.studies.plane.errors import Errors
+from verify.studies.plane.rates import FAMILIES, Convergence, half_fine, rate_checks, rates
 
 
 @pytest.fixture(scope="module")
@@ -55,8 +55,8 @@ def test_the_section_tells_errors_and_rates_of_every_family(monkeypatch: pytest.
     import numpy as np
     from figures import Drawn
 
-    from verify.report import plane_rates
-    from verify.report.style import colour
+    from verify.pages.style import colour
+    from verify.report.studies import plane_rates
 
     drawn, known = (
         Drawn(monkeypatch, plane_rates),

@@ -7,14 +7,15 @@ import numpy as np
 import pytest
 from doctored_meshes import SMOOTH, arch, function_halved, function_scaled, point_unused
 
-from iga.iga_file import from_mesh, write_iga
-from iga.polygon import polygon_mesh
+from iga.bases.unstructured import polygon_mesh
+from iga.files.iga_format import from_mesh, write_iga
 from tests.iga.test_plane import ring, square_mesh
-from verify import plane_study
-from verify.cli import FAILED, REFUSED, main
-from verify.plane_errors import Errors
-from verify.plane_study import Level, _checks, lines, load_plate, settled, study
-from verify.refusal import Refusal
+from verify.cli import REFUSED, main
+from verify.command_line.commands import FAILED
+from verify.studies.plane import study as plane_study
+from verify.studies.plane.errors import Errors
+from verify.studies.plane.study import Level, _checks, lines, load_plate, settled, study
+from verify.support.refusal import Refusal
 
 FILES = Path(__file__).parents[3] / "shared" / "iga"
 

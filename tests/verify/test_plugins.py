@@ -12,22 +12,26 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from verify import methods, plugins, verification
+from verify import verification
 from verify.cli import main
-from verify.fingerprint import fingerprint
-from verify.folder import read_columns, read_result
-from verify.jobs import left_out
-from verify.methods import known_methods, solve
+from verify.methods import names, plugins
+from verify.methods.plugins import known_methods
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene import load_scene
-from verify.verification import planned, verify
+from verify.runs.fingerprint import fingerprint
+from verify.runs.folder import read_columns, read_result
+from verify.runs.jobs import left_out
+from verify.scene.load import load_scene
+from verify.studies import one_scene
+from verify.studies.one_scene import planned
+from verify.verification import verify
 
 LINEAR = "dcb-czm1-linear"
 PROJECT = Path(__file__).resolve().parents[2]
 
 MODULE = """
 import numpy as np
-from verify.methods import solve as debond
+from verify.methods.solve import solve as debond
 from verify.result import Result
 
 def curve(scene, factor=1.0):
@@ -155,8 +159,8 @@ def test_one_that_fails_is_a_run_that_stopped(
 
 
 def test_a_method_of_debond_cannot_be_replaced(package: Path) -> None:
-    assert known_methods()["nurbs"] == methods.METHODS["nurbs"]
-    with pytest.raises(methods.NotRun, match="its name must be a word of its own"):
+    assert known_methods()["nurbs"] == names.METHODS["nurbs"]
+    with pytest.raises(names.NotRun, match="its name must be a word of its own"):
         plugins.plugins()["nurbs"].load()
 
 
@@ -165,7 +169,7 @@ def test_two_of_one_name_are_none(package: Path) -> None:
     second.mkdir()
     (second / "METADATA").write_text("Metadata-Version: 2.1\nName: other\nVersion: 1\n")
     (second / "entry_points.txt").write_text("[debond.methods]\ngood = fakecode:wrong\n")
-    with pytest.raises(methods.NotRun, match="plug-in good of .* and .*: the name is there 2 times"):
+    with pytest.raises(names.NotRun, match="plug-in good of .* and .*: the name is there 2 times"):
         solve(load_scene(LINEAR), "good")
 
 
@@ -200,10 +204,10 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
     scene, seen = load_scene(LINEAR), []
     monkeypatch.setattr(verification, "write_page", lambda module, reports, *others: seen.extend(reports))
     all_jobs = list(planned(LINEAR, scene))
-    assert [job.method for job in all_jobs][:6] == list(methods.METHODS)
+    assert [job.method for job in all_jobs][:6] == list(names.METHODS)
 
     def only(*names: str) -> None:
-        monkeypatch.setattr(verification, "planned", lambda *a: [j for j in jobs if j.method in names])
+        monkeypatch.setattr(one_scene, "planned", lambda *a: [j for j in jobs if j.method in names])
 
     jobs = [job for job in planned(LINEAR, scene) if job.method in ("beam", "good", "absent", "wrong")]
     jobs = [type(job)(job.source, scene, job.method, job.variant) for job in jobs]
@@ -220,7 +224,7 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
 
 
 def test_nothing_is_imported_to_list_methods(package: Path) -> None:
-    program = "import sys; from verify.methods import known_methods; assert 'good' in known_methods(); "
+    program = "import sys; from verify.methods.solve import known_methods; assert 'good' in known_methods(); "
     program += "sys.exit('fakecode' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", program], env=os.environ | {}).returncode == 0
 
@@ -279,7 +283,7 @@ def test_a_row_without_a_load_is_a_fault_and_so_is_a_judge_that_fails(monkeypatc
     monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given(solver)})
     with pytest.raises(plugins.PluginFault, match="a row must have load, got opening"):
         plugins.solve(load_scene(LINEAR), "mine", lambda row: None)
-    with pytest.raises(methods.NotRun, match="not run: plug-in mine of fakecode 1.0: ZeroDivisionError"):
+    with pytest.raises(names.NotRun, match="not run: plug-in mine of fakecode 1.0: ZeroDivisionError"):
         plugins.require(load_scene(LINEAR), "mine")
 
 

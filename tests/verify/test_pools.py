@@ -9,8 +9,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from verify.pools import ANSWER_SECONDS, Cluster, pool
-from verify.refusal import Refusal
+from verify.runs.pools import ANSWER_SECONDS, Cluster, pool
+from verify.support.refusal import Refusal
 
 
 def test_threads_of_this_process_do_as_many_as_they_are() -> None:

@@ -6,25 +6,16 @@ import re
 import numpy as np
 import pytest
 
-from verify import process_zone
-from verify.methods import WITH_DOFS, solve
-from verify.problems import iga_problem
-from verify.process_zone import (
-    CANTILEVER,
-    Zone,
-    bulk_length,
-    element_length,
-    expected,
-    measured,
-    slender_factor,
-    slender_length,
-    summary,
-    warnings,
-)
+from verify.methods import zone_resolution
+from verify.methods.names import WITH_DOFS
+from verify.methods.problems import iga_problem
+from verify.methods.solve import solve
+from verify.methods.zone_resolution import Zone, element_length, expected, measured, summary, warnings
 from verify.result import Result
-from verify.run import run
-from verify.scene import load_scene
-from verify.specimen import Orthotropic
+from verify.runs.run import run
+from verify.scene.bodies import Orthotropic
+from verify.scene.load import load_scene
+from verify.scene.process_zone import CANTILEVER, bulk_length, slender_factor, slender_length
 
 
 def test_without_an_elastic_part_the_zone_is_that_of_the_cantilever():
@@ -109,11 +100,11 @@ def test_a_mesh_is_made_once_to_see_it_but_files_may_have_changed(mesh, made, mo
         asked.append(given)
         raise ValueError("no mesh")
 
-    monkeypatch.setattr(process_zone, "iga_problem", problem)
+    monkeypatch.setattr(zone_resolution, "iga_problem", problem)
     assert np.isnan(element_length(scene, "nurbs")) and np.isnan(element_length(scene, "nurbs"))
     assert asked == made * [(scene, "nurbs")]
     monkeypatch.undo()
-    process_zone._longest.cache_clear()  # of a mesh that could be made after all
+    zone_resolution._longest.cache_clear()  # of a mesh that could be made after all
 
 
 @pytest.mark.parametrize("method", ["beam", "lefm"])
@@ -142,7 +133,7 @@ def test_what_a_warning_says_depends_on_the_method_and_on_the_units():
 
 
 def test_the_printed_peel_test_has_a_zone_far_below_any_element():
-    pytest.importorskip("iga.peel")
+    pytest.importorskip("iga.peel.peel")
     (text,) = warnings(load_scene("peel-as-printed"), "nurbs")
     assert text.startswith("process zone 0.014 mm < element 0.")
     assert warnings(load_scene("peel-120"), "nurbs") == ()

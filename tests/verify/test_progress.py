@@ -9,9 +9,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from verify import progress, sweep
-from verify.pools import pool
-from verify.progress import Progress, telling
+from verify.runs import sweep
+from verify.runs.pools import pool
+from verify.support import progress
+from verify.support.progress import Progress, telling
 
 
 @pytest.fixture

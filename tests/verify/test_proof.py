@@ -7,14 +7,15 @@ from math import inf
 import numpy as np
 import pytest
 
-from verify import through_thickness
-from verify.crosschecks import cross_checks
-from verify.odd_one_out import odd_one, odd_one_out
-from verify.proof import MATCHED, SECOND, held_against, proof
-from verify.reference_mesh import ReferenceMesh, reference_mesh, second_mesh, thickness_error
+from verify.checks.between_codes import cross_checks
+from verify.checks.odd_one_out import odd_one, odd_one_out
+from verify.checks.proof import MATCHED, SECOND, held_against, proof
+from verify.methods import through_thickness
+from verify.methods.reference_mesh import ReferenceMesh, reference_mesh, second_mesh, thickness_error
 from verify.result import Result
-from verify.scene import load_scene, parse_scene
-from verify.schema import Scene
+from verify.scene.load import load_scene
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
 from verify.verdict import Check
 
 OPENING = np.linspace(0.0, 3.0, 60)

@@ -9,11 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify.checks import J_TOLERANCE, law_of, run_checks
-from verify.crosschecks import cross_checks, peak_load, published_checks, published_load, published_names
-from verify.methods import dolfinx_installed, solve
+from verify.checks.between_codes import cross_checks, peak_load, published_checks, published_load, published_names
+from verify.checks.identities import J_TOLERANCE, law_of, run_checks
+from verify.methods.dolfinx import dolfinx_installed
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene import Scene, SceneError, load_scene, packaged_scenes, verified_scenes
+from verify.scene.load import load_scene, packaged_scenes, verified_scenes
+from verify.scene.parse import SceneError
+from verify.scene.schema import Scene
 
 PEAK = 'quantity = "peak", tolerance = 0.03, source = "them"'
 AT = 'quantity = "load_at", tolerance = 0.03, source = "them"'

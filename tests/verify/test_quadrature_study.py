@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify import quadrature_study
-from verify.quadrature_study import DUCTILITIES, RULES, Study, Trial, excess_variation, finding, study
 from verify.result import Result, Snapshot
-from verify.scene import load_scene
+from verify.scene.load import load_scene
+from verify.studies import interface_rules
+from verify.studies.interface_rules import DUCTILITIES, RULES, Study, Trial, excess_variation, finding, study
 
 
 def profile(traction: np.ndarray) -> Snapshot:
@@ -80,8 +80,8 @@ def test_the_section_has_every_rule_and_draws_the_stiffest_interface(monkeypatch
     pytest.importorskip("matplotlib")
     from figures import Drawn, legend
 
-    from verify.report import study as page
-    from verify.report.style import colour
+    from verify.pages.style import colour
+    from verify.report.studies import interface_rules as page
 
     drawn, given = Drawn(monkeypatch, page), made_up()
     found = page.section(given, "quadrature")
@@ -106,7 +106,7 @@ def test_the_section_has_every_rule_and_draws_the_stiffest_interface(monkeypatch
 def test_rules_that_are_drawn_or_spoken_of_are_among_those_that_are_tried() -> None:
     """Gauss and Lobatto rules of as many points, 2, 4 and 8, and lumping, on ever stiffer interfaces."""
     pytest.importorskip("matplotlib")
-    from verify.report.study import DRAWN
+    from verify.report.studies.interface_rules import DRAWN
 
     assert {(rule, points) for rule, points, _ in DRAWN} <= set(RULES)
     assert {("gauss", 2), ("lobatto", 4), ("lumped", None)} <= set(RULES), "the finding is theirs"
@@ -119,14 +119,14 @@ def test_a_solver_that_raises_is_a_finding(monkeypatch):
     def lost(scene, method):
         raise ArithmeticError("no mesh")
 
-    monkeypatch.setattr(quadrature_study, "solve", lost)
-    said = quadrature_study._trial("nurbs", "gauss", 2, 50.0, ())
+    monkeypatch.setattr(interface_rules, "solve", lost)
+    said = interface_rules._trial("nurbs", "gauss", 2, 50.0, ())
     assert said.status == "failed: ArithmeticError: no mesh" and said.profile is None and np.isnan(said.oscillation)
     assert (said.method, said.rule, said.points, said.ductility) == ("nurbs", "gauss", 2, 50.0)
 
 
 def test_without_a_field_there_is_no_oscillation(monkeypatch):
     steps = {"opening": np.zeros(1), "load": np.zeros(1)}
-    monkeypatch.setattr(quadrature_study, "solve", lambda scene, method: Result(method, steps, status="stopped: here"))
-    said = quadrature_study._trial("nurbs", "lumped", None, 50.0, ())
+    monkeypatch.setattr(interface_rules, "solve", lambda scene, method: Result(method, steps, status="stopped: here"))
+    said = interface_rules._trial("nurbs", "lumped", None, 50.0, ())
     assert np.isnan(said.oscillation) and said.profile is None and said.status == "stopped: here"

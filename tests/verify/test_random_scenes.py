@@ -10,20 +10,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify.arguments import seeds
-from verify.cli import FAILED, REFUSED, main
-from verify.crosschecks import cross_checks
-from verify.hard import campaign
-from verify.hard.campaign import APART, METHODS, Row, row, table
-from verify.hard.random_scenes import ZONES, random_scene
-from verify.jobs import Job, Outcome
-from verify.odd_one_out import odd_one_out
-from verify.process_zone import expected
-from verify.proof import MATCHED, REFERENCE, SECOND
+from verify.checks.between_codes import cross_checks
+from verify.checks.odd_one_out import odd_one_out
+from verify.checks.proof import MATCHED, REFERENCE, SECOND
+from verify.cli import REFUSED, main
+from verify.command_line.arguments import seeds
+from verify.command_line.commands import FAILED
+from verify.methods.zone_resolution import expected
 from verify.result import Result
-from verify.scene import SceneError, load_scene
-from verify.schema import Scene
-from verify.specimen import Orthotropic
+from verify.runs.jobs import Job, Outcome
+from verify.scene.bodies import Orthotropic
+from verify.scene.load import load_scene
+from verify.scene.parse import SceneError
+from verify.scene.random_scenes import ZONES, random_scene
+from verify.scene.schema import Scene
+from verify.studies import campaign
+from verify.studies.campaign import APART, METHODS, Row, row, table
 from verify.verdict import Check, Run, SceneReport
 
 FINITE, LINEAR = load_scene("dcb-czm1"), load_scene("dcb-czm1-linear")
@@ -286,7 +288,7 @@ def test_the_campaign_writes_its_rows_and_fails_for_a_fault(
     off: dict[str, float], code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     monkeypatch.setattr(campaign, "run_all", solved_with(**off))
-    monkeypatch.setattr("verify.beam_error.tolerance", lambda scene: None)  # the beam judges nobody
+    monkeypatch.setattr("verify.checks.beam_error.tolerance", lambda scene: None)  # the beam judges nobody
     assert main(["hard", "random", "--seeds", "7-8", "--out", str(tmp_path)]) == code
     said = capsys.readouterr().out
     with (tmp_path / "random.csv").open() as file:

@@ -24,28 +24,31 @@ from test_effects_study import made_up, of_pair  # noqa: E402
 from test_hard import FAKE, stub  # noqa: E402
 from test_undeformed import entry, snapshot  # noqa: E402
 
-from iga.bisection import initial  # noqa: E402
-from iga.bspline import open_knots  # noqa: E402
-from iga.nurbs import nurbs_rectangle  # noqa: E402
-from iga.tspline import greville, tspline_mesh  # noqa: E402
-from verify import mesh_drawing  # noqa: E402
-from verify.cost import figures as cost_figures  # noqa: E402
-from verify.hard import page as hard_page  # noqa: E402
-from verify.hard import suite  # noqa: E402
-from verify.hard.case import Case, variant  # noqa: E402
-from verify.hard.one import run_case  # noqa: E402
-from verify.hard.suite import Cell  # noqa: E402
-from verify.mesh_facts import MeshFacts  # noqa: E402
-from verify.methods import solve  # noqa: E402
-from verify.report import cost, curves, drawing, fields, meshes, opening, parts, peel_drawing, undeformed  # noqa: E402
-from verify.report.entry import entries  # noqa: E402
+from iga.bases.bspline import open_knots  # noqa: E402
+from iga.bases.nurbs import nurbs_rectangle  # noqa: E402
+from iga.tsplines.bisection import initial  # noqa: E402
+from iga.tsplines.tspline import greville, tspline_mesh  # noqa: E402
+from verify.command_line import mesh_drawing  # noqa: E402
+from verify.command_line.mesh_facts import MeshFacts  # noqa: E402
+from verify.methods.solve import solve  # noqa: E402
+from verify.pages import parts  # noqa: E402
+from verify.pages.style import HALF, PALETTE, colour, panel  # noqa: E402
+from verify.pages.style import drawing as settings  # noqa: E402
+from verify.report import cost
+from verify.report.figures import curves, drawing, fields, meshes, opening, peel_drawing, undeformed
+from verify.report.figures.entry import entries  # noqa: E402
 from verify.report.section import section  # noqa: E402
-from verify.report.style import HALF, PALETTE, colour, panel  # noqa: E402
-from verify.report.style import drawing as settings  # noqa: E402
-from verify.scaling import page as scaling  # noqa: E402
-from verify.scene import Scene, load_scene  # noqa: E402
-from verify.switches import page as effects_page  # noqa: E402
-from verify.switches.row import Row  # noqa: E402
+from verify.scene.load import load_scene  # noqa: E402
+from verify.scene.schema import Scene
+from verify.studies.cost import figures as cost_figures  # noqa: E402
+from verify.studies.effects import page as effects_page  # noqa: E402
+from verify.studies.effects.row import Row  # noqa: E402
+from verify.studies.hard import page as hard_page  # noqa: E402
+from verify.studies.hard import suite  # noqa: E402
+from verify.studies.hard.case import Case, variant  # noqa: E402
+from verify.studies.hard.one import run_case  # noqa: E402
+from verify.studies.hard.suite import Cell  # noqa: E402
+from verify.studies.scaling import page as scaling  # noqa: E402
 from verify.verdict import Run, SceneReport  # noqa: E402
 
 PAGE = (cost, curves, drawing, fields, meshes, opening, peel_drawing, undeformed)

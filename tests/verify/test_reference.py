@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify.checks import run_checks
-from verify.curve import curve_error
-from verify.methods import METHODS, dolfinx_installed, solve
-from verify.scene import load_scene
+from verify.checks.identities import run_checks
+from verify.curves.curve import curve_error
+from verify.methods.dolfinx import dolfinx_installed
+from verify.methods.names import METHODS
+from verify.methods.solve import solve
+from verify.scene.load import load_scene
 
 REFERENCE = Path(__file__).parents[3] / "shared" / "reference"
 SCENES = {
@@ -68,7 +70,7 @@ def test_cubic_dolfinx(scene):
 @pytest.mark.slow
 def test_time_and_where_it_goes(tmp_path):
     """Finite kinematics in 15 s, linear in 4 s, and assembly no more than 1.5 times factor-and-solve, best of two."""
-    from verify.run import run
+    from verify.runs.run import run
 
     found = {}
     for scene in ("dcb-czm1", "dcb-czm1-linear"):

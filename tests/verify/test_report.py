@@ -16,14 +16,14 @@ pytest.importorskip("jinja2")
 from made_up_runs import ENVIRONMENT, made_up, scene_report  # noqa: E402
 
 from verify import report  # noqa: E402
-from verify.checks import law_of  # noqa: E402
-from verify.curve import curve_error  # noqa: E402
-from verify.methods import DOLFINX_MISSING, DOLFINX_WAYS  # noqa: E402
-from verify.report.agreement import path  # noqa: E402
-from verify.report.summary import KINDS  # noqa: E402
-from verify.report.text import inputs, number, percent, quantity, seconds  # noqa: E402
+from verify.checks.identities import law_of  # noqa: E402
+from verify.curves.curve import curve_error  # noqa: E402
+from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS  # noqa: E402
+from verify.pages.text import inputs, number, percent, quantity, seconds  # noqa: E402
+from verify.report.figures.agreement import path  # noqa: E402
+from verify.report.tally import KINDS  # noqa: E402
 from verify.result import CURVE_COLUMNS, Result  # noqa: E402
-from verify.scene import load_scene  # noqa: E402
+from verify.scene.load import load_scene  # noqa: E402
 from verify.verdict import Check, SceneReport  # noqa: E402
 
 

@@ -18,13 +18,16 @@ from types import ModuleType, SimpleNamespace
 import numpy as np
 import pytest
 
-from verify import methods
-from verify import run as run_of
-from verify.folder import read_columns, read_result, write_json
+from verify.methods import dolfinx
+from verify.methods import solve as methods
 from verify.result import CURVE_COLUMNS, Result, Snapshot, steps_from_rows
-from verify.run import run
-from verify.scene import Scene, load_scene
-from verify.timing import Stopwatch
+from verify.runs import environment
+from verify.runs import run as run_of
+from verify.runs.folder import read_columns, read_result, write_json
+from verify.runs.run import run
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
+from verify.support.timing import Stopwatch
 
 HEADER = "opening,load,crack_length,stored_energy,dissipated_energy,external_work,newton_iterations"
 RESULT_KEYS = {
@@ -150,7 +153,8 @@ def test_an_interrupt_is_recorded_and_passed_on(scene: Scene, tmp_path: Path) ->
 def test_a_killed_run_leaves_a_valid_shorter_curve_and_no_old_result(scene: Scene, tmp_path: Path) -> None:
     run(scene, "nurbs", tmp_path, solver=stub)
     endless = (
-        "import sys, time; from pathlib import Path; from verify.run import run; from verify.scene import load_scene\n"
+        "import sys, time; from pathlib import Path; from verify.runs.run import run; "
+        "from verify.scene.load import load_scene\n"
         "def solve(scene, method, on_step):\n"
         "    for i in range(50):\n"
         "        on_step(dict(opening=i / 7, load=i / 3, crack_length=4.0, stored_energy=0.0, dissipated_energy=0.0,\n"
@@ -205,7 +209,7 @@ def test_nested_phases_count_once() -> None:
 
 def test_phases_add_up_to_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     """By a clock that goes on by one between any two looks at it."""
-    monkeypatch.setattr("verify.timing.perf_counter", iter(range(100)).__next__)
+    monkeypatch.setattr("verify.support.timing.perf_counter", iter(range(100)).__next__)
     watch = Stopwatch()
     with watch.phase("mesh"):
         pass
@@ -236,7 +240,7 @@ def test_the_time_of_a_run_is_not_that_of_importing_its_solver(monkeypatch: pyte
             return lambda problem, **keys: solution
 
     monkeypatch.setitem(sys.modules, "fem_reference.solve", Slow("fem_reference.solve"))
-    monkeypatch.setattr(methods, "dolfinx_installed", lambda: True)
+    monkeypatch.setattr(dolfinx, "dolfinx_installed", lambda: True)
     assert methods.solve(load_scene("dcb-czm1"), "dolfinx").seconds["total"] < 0.4
 
 
@@ -311,7 +315,7 @@ def test_other_ranks_compute_and_write_nothing(
 def test_taken_down_is_at_once_and_with_a_reason() -> None:
     """Without what a program does at its end, where MPI would wait for the others."""
     code = (
-        "import atexit; from verify.run import _take_down_all_ranks\n"
+        "import atexit; from verify.runs.run import _take_down_all_ranks\n"
         "atexit.register(print, 'late'); print('early'); _take_down_all_ranks('no luck'); print('on')"
     )
     environment = os.environ | {"PYTHONPATH": str(PROJECT), "OMPI_COMM_WORLD_RANK": "3"}
@@ -334,26 +338,26 @@ def test_ranks_are_those_that_mpirun_tells(variables: dict, found: tuple, monkey
         monkeypatch.delenv(name, raising=False)
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
-    assert (run_of.mpi_rank(), run_of.mpi_size()) == found
+    assert (environment.mpi_rank(), environment.mpi_size()) == found
 
 
 def test_threads_are_those_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "3")
-    assert run_of.threads() == 3 and run_of.environment()["threads a run"] == "3"
+    assert environment.threads() == 3 and environment.environment()["threads a run"] == "3"
     monkeypatch.delenv("OMP_NUM_THREADS")
-    assert run_of.threads() == os.cpu_count() and run_of.environment()["threads a run"] == "as many as cores"
+    assert environment.threads() == os.cpu_count() and environment.environment()["threads a run"] == "as many as cores"
 
 
 def test_a_package_that_is_not_installed_has_no_version() -> None:
-    assert run_of._version("no-such-package-at-all") == ""
-    assert "numpy" in run_of.versions() and "no-such-package-at-all" not in run_of.versions()
+    assert environment._version("no-such-package-at-all") == ""
+    assert "numpy" in environment.versions() and "no-such-package-at-all" not in environment.versions()
 
 
 def test_a_rank_that_fails_says_which_it_is_and_ends_at_once(monkeypatch, capsys: pytest.CaptureFixture) -> None:
     """Without waiting for the others, which wait for it."""
     ended: list[int] = []
     monkeypatch.setattr(run_of.os, "_exit", ended.append)
-    monkeypatch.setattr(run_of, "mpi_rank", lambda: 3)
+    monkeypatch.setattr(environment, "mpi_rank", lambda: 3)
 
     def broken(scene: Scene, method: str, on_step: Callable | None) -> Result:
         raise ArithmeticError("no luck")

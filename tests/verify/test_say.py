@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from verify.say import write_page
+from verify.support.say import write_page
 
 
 def test_a_page_that_cannot_be_drawn_is_a_sentence(

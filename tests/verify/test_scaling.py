@@ -14,17 +14,17 @@ import numpy as np
 import pytest
 
 from verify.cli import main
-from verify.jobs import Outcome, run_all
 from verify.result import Result
-from verify.scaling import plan as plan_of
-from verify.scaling import ranks as ranks_of
-from verify.scaling import study as study_of
-from verify.scaling.expect import DISSECTED, expectation, shared, whatever_the_size
-from verify.scaling.growth import amdahl, fit, serial_part
-from verify.scaling.plan import BARE, LARGEST, RUNGS, SMALLEST, TIMES, Run, elements, planned, sizes
-from verify.scaling.row import Row, row
-from verify.scaling.study import Study, scaling
-from verify.scene import load_scene
+from verify.runs.jobs import Outcome, run_all
+from verify.scene.load import load_scene
+from verify.studies.scaling import plan as plan_of
+from verify.studies.scaling import ranks as ranks_of
+from verify.studies.scaling import study as study_of
+from verify.studies.scaling.expect import DISSECTED, expectation, shared, whatever_the_size
+from verify.studies.scaling.growth import amdahl, fit, serial_part
+from verify.studies.scaling.plan import BARE, LARGEST, RUNGS, SMALLEST, TIMES, Run, elements, planned, sizes
+from verify.studies.scaling.row import Row, row
+from verify.studies.scaling.study import Study, scaling
 
 SCENE = load_scene("dcb-czm1")
 
@@ -38,7 +38,7 @@ LOAD = (0.25, 0.75)
 @pytest.fixture
 def two_cores(monkeypatch: pytest.MonkeyPatch) -> None:
     """A machine with DOLFINx, mpirun and two cores."""
-    monkeypatch.setattr("verify.methods.dolfinx_installed", lambda: True)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: True)
     monkeypatch.setattr(plan_of, "cores", lambda: 2)
     monkeypatch.setattr(plan_of.shutil, "which", lambda name: f"/usr/bin/{name}")
 
@@ -119,7 +119,7 @@ def test_the_ladders_span_the_sizes_asked_for(two_cores: None) -> None:
     assert plan.reasons == ("4, 8, 16 ranks: left out: 2 cores here",)
     assert len({run.task().key for run in plan.again()}) == len(plan.again()) == TIMES * len(plan.runs)
     task = more[0].task()
-    assert task.program[:4] == ("verify.scaling.ranks", "2", "solve", "dcb-czm1") and task.lane == "dolfinx"
+    assert task.program[:4] == ("verify.studies.scaling.ranks", "2", "solve", "dcb-czm1") and task.lane == "dolfinx"
 
 
 def test_the_sizes_of_a_peel_count_both_bodies(two_cores: None) -> None:
@@ -148,7 +148,7 @@ def test_what_is_not_there_is_left_out_in_words(two_cores: None, monkeypatch: py
     assert "2, 4, 8, 16 ranks: left out: 1 core here" in planned("dcb-czm1", SCENE).reasons
     monkeypatch.setattr(plan_of.shutil, "which", lambda name: None)
     assert "more than 1 rank: left out: mpirun is not installed" in planned("dcb-czm1", SCENE).reasons
-    monkeypatch.setattr("verify.methods.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     plan = planned("dcb-czm1", SCENE)
     assert {run.method for run in plan.runs} == {"nurbs"}
     assert plan.reasons == ("dolfinx: not run: DOLFINx is not installed",)
@@ -314,7 +314,7 @@ def measured(tmp_path_factory: pytest.TempPathFactory) -> dict:
     """The growth of the ``iga`` solver on this machine."""
     out = tmp_path_factory.mktemp("scaling")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("verify.methods.dolfinx_installed", lambda: False)
+        patch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
         assert main(["scaling", "dcb-czm1", "--out", str(out)]) == 0
     return json.loads((out / "scaling.json").read_text())
 

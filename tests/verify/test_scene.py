@@ -9,21 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from verify.effects import end_rotation, simulated
-from verify.laws import known
-from verify.scene import (
-    Dcb,
-    Isotropic,
-    Orthotropic,
-    Peel,
-    Scene,
-    SceneError,
-    load_scene,
-    packaged_scenes,
-    parse_scene,
-    verified_scenes,
-)
-from verify.section import one_of
+from verify.scene.bodies import Dcb, Isotropic, Orthotropic, Peel
+from verify.scene.effects import end_rotation, simulated
+from verify.scene.laws import known
+from verify.scene.load import load_scene, packaged_scenes, verified_scenes
+from verify.scene.parse import SceneError, parse_scene
+from verify.scene.schema import Scene
+from verify.scene.tables import one_of
 
 #: The scenes of the paper, which are verified where none is named.
 PAPER_DCB = ("dcb-czm1", "dcb-czm1-linear", "dcb-czm2", "dcb-czm2-linear")

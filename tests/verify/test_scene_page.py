@@ -17,15 +17,16 @@ from made_up_runs import limit, made_up, run, scene_report  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 from scipy.interpolate import CubicHermiteSpline  # noqa: E402
 
-from verify.curve import PROPAGATION, curve_error, oscillation, peak  # noqa: E402
-from verify.methods import DOLFINX_MISSING  # noqa: E402
-from verify.report import cost, curves  # noqa: E402
+from verify.curves.curve import PROPAGATION, curve_error, oscillation, peak  # noqa: E402
+from verify.methods.dolfinx import DOLFINX_MISSING  # noqa: E402
+from verify.pages.style import PHASES, colour  # noqa: E402
+from verify.pages.text import NO_VALUE, percent, quantity  # noqa: E402
+from verify.report import cost
 from verify.report import section as section_of  # noqa: E402
-from verify.report.agreement import path  # noqa: E402
-from verify.report.entry import entries  # noqa: E402
+from verify.report.figures import curves  # noqa: E402
+from verify.report.figures.agreement import path  # noqa: E402
+from verify.report.figures.entry import entries  # noqa: E402
 from verify.report.section import RunRow, Section, section  # noqa: E402
-from verify.report.style import PHASES, colour  # noqa: E402
-from verify.report.text import NO_VALUE, percent, quantity  # noqa: E402
 from verify.result import Result  # noqa: E402
 from verify.verdict import Check, Run, SceneReport  # noqa: E402
 

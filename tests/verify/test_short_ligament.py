@@ -7,10 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.checks import J_TOLERANCE, held_at_the_end, j_deviation, run_checks
-from verify.methods import dolfinx_installed, solve
+from verify.checks.identities import J_TOLERANCE, held_at_the_end, j_deviation, run_checks
+from verify.methods.dolfinx import dolfinx_installed
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene import Scene, load_scene
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
 from verify.verdict import Check
 
 METHODS = ["beam", "nurbs", "tspline", "lagrange", pytest.param("dolfinx", marks=pytest.mark.skipif(

@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
-from verify.report.strokes import sides, strokes  # noqa: E402
+from verify.pages.strokes import sides, strokes  # noqa: E402
 
 
 def grid(n: int, m: int, samples: int = 4) -> np.ndarray:

@@ -16,7 +16,7 @@ from matplotlib.colors import to_rgb  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
 from verify import report  # noqa: E402
-from verify.report.style import (  # noqa: E402
+from verify.pages.style import (
     HALF,
     METHOD_NAMES,
     METHODS,

@@ -13,11 +13,12 @@ pytest.importorskip("jinja2")
 
 from made_up_runs import ENVIRONMENT, made_up, run, scene_report  # noqa: E402
 
-from verify.methods import DOLFINX_MISSING, DOLFINX_WAYS  # noqa: E402
+from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS  # noqa: E402
+from verify.pages.text import percent  # noqa: E402
 from verify.report import markdown  # noqa: E402
 from verify.report.section import Section, section  # noqa: E402
-from verify.report.summary import Summary, headline, summarise  # noqa: E402
-from verify.report.text import percent  # noqa: E402
+from verify.report.summary import Summary, summarise
+from verify.report.tally import headline  # noqa: E402
 from verify.verdict import Check, Counts, Run, SceneReport  # noqa: E402
 
 FAILS = Check("j-integral", "lagrange", 0.02, 0.005, "exact", "J is the area under the traction law.")

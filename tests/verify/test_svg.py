@@ -15,8 +15,8 @@ from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from PIL import Image  # noqa: E402
 
-from verify.report.style import STRESS_MAP, to_svg  # noqa: E402
-from verify.report.svg import _radius, short_numbers, with_classes  # noqa: E402
+from verify.pages.style import STRESS_MAP, to_svg  # noqa: E402
+from verify.pages.svg import _radius, short_numbers, with_classes  # noqa: E402
 
 #: Colours and limits of figures, of which one colour comes once.
 LOOKS = (("#123456", (0.0, 1.0)), ("#123456", (0.0, 1.1)), ("#abcdef", (0.0, 1.2)))

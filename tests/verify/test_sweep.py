@@ -14,15 +14,15 @@ from pathlib import Path
 
 import pytest
 
-from verify.estimate import steps
-from verify.fingerprint import digest, fingerprint, source
-from verify.jobs import Job
-from verify.plain import Damaged
-from verify.pools import pool
-from verify.progress import duration
-from verify.scene import load_scene
-from verify.store import NAME, Store, link, opened
-from verify.sweep import FOLDER, Done, Task, _at_once, _damage, _next, _submitted, _why, listed, sweep
+from verify.runs.estimate import steps
+from verify.runs.fingerprint import digest, fingerprint, source
+from verify.runs.jobs import Job
+from verify.runs.pools import pool
+from verify.runs.store import NAME, Store, link, opened
+from verify.runs.sweep import FOLDER, Done, Task, _at_once, _damage, _next, _submitted, _why, listed, sweep
+from verify.scene.load import load_scene
+from verify.support.checked_files import Damaged
+from verify.support.progress import duration
 
 PROJECT = Path(__file__).resolve().parents[2]
 
@@ -303,7 +303,7 @@ def test_a_lane_goes_one_by_one_and_first() -> None:
 
 
 def test_an_output_folder_belongs_to_one_engine(tmp_path: Path, marks: Path) -> None:
-    from verify.refusal import Refusal
+    from verify.support.refusal import Refusal
 
     with opened(tmp_path), pytest.raises(Refusal, match="no other debond is at work"):
         runs([task("a", "ends", marks)], tmp_path, 1)
@@ -377,7 +377,7 @@ def test_the_hash_tells_what_a_result_rests_on(monkeypatch: pytest.MonkeyPatch) 
     job = Job("dcb-czm1", scene, "nurbs", "a", ("discretization.dofs=500",))
     others += [job.task().key, Job("dcb-czm1", scene, "nurbs", "a", ("discretization.dofs=501",)).task().key]
     for name, value in (("machine", {"processor": "another"}), ("versions", {"numpy": "1"})):
-        monkeypatch.setattr(f"verify.fingerprint.{name}", lambda value=value: value)
+        monkeypatch.setattr(f"verify.runs.fingerprint.{name}", lambda value=value: value)
         others.append(fingerprint(scene, "nurbs"))
         monkeypatch.undo()
     monkeypatch.setenv("OMP_NUM_THREADS", "7")

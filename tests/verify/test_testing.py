@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 import verify.testing
-from verify.testing import Reading, assert_curves_close
+from verify.curves.read import Reading
+from verify.testing import assert_curves_close
 
 PROJECT = Path(__file__).parents[2]
 EXAMPLE = PROJECT / "examples" / "regression_test"

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 pytest.importorskip("markupsafe")
 
-from verify.report.text import (  # noqa: E402
+from verify.pages.text import (
     NO_VALUE,
     Units,
     axis,
@@ -25,7 +25,7 @@ from verify.report.text import (  # noqa: E402
     span,
     symbols,
 )
-from verify.scene import load_scene  # noqa: E402
+from verify.scene.load import load_scene  # noqa: E402
 
 DIGITS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−", "0123456789--")
 SIZES = st.floats(1e-30, 1e30) | st.floats(1e-5, 1e7)

@@ -8,8 +8,8 @@ import sys
 import numpy as np
 import pytest
 
-from verify import timing
-from verify.timing import peak_memory_mb
+from verify.support import timing
+from verify.support.timing import peak_memory_mb
 
 #: Size of an array that is held here, in megabytes.
 HELD = 200.0
@@ -18,7 +18,7 @@ HELD = 200.0
 def test_the_peak_is_this_process_s_own() -> None:
     """Not that of the one that started it, which a process inherits in ru_maxrss."""
     held = np.ones(int(HELD * 1e6) // 8)
-    asked = [sys.executable, "-c", "from verify.timing import peak_memory_mb; print(peak_memory_mb())"]
+    asked = [sys.executable, "-c", "from verify.support.timing import peak_memory_mb; print(peak_memory_mb())"]
     said = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
     assert 1.0 < float(said) < HELD < held.nbytes / 1e6 + 1.0 <= peak_memory_mb() + 1.0
 

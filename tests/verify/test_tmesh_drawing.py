@@ -7,11 +7,11 @@ pytest.importorskip("matplotlib")
 
 from matplotlib.figure import Figure  # noqa: E402
 
-from iga.bisection import initial  # noqa: E402
-from iga.tmesh_lines import tensor_grid, with_line  # noqa: E402
-from iga.tspline import greville, tspline_mesh  # noqa: E402
-from verify.report.style import drawing, to_svg  # noqa: E402
-from verify.report.tmesh_drawing import Zone, draw_tmesh, legend_entries  # noqa: E402
+from iga.tsplines.bisection import initial  # noqa: E402
+from iga.tsplines.lines import tensor_grid, with_line  # noqa: E402
+from iga.tsplines.tspline import greville, tspline_mesh  # noqa: E402
+from verify.pages.style import drawing, to_svg  # noqa: E402
+from verify.report.figures.tmesh_drawing import Zone, draw_tmesh, legend_entries  # noqa: E402
 
 GRID = tensor_grid(np.arange(5.0), np.arange(4.0))
 

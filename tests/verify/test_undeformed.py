@@ -9,9 +9,9 @@ pytest.importorskip("matplotlib")
 
 from matplotlib.figure import Figure  # noqa: E402
 
-from verify.report.entry import Entry  # noqa: E402
-from verify.report.style import drawing, line  # noqa: E402
-from verify.report.undeformed import (  # noqa: E402
+from verify.pages.style import drawing, line  # noqa: E402
+from verify.report.figures.entry import Entry  # noqa: E402
+from verify.report.figures.undeformed import (
     _changes,
     _distinct,
     _last,
@@ -23,7 +23,7 @@ from verify.report.undeformed import (  # noqa: E402
     zone_at,
 )
 from verify.result import Result, Snapshot  # noqa: E402
-from verify.scene import load_scene  # noqa: E402
+from verify.scene.load import load_scene  # noqa: E402
 from verify.verdict import Run  # noqa: E402
 
 SCENE, LENGTH, ARM = load_scene("dcb-czm1"), 14.0, 0.2

@@ -14,17 +14,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify import methods, sweep, verification
+from verify import verification
+from verify.checks.between_codes import cross_checks
+from verify.checks.judgement import Demands
 from verify.cli import main
-from verify.crosschecks import cross_checks
-from verify.jobs import Job, Outcome
-from verify.judgement import Demands
-from verify.plugins import plugins
-from verify.reference_mesh import reference_mesh
+from verify.methods import dolfinx
+from verify.methods.plugins import plugins
+from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
-from verify.scene import Scene, load_scene
+from verify.runs import sweep
+from verify.runs.jobs import Job, Outcome
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
+from verify.studies import one_scene
+from verify.studies.one_scene import convergence, planned
 from verify.verdict import Check, Run, SceneReport
-from verify.verification import convergence, planned, verify
+from verify.verification import verify
 
 LINEAR = "dcb-czm1-linear"
 
@@ -38,7 +43,7 @@ def reports(monkeypatch: pytest.MonkeyPatch) -> list[SceneReport]:
 
 
 def only(monkeypatch: pytest.MonkeyPatch, *jobs: Job) -> None:
-    monkeypatch.setattr(verification, "planned", lambda source, scene, full: [j for j in jobs if j.scene is scene])
+    monkeypatch.setattr(one_scene, "planned", lambda source, scene, full: [j for j in jobs if j.scene is scene])
 
 
 @pytest.fixture
@@ -106,13 +111,13 @@ def test_an_earlier_result_does_not_pass_for_a_crashed_run(
     assert verify([(LINEAR, scene)], tmp_path, jobs=1)
     monkeypatch.setattr(sweep, "call", lambda *how: -9)
     assert verify([(LINEAR, scene)], tmp_path, jobs=1), "nothing has changed: there is nothing to run"
-    monkeypatch.setattr("verify.fingerprint.source", lambda packages, own=(): "another version")
+    monkeypatch.setattr("verify.runs.fingerprint.source", lambda packages, own=(): "another version")
     assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
     assert not (tmp_path / LINEAR / "lefm" / "curve.csv").exists()
 
 
 def test_a_failing_check_fails_the_whole(scene: Scene, reports: list, tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr("verify.checks.ENERGY_TOLERANCE", -1.0)
+    monkeypatch.setattr("verify.checks.identities.ENERGY_TOLERANCE", -1.0)
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
 
@@ -120,7 +125,7 @@ def test_a_failing_check_fails_the_whole(scene: Scene, reports: list, tmp_path: 
 def test_without_dolfinx_its_rows_say_so_and_nothing_fails(
     scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
-    monkeypatch.setattr(methods, "dolfinx_installed", lambda: False)
+    monkeypatch.setattr(dolfinx, "dolfinx_installed", lambda: False)
     only(monkeypatch, Job(LINEAR, scene, "dolfinx", "dolfinx"), Job(LINEAR, scene, "lefm", "lefm"))
     assert verify([(LINEAR, scene)], tmp_path, jobs=1)
     assert reports[0].runs[0].left_out == "not run: DOLFINx is not installed"
@@ -158,7 +163,7 @@ def test_j_is_no_check_on_a_coarse_mesh_of_a_sequence(scene: Scene) -> None:
     assert not coarse.meant_for(check)
     assert coarse.meant_for(replace(check, name="energy-ledger"))
     assert Job(LINEAR, scene, "nurbs", "nurbs").meant_for(check)
-    assert Job(LINEAR, scene, "tspline", "tspline-adaptive", verification.ADAPTIVE).meant_for(check)
+    assert Job(LINEAR, scene, "tspline", "tspline-adaptive", one_scene.ADAPTIVE).meant_for(check)
 
 
 def test_runs_are_named_and_kept_with_what_they_were_told(

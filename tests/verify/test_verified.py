@@ -11,16 +11,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify import run as run_module
-from verify.cli import FAILED, INTERRUPTED, main
-from verify.cost import accuracy
-from verify.cost.accuracy import Choice
-from verify.cost.verified import LEVELS, apart, bound, finer, verified
-from verify.hard.random_scenes import random_scene
-from verify.methods import solve
+from verify.cli import INTERRUPTED, main
+from verify.command_line.commands import FAILED
+from verify.methods.solve import solve
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
-from verify.run import run
-from verify.scene import load_scene, parse_scene
+from verify.runs import run as run_module
+from verify.runs.run import run
+from verify.scene.load import load_scene
+from verify.scene.parse import parse_scene
+from verify.scene.random_scenes import random_scene
+from verify.studies.cost import accuracy
+from verify.studies.cost.accuracy import Choice
+from verify.studies.cost.verified import LEVELS, apart, bound, finer, verified
 from verify.verdict import Check
 
 FIRST = Choice("nurbs", ("discretization.dofs=300", "discretization.degree=2"), 1.0, "a guess")
@@ -157,7 +159,7 @@ def test_where_there_is_no_finer_mesh_it_says_so(solving, tmp_path: Path, monkey
     def few(*what):
         return next(tries, lambda *_: real(load_scene("dcb-czm1"), "nurbs", 3, 1e5))(*what)
 
-    monkeypatch.setattr("verify.cost.verified.with_elements", few)
+    monkeypatch.setattr("verify.studies.cost.verified.with_elements", few)
     code, found = solved(tmp_path)
     assert code == FAILED and found["accuracy"]["reached"][1] == pytest.approx(0.015, rel=0.05)
     assert "no mesh is finer than that of level-1" in capsys.readouterr().err

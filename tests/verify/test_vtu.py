@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from vtu_files import arrays
 
-from iga.bernstein import bernstein, tensor
-from iga.bspline import open_knots
-from iga.extraction import ElementBlock, Mesh
-from iga.iga_file import mesh as mesh_of
-from iga.iga_read import read_iga
-from iga.nurbs import nurbs_mesh
-from verify.vtu import vtk_order, write_vtu
+from iga.bases.bspline import open_knots
+from iga.bases.nurbs import nurbs_mesh
+from iga.files.iga_format import mesh as mesh_of
+from iga.files.iga_reader import read_iga
+from iga.mesh.bernstein import bernstein, tensor
+from iga.mesh.extraction import ElementBlock, Mesh
+from verify.fields.cells import vtk_order, write_vtu
 
 IGA = Path(__file__).parents[3] / "shared" / "iga"
 

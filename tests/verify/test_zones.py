@@ -9,10 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.arm import Arm, V
-from verify.collocation import Field
-from verify.law import Bilinear
-from verify.zones import (
+from verify.theory.beam.arm import Arm, V
+from verify.theory.beam.collocation import Field
+from verify.theory.beam.zones import (
     BARE,
     CONTACT,
     ELASTIC,
@@ -30,6 +29,7 @@ from verify.zones import (
     find,
     mesh,
 )
+from verify.theory.law import Bilinear
 
 ARM = Arm(0.3, 0.1, finite=False)
 LAW = Bilinear(strength=2.0, toughness=0.5, ductility=5.0, penalty=1e3, contact=True)

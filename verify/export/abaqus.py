@@ -9,9 +9,8 @@ import numpy as np
 
 from verify.export.mesh import SceneMesh
 from verify.export.numbers import effects, header, law
-from verify.problems import counted_steps, elastic_constants
-from verify.schema import Scene
-from verify.specimen import Isotropic, Material
+from verify.scene.bodies import Isotropic, Material, elastic_constants
+from verify.scene.schema import Scene, counted_steps
 
 #: Solid elements by plane and degree. Of degree 1 those with incompatible modes: fully integrated ones lock in bending,
 #: by 20 % in one layer as long as it is thick.

@@ -10,10 +10,10 @@ from verify.export.mesh import SceneMesh, scene_mesh
 from verify.export.numbers import KINDS, notes, numbers
 from verify.export.tables import write_tables
 from verify.export.vtu import write_scene_vtu
-from verify.folder import write_json
-from verify.refusal import Refusal
-from verify.schema import Scene
-from verify.section import one_of
+from verify.runs.folder import write_json
+from verify.scene.schema import Scene
+from verify.scene.tables import one_of
+from verify.support.refusal import Refusal
 
 ENDINGS = {"abaqus": "inp", "gmsh": "msh", "vtu": "vtu"}
 FORMATS = (*ENDINGS, "csv")

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem_reference.specimen import Body, Place, Specimen
-from verify.problems import dolfinx_problem
-from verify.refusal import Refusal
-from verify.schema import Scene
+from fem_reference.problem.specimen import Body, Place, Specimen
+from verify.methods.problems import dolfinx_problem
+from verify.scene.schema import Scene
+from verify.support.refusal import Refusal
 
 #: Upper body first.
 BODIES: Mapping[str, tuple[str, str]] = {"dcb": ("upper", "lower"), "peel": ("strip", "substrate")}

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from verify.effects import simulated
+from verify.checks.load_introduction import sentence
 from verify.export.mesh import SceneMesh
-from verify.introduction import sentence
-from verify.law import Bilinear
-from verify.problems import counted_steps, elastic_constants
-from verify.schema import Scene
+from verify.scene.bodies import elastic_constants
+from verify.scene.effects import simulated
+from verify.scene.schema import Scene, counted_steps
+from verify.theory.law import Bilinear
 
 #: Laws that other codes are told, and what they are.
 KINDS: Mapping[str, str] = {"bilinear": "bilinear, mode I: the gap along the normal alone bears traction"}

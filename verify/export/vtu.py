@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from verify.export.mesh import SceneMesh
-from verify.vtk_xml import Grid, write_grid
+from verify.fields.vtk_xml import Grid, write_grid
 
 #: VTK_QUAD and VTK_QUADRATIC_QUAD of vtkCellType.h.
 QUADS = {1: 9, 2: 23}

@@ -8,10 +8,10 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes
 
-from verify.compare import Comparison
-from verify.curve import envelope
-from verify.report.style import HALF, Line, Panel, colour, drawing, panel, to_svg
-from verify.report.template import rendered
+from verify.curves.compare import Comparison
+from verify.curves.curve import envelope
+from verify.pages.style import HALF, Line, Panel, colour, drawing, panel, to_svg
+from verify.pages.template import rendered
 from verify.verdict import Check
 
 _A, _B = Line("lagrange", 1.2, (), 1.0, 4.0), Line("dolfinx", 3.4, (), 0.5, 2.0)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite
 
-from verify.mesh_sequences import Sequence, sequences
-from verify.report.entry import Entry
-from verify.report.style import METHOD_NAMES
-from verify.report.text import Units, number, percent, quantity
-from verify.scene import Scene
+from verify.pages.style import METHOD_NAMES
+from verify.pages.text import Units, number, percent, quantity
+from verify.report.figures.entry import Entry
+from verify.scene.schema import Scene
+from verify.studies.mesh_sequences import Sequence, sequences
 from verify.verdict import SceneReport
 
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from verify.report.entry import Entry, short_names
-from verify.report.labels import name_points
-from verify.report.parts import phase_bars, plain
-from verify.report.style import HALF, PHASES, Panel, colour, drawing, panel, to_svg
-from verify.report.text import seconds
+from verify.pages.labels import name_points
+from verify.pages.parts import phase_bars, plain
+from verify.pages.style import HALF, PHASES, Panel, colour, drawing, panel, to_svg
+from verify.pages.text import seconds
+from verify.report.figures.entry import Entry, short_names
 from verify.result import Result
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scene.schema import Scene
 
 
 def total_seconds(result: Result) -> float:

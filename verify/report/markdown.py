@@ -7,16 +7,17 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from verify.report.text import number, seconds
+from verify.pages.text import number, seconds
 from verify.verdict import Counts
 
 if TYPE_CHECKING:
-    from verify.report.entry import Entry
-    from verify.report.included import HardRow, IncludedSection, Scaling
-    from verify.report.plane import PlaneSection
-    from verify.report.plane_rates import RatesSection
+    from verify.report.figures.entry import Entry
     from verify.report.section import Section
+    from verify.report.studies.included import IncludedSection, Scaling
+    from verify.report.studies.plane import PlaneSection
+    from verify.report.studies.plane_rates import RatesSection
     from verify.report.summary import Summary
+    from verify.studies.hard.page import Row as HardRow
     from verify.verdict import Check
 
 #: What would be markup where it stands; an angle bracket before a space or a digit is none.

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import degrees
 
-from verify import matched
-from verify.effects import simulated
-from verify.report.entry import Entry
-from verify.report.text import number, percent
-from verify.scene import Scene
+from verify.checks import matched
+from verify.pages.text import number, percent
+from verify.report.figures.entry import Entry
+from verify.scene.effects import simulated
+from verify.scene.schema import Scene
 
 
 def sentences(scene: Scene, found: Sequence[Entry]) -> tuple[str, ...]:

@@ -7,23 +7,24 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from verify.cost.figures import named
-from verify.cost.page import script as chart_script
-from verify.hard.suite import totals
-from verify.included import Included
-from verify.paper.peel import PeelStudy
-from verify.paper.study import Study as Figures
-from verify.plane_rates import Convergence
-from verify.plane_study import PlaneStudy
-from verify.quadrature_study import Study
-from verify.report import markdown, paper_section, peel_section, plane, plane_rates, study
-from verify.report.included import IncludedSection
-from verify.report.included import sections as shown
+from verify.pages.template import rendered
+from verify.pages.text import percent, seconds, symbols
+from verify.report import markdown
 from verify.report.section import Section, section
+from verify.report.studies import interface_rules, paper_section, peel_section, plane, plane_rates
+from verify.report.studies.included import IncludedSection
+from verify.report.studies.included import sections as shown
 from verify.report.summary import summarise
-from verify.report.template import rendered
-from verify.report.text import percent, seconds, symbols
-from verify.switches.page import in_cell
+from verify.studies.cost.figures import named
+from verify.studies.cost.page import script as chart_script
+from verify.studies.effects.page import in_cell
+from verify.studies.found import Included
+from verify.studies.hard.suite import totals
+from verify.studies.interface_rules import Study
+from verify.studies.paper.peel import PeelStudy
+from verify.studies.paper.study import Study as Figures
+from verify.studies.plane.rates import Convergence
+from verify.studies.plane.study import PlaneStudy
 from verify.verdict import SceneReport
 
 __all__ = ["write"]
@@ -88,7 +89,7 @@ def write(
         scripts=_scripts(sections, studies),
         planes=plane_sections,
         rates=rates_section,
-        quadrature=None if quadrature is None else study.section(quadrature, "quadrature"),
+        quadrature=None if quadrature is None else interface_rules.section(quadrature, "quadrature"),
         paper=None if paper is None else paper_section.section(paper, "figures"),
         peels=None if peels is None else peel_section.section(peels, "figure-9"),
         environment=dict(environment),

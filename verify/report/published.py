@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from verify.crosschecks import published_load
-from verify.published import Published
-from verify.report.entry import Entry
-from verify.report.text import Units, number, percent, quantity
-from verify.scene import Scene
+from verify.checks.between_codes import published_load
+from verify.pages.text import Units, number, percent, quantity
+from verify.report.figures.entry import Entry
+from verify.scene.published import Published
+from verify.scene.schema import Scene
 
 
 @dataclass(frozen=True)

@@ -8,28 +8,16 @@ from itertools import groupby
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
-from verify.report import (
-    converged,
-    cost,
-    curves,
-    drawing,
-    fields,
-    matched,
-    meshes,
-    opening,
-    peel_drawing,
-    published,
-    undeformed,
-    zones,
-)
-from verify.report.entry import Entry, entries
-from verify.report.style import METHODS, Panel
-from verify.report.summary import KINDS, Tally, headline, tally
-from verify.report.text import NO_VALUE, Units, inputs, modelled, number, percent, quantity, seconds, sentence
+from verify.pages.style import METHODS, Panel
+from verify.pages.text import NO_VALUE, Units, inputs, modelled, number, percent, quantity, seconds, sentence
+from verify.report import converged, cost, matched, published, zones
+from verify.report.figures import curves, drawing, fields, meshes, opening, peel_drawing, undeformed
+from verify.report.figures.entry import Entry, entries
+from verify.report.tally import KINDS, Tally, headline, tally
 from verify.verdict import Check, Counts, Run, SceneReport, counted
 
 if TYPE_CHECKING:
-    from verify.scene import Scene
+    from verify.scene.schema import Scene
 
 
 @dataclass(frozen=True)

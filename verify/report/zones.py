@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 
-from verify import process_zone
-from verify.report.entry import Entry
-from verify.report.text import Units, number, quantity
-from verify.scene import Scene
+from verify.methods import zone_resolution
+from verify.pages.text import Units, number, quantity
+from verify.report.figures.entry import Entry
+from verify.scene.schema import Scene
 
 UNKNOWN = "–"
 
@@ -34,10 +34,10 @@ def rows(scene: Scene, found: Sequence[Entry]) -> tuple[ZoneRow, ...]:
 
 
 def _row(scene: Scene, entry: Entry) -> ZoneRow | None:
-    zone = process_zone.expected(entry.run.scene or scene, entry.method)
+    zone = zone_resolution.expected(entry.run.scene or scene, entry.method)
     if not isfinite(zone.element):
         return None
-    length, unit = process_zone.measured(entry.result), Units.of(scene.units).length
+    length, unit = zone_resolution.measured(entry.result), Units.of(scene.units).length
     return ZoneRow(
         entry,
         element=quantity(zone.element, unit, 2),

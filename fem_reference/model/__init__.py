@@ -1,0 +1,1 @@
+"""Mesh, forms and matrices in DOLFINx."""

@@ -1,0 +1,150 @@
+"""The weak form: two elastic bodies, the bond between them, the load on their end faces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import basix.ufl
+import numpy as np
+import ufl
+from dolfinx import fem, mesh
+from petsc4py import PETSc
+
+from fem_reference.dolfinx_api import entity_maps
+from fem_reference.model.mesh import TwoBodies
+from fem_reference.problem.problem import Debonding
+from fem_reference.problem.specimen import Face, Specimen
+
+BOND = 1
+
+
+@dataclass(frozen=True)
+class WeakForm:
+    """UFL forms on the parent mesh; lists are blocks (upper, lower).
+
+    ``internal`` and ``bulk`` are the internal forces of the bodies and their tangent; ``load`` the face forces of a
+    unit load; ``slope`` the mean du_y/dX of each loaded face as a functional; ``face_energy`` the strain energy on the
+    end faces as the J-integral counts it, per unit width. ``gap`` (one row of blocks), ``weight`` and
+    ``position`` are integrals over the bond against functions that are 1 at one of its quadrature points: of the gap as
+    a bilinear form, of 1 and of X.
+    """
+
+    internal: list
+    bulk: list
+    load: list
+    slope: list
+    energy: ufl.Form
+    face_energy: ufl.Form
+    gap: list
+    weight: ufl.Form
+    position: ufl.Form
+    maps: object
+
+
+def bulk_points(degree: int) -> int:
+    """Gauss points a direction in an element: exact for the linear part on rectangles.
+
+    The quartic part of the energy is integrated less than exactly; a point more moves no load by 1e-6 of itself.
+    """
+    return degree + 1
+
+
+def bond_points(degree: int) -> int:
+    """Gauss points on an element of the bond: more than smooth tractions need, since the law has kinks inside."""
+    return degree + 3
+
+
+def displacements(bodies: TwoBodies, degree: int) -> tuple[fem.Function, fem.Function]:
+    """Vector Lagrange functions on the upper and the lower body."""
+    upper, lower = (fem.Function(fem.functionspace(body.mesh, ("Lagrange", degree, (2,)))) for body in bodies.pair)
+    return upper, lower
+
+
+def weak_form(
+    problem: Debonding, specimen: Specimen, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function]
+) -> WeakForm:
+    """All forms of the problem.
+
+    Materials and sizes enter as constants: one compiled form serves every specimen of a kind, at the same degree and
+    kinematics.
+    """
+    domain, finite, (u, w) = bodies.parent, problem.kinematics == "finite", displacement
+    V = ufl.MixedFunctionSpace(u.function_space, w.function_space)
+    v, d = ufl.TestFunctions(V), ufl.TrialFunctions(V)
+    point = basix.ufl.quadrature_element("interval", degree=2 * bond_points(problem.degree) - 1)
+    q = ufl.TestFunction(fem.functionspace(bodies.bond.mesh, point))("+")
+    width = constant(domain, problem.width)
+    D = [constant(domain, body.D_IJ) for body in specimen.bodies]
+    W = [energy_density(u_body, D_body, finite) for u_body, D_body in zip(displacement, D, strict=True)]
+    dx, ds, dS = _measures(bodies, problem.degree)
+
+    def over_faces(density: Callable, part: Callable[[Face], float]) -> ufl.Form:
+        """Sum over the faces of integrals of a density (of the body), each times a part of its own."""
+        return sum(constant(domain, part(face)) * density(face.body) * ds(i) for i, face in enumerate(specimen.faces))
+
+    def per_length(face: Face) -> float:
+        return face.load / specimen.bodies[face.body].thickness
+
+    stored = width * (W[0] * dx(0) + W[1] * dx(1))
+    virtual_work = ufl.derivative(stored, u, v[0]) + ufl.derivative(stored, w, v[1])
+    tangent = ufl.derivative(virtual_work, u, d[0]) + ufl.derivative(virtual_work, w, d[1])
+    return WeakForm(
+        internal=ufl.extract_blocks(virtual_work),
+        bulk=ufl.extract_blocks(tangent),
+        load=ufl.extract_blocks(over_faces(lambda i: v[i][1], per_length)),
+        slope=ufl.extract_blocks(over_faces(lambda i: v[i][1].dx(0), lambda face: abs(per_length(face)))),
+        energy=stored,
+        face_energy=over_faces(lambda i: W[i], lambda face: face.energy),
+        gap=[
+            ufl.TrialFunction(u.function_space)("+")[1] * q * dS(BOND),
+            -ufl.TrialFunction(w.function_space)("-")[1] * q * dS(BOND),
+        ],
+        weight=q * dS(BOND),
+        position=ufl.SpatialCoordinate(domain)("+")[0] * q * dS(BOND),
+        maps=entity_maps(domain, (*bodies.pair, bodies.bond), bodies.interface_quads),
+    )
+
+
+def constant(domain: mesh.Mesh, value: float | np.ndarray) -> fem.Constant:
+    """A number or an array that a compiled form reads at run time."""
+    return fem.Constant(domain, np.asarray(value, dtype=PETSc.ScalarType))
+
+
+def strain(u: fem.Function, finite: bool) -> ufl.core.expr.Expr:
+    """Green-Lagrange strain, or its linear part."""
+    H = ufl.grad(u)
+    return 0.5 * (H + H.T + H.T * H) if finite else 0.5 * (H + H.T)
+
+
+def second_stress(u: fem.Function, D: ufl.core.expr.Expr, finite: bool) -> ufl.core.expr.Expr:
+    """S = D : E of the St. Venant-Kirchhoff material."""
+    E = strain(u, finite)
+    S = D * ufl.as_vector([E[0, 0], E[1, 1], 2 * E[0, 1]])
+    return ufl.as_matrix([[S[0], S[2]], [S[2], S[1]]])
+
+
+def energy_density(u: fem.Function, D: ufl.core.expr.Expr, finite: bool) -> ufl.core.expr.Expr:
+    """W = 1/2 S : E, energy per reference volume."""
+    return 0.5 * ufl.inner(second_stress(u, D, finite), strain(u, finite))
+
+
+def cauchy_stress(u: fem.Function, D: ufl.core.expr.Expr, finite: bool) -> ufl.core.expr.Expr:
+    """sigma = F S F^T / det F with the in-plane F (the sheet's change of thickness left out); S where linear."""
+    if not finite:
+        return second_stress(u, D, finite)
+    F = ufl.Identity(2) + ufl.grad(u)
+    return F * second_stress(u, D, finite) * F.T / ufl.det(F)
+
+
+def _measures(bodies: TwoBodies, degree: int) -> tuple[ufl.Measure, ufl.Measure, ufl.Measure]:
+    bulk = {"quadrature_degree": 2 * bulk_points(degree) - 1}
+    bond = {"quadrature_degree": 2 * bond_points(degree) - 1}
+    cells = list(enumerate(bodies.cells))
+    faces = [(i, facets.ravel()) for i, facets in enumerate(bodies.faces)]
+    quads = [(BOND, np.ascontiguousarray(bodies.interface_quads).ravel())]
+    return (
+        ufl.Measure("dx", domain=bodies.parent, subdomain_data=cells, metadata=bulk),
+        ufl.Measure("ds", domain=bodies.parent, subdomain_data=faces, metadata=bulk),
+        ufl.Measure("dS", domain=bodies.parent, subdomain_data=quads, metadata=bond),
+    )

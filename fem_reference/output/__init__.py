@@ -1,0 +1,1 @@
+"""Snapshots and frames of a run."""

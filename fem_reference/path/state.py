@@ -1,0 +1,144 @@
+"""A converged point of the path, and the row of numbers that is reported of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from dolfinx import fem
+from mpi4py import MPI
+
+from fem_reference.model.assembled import owned
+from fem_reference.model.model import Model
+from fem_reference.model.supports import dofs_on
+from fem_reference.problem.specimen import point
+
+
+@dataclass(frozen=True)
+class State:
+    """Converged displacements and load, with the history that they leave behind.
+
+    ``rate_n`` = du/d(opening) and ``slope`` = d load/d(opening) of the path on arriving here, ``heading`` the sign in
+    which the opening changes; ``peak`` is the largest load so far, ``work`` is external.
+    """
+
+    u_n: np.ndarray
+    load: float
+    opening: float
+    k_q: np.ndarray
+    g_q: np.ndarray
+    rate_n: np.ndarray
+    slope: float
+    heading: float
+    peak: float
+    work: float
+    iterations: int
+
+
+def row_of(model: Model, state: State) -> dict[str, float]:
+    """Numbers of a converged point by name, forces and energies for the whole width; the same on every rank.
+
+    ``reaction_x`` and ``reaction_y`` are what the supports carry besides the resultant of the loads, which is zero
+    where two faces are pulled apart.
+    """
+    p_q, _ = model.traction(state.g_q, state.k_q)
+    bond_force_n = model.bond.force(p_q)
+    load_n = state.load * model.load_n
+    reaction_n = (1 - model.free_n) * (model.bulk_force(state.u_n) + bond_force_n - load_n)
+    bulk, face = (model.comm.allreduce(fem.assemble_scalar(form)) for form in (model.energy, model.face_energy))
+    cohesive, contact, dissipated = model.bond_energies(state.g_q, state.k_q)
+    on_upper_n = model.upper_n
+    return {
+        "opening": state.opening,
+        "load": state.load,
+        "crack_length": foremost(model, state, model.law.g_open),
+        "stored_energy": bulk + cohesive + contact,
+        "dissipated_energy": dissipated,
+        "external_work": state.work,
+        "newton_iterations": state.iterations,
+        "load_slope": state.slope,
+        "heading": state.heading,
+        "tip_opening": opening_at(model, model.specimen.bond[0]),
+        "end_opening": opening_at(model, model.specimen.bond[1]),
+        "damage_front": foremost(model, state, model.law.g_peak),
+        "face_slope_top": model.dot(model.slope_n * on_upper_n, state.u_n),
+        "face_slope_bottom": model.dot(model.slope_n * ~on_upper_n, state.u_n),
+        "face_energy": face,
+        "interface_force": -resultant(model, bond_force_n * on_upper_n, 1),
+        "reaction_x": resultant(model, reaction_n + load_n, 0),
+        "reaction_y": resultant(model, reaction_n + load_n, 1),
+        "load_moment": moment(model, state, load_n * on_upper_n),
+        "interface_moment": -moment(model, state, bond_force_n * on_upper_n),
+        "bulk_energy": bulk,
+        "cohesive_energy": cohesive,
+        "contact_energy": contact,
+        **(_of_contact(model, state, p_q) if model.problem.unloads else {}),
+    }
+
+
+def _of_contact(model: Model, state: State, p_q: np.ndarray) -> dict[str, float]:
+    """How deep the faces are in each other anywhere, at nodes too, what pushes them apart, and the gap at the mouth."""
+    pressure = model.comm.allreduce(float(np.max(-p_q, initial=0.0)), MPI.MAX)
+    depth = float(np.max(-face_gaps(model, state), initial=0.0))
+    mouth = {"mouth_opening": opening_at(model, model.specimen.facing[0])} if model.problem.presses else {}
+    return {"penetration": depth, "contact_pressure": pressure, **mouth}
+
+
+def face_gaps(model: Model, state: State) -> np.ndarray:
+    """Gaps (n,) at all nodes of the faces that are opposite to each other, bonded or not, along the specimen."""
+    sides, first = [], 0
+    place = (min(model.specimen.facing), max(model.specimen.facing)), (0.0, 0.0)
+    for u in model.displacement:
+        dofs = dofs_on(u, place, model.specimen.near, 1)
+        own = first + dofs[dofs < owned(u)]
+        X, across = (np.concatenate(model.comm.allgather(v)) for v in (model.X_nI[own, 0], state.u_n[own]))
+        sides.append(across[np.argsort(X)])
+        first += owned(u)
+    return sides[0] - sides[1]
+
+
+def resultant(model: Model, force_n: np.ndarray, component: int) -> float:
+    """Sum of nodal forces in one direction: their virtual work in a unit translation."""
+    return model.comm.allreduce(float(np.sum(force_n[component::2])))
+
+
+def moment(model: Model, state: State, force_n: np.ndarray) -> float:
+    """Moment of nodal forces about the origin, anticlockwise.
+
+    The levers are those in which the model balances: positions are current with finite kinematics, reference if linear.
+    """
+    x_nI = model.X_nI.copy()
+    if model.problem.kinematics == "finite":
+        x_nI[::2] += state.u_n.reshape(-1, 2)
+    return model.comm.allreduce(float(x_nI[::2, 0] @ force_n[1::2] - x_nI[::2, 1] @ force_n[::2]))
+
+
+def opening_at(model: Model, X: float) -> float:
+    """Normal gap at a vertex of the interface, of the displacements last put into the forms."""
+    jump = 0.0
+    for u, sign in zip(model.displacement, (1.0, -1.0), strict=True):
+        dofs = dofs_on(u, point(X, 0.0), model.specimen.near, 1)
+        jump += sign * float(np.sum(u.x.array[dofs[dofs < owned(u)]]))
+    return model.comm.allreduce(jump)
+
+
+def foremost(model: Model, state: State, gap: float) -> float:
+    """Distance from the loaded end to the foremost point that was ever open by ``gap``, linear between the points."""
+    s_q, k_q = ordered_along(model, state.k_q)
+    tip, end = (float(model.specimen.distance(X)) for X in model.specimen.bond)
+    open_q = np.flatnonzero(k_q >= gap)
+    if not open_q.size:
+        return tip
+    last = open_q[-1]
+    if last == s_q.size - 1:
+        return end
+    share = (k_q[last] - gap) / (k_q[last] - k_q[last + 1])
+    return float(s_q[last] + share * (s_q[last + 1] - s_q[last]))
+
+
+def ordered_along(model: Model, *values_q: np.ndarray) -> list[np.ndarray]:
+    """Distances of all points of the bond from the loaded end, over all ranks, rising, and values in the same order."""
+    s_q = model.specimen.distance(model.X_q)
+    gathered = [np.concatenate(model.comm.allgather(v_q)) for v_q in (s_q, *values_q)]
+    order = np.argsort(gathered[0])
+    return [v_q[order] for v_q in gathered]

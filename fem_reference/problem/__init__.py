@@ -1,0 +1,1 @@
+"""Problems in plain numbers, free of DOLFINx."""

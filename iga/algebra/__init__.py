@@ -1,0 +1,1 @@
+"""Banded and dense matrices and their factors."""

@@ -1,0 +1,82 @@
+"""Dense direct solvers, for the few unknowns that are left of a condensed system."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg.lapack import dgecon, dgetrf, dgetrs, dpotrf, dpotrs
+
+
+@dataclass(frozen=True)
+class Dense:
+    """A full symmetric matrix of ``n`` equations, numbered as the unknowns are; the counterpart of
+    `iga.algebra.banded.Band`.
+
+    It is told by its lower half, in Fortran order; what stands in the upper one is none of its entries.
+    """
+
+    n: int
+
+    @property
+    def size(self) -> int:
+        """Entries of the matrix."""
+        return self.n**2
+
+    def positions(self, row: np.ndarray, column: np.ndarray) -> np.ndarray:
+        """Index of each entry (row, column), or of its mirror image, in the lower half."""
+        return np.maximum(row, column) + self.n * np.minimum(row, column)
+
+    def reaching(self, row: np.ndarray, column: np.ndarray) -> Dense:
+        """Itself: it has room for all entries."""
+        return self
+
+    def cholesky(self, half: np.ndarray) -> DenseCholesky | None:
+        """Factor of the matrix with this lower half (``size``,); None where it is not positive definite."""
+        factor, info = dpotrf(half.reshape(self.n, self.n).T, lower=True, clean=False)
+        return DenseCholesky(factor) if info == 0 else None
+
+    def lu(self, half: np.ndarray, skew: None = None) -> DenseLU | None:
+        """LU of the matrix with this lower half; None where a pivot is exactly zero."""
+        lu, pivots, info = dgetrf(self._whole(half), overwrite_a=True)
+        return DenseLU(lu, pivots) if info == 0 else None
+
+    def condition(self, half: np.ndarray, skew: None = None) -> float:
+        """Estimate of the condition number in the 1-norm, infinite where the matrix is singular."""
+        norm = float(np.abs(self._whole(half)).sum(0).max())
+        factors = self.lu(half)
+        reciprocal = 0.0 if factors is None else float(dgecon(factors.lu, norm)[0])
+        return 1.0 / reciprocal if reciprocal > 0.0 else float("inf")
+
+    def _whole(self, half: np.ndarray) -> np.ndarray:
+        lower = np.tril(half.reshape(self.n, self.n).T)
+        return np.asfortranarray(lower + np.tril(lower, -1).T)
+
+
+@dataclass(frozen=True)
+class DenseCholesky:
+    """Cholesky factor of a positive definite matrix."""
+
+    factor: np.ndarray
+
+    def solve(self, b_d: np.ndarray) -> np.ndarray:
+        """Solution (n, n_rhs) for right-hand sides (n, n_rhs)."""
+        x, info = dpotrs(self.factor, b_d, lower=True)
+        if info != 0:
+            raise ValueError(f"dpotrs refused its argument {-info}")
+        return x
+
+
+@dataclass(frozen=True)
+class DenseLU:
+    """LU factors with partial pivoting."""
+
+    lu: np.ndarray
+    pivots: np.ndarray
+
+    def solve(self, b_d: np.ndarray) -> np.ndarray:
+        """Solution (n, n_rhs) for right-hand sides (n, n_rhs)."""
+        x, info = dgetrs(self.lu, self.pivots, b_d)
+        if info != 0:
+            raise ValueError(f"dgetrs refused its argument {-info}")
+        return x

@@ -1,0 +1,1 @@
+"""One file a basis, each of which makes a mesh."""

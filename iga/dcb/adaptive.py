@@ -1,0 +1,168 @@
+"""T-meshes that follow the process zone: fine where damage grows, coarse in its wake and far ahead.
+
+All meshes of a run are bisections of the same cells, so that elements whose points are being damaged are the same
+before and after; elements change only where no damage has begun or nothing is left to break, and history is carried
+over as it is. Displacements are carried over by `iga.tsplines.transfer` and brought into equilibrium at the same
+opening.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from iga.dcb.meshes import PRESSED, arm_tmeshes, zone_length
+from iga.path.control import opening_control
+from iga.path.newton import PATIENT, equilibrium
+from iga.path.point import Point
+from iga.specimen.grading import largest
+from iga.specimen.problem import presses
+from iga.specimen.tmesh_strip import Strip
+from iga.system.state import State
+from iga.system.system import Phase
+from iga.tsplines.tmesh import TMesh
+from iga.tsplines.transfer import transfer
+
+if TYPE_CHECKING:
+    from iga.dcb.problem import Problem
+    from iga.specimen.specimen import Specimen
+
+#: The fine part goes on beyond the damage front by so many process zones, and is moved on when less than this is left.
+AHEAD, LEFT = 0.75, 0.25
+
+#: How often a cell can be halved, and how long one may be in parts of its distance from the fine part.
+HALVINGS, GROWTH = 4, 0.7
+
+#: Part of the length of a specimen within which two points are the same.
+SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class Window:
+    """The fine part, from ``start`` to ``end`` along the specimen, and the number of ``roots``, cells on the bond."""
+
+    start: float
+    end: float
+    roots: int
+
+
+def first_window(problem: Problem) -> Window:
+    """The fine part before anything moves, with the finest cells that never take more unknowns than ``dofs``.
+
+    Raises
+    ------
+    ValueError : no mesh has so few unknowns.
+    """
+    zone = zone_length(problem)
+
+    def most(roots: int) -> int:
+        starts = np.linspace(problem.precrack, problem.length, 50)
+        return max(4 * strip(problem, Window(x - zone, x + AHEAD * zone, roots)).functions for x in starts)
+
+    roots = largest(most, 1, problem.dofs)
+    return Window(problem.precrack, problem.precrack + AHEAD * zone, roots)
+
+
+def strip(problem: Problem, window: Window) -> Strip:
+    """One arm with equal cells in the window and ever longer ones away from it, halved at the interface in the window.
+
+    An element boundary lies at the end of the precrack. Where the arms are pressed together there are short cells at
+    the loaded end as well.
+    """
+    bond = problem.length - problem.precrack
+    before = max(int(np.ceil(window.roots * problem.precrack / bond)), 1)
+    starts, sizes = [], []
+    for start, length, roots in ((0.0, problem.precrack, before), (problem.precrack, bond, window.roots)):
+        x = start + length * np.arange(roots) / roots
+        size: np.ndarray = np.full(roots, length / roots)
+        finest = bond / window.roots / 2**HALVINGS
+        for _ in range(HALVINGS):
+            away = np.maximum(np.maximum(window.start - (x + size), x - window.end), 0.0)
+            long = size > np.maximum(1.5 * finest, np.minimum(GROWTH * away, most_at(problem, x)))
+            half = 0.5 * size[long]
+            x = np.concatenate([x[~long], x[long], x[long] + half])
+            size = np.concatenate([size[~long], half, half])
+        starts.append(x)
+        sizes.append(size)
+    x, size = np.concatenate(starts), np.concatenate(sizes)
+    order = np.argsort(x)
+    x, size = x[order], size[order]
+    middle = x + 0.5 * size
+    halved = (middle > max(window.start, problem.precrack)) & (middle < window.end) & (size < 1.5 * finest)
+    return Strip(np.append(x, problem.length), halved)
+
+
+def most_at(problem: Problem, x: np.ndarray) -> np.ndarray:
+    """How long (n,) cells at x (n,) may be, where arms are pressed together at the loaded end; infinite elsewhere."""
+    return PRESSED * problem.arm_thickness + GROWTH * x if presses(problem) else np.full(x.shape, np.inf)
+
+
+def adapted_tmeshes(problem: Problem, window: Window) -> tuple[TMesh, ...]:
+    """T-meshes of the upper and the lower arm with the fine part in the window."""
+    one = strip(problem, window)
+    return arm_tmeshes(problem, (one, one))
+
+
+def followed(problem: Problem, roots: int, specimen: Specimen, point: Point) -> Window | None:
+    """The window for a converged point, or None where the mesh at hand goes on beyond the damage front by enough."""
+    zone, law, end = zone_length(problem), specimen.system.interface.law, specimen.path[1]
+    s_q, k_q = specimen.distance(specimen.system.interface.X_qi), point.state.k_q
+    damaged, broken = s_q[k_q > law.g_max], s_q[k_q >= law.g_u]
+    front = float(damaged.max(initial=problem.precrack))
+    if end >= problem.length or front < end - LEFT * zone:
+        return None
+    tip = float(broken.max(initial=problem.precrack))
+    return Window(tip - LEFT * zone, front + AHEAD * zone, roots)
+
+
+def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State | None:
+    """The state of a point on another mesh, in equilibrium at the same opening; None where there is none.
+
+    Points that both meshes share keep their history; the others lie where damage has not begun, or is complete, and
+    take it from their neighbours.
+    """
+    with phase("mesh"):
+        u_old = old.pose.components(point.state.u_d.reshape(-1, 2))
+        u_new = np.concatenate(
+            [
+                transfer(before, after) @ u_old[body.points]
+                for before, after, body in zip(old.tmeshes, new.tmeshes, old.bodies, strict=True)
+            ]
+        )
+    k_q = _history(old, new, point.state.k_q)
+    if k_q is None:
+        return None
+    u_d = (u_new @ new.pose.axes_kI).ravel()
+    start = new.system.start()
+    trial = replace(start, u_d=u_d, load=point.state.load, k_q=k_q, scale=point.state.scale)
+    control = opening_control(new.system)
+    found = equilibrium(new.system, trial, control, point.opening, 1e-3 * point.opening, PATIENT, phase)
+    if found is None:
+        return None
+    return replace(found.state, k_q=found.response.k_q, scale=max(trial.scale, found.response.scale))
+
+
+def _history(old: Specimen, new: Specimen, k_q: np.ndarray) -> np.ndarray | None:
+    """History at the points of the new mesh; None where a point that is being damaged would be lost."""
+    (s_old, held_q), (s_new, holds_q) = (_held(specimen) for specimen in (old, new))
+    order = np.flatnonzero(held_q)[np.argsort(s_old[held_q])]
+    s, k = s_old[order], k_q[order]
+    right = np.clip(np.searchsorted(s, s_new), 1, len(s) - 1)
+    nearest = np.where(s_new - s[right - 1] < s[right] - s_new, right - 1, right)
+    same = np.abs(s[nearest] - s_new) < SAME * s[-1]
+    law = new.system.interface.law
+    active = (k > law.g_max) & (k < law.g_u)
+    kept = np.zeros(len(s), dtype=bool)
+    kept[nearest[same]] = True
+    if np.any(active & ~kept):
+        return None
+    return np.where(holds_q, np.where(same, k[nearest], np.interp(s_new, s, k)), 0.0)
+
+
+def _held(specimen: Specimen) -> tuple[np.ndarray, np.ndarray]:
+    """Distances (n_q,) of the interface's points from the loaded end, and which of them are bonded."""
+    interface = specimen.system.interface
+    bonded_q = np.ones(interface.points, dtype=bool) if interface.bonded_q is None else interface.bonded_q
+    return specimen.distance(interface.X_qi), bonded_q

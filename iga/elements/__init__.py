@@ -1,0 +1,1 @@
+"""Shape functions at points, kinematics, elasticity, element matrices."""

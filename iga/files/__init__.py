@@ -1,0 +1,1 @@
+"""Bezier extraction files (`.iga`)."""

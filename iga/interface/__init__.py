@@ -1,0 +1,1 @@
+"""Traction laws, surfaces, closest points, gaps and tractions."""

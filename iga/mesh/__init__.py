@@ -1,0 +1,1 @@
+"""Meshes by Bezier extraction: the only seam between the bases."""

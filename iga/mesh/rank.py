@@ -1,0 +1,50 @@
+"""How many rows of a matrix of functions are independent."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.linalg import eigsh
+
+from iga.mesh.extraction import Mesh
+
+#: Functions are dependent where a singular value is below this part of the largest one, and up to how many functions
+#: all singular values are computed.
+DEPENDENT, MANY = 1e-9, 2000
+
+
+def rank(M_Ab: csr_array) -> int:
+    """Rank of a matrix of functions, a row each.
+
+    Rows are scaled to length one. Up to `MANY` functions by singular values; beyond, from the smallest eigenvalue of
+    the Gram matrix, so that a rank below the number of functions is then an upper bound.
+    """
+    length_A = np.sqrt((M_Ab * M_Ab).sum(axis=1))
+    used = length_A > 0
+    M_Ab = csr_array(M_Ab[used]).multiply(1.0 / length_A[used][:, None]).tocsr()
+    gram_AB = M_Ab @ M_Ab.T
+    if M_Ab.shape[0] > MANY:
+        largest = float(abs(gram_AB).sum(axis=1).max())
+        smallest = eigsh(gram_AB, k=1, sigma=-1e-12 * largest, return_eigenvectors=False)[0]
+        return M_Ab.shape[0] - int(smallest < DEPENDENT * largest)
+    values = np.linalg.eigvalsh(gram_AB.toarray())
+    if values[0] > 1e-11 * values[-1]:  # the Gram matrix squares: below, only singular values can tell
+        return M_Ab.shape[0]
+    singular = np.linalg.svd(M_Ab.toarray(), compute_uv=False)
+    return int(np.count_nonzero(singular > DEPENDENT * singular[0]))
+
+
+def coefficients(mesh: Mesh) -> csr_array:
+    """Bernstein coefficients of all functions on all elements (n_A, sum n_e n_b)."""
+    rows, columns, values, first = [], [], [], 0
+    for block in mesh.blocks:
+        n_e, n_a, n_b = block.C_eab.shape
+        column_eb = first + np.arange(n_e * n_b).reshape(n_e, n_b)
+        rows.append(np.repeat(block.conn_ea.ravel(), n_b))
+        columns.append(np.broadcast_to(column_eb[:, None], (n_e, n_a, n_b)).ravel())
+        values.append(block.C_eab.ravel())
+        first += n_e * n_b
+    place = np.concatenate(rows), np.concatenate(columns)
+    matrix = coo_array((np.concatenate(values), place), shape=(len(mesh.P_AI), first)).tocsr()
+    matrix.eliminate_zeros()
+    return matrix

@@ -1,0 +1,1 @@
+"""Rows, snapshots and frames of a run."""

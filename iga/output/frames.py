@@ -1,0 +1,73 @@
+"""Everything at a converged point, as drawing programs take it: elements in Bezier form, and the interface."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from iga.elements.bulk import gradient
+from iga.elements.kinematics import cauchy_stress, material_stress
+from iga.elements.shape_functions import block_basis
+from iga.mesh.bezier import homogeneous
+from iga.mesh.quadrature import gauss, square
+from iga.path.point import Point
+from iga.specimen.specimen import Specimen
+
+
+def frame(specimen: Specimen, point: Point) -> dict[str, Any]:
+    """Fields of the bodies and of the interface, in place and not in the specimen's own frame.
+
+    Keys: opening, load; ``bond`` with X_qi, u_qi (n_q, 2) of the slave's points and s_q, gap_q, traction_q, damage_q,
+    history_q, bonded_q (n_q,), ordered along the specimen; ``cells``, one entry for every block of elements of one
+    degree: body, degrees; Bezier points X_ebI, u_ebi (n_e, n_b, 2) and weights w_eb, exact; and at the points points_q
+    (n_q, 2) of the element the Cauchy stress stress_eqv (n_e, n_q, 3) in Voigt order with along_eqk (n_e, n_q, 2), the
+    second Piola-Kirchhoff stress along the axes of the material over det F.
+
+    These points are Gauss points, p + 1 and q + 1: what is interpolated there is the projection onto the polynomials of
+    the element that this rule makes.
+    """
+    cells = [part for number in range(len(specimen.bodies)) for part in _cells(specimen, number, point.state.u_d)]
+    return {"opening": point.opening, "load": point.state.load, "cells": cells, "bond": _bond(specimen, point)}
+
+
+def _cells(specimen: Specimen, number: int, u_d: np.ndarray) -> Iterator[dict[str, Any]]:
+    body, kinematics, axes_kI = specimen.bodies[number], specimen.system.kinematics, specimen.pose.axes_kI
+    mesh, u_Ai = body.mesh, u_d.reshape(-1, 2)[body.points]
+    for block in mesh.blocks:
+        p, q = block.degrees
+        points_q, weights_q = square(gauss(p + 1), gauss(q + 1))
+        basis = block_basis(mesh, block, points_q, weights_q)
+        H_iIeq = gradient(basis, u_Ai)
+        sigma_ijeq = cauchy_stress(body.D, H_iIeq, kinematics)
+        inside_IJeq = material_stress(sigma_ijeq, H_iIeq, kinematics)
+        H_ebf = homogeneous(np.concatenate([mesh.P_AI, u_Ai], axis=1), mesh.w_A, block)
+        values_ebf, w_eb = H_ebf[..., :4] / H_ebf[..., 4:], H_ebf[..., 4]
+        yield {
+            "body": number,
+            "degrees": block.degrees,
+            "X_ebI": values_ebf[..., :2],
+            "u_ebi": values_ebf[..., 2:],
+            "w_eb": w_eb,
+            "points_q": points_q,
+            "stress_eqv": np.stack([sigma_ijeq[0, 0], sigma_ijeq[1, 1], sigma_ijeq[0, 1]], -1),
+            "along_eqk": np.einsum("kI,IJeq,kJ->eqk", axes_kI, inside_IJeq, axes_kI),
+        }
+
+
+def _bond(specimen: Specimen, point: Point) -> dict[str, np.ndarray]:
+    interface, state, response = specimen.system.interface, point.state, point.response
+    s_q, order = specimen.distance(interface.X_qi), specimen.ordered[1]
+    bonded_q = np.ones(len(s_q), dtype=bool) if interface.bonded_q is None else interface.bonded_q
+    values = {
+        "X_qi": interface.X_qi,
+        "u_qi": interface.at_slave(state.u_d.reshape(-1, 2)),
+        "s_q": s_q,
+        "gap_q": response.contact.g_q,
+        "traction_q": response.p_q,
+        "damage_q": np.where(bonded_q, interface.law.damage(state.k_q), 1.0),
+        "history_q": state.k_q,
+        "bonded_q": bonded_q,
+    }
+    return {name: value[order] for name, value in values.items()}

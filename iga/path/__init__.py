@@ -1,0 +1,1 @@
+"""Following the equilibrium path: control, Newton, step length."""

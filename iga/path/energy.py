@@ -1,0 +1,124 @@
+"""The work of the load along a step, to fourth order, and whether the energies of the step say the same."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from iga.mesh.quadrature import gauss
+from iga.path.point import Point
+from iga.system.system import System
+
+#: Parts of a step over which it is told what slides off the master.
+SLIDING = 16
+#: How far a step may leave the balance of energy open, in parts of the largest work so far: one that leaps over a part
+#: of the path does by more. As long as less than that is dissipated it is no measure; then a part of what is, or, where
+#: that is next to nothing, of the work.
+LEAK, LEAK_OF_DISSIPATED, LEAK_OF_ELASTIC = 1e-3, 1e-3, 1e-7
+#: Part of the work below which nothing is dissipated: rounding alone leaves points without damage some.
+ROUNDED = 1e-13
+
+
+def _cubics(s: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Of cubic Hermite curves the functions (2, n_s) of both ends' values and slopes, and their derivatives."""
+    return (
+        np.stack([(1 + 2 * s) * (1 - s) ** 2, s * s * (3 - 2 * s)]),
+        np.stack([s * (1 - s) ** 2, s * s * (s - 1)]),
+        np.stack([6 * s * (s - 1), 6 * s * (1 - s)]),
+        np.stack([(1 - s) * (1 - 3 * s), s * (3 * s - 2)]),
+    )
+
+
+_PLACES, WEIGHTS = gauss(3)
+VALUES, SLOPES, D_VALUES, D_SLOPES = _cubics(_PLACES)
+
+
+def step_work(system: System, start: Point, end: Point, away: float, back: float) -> float:
+    """Integral of the load over the opening along one step, both cubic Hermite curves over the controlled quantity.
+
+    ``away`` and ``back`` are the lengths of the tangents at both ends that change that quantity by the step. Unlike a
+    rule over the opening it holds where the path turns back. Its error is of fourth order; three Gauss points
+    integrate it exactly.
+    """
+    loads = np.array([away * start.tangent.d_load, back * end.tangent.d_load])
+    openings = np.array([away * (system.load_d @ start.tangent.du_d), back * (system.load_d @ end.tangent.du_d)])
+    load = np.array([start.state.load, end.state.load]) @ VALUES + loads @ SLOPES
+    d_opening = np.array([start.opening, end.opening]) @ D_VALUES + openings @ D_SLOPES
+    return float(WEIGHTS @ (load * d_opening))
+
+
+def straight_work(start: Point, end: Point, several: bool) -> float:
+    """The same over the opening itself, for a step that does not turn round.
+
+    With the slopes behind its start and before its end; over ``several`` arcs of the load with their mean slopes.
+    """
+    move = end.opening - start.opening
+    first, last = (start.slope, end.slope) if several else (start.tangent.departure, end.tangent.arrival)
+    return 0.5 * move * (start.state.load + end.state.load) + move**2 / 12.0 * (first - last)
+
+
+def slid_off(system: System, start: Point, end: Point, away: float, back: float) -> float:
+    """Energy that goes with points sliding off the master along one step; ``away`` and ``back`` as for `step_work`.
+
+    Of ``share psi`` at a point it is ``-psi d(share)``: no force draws what slides off back. Of the damage, which is
+    booked for the whole point, only the share takes anything. The gap and the place beyond the end of the master are
+    cubic Hermite curves, within their ends.
+    """
+    interface = system.interface
+    touches = start.response.contact, end.response.contact
+    q = np.flatnonzero((touches[0].share_q < 1.0) | (touches[1].share_q < 1.0))
+    if q.size == 0:
+        return 0.0
+    ends, lengths = (start, end), (away, back)
+    g = _hermite([touch.g_q[q] for touch in touches], [point.tangent.rate_q[q] for point in ends], lengths)
+    left = [0.5 - np.sin(np.arcsin(1.0 - 2.0 * touch.share_q[q]) / 3.0) for touch in touches]
+    left = _hermite(left, [_left_rate(point, q, v) for point, v in zip(ends, left, strict=True)], lengths)
+    share = left**2 * (3.0 - 2.0 * left)  # as `iga.interface.interface` has it
+    k = np.maximum(g, start.state.k_q[q])
+    cohesive, touching, dissipated = interface.law.energies(g, k)
+    booked = interface.law.energies(g, np.minimum(k, end.state.k_q[q]))[2]  # a point that has gone keeps its history
+    held_q = 1.0 if interface.bonded_q is None else interface.bonded_q[q]
+    stored = held_q * cohesive + touching
+    gone = held_q * (0.5 * (share[1:] + share[:-1]) * np.diff(dissipated, axis=0) - np.diff(booked, axis=0))
+    gone -= 0.5 * (stored[1:] + stored[:-1]) * np.diff(share, axis=0)
+    return float(np.sum(gone @ interface.dA_q[q]))
+
+
+def _left_rate(point: Point, q: np.ndarray, left_q: np.ndarray) -> np.ndarray:
+    """Rate along the tangent of what is ``left`` of a point's way off the master, from that of its share."""
+    touch, du_d = point.response.contact, point.tangent.du_d
+    if touch.m_q is None:
+        return np.zeros(q.size)
+    T, Nb = np.sum(touch.V_qrd[q, 1:] * du_d[touch.dof_qd[q]][:, None], axis=2).T
+    d_share = touch.share_q[q] * touch.fading_q[q] * (T + touch.g_q[q] * Nb) / touch.m_q[q]
+    slope = 6.0 * left_q * (1.0 - left_q)
+    return np.where(slope > 0.0, d_share / np.where(slope > 0.0, slope, 1.0), 0.0)
+
+
+def _hermite(ends: Sequence[np.ndarray], rates: Sequence[np.ndarray], lengths: Sequence[float]) -> np.ndarray:
+    """Cubics (n_s, n_q) between both ends, within them."""
+    values, slopes, _, _ = _cubics(np.linspace(0.0, 1.0, SLIDING + 1))
+    v0, v1 = ends
+    rates = [length * rate for rate, length in zip(rates, lengths, strict=True)]
+    v = values.T @ np.stack(ends) + slopes.T @ np.stack(rates)
+    return np.clip(v, np.minimum(v0, v1), np.maximum(v0, v1))
+
+
+def leaks(system: System, start: Point, end: Point, most: float) -> bool:
+    """Whether the work of a step is not what its energies say: it did not go along the path.
+
+    ``most`` is the largest work so far. What the forces that balance leaves over have done, where rounding leaves more
+    than the tolerance, is no leak. On the step on which damage begins nothing tells yet how much is going to be
+    dissipated, and a reversible law dissipates nothing.
+    """
+    most = max(most, abs(end.external_work))
+    leak = abs(end.external_work - start.external_work - (end.energies.total - start.energies.total))
+    left_over = end.residuals[-1] * end.response.scale if end.residuals else 0.0
+    moved_d = end.state.u_d - start.state.u_d
+    leak -= left_over * float(moved_d @ moved_d) ** 0.5
+    before, after = start.energies.dissipated, end.energies.dissipated
+    begun = before <= ROUNDED * most < after
+    if after >= LEAK * most or begun or not system.interface.law.irreversible:
+        return leak > LEAK * most
+    return leak > max(LEAK_OF_DISSIPATED * after, LEAK_OF_ELASTIC * most)

@@ -1,0 +1,119 @@
+"""From a discrete specimen to its rows: the path followed, read and summed up; the same for every specimen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from iga.output.frames import frame
+from iga.output.rows import row
+from iga.output.snapshots import snapshot
+from iga.path.condensation import condensed
+from iga.path.follow import follow
+from iga.path.point import End, Point
+from iga.specimen.problem import Debonding
+from iga.specimen.specimen import Specimen
+from iga.system.state import State
+from iga.system.system import Phase, System, respond, tangent_matrix
+
+#: Called with the opening of every converged step, and with what makes its frame (see `iga.output.frames`) where it is
+#: wanted.
+OnFrame = Callable[[float, Callable[[], dict[str, Any]]], None]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What a run leaves: a row a converged step (see `iga.output.rows`), snapshots (see `iga.output.snapshots`), and
+    how it ended.
+
+    ``ending`` tells a specimen that came apart; ``condition`` is the larger condition number of the tangents at the
+    first and at the last converged point.
+    """
+
+    rows: tuple[Mapping[str, float], ...]
+    dofs: int
+    elements: int
+    rejected_steps: int
+    status: str
+    snapshots: tuple[Mapping[str, object], ...]
+    ending: str = ""
+    condition: float = 0.0
+
+
+def run(
+    problem: Debonding,
+    specimen: Specimen,
+    on_step: Callable[[Mapping[str, float]], None] | None,
+    phase: Phase,
+    adapt: Callable[[Specimen, Point], tuple[Specimen, State] | None] | None = None,
+    on_frame: OnFrame | None = None,
+) -> Solution:
+    """Follow the programme of a problem; ``on_step`` is called with the row of every converged step, as it comes.
+
+    ``adapt`` may answer a converged point with another mesh and the state on it.
+    """
+    rows: list[dict[str, float]] = []
+    snapshots: list[dict[str, object]] = []
+    wanted = sorted(problem.snapshot_openings)
+    worst, point, end, most = 0.0, None, End("complete", 0), specimen
+
+    def renewed(point: Point) -> tuple[System, State] | None:
+        nonlocal specimen, most
+        found = adapt(specimen, point)
+        if found is None:
+            return None
+        specimen, state = found
+        most = max(most, specimen, key=lambda one: one.system.n_dof)
+        return specimen.system, state
+
+    renew = renewed if adapt is not None else None
+    with phase("basis"):
+        small = condensed(specimen.system) if adapt is None else None
+    system = specimen.system if small is None else small.system
+    programme = by_way_of(problem.opening, wanted)
+    for item in follow(system, programme, problem.steps, phase=phase, renew=renew, bend=problem.bend):
+        if isinstance(item, End):
+            end = item
+            continue
+        if point is None:
+            worst = _condition(system, item, phase)
+        last, point = item, item if small is None else small.expanded(item)
+        rows.append(row(specimen, point))
+        if on_step is not None:
+            on_step(rows[-1])
+        if on_frame is not None:
+            on_frame(point.opening, partial(frame, specimen, point))
+        if wanted and point.opening >= wanted[0]:
+            wanted = [opening for opening in wanted if opening > point.opening]
+            snapshots.append(snapshot(specimen, point))
+    return Solution(
+        rows=tuple(rows),
+        dofs=most.system.n_dof,
+        elements=sum(mesh.elements for mesh in most.meshes),
+        rejected_steps=end.rejected,
+        status=end.status,
+        snapshots=tuple(snapshots),
+        ending=f"separated at opening {point.opening:.6g}" if end.separated else "",
+        condition=max(worst, _condition(specimen.system if small is None else system, last, phase)),
+    )
+
+
+def by_way_of(programme: Sequence[float], stops: Sequence[float]) -> tuple[float, ...]:
+    """The programme with a stop at each of ``stops`` (increasing) where it first comes by."""
+    way, left, here = [], list(stops), 0.0
+    for goal in programme:
+        while left and here < left[0] < goal:
+            way.append(left.pop(0))
+        way.append(goal)
+        here = goal
+    return tuple(way)
+
+
+def _condition(system: System, point: Point, phase: Phase) -> float:
+    """Condition number of the tangent at a converged point."""
+    with phase("assembly"):
+        band, half, skew = tangent_matrix(system, respond(system, point.state, decide=False))
+    with phase("factor"):
+        return band.condition(half, skew)

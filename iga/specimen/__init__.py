@@ -1,0 +1,1 @@
+"""What all specimens share: problem, pose, bodies, bond, load."""

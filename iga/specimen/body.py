@@ -1,0 +1,161 @@
+"""One body: its mesh in place, element bases, loaded and free faces, elasticity."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from iga.elements.bulk import Solid
+from iga.elements.shape_functions import BlockBasis, block_basis, chain_basis
+from iga.interface.surface import Surface, surface
+from iga.mesh.extraction import Mesh
+from iga.mesh.quadrature import gauss, square
+from iga.specimen.pose import Pose
+
+#: Intervals between samples along each direction of an element.
+SAMPLES = 3
+#: Part of a body's size by which it may differ from another one moved, by rounding.
+ALIKE = 1e-14
+
+
+@dataclass(frozen=True)
+class Body:
+    """A mesh in place whose control points are numbered from ``first`` on in the whole model.
+
+    A body that is another one moved tells this one as its ``original``, whose bases it takes over.
+    """
+
+    mesh: Mesh
+    first: int
+    solids: tuple[Solid, ...]
+    D: np.ndarray
+    original: Body | None = None
+
+    @property
+    def points(self) -> slice:
+        """Its control points."""
+        return slice(self.first, self.first + len(self.mesh.P_AI))
+
+    @property
+    def sampled(self) -> tuple[Solid, ...]:
+        """The blocks on a grid of points an element, for pictures."""
+        t, s = np.meshgrid(*[np.linspace(0.0, 1.0, SAMPLES + 1)] * 2, indexing="ij")
+        points_q = np.stack([s.ravel(), t.ravel()], -1)
+        grids = (block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)
+        return tuple(Solid(_numbered(basis, self.first), self.D) for basis in grids)
+
+    def face(self, name: str) -> tuple[BlockBasis, ...]:
+        """Basis on the sides of one of the mesh's chains, made when it is first asked for.
+
+        The ends "left" and "right" are told as they were before the specimen was put in place.
+        """
+        made = self.__dict__.setdefault("_faces", {})
+        if name not in made and self.original is not None:
+            made[name] = tuple(self._like(self.original, basis) for basis in self.original.face(name))
+        elif name not in made:
+            through = gauss(max(block.degrees[1] for block in self.mesh.blocks) + 1)
+            sides = chain_basis(self.mesh, self.mesh.chains[name], *through)
+            made[name] = tuple(_numbered(basis, self.first) for basis in sides)
+        return made[name]
+
+    def _like(self, original: Body, basis: BlockBasis) -> BlockBasis:
+        """A basis of the original here: functions and gradients do not know where they are."""
+        by = self.mesh.P_AI[0] - original.mesh.P_AI[0]
+        return replace(basis, conn_ea=basis.conn_ea + (self.first - original.first), X_eqI=basis.X_eqI + by)
+
+    def surface(self, name: str) -> Surface:
+        """The surface of one of the mesh's chains, made when it is first asked for."""
+        made = self.__dict__.setdefault("_surfaces", {})
+        if name not in made:
+            made[name] = surface(self.mesh, self.mesh.chains[name], self.first)
+        return made[name]
+
+
+def bodies(
+    meshes: tuple[Mesh, ...], elasticity: tuple[np.ndarray, ...], pose: Pose, width: float, smooth: bool
+) -> tuple[Body, ...]:
+    """Bodies in place, numbered one after the other, from meshes and elasticity matrices in the specimen's own frame.
+
+    ``smooth`` says that the basis is more than continuous along the specimen: then p Gauss points that way (two at
+    least) keep the order (Ciarlet 1978, sec. 4.1); on C^0 elements they would leave spurious modes.
+    """
+    made: list[Body] = []
+    for number, (mesh, D) in enumerate(zip(meshes, elasticity, strict=True)):
+        first = sum(len(body.mesh.P_AI) for body in made)
+        same = (other for other in range(number) if elasticity[other] is D and _alike(meshes[other], mesh))
+        other = next(same, None)
+        if other is None:
+            made.append(_body(pose.placed(mesh), first, pose.turned(D), width, smooth))
+        else:
+            original = made[other]
+            bare = Body(pose.placed(mesh), first, (), original.D, original)
+            made.append(replace(bare, solids=tuple(Solid(bare._like(original, s.basis), s.D) for s in original.solids)))
+    return tuple(made)
+
+
+def _alike(a: Mesh, b: Mesh) -> bool:
+    """Whether two meshes are one, moved: they share what they are made of."""
+    if a.blocks is not b.blocks or a.chains is not b.chains or a.w_A is not b.w_A:
+        return False
+    apart_AI = b.P_AI - a.P_AI
+    return bool(np.abs(apart_AI - apart_AI[0]).max() <= ALIKE * np.ptp(a.P_AI, axis=0).max())
+
+
+def _body(mesh: Mesh, first: int, D: np.ndarray, width: float, smooth: bool) -> Body:
+    solids = []
+    for block in mesh.blocks:
+        p, q = block.degrees
+        rules = gauss(max(p, 2) if smooth else p + 1), gauss(q + 1)
+        solids.append(Solid(_numbered(block_basis(mesh, block, *square(*rules), width), first), D))
+    return Body(mesh, first, tuple(solids), D)
+
+
+def _numbered(basis: BlockBasis, first: int) -> BlockBasis:
+    return replace(basis, conn_ea=basis.conn_ea + first)
+
+
+def face_length(face: tuple[BlockBasis, ...]) -> float:
+    return sum(float(basis.dV_eq.sum()) for basis in face)
+
+
+def mean_row(face: tuple[BlockBasis, ...], direction_i: np.ndarray, n_dof: int) -> np.ndarray:
+    """Row (n_dof,) that gives the mean displacement of a face in one direction."""
+    row_Ai = np.zeros((n_dof // 2, 2))
+    for basis in face:
+        weights_ea = np.einsum("eqa,eq->ea", basis.N_eqa, basis.dV_eq)
+        np.add.at(row_Ai, basis.conn_ea, weights_ea[..., None] * direction_i)
+    return row_Ai.ravel() / face_length(face)
+
+
+def edge_row(face: tuple[BlockBasis, ...], depth: Callable, direction_i: np.ndarray, n_dof: int) -> np.ndarray:
+    """Row (n_dof,) that gives the displacement of a face in one direction as the straight line nearest to it has it at
+    the depth 0: the force that belongs to it is spread over the face, and acts there.
+
+    Parameters
+    ----------
+    depth : of places (..., 2) in the face, (...,), from 0 to its length
+    """
+    row_Ai, height = np.zeros((n_dof // 2, 2)), face_length(face)
+    for basis in face:
+        share_eq = (4.0 - 6.0 * depth(basis.X_eqI) / height) * basis.dV_eq
+        weights_ea = np.einsum("eqa,eq->ea", basis.N_eqa, share_eq)
+        np.add.at(row_Ai, basis.conn_ea, weights_ea[..., None] * direction_i)
+    return row_Ai.ravel() / height
+
+
+def slope_row(face: tuple[BlockBasis, ...], along_I: np.ndarray, across_i: np.ndarray, n_dof: int) -> np.ndarray:
+    """Row (n_dof,) that gives the mean slope of a face: displacement across by coordinate along."""
+    row_Ai = np.zeros((n_dof // 2, 2))
+    for basis in face:
+        weights_ea = np.einsum("eqIa,eq,I->ea", basis.dN_eqIa, basis.dV_eq, along_I)
+        np.add.at(row_Ai, basis.conn_ea, weights_ea[..., None] * across_i)
+    return row_Ai.ravel() / face_length(face)
+
+
+def point_row(A: int, direction_i: np.ndarray, n_dof: int) -> np.ndarray:
+    """Row (n_dof,) that gives the displacement of one control point in one direction."""
+    row_Ai = np.zeros((n_dof // 2, 2))
+    row_Ai[A] = direction_i
+    return row_Ai.ravel()

@@ -1,0 +1,97 @@
+"""Element boundaries along a specimen, and rectangles of either basis on them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from iga.bases.bspline import open_knots
+from iga.bases.lagrange import lagrange_rectangle
+from iga.bases.nurbs import nurbs_rectangle
+from iga.mesh.extraction import Mesh
+
+#: Part of an element that rounding may add or take: numbers of elements do not turn on it.
+ROUNDING = 1e-9
+
+
+def columns(basis: str, degree: int, elements: int) -> int:
+    """Functions of one direction.
+
+    Raises
+    ------
+    ValueError : the basis is unknown.
+    """
+    if basis not in ("nurbs", "lagrange"):
+        raise ValueError(f'basis must be "tspline", "nurbs" or "lagrange", got {basis!r}')
+    return elements + degree if basis == "nurbs" else elements * degree + 1
+
+
+def rectangle(basis: str, degrees: tuple[int, int], breaks_s: np.ndarray, breaks_t: np.ndarray) -> Mesh:
+    """The rectangle of elements with boundaries at ``breaks_s`` x ``breaks_t``, of these degrees."""
+    if basis == "lagrange":
+        return lagrange_rectangle(breaks_s, breaks_t, *degrees)
+    return nurbs_rectangle(*(open_knots(breaks, p) for breaks, p in zip((breaks_s, breaks_t), degrees, strict=True)))
+
+
+def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:
+    """The largest number from ``least`` on whose mesh has no more unknowns than aimed at; they grow with the number.
+
+    Raises
+    ------
+    ValueError : even the least one has more.
+    """
+    if unknowns(least) > aim:
+        raise ValueError(f"a mesh of this basis and degree needs at least {unknowns(least)} unknowns, got {aim}")
+    low, high = least, 2 * least
+    while unknowns(high) <= aim:
+        low, high = high, 2 * high
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if unknowns(middle) <= aim else (low, middle)
+    return low
+
+
+def elements_within(length: float, most: float, short: float, layers: int) -> int:
+    """Elements ``short`` that fill a length, within ``most`` of which one is left; none if longer than it.
+
+    That is said of what ``layers`` leave of them, each of which halves them.
+    """
+    if short / 2**layers > length * (1.0 + ROUNDING):
+        return 0
+    return max(0, min(int(np.ceil(length / short - ROUNDING)), int(most / short - 1.0 + ROUNDING)))
+
+
+def part(elements: float) -> int:
+    """A number of elements from a wish: one at least."""
+    return max(round(elements), 1)
+
+
+def unequal(elements: int, mismatch: float) -> tuple[int, int]:
+    """Elements of the upper and the lower body on one length; the finer one has so many.
+
+    ``mismatch`` is the element length of the lower body over that of the upper one.
+    """
+    return (elements, part(elements / mismatch)) if mismatch >= 1.0 else (part(elements * mismatch), elements)
+
+
+def finer_towards(breaks: np.ndarray, place: float, most: float, times: int) -> np.ndarray:
+    """Element boundaries with one at a place, and the elements beside it halved towards it, again and again.
+
+    That ends where those at the place are no longer than ``most``, or have been halved so many ``times``.
+    """
+    near = np.abs(breaks - place) < ROUNDING * breaks[-1]
+    breaks = np.where(near, place, breaks) if near.any() else np.sort(np.append(breaks, place))
+    at, parts = int(np.argmin(np.abs(breaks - place))), [breaks]
+    for beside in (at - 1, at + 1):
+        if 0 <= beside < len(breaks):
+            away = breaks[beside] - place
+            halvings = min(max(0, int(np.ceil(np.log2(abs(away) / most) - ROUNDING))), times)
+            parts.append(place + away * 0.5 ** np.arange(1, halvings + 1))
+    return np.sort(np.concatenate(parts))
+
+
+def pieces(*parts: tuple[float, float, int]) -> np.ndarray:
+    """Element boundaries of neighbouring pieces (start, end, equal elements); an empty piece is left out."""
+    breaks = [np.linspace(start, end, n + 1)[:-1] for start, end, n in parts if end > start]
+    return np.concatenate([*breaks, [parts[-1][1]]])

@@ -1,0 +1,1 @@
+"""From a state to forces, energies and the tangent."""

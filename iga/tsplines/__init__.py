@@ -1,0 +1,1 @@
+"""T-meshes and their spline functions."""

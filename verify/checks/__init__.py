@@ -1,0 +1,1 @@
+"""Checks of one run, and of runs against each other."""

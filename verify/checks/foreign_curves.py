@@ -1,0 +1,207 @@
+"""Curves of other codes in a verification: each judged like one of the methods, by the runs that are there."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from verify.checks import beam_error, load_introduction
+from verify.checks.between_codes import (
+    CROSS_CODE,
+    beam_check,
+    no_beam,
+    pair_checks,
+    proven,
+    published_load,
+    published_meaning,
+    published_names,
+)
+from verify.checks.odd_one_out import ODD, odd_one_out
+from verify.curves.leg_checks import farthest_check, turns_check
+from verify.curves.legs import NEAR, path
+from verify.curves.read import Reading, read_curve
+from verify.methods.names import METHODS
+from verify.methods.plugins import known_methods
+from verify.result import Result
+from verify.scene.magnitudes import LEAST, MOST
+from verify.scene.schema import Scene, only_opens, turns
+from verify.support.refusal import Refusal
+from verify.verdict import Check, Run, SceneReport
+
+#: Codes that a curve from elsewhere is held against, with the relative tolerance that holds between them as well.
+CODES: Mapping[str, float] = {**{m: CROSS_CODE[m] for m in ("tspline", "nurbs")}, "dolfinx": CROSS_CODE["nurbs"]}
+
+#: Part of its largest load below which a curve bears nothing any more.
+NOTHING = 0.01
+
+#: Part of the first leg behind which a curve begins late.
+LATE = 0.01
+
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Opening and load of another code, read from a file."""
+
+    name: str
+    path: Path
+    reading: Reading
+    result: Result
+
+    def command(self, run: Path) -> str:
+        """What compares the file with the folder of a run."""
+        given = {
+            "--opening-a": self.reading.opening,
+            "--load-a": self.reading.load,
+            "--opening-scale-a": _unless_one(self.reading.opening_scale),
+            "--load-scale-a": _unless_one(self.reading.load_scale),
+        }
+        words = [word for name, value in given.items() if value is not None for word in (name, str(value))]
+        return shlex.join(["debond", "compare", str(self.path), str(run), *words])
+
+
+def read_curves(words: Sequence[str], reading: Reading) -> tuple[Curve, ...]:
+    """The curves that ``FILE`` and ``NAME=FILE`` stand for; without a name the file's, or that of a run's folder.
+
+    Raises
+    ------
+    Refusal : no curve in a file, or numbers beyond all units; a name that is no word, that of a method, or one for two
+        curves.
+    """
+    curves: list[Curve] = []
+    taken = known_methods() if words else {}
+    for word in words:
+        name, path = _named(word)
+        if not _NAME.fullmatch(name):
+            raise Refusal(f"--with: a name must be of letters, digits, dots, dashes and underscores, got {name!r}")
+        if name in taken or name.partition("-")[0] in METHODS or name in [curve.name for curve in curves]:
+            whose = "another curve's" if name in [curve.name for curve in curves] else "a method's"
+            raise Refusal(f"--with: a name must not be {whose}, got {name!r}; NAME={path} gives another")
+        opening, load = read_curve(path, reading)
+        _of_some_size(path, opening, load)
+        curves.append(Curve(name, path, reading, Result(name, {"opening": opening, "load": load})))
+    return tuple(curves)
+
+
+def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneReport:
+    """The report with the curves as runs of their own, and with checks of every run of a method that is not ours.
+
+    Each curve as it was read stands in ``out``/SCENE/NAME/curve.csv then.
+    """
+    for curve in curves:
+        _keep(curve, out / report.scene.name / curve.name)
+    against = next((run for run in report.runs if run.method == "nurbs" and run.result is not None), None)
+    runs = [
+        Run(
+            curve.name,
+            curve.name,
+            curve.result,
+            folder=f"{report.scene.name}/{curve.name}",
+            command=curve.command(out / against.folder) if against else "",
+        )
+        for curve in curves
+    ]
+    results = {run.name: run.result for run in report.runs if run.result is not None}
+    others = {run.method: run.result for run in (*report.runs, *runs) if run.method not in METHODS and run.result}
+    checks = [check for name, other in others.items() for check in checks_of(report.scene, name, other, results)]
+    said = [remark for name, other in others.items() for remark in _beginning(report.scene, name, other)]
+    load = load_introduction.sentence(report.scene) if curves else ""
+    said += [load] if load and load not in report.remarks else []
+    whole = (*report.checks, *checks)
+    odd = odd_one_out(report.scene, whole, results | others)
+    kept = [remark for remark in report.remarks if not remark.startswith(ODD)]  # named again, among more runs
+    return replace(report, runs=(*report.runs, *runs), checks=whole, remarks=(*kept, *said, *odd))
+
+
+def _programme(scene: Scene, curve: Result, runs: Iterable[Result]) -> tuple[float, ...]:
+    """The load programme, as far as there is a specimen: where a run has separated, a curve that ends there, or that
+    bears nothing any more, has come to its end."""
+    programme = scene.load.opening
+    apart = [float(run.opening.max()) for run in runs if run.complete and run.ending.startswith("separated")]
+    if apart and abs(curve.load[-1]) <= NOTHING * np.max(np.abs(curve.load)):
+        apart.append(float(curve.opening.max()))
+    end = min(apart, default=np.inf)
+    last = next((i for i, goal in enumerate(programme) if goal > end), None)
+    return programme if last is None else (*programme[:last], end)
+
+
+def _beginning(scene: Scene, name: str, curve: Result) -> tuple[str, ...]:
+    """What is said of a curve that leaves out more than a small part of the first leg."""
+    if curve.load.size == 0:
+        return ()
+    first, goal = float(curve.opening[0]), turns(scene.load.opening)[0]
+    if first / goal <= LATE:
+        return ()
+    return (f"{name}: begins at the opening {first:.6g} and is joined to the origin by a straight line",)
+
+
+def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Result]) -> tuple[Check, ...]:
+    """A curve against the isogeometric codes, DOLFINx and the beam, and against what others published.
+
+    Parameters
+    ----------
+    results : the runs that are there, by name
+    """
+    if curve.load.size < 2:
+        return ()
+    programme = _programme(scene, curve, results.values())
+    checks: list[Check] = []
+    if max(programme) > 0.0:
+        missing = max(0.0, 1.0 - float(curve.opening.max()) / max(programme))
+        meaning = "The curve goes as far as the load programme opens the specimen (missing part of it)."
+        checks.append(Check("end", name, missing, NEAR, "cross-code", meaning))
+    if not only_opens(programme):
+        checks.append(turns_check(name, path((curve.opening, curve.load), programme)))
+    usable = {method: result for method, result in results.items() if result.load.size > 1}
+    for method, tolerance in CODES.items():
+        if method in usable:
+            pair = pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
+            checks += [proven(scene, check, usable) for check in pair]
+    fine = beam_error.tolerance(scene)
+    if "beam" in usable and fine is not None and not no_beam(scene):
+        beam = usable["beam"]
+        checks.append(proven(scene, beam_check(scene, name, curve, beam, fine), usable))
+        curves = (curve.opening, curve.load), (beam.opening, beam.load)
+        checks += farthest_check(f"{name} / beam", *curves, programme, fine, "analytical")
+    for known_name, known in zip(published_names(scene), scene.published, strict=True):
+        value = known.deviation(published_load(known, curve, programme))
+        checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))
+    return tuple(checks)
+
+
+def _keep(curve: Curve, folder: Path) -> None:
+    """Write opening and load into a folder of their own, never into one that a run is linked to."""
+    if folder.is_symlink():
+        folder.unlink()
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = np.stack([curve.result.opening, curve.result.load], axis=1)
+    np.savetxt(folder / "curve.csv", rows, "%.17g", ",", header="opening,load", comments="")
+
+
+def _of_some_size(path: Path, opening: np.ndarray, load: np.ndarray) -> None:
+    """Like the numbers of a scene: squares of larger ones overflow, and a page cannot be drawn to their scale."""
+    largest = max(float(np.abs(opening).max()), float(np.abs(load).max()))
+    if not (largest <= MOST and opening.max() >= LEAST):
+        got = f"{largest:g}" if largest > MOST else f"openings up to {opening.max():g}"
+        raise Refusal(
+            f"{path}: must hold numbers of a size <= {MOST:g}, and openings up to {LEAST:g} or more, got {got}"
+        )
+
+
+def _named(word: str) -> tuple[str, Path]:
+    name, equals, file = word.partition("=")
+    if equals and not Path(word).exists():
+        return name, Path(file)
+    path = Path(word)
+    stem = path.resolve().name if path.is_dir() else path.stem
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", stem).lstrip("._-") or "curve", path
+
+
+def _unless_one(scale: float) -> float | None:
+    return None if scale == 1.0 else scale

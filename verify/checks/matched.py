@@ -1,0 +1,119 @@
+"""What a matched interface leaves out: the tilt of the lower surface, and what the upper one slides along it there.
+
+The DOLFINx model, as every other without ``effects.search``, pairs points for good and measures gap and traction along
+the undeformed normal. Where the lower surface has turned by theta and a pair has slid apart by s lengthwise, the gap g
+along the current normal is g cos(theta) - s sin(theta), and the tractions pull lengthwise by p sin(theta). Both are
+read from the fields that a run keeps, and are a bound of what a code with a moving projection may find otherwise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from scipy.integrate import trapezoid
+
+from verify.checks.identities import law_of
+from verify.result import Result, Snapshot
+from verify.scene.effects import NEGLIGIBLE
+from verify.scene.schema import Scene
+from verify.theory.law import Law
+
+#: A point pulls where its traction is more than this part of the strength.
+PULLS = 0.01
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """The largest values over the fields that were kept.
+
+    ``tilt``: turn of the lower surface in radians, where the interface pulls. ``gap``: change of the gap over g_u, in
+    the process zone. ``pull``: lengthwise resultant of the tractions over the load.
+    """
+
+    tilt: float
+    gap: float
+    pull: float
+
+    @property
+    def bound(self) -> float:
+        """Part of G_Ic, or of the load, by which a code that follows the surfaces may differ.
+
+        No traction is above p_max = 2 G_Ic / g_u: a change of the gap by ``gap`` g_u changes the area under the law by
+        no more than 2 ``gap`` G_Ic.
+        """
+        return float(np.max([2.0 * self.gap, self.pull]))  # NaN stays NaN, and is not valid
+
+    @property
+    def valid(self) -> bool:
+        """Whether the interface may stay matched; not where the bound is unknown."""
+        return self.bound <= NEGLIGIBLE
+
+
+def summary(scene: Scene, result: Result) -> dict[str, float]:
+    """What ``result.json`` says of it: tilt, gap and pull, or nothing where the method follows the surfaces."""
+    found = of_run(scene, result)
+    return {} if found is None else asdict(found)
+
+
+def of_run(scene: Scene, result: Result) -> LeftOut | None:
+    """What a run leaves out; None where its method follows the surfaces, or where no fields were kept."""
+    if result.method != "dolfinx" or not result.snapshots:
+        return None
+    specimen = scene.specimen
+    return left_out(result.snapshots, law_of(scene), specimen.place(0.0), specimen.width)
+
+
+def left_out(
+    snapshots: tuple[Snapshot, ...], law: Law, loaded_at: float, width: float = 1.0, between: bool = False
+) -> LeftOut:
+    """What the fields of a run with a matched interface say of it.
+
+    Parameters
+    ----------
+    loaded_at : X of the loaded end, from which the snapshots count distances; the bodies meet on Y = 0.
+    between : the surface half way between both is the one that counts, not the lower one: with arms that are alike
+        tractions act across it, and their tilt is an error of whoever takes the normal of either.
+    """
+    found = [_of(snapshot, law, loaded_at, width, between) for snapshot in snapshots]
+    return LeftOut(*(float(np.max(values)) for values in zip(*found, strict=True))) if found else LeftOut(0, 0, 0)
+
+
+def _of(snapshot: Snapshot, law: Law, loaded_at: float, width: float, between: bool) -> tuple[float, float, float]:
+    below_X, below_u, turn = _surface(snapshot, upper=False)
+    above_X, above_u, above_turn = _surface(snapshot, upper=True)
+    X_q = np.abs(loaded_at - snapshot.s_q)
+    turn_q = np.interp(X_q, below_X, turn)
+    if between:
+        turn_q = 0.5 * (turn_q + np.interp(X_q, above_X, above_turn))
+    slid_q = np.interp(X_q, above_X, above_u[:, 0]) - np.interp(X_q, below_X, below_u[:, 0])
+    g_q, p_q = snapshot.gap_q, snapshot.traction_q
+    zone_q = (g_q > law.g_peak) & (g_q < law.g_open)
+    change_q = g_q * (1.0 - np.cos(turn_q)) + slid_q * np.sin(turn_q)
+    order = np.argsort(X_q)
+    pull = width * float(trapezoid((p_q * np.sin(turn_q))[order], X_q[order]))
+    return (
+        float(np.max(np.abs(turn_q[np.abs(p_q) > PULLS * law.strength]), initial=0.0)),
+        float(np.max(np.abs(change_q[zone_q]), initial=0.0)) / law.g_open,
+        abs(pull / snapshot.load) if snapshot.load else 0.0,
+    )
+
+
+def _surface(snapshot: Snapshot, upper: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """X (n,), displacements (n, 2) and turn (n,) along a body's side of Y = 0, element by element, X rising."""
+    X_euvi, u_euvi, v = snapshot.X_euvi, snapshot.u_euvi, 0 if upper else -1
+    if np.ptp(X_euvi[..., 1], axis=1).max() > np.ptp(X_euvi[..., 1], axis=2).max():  # the grid may run across first
+        X_euvi, u_euvi = X_euvi.swapaxes(1, 2), u_euvi.swapaxes(1, 2)
+    Y_euv = X_euvi[..., 1]
+    on_side = np.all(np.abs(Y_euv[:, :, v]) < 1e-9 * np.ptp(Y_euv), axis=1)
+    on_side &= (Y_euv.mean(axis=(1, 2)) > 0.0) == upper
+    X_eu, u_eui = X_euvi[on_side][:, :, v, 0], u_euvi[on_side][:, :, v]
+    order = np.argsort(X_eu[:, 0])
+    X_eu, u_eui = X_eu[order], u_eui[order]
+    t_u = np.linspace(0.0, 1.0, X_eu.shape[1])
+    powers = np.arange(t_u.size)
+    slopes_uc = powers * t_u[:, None] ** np.maximum(powers - 1, 0)
+    slopes_uv = slopes_uc @ np.linalg.inv(t_u[:, None] ** powers)  # exact for the polynomial through the samples
+    du_eui = np.einsum("uv,evi->eui", slopes_uv, u_eui) / (X_eu[:, -1:] - X_eu[:, :1])[..., None]
+    turn_eu = np.arctan2(du_eui[..., 1], 1.0 + du_eui[..., 0])
+    return X_eu.ravel(), u_eui.reshape(-1, 2), turn_eu.ravel()

@@ -1,0 +1,204 @@
+"""What a run left out, and whether it was negligible: read afterwards from what the run itself has seen.
+
+An effect may have been left out by the scene or by ``auto``; what is found is said in both cases.
+`verify.scene.effects` has the estimates that are made beforehand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import degrees, nan
+
+import numpy as np
+from scipy.integrate import trapezoid
+
+from verify.checks import matched
+from verify.checks.identities import law_of
+from verify.result import Result, Snapshot
+from verify.scene.effects import GROWING, NEGLIGIBLE, STANDING, simulated, stiffer
+from verify.scene.schema import Scene
+from verify.theory.law import Law
+
+#: A bond ahead of a crack is squeezed by 0.6 g_max and no more while the crack grows (measured; 0.2 of the gap at its
+#: tip on an elastic foundation); faces that come further into each other run into each other.
+OVERLAP = 1.0
+#: A traction this many times below the strength is none.
+HARDLY = 1e12
+#: Part of the thickness of an arm within which control points are the same.
+SAME = 1e-6
+
+
+@dataclass(frozen=True)
+class Neglected:
+    """One effect that a run did not have.
+
+    ``value`` is the part of the load, or of the energy in the bond, that it may be worth, and ``seen`` says what it was
+    read from.
+    """
+
+    key: str
+    value: float
+    negligible: bool
+    seen: str
+
+    @property
+    def sentence(self) -> str:
+        verdict = "negligible" if self.negligible else f"not negligible (limit {NEGLIGIBLE:.1%})"
+        return f"{_NAMES[self.key]}: {self.seen}: {verdict}"
+
+
+_NAMES = {
+    "kinematics": "without finite kinematics",
+    "contact": "without contact",
+    "irreversible": "without irreversible damage",
+    "symmetry": "with one arm in place of two",
+    "search": "without a search for the other face",
+}
+
+
+def of_run(scene: Scene, result: Result) -> tuple[Neglected, ...]:
+    """Every effect that the run left out and of which its columns tell."""
+    effects, rules = simulated(scene, result.method), (_rotation, _overlap, _healing, _other_arm, _tilt)
+    left_out = (
+        effects["kinematics"] == "linear",
+        not effects["contact"],
+        not effects["irreversible"],
+        effects["symmetry"] and result.method != "beam",
+        not effects["search"] and result.method != "dolfinx",  # of which the report tells apart
+    )
+    if result.method == "lefm" or result.opening.size < 2:
+        return ()
+    found = (rule(scene, result) for rule, without in zip(rules, left_out, strict=True) if without)
+    return tuple(one for one in found if one is not None)
+
+
+def warnings(scene: Scene, result: Result) -> tuple[str, ...]:
+    """A sentence for every effect that should not have been left out."""
+    return tuple(one.sentence for one in of_run(scene, result) if not one.negligible)
+
+
+def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
+    """The same of many runs of a scene: one sentence an effect, of the run that it matters most to."""
+    worst: dict[str, list[tuple[Neglected, str]]] = {}
+    for name, result in results.items():
+        for one in of_run(scene, result):
+            if not one.negligible:
+                worst.setdefault(one.key, []).append((one, name))
+    return tuple(
+        f"{', '.join(name for _, name in found)}: {max(found, key=lambda pair: pair[0].value)[0].sentence}"
+        for found in worst.values()
+    )
+
+
+def summary(scene: Scene, result: Result) -> dict[str, dict[str, object]]:
+    """The entry ``neglected`` of result.json."""
+    return {
+        one.key: {"value": one.value, "negligible": one.negligible, "sentence": one.sentence}
+        for one in of_run(scene, result)
+    }
+
+
+def _rotation(scene: Scene, result: Result) -> Neglected | None:
+    """What the largest rotation of the loaded faces means for the load of a beam.
+
+    While the crack stands the load changes by 16/35 theta^2, while it grows by 6/35 theta^2 (see
+    `verify.scene.effects`).
+    """
+    steps = result.steps
+    if "face_slope_top" not in steps:
+        return None
+    slopes = [np.abs(steps[name]) for name in ("face_slope_top", "face_slope_bottom") if name in steps]
+    theta = np.max(slopes, axis=0)
+    grown = steps["crack_length"] > steps["crack_length"][0]
+    change = float(np.max(np.where(grown, GROWING, STANDING) * theta**2))
+    turn = f"the loaded end turned by {degrees(np.max(theta)):.2g} degrees, which is worth {change:.2%} of the load"
+    return Neglected("kinematics", change, change <= NEGLIGIBLE, turn)
+
+
+def _overlap(scene: Scene, result: Result) -> Neglected | None:
+    """What contact would have made of the part of the bond that is squeezed.
+
+    The smallest gap is that of the fields that were kept and, at every step, of both ends of the bond, and of all the
+    faces where the programme goes down. In the fields the squeezed bond holds a part of the work; each point of it
+    would have been stiffer by penalty / secant.
+    """
+    law, steps = law_of(scene), result.steps
+    gaps = [steps[name] for name in ("tip_opening", "end_opening") if name in steps]
+    gaps += [snapshot.gap_q for snapshot in result.snapshots]
+    if not gaps:
+        return None
+    overlap = max(0.0, -min(float(np.min(gap, initial=0.0)) for gap in gaps)) / law.g_peak
+    ends = max(0.0, -min((float(np.min(steps[n])) for n in ("tip_opening", "end_opening") if n in steps), default=0.0))
+    ends = max(ends, float(np.max(steps.get("penetration", 0.0), initial=0.0)))
+    overlap = max(overlap, ends / law.g_peak)
+    change = max((_load_of(snapshot, result, law, scene) for snapshot in result.snapshots), default=0.0)
+    seen = f"faces overlapped by up to {overlap:.2g} g_max, which is worth {change:.2%} of the load"
+    if ends / law.g_peak > OVERLAP:
+        seen = f"faces ran into each other by {overlap:.2g} g_max where they were to close"
+        return Neglected("contact", max(change, overlap), False, seen)
+    return Neglected("contact", change, change <= NEGLIGIBLE, seen)
+
+
+def _load_of(snapshot: Snapshot, result: Result, law: Law, scene: Scene) -> float:
+    """Change of the load by contact in one configuration, as part of it."""
+    closed_q = snapshot.gap_q < 0.0
+    at = int(np.argmax(result.opening >= snapshot.opening))
+    work = float(result.steps["external_work"][at])
+    if not closed_q.any() or work <= 0.0:
+        return 0.0
+    g_q, p_q = np.where(closed_q, snapshot.gap_q, -1.0), np.where(closed_q, np.minimum(snapshot.traction_q, 0.0), 0.0)
+    ratio_q = scene.interface.penalty * g_q / np.minimum(p_q, -law.strength / HARDLY)
+    change_q = p_q * g_q * stiffer(ratio_q)
+    order = np.argsort(snapshot.s_q)
+    return abs(0.5 * scene.specimen.width * float(trapezoid(change_q[order], snapshot.s_q[order]))) / work
+
+
+def _healing(scene: Scene, result: Result) -> Neglected | None:
+    """How much of what a damaged bond had taken it gave back: with irreversible damage it would not have.
+
+    Without history nothing is dissipated: the work of the bond is the cohesive energy, and that falls where gaps do.
+    """
+    steps = result.steps
+    if "cohesive_energy" not in steps or "damage_front" not in steps:
+        return None
+    damaged = np.maximum.accumulate(steps["damage_front"]) > scene.specimen.free_length
+    taken = np.where(damaged, steps["cohesive_energy"], 0.0)
+    most = np.maximum.accumulate(taken)
+    back = float(np.max((most - taken) / np.where(most > 0.0, most, 1.0)))
+    seen = f"{back:.2%} of the energy that the damaged bond had taken came back"
+    return Neglected("irreversible", back, back <= NEGLIGIBLE, seen)
+
+
+def _other_arm(scene: Scene, result: Result) -> Neglected | None:
+    """How far the mesh of the other arm is from the mirror image that stands for it; nothing else can differ."""
+    specimen = scene.specimen
+    if result.method != "tspline" or len(specimen.mesh) != 2:
+        return Neglected("symmetry", 0.0, True, "the arms are alike")
+    from iga.mesh.mirror import upside_down
+    from verify.methods.given_meshes import given_meshes
+
+    upper, lower = given_meshes(scene)
+    ours, theirs = (_sorted(mesh.P_AI) for mesh in (upper, upside_down(lower)))
+    apart = float(np.max(np.abs(ours - theirs))) if ours.shape == theirs.shape else nan
+    same = apart <= SAME * specimen.arm_thickness
+    seen = "the meshes of the arms mirror each other" if same else "the lower arm has another mesh, which was left out"
+    return Neglected("symmetry", apart / specimen.arm_thickness, same, seen)
+
+
+def _tilt(scene: Scene, result: Result) -> Neglected | None:
+    """What gaps and tractions across the surface half way between the faces are off by along the undeformed normal."""
+    effects = simulated(scene, result.method)
+    snapshots = tuple(snapshot for snapshot in result.snapshots if snapshot.X_euvi.size)  # a beam has no faces
+    if effects["symmetry"] or effects["kinematics"] == "linear" or not snapshots:
+        return None
+    specimen = scene.specimen
+    found = matched.left_out(snapshots, law_of(scene), specimen.place(0.0), specimen.width, between=True)
+    tilt = f"{degrees(found.tilt):.2g} degrees"
+    seen = f"half way between the faces the bond tilts by up to {tilt}, worth {found.bound:.2%} of G_Ic or of the load"
+    return Neglected("search", found.bound, found.valid, seen)
+
+
+def _sorted(P_AI: np.ndarray) -> np.ndarray:
+    rounded = np.round(P_AI, 9)
+    return P_AI[np.lexsort(rounded.T)]

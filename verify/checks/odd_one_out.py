@@ -1,0 +1,92 @@
+"""Which run stands alone where curves disagree: the others agree with each other, and it with none of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+
+import numpy as np
+
+from verify.checks.between_codes import CROSS_CODE, distance
+from verify.checks.proof import MATCHED, REFERENCE, SECOND, proof
+from verify.result import Result
+from verify.scene.schema import Scene
+from verify.verdict import Check
+
+#: The code that a basis belongs to. Bases of one code confirm each other less than different codes do.
+CODES = {name: "iga" for name in ("tspline", "tspline-adaptive", "nurbs", MATCHED, "lagrange")} | {SECOND: "dolfinx"}
+#: How every sentence of this module begins.
+ODD = "odd one out"
+#: Runs whose points keep their pairs.
+KEPT = {MATCHED, REFERENCE, SECOND, "beam"}
+#: Distance within which two runs agree.
+AGREE = CROSS_CODE["nurbs"]
+
+
+def odd_one_out(scene: Scene, checks: Sequence[Check], results: Mapping[str, Result]) -> tuple[str, ...]:
+    """What to say where a check of two curves is not held: which run is the odd one out.
+
+    Parameters
+    ----------
+    results : the runs of the scene, by name
+    """
+    pairs = [check.subject.split(" / ") for check in checks if not check.passed and " / " in check.subject]
+    compared = {name: run for name, run in results.items() if name != "lefm" and run.load.size > 1}
+    if not pairs or len(compared) < 2 or max(scene.load.opening) <= 0.0:
+        return ()
+    end = max(scene.load.opening)
+    return (odd_one(compared, end, proof(compared, end).models.curve if REFERENCE in compared else 0.0),)
+
+
+def odd_one(results: Mapping[str, Result], end: float, models: float = 0.0) -> str:
+    """A sentence that names the runs which no other code confirms.
+
+    Two runs agree within `AGREE`, and the difference of models where one keeps its pairs of points. They fall into
+    groups whose members agree, by chains of agreement. The group of the most codes, then of the most runs, confirms its
+    members; the runs outside it are odd, unless they are within their own tolerance of it. Where two groups are equal,
+    or all runs are in one, the run farthest from the others is named.
+
+    Parameters
+    ----------
+    results : runs to compare, by name
+    end : largest opening of the programme
+    models : what keeping pairs of points changes of the curve
+    """
+    apart = {frozenset(pair): _far(results, pair, end, models) for pair in combinations(results, 2)}
+    ranked = sorted(_groups(list(results), {pair for pair, far in apart.items() if far <= AGREE}), key=_weight)[::-1]
+    main = ranked[0]
+    if len(ranked) > 1 and _weight(main) > _weight(ranked[1]):
+        nearest = {name: min(apart[frozenset((name, one))] for one in main) for name in results if name not in main}
+        odd = {name: far for name, far in nearest.items() if far > CROSS_CODE.get(name, AGREE) and name != SECOND}
+        if odd:
+            inside = max((apart[frozenset(pair)] for pair in combinations(main, 2)), default=0.0)
+            confirmed = f"{_listed(main)}, which agree within {inside:.2%}" if len(main) > 1 else main[0]
+            return f"{ODD}: {_listed(list(odd))}, {min(odd.values()):.2%} or more from {confirmed}"
+    mean = {name: float(np.mean([far for pair, far in apart.items() if name in pair])) for name in results}
+    far = max(mean, key=lambda name: mean[name])
+    rest = float(np.mean([mean[name] for name in results if name != far]))
+    return f"{ODD}, though not by much: {far}, on average {mean[far]:.2%} from the other runs, those {rest:.2%}"
+
+
+def _far(results: Mapping[str, Result], pair: tuple[str, str], end: float, models: float) -> float:
+    """Distance of the later run to the earlier one, less what their models differ; infinite where it is no number."""
+    with np.errstate(all="ignore"):  # a curve of another code may bear nothing
+        far = distance(results[pair[1]], results[pair[0]], end)
+    far -= models * (len(KEPT & set(pair)) == 1)
+    return max(0.0, far) if np.isfinite(far) else np.inf
+
+
+def _groups(names: Sequence[str], agree: set[frozenset[str]]) -> list[list[str]]:
+    groups: list[list[str]] = []
+    for name in names:
+        near = [group for group in groups if any(frozenset((name, other)) in agree for other in group)]
+        groups = [group for group in groups if group not in near] + [[one for group in near for one in group] + [name]]
+    return groups
+
+
+def _weight(group: Sequence[str]) -> tuple[int, int]:
+    return len({CODES.get(name, name) for name in group}), len(group)
+
+
+def _listed(group: Sequence[str]) -> str:
+    return f"{', '.join(group[:-1])} and {group[-1]}" if len(group) > 1 else group[0]

@@ -1,0 +1,427 @@
+"""The commands: each takes its options to the work, refuses what cannot be done, and returns an exit code."""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from shutil import get_terminal_size
+from typing import TYPE_CHECKING
+
+from verify.support.refusal import Refusal
+from verify.support.say import say
+
+if TYPE_CHECKING:
+    from verify.checks.foreign_curves import Curve
+    from verify.result import Result
+    from verify.scene.schema import Scene
+    from verify.verdict import Check
+
+FAILED = 1
+
+
+def solve(options: argparse.Namespace) -> int:
+    from verify.methods import through_thickness, zone_resolution
+    from verify.methods.names import NotRun
+    from verify.methods.solve import require
+    from verify.runs.environment import mpi_rank, mpi_size
+    from verify.runs.run import run
+    from verify.scene.effects import decided
+    from verify.scene.load import load_scene
+
+    if options.accuracy is not None:
+        return _accurate(options)
+    options.method = options.method or "nurbs"
+    _known_method(options.method, options.dofs)
+    dofs = [f"discretization.dofs={options.dofs}"] if options.dofs else []
+    scene = load_scene(options.scene, [*dofs, *options.overrides])
+    if mpi_size() > 1 and options.method != "dolfinx":
+        raise Refusal(f"--method: must be dolfinx under mpirun, the others run in one process, got {options.method!r}")
+    options.out = options.out or Path("debond-out") / f"{scene.name}-{options.method}"
+    quiet = mpi_rank() > 0
+    try:
+        require(scene, options.method)
+    except NotRun as error:
+        return _not_run(error)
+    _folder(options.out)
+    if not quiet:
+        coarse = (*zone_resolution.warnings(scene, options.method), *through_thickness.warnings(scene, options.method))
+        for remark in (*decided(scene, options.method), *coarse):
+            say(str(remark))
+        if options.fields and options.frames and options.method in ("beam", "lefm"):
+            say(f"--fields: the method {options.method} has no bodies to draw: no frames for ParaView")
+    result, checks = _watched(run, scene, options, quiet)
+    if not quiet:
+        _print_result(result, checks, options.out)
+        _say_after(scene, result, checks)
+    return 0 if result.complete and not _broken(checks) else FAILED
+
+
+def _accurate(options: argparse.Namespace) -> int:
+    """Solve to an accuracy: choose method and mesh, say what and for how long, and verify the solution."""
+    from verify.methods import zone_resolution
+    from verify.runs.environment import mpi_size
+    from verify.runs.run import run
+    from verify.scene.effects import decided
+    from verify.scene.load import load_scene
+    from verify.scene.parse import parse_scene
+    from verify.studies.cost.accuracy import choose
+    from verify.studies.cost.verified import percent, planned, verified
+
+    given = {"--method": options.method, "--dofs": options.dofs}
+    for name, value in given.items():
+        if value is not None:
+            raise Refusal(f"{name}: must be left out with --accuracy, which chooses it, got {value!r}")
+    if mpi_size() > 1:
+        raise Refusal(f"--accuracy: must be asked for in 1 process, without mpirun, got {mpi_size()}")
+    scene = load_scene(options.scene, options.overrides)
+    first = choose(scene, options.accuracy, Path("debond-cost") / "cost.json")
+    say(planned(scene, first))
+    out = options.out or Path("debond-out") / f"{scene.name}-{first.method}"
+    _folder(out)
+    for decision in decided(parse_scene(scene.model_dump(), first.overrides), first.method):
+        say(str(decision))
+
+    def solved(level: Scene, method: str, folder: Path, delivers: bool):
+        own = {"method": method, "out": folder, "fields": options.fields and delivers}
+        return _watched(run, level, argparse.Namespace(**{**vars(options), **own}), False)
+
+    found = verified(scene, first, options.accuracy, out, solved)
+    last = found.delivered
+    _print_result(last.result, last.checks, out)
+    print(found.sentence)
+    for remark in zone_resolution.warnings(last.scene, last.method):
+        say(remark)
+    _say_after(last.scene, last.result, last.checks)
+    if not found.close:
+        remedy = "ask for less, or refine with --dofs and discretization.steps"
+        say(f"--accuracy: {percent(found.asked)} has not been reached: {found.why}; {found.sentence}; {remedy}")
+    return 0 if found.holds else FAILED
+
+
+def _say_after(scene: Scene, result: Result, checks: Sequence[Check]) -> None:
+    from verify.checks import neglected
+
+    for remark in neglected.warnings(scene, result):
+        say(remark)
+    broken = _broken(checks)
+    if result.complete and broken:
+        say(f"{result.method}: broken: {', '.join(broken)}; the run or the solver is at fault, not the mesh")
+
+
+def _broken(checks: Sequence[Check]) -> list[str]:
+    return [check.name for check in checks if check.state == "broken"]
+
+
+def _watched(run, scene, options: argparse.Namespace, quiet: bool):
+    """The run with its progress along the programme."""
+    from verify.support.progress import Progress
+
+    legs = [abs(b - a) for a, b in zip((0.0, *scene.load.opening), scene.load.opening, strict=False)]
+    with Progress(f"{scene.name} {options.method}", sum(legs), quiet) as progress:
+        travelled = _Travelled()
+        return run(
+            scene,
+            options.method,
+            options.out,
+            options.fields,
+            lambda row: progress.advance(travelled(row), f"opening {row['opening']:.4g} load {row['load']:.4g}"),
+            frames=options.frames if options.fields else 0,
+        )
+
+
+class _Travelled:
+    """How far the opening has gone, back and forth added up."""
+
+    def __init__(self) -> None:
+        self._opening, self._way = 0.0, 0.0
+
+    def __call__(self, row) -> float:
+        self._way += abs(row["opening"] - self._opening)
+        self._opening = row["opening"]
+        return self._way
+
+
+def _print_result(result, checks, folder: Path) -> None:
+    from verify.checks.table import check_table
+
+    peak = result.load.argmax() if result.load.size else None
+    if peak is not None:
+        print(f"peak load {result.load[peak]:.6g} at opening {result.opening[peak]:.6g}, {result.load.size - 1} steps")
+    if result.seconds:
+        print("seconds: " + ", ".join(f"{name} {value:.2f}" for name, value in result.seconds.items()))
+    print("\n".join(check_table(checks)))
+    if not result.complete:
+        say(f"{result.method} {result.status}")
+    print(f"{', '.join(filter(None, (result.status, result.ending)))}: {folder}")
+
+
+def verify(options: argparse.Namespace) -> int:
+    from verify.checks.judgement import Demands
+    from verify.methods.given_meshes import given_meshes
+    from verify.scene.load import load_scene, verified_scenes
+    from verify.studies.found import named
+    from verify.studies.plane.study import load_plate
+    from verify.verification import verify, would_run
+
+    _alone("verify")
+    scenes, plates, wrong = [], [], []
+    for source in options.scenes or verified_scenes(options.full):
+        try:
+            if source.lower().endswith(".iga"):
+                plates.append(load_plate(source))
+            else:
+                scene = load_scene(source)
+                given_meshes(scene)
+                scenes.append((source, scene))
+        except Refusal as error:
+            wrong.append(str(error))
+    names = [*(scene.name for _, scene in scenes), *(plate.name for plate in plates)]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]
+    if wrong:
+        raise Refusal("\n".join(wrong))
+    curves = _curves(options, len(scenes), len(plates))
+    demands = Demands(options.strict, tuple(options.require))
+    for method in demands.required:
+        _known_method(method, None, "--require")
+    included = named(options.include)
+    if options.dry_run:
+        return _listed(would_run(scenes, options.out, options.jobs, options.full))
+    _folder(options.out)
+    what = (options.full, plates, options.scheduler, included, options.format == "md", curves, demands)
+    return 0 if verify(scenes, options.out, options.jobs, *what) else FAILED
+
+
+def _curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curve, ...]:
+    """Those of other codes, with what the options say of their columns."""
+    from verify.checks.foreign_curves import read_curves
+    from verify.curves.read import Reading
+
+    keys = ("opening", "load", "opening_scale", "load_scale")
+    reading = Reading(**{key: getattr(options, key) for key in keys})
+    if options.curves and (scenes, plates) != (1, 0):
+        raise Refusal(f"--with: needs one SCENE, which its curve is of, got {scenes + plates}")
+    if not options.curves and reading != Reading():
+        raise Refusal("--with: is missing, its FILE is what --opening, --load and their scales are about")
+    return read_curves(options.curves, reading)
+
+
+def cost(options: argparse.Namespace) -> int:
+    from verify.methods.given_meshes import refuse_files
+    from verify.scene.load import load_scene
+    from verify.studies.cost.study import cost, would_run
+
+    _alone("cost")
+    scene = load_scene(options.scene, options.overrides)
+    refuse_files(scene, "debond cost")
+    what = (options.scene, scene, options.overrides, options.out, options.jobs)
+    if options.dry_run:
+        return _listed(would_run(*what))
+    _folder(options.out)
+    return 0 if cost(*what) is not None else FAILED
+
+
+def effects(options: argparse.Namespace) -> int:
+    from verify.methods.names import NotRun
+    from verify.methods.solve import require
+    from verify.scene.load import load_scene
+    from verify.studies.effects.study import effects, would_run
+
+    _known_method(options.method, None)
+    _alone("effects")
+    scene = load_scene(options.scene, options.overrides)
+    what = (options.scene, scene, options.method, options.overrides, options.out)
+    try:
+        if options.dry_run:
+            return _listed(would_run(*what))
+        require(scene, options.method)
+        _folder(options.out)
+        return 0 if effects(*what, options.jobs, options.scheduler).complete else FAILED
+    except NotRun as error:
+        return _not_run(error)
+
+
+def scaling(options: argparse.Namespace) -> int:
+    from verify.methods.given_meshes import refuse_files
+    from verify.scene.load import load_scene
+    from verify.studies.scaling.study import scaling, would_run
+
+    _alone("scaling")
+    scene = load_scene(options.scene, options.overrides)
+    refuse_files(scene, "debond scaling")
+    what = (options.scene, scene, options.overrides, options.out)
+    if options.dry_run:
+        return _listed(would_run(*what))
+    _folder(options.out)
+    return 0 if scaling(*what).complete else FAILED
+
+
+def hard(options: argparse.Namespace) -> int:
+    from verify.studies.hard.cases import chosen
+    from verify.studies.hard.suite import dry_run, hard
+
+    if "random" in options.names:
+        return _random(options)
+    if options.seeds is not None:
+        raise Refusal("--seeds: is for random scenes; debond hard random --seeds 40")
+    cases = chosen(options.names)
+    if options.dry_run:
+        return _listed(dry_run(cases, options.out, options.jobs))
+    _folder(options.out)
+    return 0 if hard(cases, options.out, options.jobs, options.scheduler) else FAILED
+
+
+def _random(options: argparse.Namespace) -> int:
+    """The campaign on random scenes."""
+    from verify.studies.campaign import campaign, would_run
+
+    if options.names != ["random"]:
+        raise Refusal("random: must be the only NAME, it is a campaign of its own")
+    first, last = options.seeds or (0, 39)
+    seeds = range(first, last + 1)
+    if options.dry_run:
+        return _listed(would_run(seeds, options.out, options.jobs))
+    _folder(options.out)
+    return 0 if campaign(seeds, options.out, options.jobs, options.scheduler) else FAILED
+
+
+def compare(options: argparse.Namespace) -> int:
+    from verify.command_line import compare as work
+    from verify.curves.compare import checks
+    from verify.curves.read import Reading
+    from verify.curves.wording import complaints, remarks, table
+
+    keys = ("opening", "load", "opening_scale", "load_scale")
+    a, b = (
+        work.Source(getattr(options, side), Reading(**{key: getattr(options, f"{key}_{side}") for key in keys}))
+        for side in "ab"
+    )
+    comparison, loads = work.held_against(a, b, options.end, options.at, options.begin, options.programme)
+    if options.out is not None:
+        _folder(options.out)
+    found = checks(comparison, options.curve_tol, options.peak_tol, options.energy_tol)
+    print("\n".join(table(comparison, loads, found)), flush=True)
+    for remark in remarks(comparison):
+        say(remark)
+    if options.out is not None:
+        work.write(options.out, (a, b), comparison, loads, found)
+        print(f"written: {options.out}")
+    for complaint in complaints(comparison, found):
+        say(complaint)
+    return 0 if all(check.passed for check in found) else FAILED
+
+
+def export(options: argparse.Namespace) -> int:
+    from verify.export.command import FORMATS, export
+    from verify.methods.given_meshes import refuse_files
+    from verify.scene.load import load_scene
+    from verify.scene.tables import one_of
+
+    if options.format not in FORMATS:
+        raise Refusal(f"--format: must be {one_of(FORMATS)}, got {options.format!r}")
+    elements = [f"dolfinx.elements={options.elements}"] if options.elements else []
+    scene = load_scene(options.scene, [*elements, *options.overrides])
+    refuse_files(scene, "debond export")
+    folder = options.out or Path("debond-export") / f"{scene.name}-{options.format}"
+    return _listed(export(scene, options.format, folder, options.layers))
+
+
+def mesh(options: argparse.Namespace) -> int:
+    from verify.command_line.mesh import examine
+
+    return 0 if examine(options.file, options.out, options.json, options.control) else FAILED
+
+
+def scenes(options: argparse.Namespace) -> int:
+    from verify.command_line import scene_list
+    from verify.methods.plugins import plugins
+    from verify.scene.load import load_scene, packaged_scenes
+
+    width = get_terminal_size((200, 24)).columns  # one line a scene for programs
+    if options.scenes:
+        return _listed(["\n\n".join([scene_list.page(load_scene(name), width) for name in options.scenes])])
+    for name in packaged_scenes():
+        print(scene_list.line(name, load_scene(name), width))
+    for plugin in plugins().values():
+        print(f"method of another package: {plugin.name} ({plugin.package})")
+    return 0
+
+
+def new(options: argparse.Namespace) -> int:
+    from verify.command_line.new_scene import new_scene
+
+    print(new_scene(options.kind), end="")
+    return 0
+
+
+def completion(options: argparse.Namespace) -> int:
+    from verify.command_line.completion import SHELLS, script
+    from verify.scene.tables import one_of
+
+    if options.shell not in SHELLS:
+        raise Refusal(f"SHELL: must be {one_of(SHELLS)}, got {options.shell!r}")
+    print(script(options.parser, options.shell), end="")
+    return 0
+
+
+def doctor(options: argparse.Namespace) -> int:
+    from verify.command_line.doctor import examine
+
+    lines, works = examine()
+    print("\n".join(lines))
+    return 0 if works else FAILED
+
+
+def test(options: argparse.Namespace) -> int:
+    tests = Path(__file__).resolve().parents[2] / "tests"
+    if not tests.is_dir():
+        raise Refusal("test: the tests are not installed; run it in a copy of the repository")
+    return subprocess.call([sys.executable, "-m", "pytest", *options.rest], cwd=tests.parent)
+
+
+def _listed(lines: Sequence[str]) -> int:
+    print("\n".join(lines))
+    return 0
+
+
+def _alone(command: str) -> None:
+    from verify.runs.environment import mpi_size
+
+    if mpi_size() > 1:
+        raise Refusal(f"{command}: must be started in 1 process, without mpirun, got {mpi_size()}")
+
+
+def _known_method(method: str, dofs: int | None, option: str = "--method") -> None:
+    from verify.methods.names import WITH_DOFS
+    from verify.methods.plugins import known_methods
+    from verify.scene.complaints import suggestion
+    from verify.scene.tables import one_of
+
+    known = known_methods()
+    if method not in known:
+        later = f"; {suggestion(method, known)}".rstrip("; ")
+        raise Refusal(f"{option}: must be {one_of(known)}, got {method!r}{later}")
+    if dofs and method not in WITH_DOFS:
+        other = "; --set dolfinx.elements=N sets its mesh" if method == "dolfinx" else ""
+        raise Refusal(f"--dofs: is only for --method {one_of(WITH_DOFS)}, got {dofs} for {method}{other}")
+
+
+def _folder(path: Path) -> None:
+    """Make the output folder now, so that hours of work do not end at a closed door."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        (path / ".writable").touch()
+        (path / ".writable").unlink(missing_ok=True)
+    except OSError as error:
+        raise Refusal(f"--out: must be a folder that can be written to, got {str(path)!r}: {error.strerror}") from None
+
+
+def _not_run(error: Exception) -> int:
+    from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS
+
+    ways = [". Ways to get it:", *(f"\n  {way}" for way in DOLFINX_WAYS)] if str(error) == DOLFINX_MISSING else []
+    say("".join([str(error), *ways]))
+    return FAILED

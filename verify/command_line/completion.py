@@ -1,0 +1,198 @@
+"""Completion of words for bash, zsh and fish, made from the parser: what it knows, the shell knows.
+
+The scripts hold all words themselves, so that a key press starts no Python.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+#: Values that are files or folders, which every shell completes by itself.
+FILES = ("FILES",)
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command with what may follow it.
+
+    Parameters
+    ----------
+    options : every spelling with its help
+    values : spelling -> words that may follow it, ``FILES``, or nothing where they are endless
+    places : the same for the arguments without an option
+    """
+
+    name: str
+    text: str
+    options: Mapping[str, str]
+    values: Mapping[str, tuple[str, ...]]
+    places: tuple[str, ...]
+
+
+def commands(parser: argparse.ArgumentParser) -> tuple[Command, ...]:
+    """The commands of a parser, in its order."""
+    known = _known()
+    (subs,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    texts = {choice.dest: choice.help or "" for choice in subs._choices_actions}
+    return tuple(_command(name, texts.get(name, ""), sub, known) for name, sub in subs.choices.items())
+
+
+def script(parser: argparse.ArgumentParser, shell: str) -> str:
+    """The script for one of ``SHELLS``."""
+    return "\n".join(SHELLS[shell](commands(parser))) + "\n"
+
+
+def _known() -> Mapping[str, tuple[str, ...]]:
+    """Where an argument's values go -> words that it may have."""
+    from verify.export.command import FORMATS
+    from verify.methods.plugins import known_methods
+    from verify.scene.keys import SPECIMENS, dotted_keys
+    from verify.scene.load import packaged_scenes
+    from verify.studies.hard.cases import CASES
+
+    return {
+        "scene": (*packaged_scenes(), *FILES),
+        "scenes": (*packaged_scenes(), *FILES),
+        "method": tuple(known_methods()),
+        "names": tuple(CASES),
+        "overrides": tuple(f"{key}=" for key in dotted_keys()),
+        "format": tuple(FORMATS),
+        "kind": tuple(SPECIMENS),
+        "shell": tuple(SHELLS),
+    }
+
+
+def _command(name: str, text: str, sub: argparse.ArgumentParser, known: Mapping[str, tuple[str, ...]]) -> Command:
+    options, values, places = {}, {}, ()
+    for action in sub._actions:
+        words = tuple(action.choices or ()) or known.get(action.dest, FILES if action.type is Path else ())
+        for spelling in action.option_strings:
+            options[spelling] = (action.help or "").replace("%%", "%")
+            if action.nargs != 0:
+                values[spelling] = words
+        if not action.option_strings:
+            places += words
+    return Command(name, text, options, values, places)
+
+
+def _bash(found: tuple[Command, ...]) -> Iterator[str]:
+    yield from (
+        "# debond for bash; in ~/.bashrc: source <(debond completion bash)",
+        "_debond() {",
+        "    local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}",
+        '    [[ $previous == "=" ]] && return  # the value of a key; the shell splits there',
+        "    if (( COMP_CWORD == 1 )); then",
+        f'        COMPREPLY=($(compgen -W "{" ".join(["--help", *(one.name for one in found)])}" -- "$word"))',
+        "        return",
+        "    fi",
+    )
+    yield from _cases(found, "${COMP_WORDS[1]}", "", _bash_words, 'COMPREPLY=($(compgen -W "{}" -- "$word"))')
+    yield from ("}", "complete -o filenames -F _debond debond ./debond")
+
+
+def _cases(
+    found: tuple[Command, ...], command: str, opening: str, answer: Callable[[tuple[str, ...]], str], options: str
+) -> Iterator[str]:
+    """What bash and zsh say alike: words behind an option, else options where a dash is begun, else arguments.
+
+    Parameters
+    ----------
+    command : what stands for the command on the line
+    opening : what a pattern may begin with
+    answer : a command that offers words
+    options : a command that offers those that stand for ``{}``
+    """
+    yield f'    case "{command} $previous" in'
+    for one in found:
+        for words, spellings in _grouped(one.values).items():
+            yield f"        {opening}{_either(one.name, spellings)})"
+            yield f"            {answer(words)}"
+            yield "            return ;;"
+    yield from ("    esac", f'    case "{command}" in')
+    for one in found:
+        yield f"        {opening}{one.name})"
+        yield f"            if [[ $word == -* ]]; then {options.format(' '.join(one.options))}"
+        yield f"            else {answer(one.places)}"
+        yield "            fi ;;"
+    yield "    esac"
+
+
+def _either(name: str, spellings: list[str]) -> str:
+    """A pattern for the command with any of these options before the cursor."""
+    return "|".join(f'"{name} {spelling}"' for spelling in spellings)
+
+
+def _bash_words(words: tuple[str, ...]) -> str:
+    """A command that sets the answer."""
+    plain = " ".join(word for word in words if word not in FILES)
+    files = " -f" if words[-1:] == FILES else ""
+    if not plain and not files:
+        return "COMPREPLY=()"
+    some = f' -W "{plain}"' if plain else ""
+    space = "; compopt -o nospace +o filenames" if plain.endswith("=") else ""
+    return f'COMPREPLY=($(compgen{files}{some} -- "$word")){space}'
+
+
+def _zsh(found: tuple[Command, ...]) -> Iterator[str]:
+    yield from (
+        "#compdef debond",
+        "# debond for zsh; in ~/.zshrc after compinit: source <(debond completion zsh)",
+        "_debond() {",
+        "    local word=$words[CURRENT] previous=$words[CURRENT-1]",
+        "    if (( CURRENT == 2 )); then",
+        f"        compadd -- --help {' '.join(one.name for one in found)}",
+        "        return",
+        "    fi",
+    )
+    yield from _cases(found, "$words[2]", "(", _zsh_words, "compadd -- {}")
+    yield from ("}", "compdef _debond debond ./debond")
+
+
+def _zsh_words(words: tuple[str, ...]) -> str:
+    plain = [word for word in words if word not in FILES]
+    tight = "-S '' " if plain and plain[-1].endswith("=") else ""
+    said = [f"compadd {tight}-- {' '.join(plain)}"] * bool(plain) + ["_files"] * (words[-1:] == FILES)
+    return "; ".join(said) or ":"
+
+
+def _fish(found: tuple[Command, ...]) -> Iterator[str]:
+    yield "# debond for fish; debond completion fish > ~/.config/fish/completions/debond.fish"
+    yield "complete -c debond -f"
+    for one in found:
+        yield f"complete -c debond -n __fish_use_subcommand -a {one.name} -d {_quoted(one.text)}"
+    for one in found:
+        start = f"complete -c debond -n '__fish_seen_subcommand_from {one.name}'"
+        if one.places:
+            yield f"{start}{_fish_words(one.places)}"
+        for spelling, text in one.options.items():
+            flag = f"-l {spelling[2:]}" if spelling.startswith("--") else f"-s {spelling[1:]}"
+            yield f"{start} {flag}{_fish_values(one, spelling)} -d {_quoted(text)}"
+
+
+def _fish_values(one: Command, spelling: str) -> str:
+    if spelling not in one.values:
+        return ""
+    return f" -r{_fish_words(one.values[spelling])}"
+
+
+def _fish_words(words: tuple[str, ...]) -> str:
+    plain = [word for word in words if word not in FILES]
+    return (" -F" if len(plain) < len(words) else " -f") + f" -a {_quoted(' '.join(plain))}" * bool(plain)
+
+
+def _quoted(text: str) -> str:
+    return "'" + text.replace("\\", "\\\\").replace("'", "\\'") + "'"
+
+
+def _grouped(values: Mapping[str, tuple[str, ...]]) -> Mapping[tuple[str, ...], list[str]]:
+    """Options that the same words may follow, together."""
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for spelling, words in values.items():
+        groups.setdefault(words, []).append(spelling)
+    return groups
+
+
+SHELLS: Mapping[str, Callable[[tuple[Command, ...]], Iterator[str]]] = {"bash": _bash, "zsh": _zsh, "fish": _fish}

@@ -1,0 +1,184 @@
+"""`debond mesh`: what a mesh file holds, whether a solver can use it, and its picture or another format."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from iga.files.iga_format import IgaFile, mesh, write_iga
+from iga.files.iga_reader import read_iga
+from iga.mesh.extraction import Mesh
+from verify.command_line.mesh_facts import MeshFacts
+from verify.support.progress import telling
+from verify.support.refusal import Refusal
+from verify.support.say import say
+
+#: Of a file that is read, looked at and drawn: twelve megabytes, 5,000 cubic elements, took 3.4 s.
+BYTES_A_SECOND = 4e6
+
+#: Formats of pictures.
+PICTURES = (".svg", ".png", ".pdf")
+
+
+def examine(path: Path, out: Path | None, as_json: bool, control: bool) -> bool:
+    """Report on a mesh file, and write what ``out`` asks for: a picture, a `.vtu` or an `.iga` file.
+
+    Without ``out`` the picture goes to `debond-mesh/STEM.svg` in the working directory.
+
+    Returns
+    -------
+    Whether a solver can use the mesh.
+
+    Raises
+    ------
+    Refusal : the file is malformed or no body in the plane, or ``out`` cannot be written.
+    """
+    if out is not None and out.suffix.lower() not in (".vtu", ".iga", *PICTURES):
+        raise Refusal(f"--out: must end in .vtu, .iga, {', '.join(PICTURES[:-1])} or {PICTURES[-1]}, got {str(out)!r}")
+    with telling(f"mesh {path.name}", _seconds(path)):
+        file, body = _read(path)
+        facts = MeshFacts(body)
+        report = _report(path, file, facts)
+        written = _write(out, path, file, facts, control)
+    if as_json:
+        print(json.dumps({**report, "written": written and str(written)}, indent=2))
+    else:
+        print("\n".join(_lines(report)))
+        if written:
+            print(f"written: {written}")
+    for sentence in facts.unsound:
+        say(f"{path}: {sentence}")
+    return not facts.unsound
+
+
+def _seconds(path: Path) -> float:
+    """About how long a file takes; one that cannot be read is refused later."""
+    try:
+        return 1.0 + path.stat().st_size / BYTES_A_SECOND
+    except OSError:
+        return 1.0
+
+
+def _read(path: Path) -> tuple[IgaFile, Mesh]:
+    try:
+        file = read_iga(path)
+    except OSError as error:
+        raise Refusal(f"FILE: must be a file that can be read, got {str(path)!r}: {error.strerror}") from None
+    except ValueError as error:
+        raise Refusal(str(error)) from None
+    try:
+        return file, mesh(file)
+    except ValueError as error:
+        raise Refusal(f"{path}: {error}") from None
+
+
+def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts, control: bool) -> Path | None:
+    """Where the picture or the other format has gone; None where there is nothing to draw with."""
+    target = out or Path("debond-mesh") / f"{path.stem}.svg"
+    try:
+        if out is None:
+            target.parent.mkdir(exist_ok=True)
+        if target.suffix.lower() == ".iga":
+            write_iga(file, target)
+        elif target.suffix.lower() == ".vtu":
+            from verify.fields.cells import write_vtu
+
+            write_vtu(facts.mesh, target)
+        else:
+            from verify.command_line.mesh_drawing import save
+
+            save(facts, target, _title(path, facts), control)
+    except OSError as error:
+        raise Refusal(f"--out: must be a place that can be written to, got {str(target)!r}: {error.strerror}") from None
+    except ModuleNotFoundError as error:
+        if error.name not in ("matplotlib", "PIL"):
+            raise
+        if out is not None:
+            raise Refusal(f"--out: a picture needs {error.name}: pip install 'debond[report]'") from None
+        say(f"no picture without {error.name}: pip install 'debond[report]'")
+        return None
+    return target
+
+
+def _title(path: Path, facts: MeshFacts) -> str:
+    return f"{path.name}: {len(facts.mesh.P_AI)} control points, {facts.mesh.elements} elements"
+
+
+def _report(path: Path, file: IgaFile, facts: MeshFacts) -> dict[str, object]:
+    """All facts as plain numbers, lists and words."""
+    smallest, relative = facts.smallest_jacobian
+    return {
+        "file": str(path),
+        "type": file.kind,
+        "control_points": len(facts.mesh.P_AI),
+        "elements": facts.mesh.elements,
+        "kinds": [
+            {"degrees": list(degrees), "functions": functions, "elements": count}
+            for degrees, functions, count in facts.kinds
+        ],
+        "t_junctions": facts.junctions.tolist(),
+        "extraordinary_points": [{"valence": valence, "at": x.tolist()} for valence, x in facts.extraordinary],
+        "boundary_loops": facts.loops,
+        "sets": [{"kind": s.kind, "name": s.name, "entries": len(s.ids)} for s in file.sets],
+        "chains": {name: len(chain.element_c) for name, chain in facts.mesh.chains.items()},
+        "sum_of_functions_misses_one_by": facts.unity,
+        "weighted_sum_misses_one_by": facts.weighted_unity,
+        "rank": facts.rank,
+        "area": facts.area,
+        "smallest_jacobian": smallest,
+        "smallest_jacobian_relative": relative,
+        "continuity": facts.continuity,
+        "unsound": facts.unsound,
+    }
+
+
+def _lines(report: dict) -> list[str]:
+    """The report for people."""
+    n_A, rank = report["control_points"], report["rank"]
+    lines = [f"{report['file']}: {report['type']}, {n_A} control points, {report['elements']} elements"]
+    for kind in report["kinds"]:
+        p, q = kind["degrees"]
+        lines.append(f"  {kind['elements']} of degrees {p} and {q} with {kind['functions']} functions each")
+    count = len(report["t_junctions"])
+    lines.append(f"T-junctions: {count or 'none'} (element corners inside a side of another Bezier element)")
+    points = [f"valence {p['valence']} at ({p['at'][0]:.6g}, {p['at'][1]:.6g})" for p in report["extraordinary_points"]]
+    lines.append(f"extraordinary points: {', '.join(points) or 'none'}")
+    loops = report["boundary_loops"]
+    lines.append(f"boundary: {loops or 'no'} closed chain{'s' * (loops != 1)}{_sets(report)}")
+    lines.append(f"sum of functions: {_unity(report)}")
+    lines.append(f"independent functions: {rank} of {n_A}{', all' if rank == n_A else ''}")
+    lines.append(f"continuity: {_continuity(report['continuity'])}")
+    smallest, relative = report["smallest_jacobian"], report["smallest_jacobian_relative"]
+    lines.append(f"area: {report['area']:.12g}")
+    lines.append(f"smallest Jacobian: {smallest:.4g}; of the mean of an element at least {relative:.3g}")
+    return lines
+
+
+def _sets(report: dict) -> str:
+    sides = [part for part in report["sets"] if part["kind"] == "side"]
+    chains = report["chains"]
+    words = [
+        f"{part['name']} ({part['entries']} sides{'' if _is_chain(part['name'], chains) else ', no chain'})"
+        for part in sides
+    ]
+    return f"; side sets {', '.join(words)}" if words else ""
+
+
+def _is_chain(name: str, chains: dict[str, int]) -> bool:
+    return name in chains or f"{name}-1" in chains
+
+
+def _unity(report: dict) -> str:
+    unity, weighted = report["sum_of_functions_misses_one_by"], report["weighted_sum_misses_one_by"]
+    if unity < 1e-10:
+        return f"1 to {unity:.1e}"
+    if weighted < 1e-10:
+        return f"1 to {weighted:.1e} with the weights (semi-standard), {unity:.1e} without"
+    return f"misses 1 by up to {unity:.2e} (the rational functions, divided by it, add up to 1)"
+
+
+def _continuity(edges: dict[str, int] | None) -> str:
+    if edges is None:
+        return "not looked at, as Jacobians vanish or are negative"
+    words = [f"{name} across {count}" for name, count in edges.items() if count]
+    return f"{', '.join(reversed(words))} inner edges" if words else "one element"

@@ -1,0 +1,120 @@
+"""The picture of a mesh: Bezier elements with their curved sides, T-junctions and extraordinary points marked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+
+from iga.mesh.extraction import SIDES
+from verify.command_line.mesh_facts import MeshFacts
+from verify.pages.style import PALETTE
+
+#: Inches: width of the picture, its largest height, and what stands around the mesh.
+_WIDTH, _HIGHEST, _MARGIN, _FOOT = 7.0, 7.0, 0.15, 0.45
+
+#: Points on a curved side, and how little of its length a side may bend to be drawn straight.
+_SAMPLES, _STRAIGHT = 17, 1e-6
+
+_RC = {"font.family": "sans-serif", "font.size": 8.0, "svg.fonttype": "none", "svg.hashsalt": "debond"}
+
+
+def light(name: str) -> str:
+    """A colour of the palette on white paper."""
+    return PALETTE[name][0]
+
+
+def draw(axes: Axes, facts: MeshFacts, control: bool = False, ink: Callable[[str], str] = light) -> None:
+    """Draw a mesh to scale.
+
+    Parameters
+    ----------
+    control : whether the control points are drawn too.
+    ink : colour of a name in the palette of the report.
+    """
+    sides, curves = facts.sides, _curves(facts)
+    common = min(degrees for degrees, _, _ in facts.kinds)
+    odd = [number for number, block in enumerate(facts.mesh.blocks) if tuple(block.degrees) != common]
+    other = np.flatnonzero(np.isin(sides.block_k[:: len(SIDES)], odd))
+    if other.size:
+        fill = {"color": ink("zone"), "alpha": 0.25, "linewidth": 0}
+        label = f"degrees other than {common[0]} and {common[1]}"
+        axes.add_collection(PolyCollection([_outline(curves, e) for e in other], **fill, label=label))
+    k, opposite, t = sides.opposite
+    shared_k = sides.shared_k.copy()
+    shared_k[k[(t == 0.5) & (k > opposite)]] = False  # the other of the two is drawn
+    axes.add_collection(
+        LineCollection([curves[k] for k in np.flatnonzero(shared_k)], color=ink("accent"), linewidth=0.5)
+    )
+    outer = [curves[k] for k in np.flatnonzero(~sides.shared_k)]
+    axes.add_collection(LineCollection(outer, color=ink("ink"), linewidth=1.1, capstyle="round"))
+    if control:
+        axes.plot(*facts.mesh.P_AI.T, ".", color=ink("muted"), markersize=2.5, label="control points")
+    if len(facts.junctions):
+        style = {"color": ink("bad"), "markersize": 3.5, "markeredgewidth": 0}
+        axes.plot(*facts.junctions.T, "o", **style, label=f"{len(facts.junctions)} T-junctions")
+    if facts.extraordinary:
+        X = np.array([x for _, x in facts.extraordinary])
+        axes.plot(*X.T, "D", color=ink("tspline"), markersize=4.5, label="extraordinary points, with their valence")
+        for valence, x in facts.extraordinary:
+            place = {"xytext": (4, 4), "textcoords": "offset points"}
+            axes.annotate(str(valence), x, **place, color=ink("tspline"), fontweight="bold")
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+
+
+def mesh_figure(facts: MeshFacts, title: str, control: bool = False) -> Figure:
+    """The mesh on a page of its own, with a legend."""
+    X = np.concatenate([curve for curve in _curves(facts)])
+    if control:
+        X = np.concatenate([X, facts.mesh.P_AI])
+    low, high = X.min(0), X.max(0)
+    extent = np.maximum(high - low, 1e-3 * max((high - low).max(), np.finfo(float).tiny))
+    scale = min((_WIDTH - 2 * _MARGIN) / extent[0], (_HIGHEST - _FOOT) / extent[1])
+    height = max(scale * extent[1] + _MARGIN + 2 * _FOOT, 1.2)
+    figure = Figure(figsize=(_WIDTH, height))
+    axes = figure.add_axes((_MARGIN / _WIDTH, _FOOT / height, 1 - 2 * _MARGIN / _WIDTH, 1 - 2 * _FOOT / height))
+    draw(axes, facts, control)
+    pad = 0.01 * extent.max()
+    axes.set(xlim=(low[0] - pad, high[0] + pad), ylim=(low[1] - pad, high[1] + pad))
+    figure.text(_MARGIN / _WIDTH, 1 - 0.25 / height, title, color=light("ink"), parse_math=False)
+    handles, labels = axes.get_legend_handles_labels()
+    if handles:
+        figure.legend(handles, labels, loc="lower left", ncols=3, frameon=False, labelcolor=light("muted"))
+    return figure
+
+
+def save(facts: MeshFacts, path: Path, title: str, control: bool = False) -> None:
+    """Write the picture in the format that the ending of the path asks for: svg, png or pdf.
+
+    Raises
+    ------
+    OSError : the path cannot be written to.
+    """
+    with matplotlib.rc_context(_RC):
+        figure = mesh_figure(facts, title, control)
+        stamp = {"svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}.get(path.suffix[1:].lower())
+        figure.savefig(path, dpi=200, facecolor=light("paper"), metadata=stamp)
+
+
+def _curves(facts: MeshFacts) -> list[np.ndarray]:
+    """Points (n, 2) on every side: its ends where it is straight, more where it bends."""
+    sides = facts.sides
+    t, k = np.linspace(0.0, 1.0, _SAMPLES), np.arange(len(sides.H_kbI))
+    X_knI = sides.points(np.repeat(k, _SAMPLES), np.tile(t, len(k)))[:, :2].reshape(len(k), _SAMPLES, 2)
+    chord = X_knI[:, -1] - X_knI[:, 0]
+    away = X_knI - X_knI[:, :1]
+    bent = np.abs(chord[:, None, 0] * away[..., 1] - chord[:, None, 1] * away[..., 0]).max(1)
+    straight = bent <= _STRAIGHT * np.sum(chord * chord, 1)
+    return [X_nI[[0, -1]] if flat else X_nI for X_nI, flat in zip(X_knI, straight, strict=True)]
+
+
+def _outline(curves: list[np.ndarray], e: int) -> np.ndarray:
+    """Closed polygon around one element: its sides bottom, right, top and left, each walked with it on the left."""
+    number = {name: len(SIDES) * e + i for i, name in enumerate(SIDES)}
+    return np.concatenate([curves[number[name]] for name in ("BOTTOM", "RIGHT", "TOP", "LEFT")])

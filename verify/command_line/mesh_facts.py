@@ -1,0 +1,153 @@
+"""What can be said of any extracted mesh: its elements, T-junctions, extraordinary points, and whether it is sound."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from iga.mesh.bezier import homogeneous, jacobian
+from iga.mesh.continuity import jumps
+from iga.mesh.edges import Sides, chains_of, element_sides
+from iga.mesh.extraction import Mesh
+from iga.mesh.quadrature import gauss, square
+from iga.mesh.rank import coefficients, rank
+from iga.mesh.soundness import faults, unity_fault
+
+#: A jump below this is rounding; functions are of size one, lengths relative to the element.
+CONTINUOUS = 1e-6
+
+#: No derivatives in space where the Jacobian is this part of the mean of its element.
+FLAT = 1e-9
+
+_CORNERS = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)])
+
+
+@dataclass(frozen=True)
+class MeshFacts:
+    """The facts of one mesh, each computed when it is asked for."""
+
+    mesh: Mesh
+
+    @cached_property
+    def sides(self) -> Sides:
+        return element_sides(self.mesh)
+
+    @cached_property
+    def kinds(self) -> list[tuple[tuple[int, int], int, int]]:
+        """Degrees, number of functions and how many elements are so."""
+        count: Counter[tuple[tuple[int, int], int]] = Counter()
+        for block in self.mesh.blocks:
+            p, q = map(int, block.degrees)
+            count[(p, q), block.conn_ea.shape[1]] += len(block.conn_ea)
+        return [(*kind, number) for kind, number in sorted(count.items())]
+
+    @cached_property
+    def _vertices(self) -> tuple[np.ndarray, np.ndarray]:
+        """Number of element corners at each vertex, and its place (n, 2)."""
+        vertex_k = self.sides.vertex_kv[:, 0]  # every corner is the start of one side
+        _, first = np.unique(vertex_k, return_index=True)
+        return np.bincount(vertex_k), self.sides.points(first, np.zeros(len(first)))[:, :2]
+
+    @cached_property
+    def junctions(self) -> np.ndarray:
+        """Places (n, 2) of the T-junctions: vertices inside a side of another element."""
+        return self._vertices[1][np.unique(self.sides.hanging[:, 0])]
+
+    @cached_property
+    def extraordinary(self) -> list[tuple[int, np.ndarray]]:
+        """Valence and place of every vertex inside the body, no T-junction, at which other than four corners meet."""
+        corners_v, X_vI = self._vertices
+        ordinary = corners_v == 4
+        ordinary[self.sides.hanging[:, 0]] = True
+        ordinary[self.sides.vertex_kv[~self.sides.shared_k].ravel()] = True
+        return [(int(corners_v[v]), X_vI[v]) for v in np.flatnonzero(~ordinary)]
+
+    @cached_property
+    def loops(self) -> int:
+        """Closed chains of the boundary; 0 where it touches itself."""
+        return len(chains_of(self.sides, np.flatnonzero(~self.sides.shared_k)))
+
+    @cached_property
+    def unity(self) -> float:
+        """Largest ``|sum_a N_a - 1|`` in Bernstein coefficients; a rational basis divides by what is left of it."""
+        return max(float(np.abs(block.C_eab.sum(1) - 1.0).max()) for block in self.mesh.blocks)
+
+    @cached_property
+    def weighted_unity(self) -> float:
+        """Largest ``|sum_a w_a N_a - 1|``: zero for a semi-standard T-spline of weight one."""
+        w_A = self.mesh.w_A
+        return max(
+            float(np.abs(np.einsum("ea,eab->eb", w_A[b.conn_ea], b.C_eab) - 1.0).max()) for b in self.mesh.blocks
+        )
+
+    @cached_property
+    def rank(self) -> int:
+        """Number of functions that are independent of each other: the rank of all extraction rows together."""
+        return independent(self.mesh)
+
+    @cached_property
+    def area(self) -> float:
+        rules = (square(gauss(2 * p + 4), gauss(2 * q + 4)) for p, q in (block.degrees for block in self.mesh.blocks))
+        return float(sum(np.sum(self._jacobian(i, points) @ weights) for i, (points, weights) in enumerate(rules)))
+
+    @cached_property
+    def smallest_jacobian(self) -> tuple[float, float]:
+        """Smallest determinant at Gauss points, corners and middles of sides; and as a part of its element's mean."""
+        smallest, relative = [], []
+        for number, block in enumerate(self.mesh.blocks):
+            points, weights = square(gauss(block.degrees[0] + 1), gauss(block.degrees[1] + 1))
+            middles = 0.5 * (_CORNERS[[0, 0, 1, 2]] + _CORNERS[[1, 2, 3, 3]])
+            inside = self._jacobian(number, points)
+            least = np.minimum(inside.min(1), self._jacobian(number, np.concatenate([_CORNERS, middles])).min(1))
+            mean = np.abs(inside @ weights)
+            smallest.append(float(least.min()))
+            relative.append(float(np.divide(least, mean, out=np.zeros(len(mean)), where=mean > 0).min()))
+        return min(smallest), min(relative)
+
+    @cached_property
+    def folded(self) -> int:
+        """Elements with a Jacobian that is not positive at a Gauss point."""
+        rules = (square(gauss(block.degrees[0] + 1), gauss(block.degrees[1] + 1)) for block in self.mesh.blocks)
+        det = (self._jacobian(number, points) for number, (points, _) in enumerate(rules))
+        return int(sum(np.count_nonzero(~np.all(det_eq > 0, axis=1)) for det_eq in det))
+
+    @cached_property
+    def continuity(self) -> dict[str, int] | None:
+        """How many inner edges the functions cross with jumps, C0, C1 and C2 or more; None for a folded mesh."""
+        if self.smallest_jacobian[1] <= FLAT:
+            return None
+        _, other, t = self.sides.opposite
+        try:
+            k, jump_no = jumps(self.mesh, self.sides)
+        except np.linalg.LinAlgError:  # flat somewhere else
+            return None
+        length, twins = self.sides.length_k, t == 0.5
+        once = np.where(twins, k < other, length[k] <= length[other])
+        order_n = np.cumprod(jump_no[once] < CONTINUOUS, axis=1).sum(1)
+        names = ("broken", "C0", "C1", "C2")
+        return {name: int(np.count_nonzero(order_n == i)) for i, name in enumerate(names)}
+
+    @property
+    def unsound(self) -> list[str]:
+        """What keeps a solver from using the mesh, in sentences."""
+        n_A, found = len(self.mesh.P_AI), []
+        if self.folded:
+            found.append(f"Jacobians are not positive on {self.folded} of {self.mesh.elements} elements")
+        else:
+            found += faults(self.mesh, self.sides)
+        found += unity_fault(self.mesh)
+        if self.rank < n_A:
+            found.append(f"the functions are dependent: rank {self.rank} of {n_A}")
+        return found
+
+    def _jacobian(self, number: int, points_q: np.ndarray) -> np.ndarray:
+        block = self.mesh.blocks[number]
+        return jacobian(homogeneous(self.mesh.P_AI, self.mesh.w_A, block), block.degrees, points_q)
+
+
+def independent(mesh: Mesh) -> int:
+    """Rank of the matrix (n_A, n_eb) of all functions in the Bernstein polynomials of all elements."""
+    return rank(coefficients(mesh))

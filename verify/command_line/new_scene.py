@@ -1,0 +1,144 @@
+"""A scene to start from: every key with what it is, its dimension, what it takes and its default."""
+
+from __future__ import annotations
+
+import json
+import re
+import textwrap
+from collections.abc import Iterator, Mapping
+from datetime import date
+from typing import Any
+
+from verify.scene.bodies import MATERIALS, Orthotropic
+from verify.scene.complaints import suggestion
+from verify.scene.keys import SPECIMENS, Key, keys, keys_of
+from verify.scene.load import load_scene
+from verify.scene.parse import SceneError, parse_scene
+from verify.scene.published import Published
+from verify.support.refusal import Refusal
+
+#: A value that TOML has and no key takes: what is said of it says what the key does take.
+NEVER = date(1, 1, 1)
+
+
+def allowed(raw: Mapping[str, Any], key: Key) -> str:
+    """What a key takes, in the words in which another value is refused. ``raw`` is a valid scene."""
+    table = {key.name: NEVER}
+    if key.table == "published":
+        wrong = {**raw, "published": [table]}
+    elif key.table:
+        wrong = {**raw, key.table: {**raw.get(key.table, {}), **table}}
+    else:
+        wrong = {**raw, **table}
+    try:
+        parse_scene(wrong)
+    except SceneError as error:
+        place = key.dotted.replace("published.", "published[0].")
+        said = [one for one in error.sentences if one.startswith(f"{place}: must be ")]
+        return said[0].removeprefix(f"{place}: must be ").removesuffix(f", got {NEVER!r}") if said else ""
+    return ""
+
+
+WIDTH = 100
+
+#: The packaged scene that says what has no default, by the kind of the specimen.
+BASES: Mapping[str, str] = {"dcb": "dcb-czm1", "peel": "peel-60"}
+
+#: Names of dimensions in the schema, and how they are written in the units of ``BASES``.
+UNITS: Mapping[str, str] = {
+    "length": "mm",
+    "stress": "MPa",
+    "force": "N",
+    "energy per area": "N/mm",
+    "stress per length": "MPa/mm",
+    "degrees": "degrees",
+}
+
+#: Numbers for what a scene may have instead or besides.
+ORTHOTROPIC = {"E1": 120e3, "E2": 10e3, "G12": 5e3, "nu12": 0.3}
+PUBLISHED = {
+    "quantity": "load_at",
+    "opening": 2.0,
+    "leg": 1,
+    "value": 1.0,
+    "tolerance": 0.03,
+    "kind": "cross-code",
+    "source": "",
+}
+
+
+def new_scene(kind: str) -> str:
+    """The text of a TOML file.
+
+    Raises
+    ------
+    Refusal : for a kind of specimen that there is not
+    """
+    if kind not in SPECIMENS:
+        hint = suggestion(kind, SPECIMENS) or f"the kinds are {', '.join(SPECIMENS)}"
+        raise Refusal(f"{kind}: is no kind of specimen; {hint}")
+    raw = _least(kind)
+    lines = [
+        f"# A {kind} for debond. The numbers are an example, all others the defaults and can be left out.",
+        "# Solve it: debond solve FILE; by every method, with a report: debond verify FILE",
+    ]
+    table = ""
+    for key in keys(kind):
+        if key.table != table:
+            if table in MATERIALS[kind]:
+                lines += _instead(raw, table)
+            table = key.table
+            lines += ["", f"[{table}]"]
+        lines += [*_comment(raw, key), *_assigned(raw, key)]
+    lines += ["", "# What others have found, as often as there are values; `debond verify` holds every method to them."]
+    return "\n".join([*lines, *_commented("[[published]]", raw, keys_of("published", Published), PUBLISHED)]) + "\n"
+
+
+def _least(kind: str) -> dict[str, Any]:
+    """The example with nothing given but what must be, and all defaults."""
+    example = load_scene(BASES[kind]).model_dump()
+    tables: dict[str, dict[str, Any]] = {}
+    for key in keys(kind):
+        if key.table and key.field.is_required():
+            tables.setdefault(key.table, {})[key.name] = example[key.table][key.name]
+    scene = parse_scene({"name": f"my-{kind}", "units": example["units"], **tables})
+    return scene.model_dump(exclude_none=True)
+
+
+def _assigned(raw: Mapping[str, Any], key: Key) -> list[str]:
+    """The key with its value; behind a comment sign where the default is not one value for all scenes."""
+    value = (raw[key.table] if key.table else raw)[key.name]
+    own = key.field.default_factory is not None or key.field.default == ()
+    return [f"{'# ' * own}{key.name} = {_toml(value)}"]
+
+
+def _instead(raw: Mapping[str, Any], table: str) -> list[str]:
+    """The other material."""
+    other = {**raw, table: ORTHOTROPIC}
+    return ["# or, orthotropic:", *_commented("", other, keys_of(table, Orthotropic), ORTHOTROPIC)]
+
+
+def _commented(head: str, raw: Mapping[str, Any], these: tuple[Key, ...], values: Mapping[str, Any]) -> list[str]:
+    lines = [f"# {head}"] if head else []
+    for key in these:
+        note = " ".join(line.removeprefix("# ") for line in _comment(raw, key, width=10_000))
+        lines.append(f"# {key.name} = {_toml(values[key.name])}  # {note}")
+    return lines
+
+
+def _comment(raw: Mapping[str, Any], key: Key, width: int = WIDTH) -> Iterator[str]:
+    """What it is, its unit, and what it takes."""
+    what = re.sub(
+        r"\[([a-z ]+)\]", lambda found: f"[{UNITS[found[1]]}]", " ".join((key.field.description or "").split())
+    )
+    takes = allowed(raw, key)
+    said = " ".join(filter(None, (what, takes and f"Takes {takes}.")))
+    return (f"# {line}" for line in textwrap.wrap(said, width - 2, break_long_words=False, break_on_hyphens=False))
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(_toml(one) for one in value) + "]" if len(value) != 1 else _toml(value[0])
+    if isinstance(value, bool | str):
+        return json.dumps(value)
+    return repr(value)

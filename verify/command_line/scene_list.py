@@ -1,0 +1,55 @@
+"""The packaged scenes for a terminal: one line each, or one with its numbers and a drawing."""
+
+from __future__ import annotations
+
+import textwrap
+
+from verify.command_line.sketch import sketch
+from verify.methods.reference_mesh import reference_mesh
+from verify.scene.bodies import Isotropic, Material
+from verify.scene.schema import Scene
+
+NAME_WIDTH = 24
+
+
+def line(name: str, scene: Scene, width: int) -> str:
+    """What tells the scene from the others; on a narrow terminal below its name."""
+    law, effects = scene.interface, scene.effects
+    text = (
+        f"{scene.specimen.kind}, {effects.kinematics} kinematics, strength {law.strength:g}, "
+        f"toughness {law.toughness:g}, opened to {max(scene.load.opening):g} ({scene.units})"
+    )
+    if NAME_WIDTH + 1 + len(text) <= width:
+        return f"{name:{NAME_WIDTH}} {text}"
+    return "\n".join([name, *textwrap.wrap(text, width, initial_indent="  ", subsequent_indent="  ")])
+
+
+def page(scene: Scene, width: int) -> str:
+    """Drawing and key numbers."""
+    law, mesh, other = scene.interface, scene.discretization, reference_mesh(scene)
+    facts = {
+        "specimen": f"{scene.specimen.kind}, plane {scene.specimen.plane}, width {scene.specimen.width:g}",
+        **{
+            name: _material(getattr(scene, name)) for name in ("material", "strip", "substrate") if getattr(scene, name)
+        },
+        "interface": f"{law.law}, strength {law.strength:g}, toughness {law.toughness:g}, ductility {law.ductility:g}",
+        "opening": " -> ".join(f"{opening:g}" for opening in scene.load.opening),
+        "effects": ", ".join(_effect(name, getattr(scene.effects, name)) for name in type(scene.effects).model_fields),
+        "meshes": f"{mesh.dofs} unknowns of degree {mesh.degree}; DOLFINx {other.elements} elements along, "
+        f"{other.layers} through, degree {other.degree}",
+        "published": "; ".join(f"{one.quantity}, {one.source}" for one in scene.published),
+    }
+    whole_words = textwrap.TextWrapper(
+        min(width, 100), subsequent_indent=" " * 11, break_long_words=False, break_on_hyphens=False
+    )
+    body = [part for name, text in facts.items() if text for part in whole_words.wrap(f"{name:11}{text}")]
+    return "\n".join([f"{scene.name} ({scene.units})", "", *sketch(scene, width), "", *body])
+
+
+def _material(material: Material) -> str:
+    kind = "isotropic" if isinstance(material, Isotropic) else "orthotropic"
+    return f"{kind}, " + ", ".join(f"{key} {value:g}" for key, value in material)
+
+
+def _effect(name: str, value: bool | str) -> str:
+    return f"{name} {value}" if isinstance(value, str) else name if value else f"no {name}"

@@ -1,0 +1,1 @@
+"""Load curves: reading, sampling, comparing."""

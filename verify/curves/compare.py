@@ -1,0 +1,255 @@
+"""Two load-opening curves against each other, of one's own or of somebody else's code."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from verify.curves.curve import PROPAGATION, envelope, from_origin, load_at, oscillation, peak
+from verify.curves.leg_checks import OF_A_POINT, LegDifference, farthest, leg_checks, leg_differences
+from verify.curves.legs import NEAR, ROUNDING, Path, path, programme_of
+from verify.curves.read import CurveError
+from verify.scene.schema import turns
+from verify.verdict import Check
+
+#: Samples over the opening; points on the propagation branch below which a wave cannot be told from the sampling.
+SAMPLES, POINTS_OF_A_WAVE = 400, 10
+
+#: Part of the tolerance of the curve by which its end and its turns may miss those of B, of the largest opening.
+OF_AN_END = 0.2
+
+Points = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Part:
+    """One of the curves, as far as it is compared."""
+
+    opening: np.ndarray  # (n,) path from the first arrival at the beginning to that at the end
+    load: np.ndarray  # (n,)
+    first: float  # opening at which the given curve begins and ends
+    last: float
+    peak_opening: float  # of the envelope
+    peak_load: float
+    work: float  # integral of load over opening along the path, by the trapezoidal rule
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A against B over the openings (begin, end].
+
+    ``curve_error``, ``peak_difference``, ``peak_shift`` and ``energy_difference`` are relative to B. Oscillation is of
+    the whole branch behind the peak, NaN where it cannot be told.
+    """
+
+    a: Part
+    b: Part
+    asked_end: float  # the opening up to which B was to be compared
+    end: float  # as far as A reaches
+    curve_error: float
+    oscillation_rms: float
+    excess_variation: float
+    opening_n: np.ndarray  # (SAMPLES,) and the loads of both envelopes there
+    load_a_n: np.ndarray
+    load_b_n: np.ndarray
+    names: tuple[str, str] = ("A", "B")
+    begin: float = 0.0
+    paths: tuple[Path, Path] = (Path((), 0.0), Path((), 0.0))  # along the programme
+
+    @property
+    def legs(self) -> tuple[LegDifference, ...]:
+        """Every leg of a programme that turns; no leg where the opening only grows."""
+        return leg_differences(*self.paths) if len(self.paths[1].legs) > 1 else ()
+
+    @property
+    def reaches(self) -> bool:
+        return self.missing <= ROUNDING
+
+    @property
+    def missing(self) -> float:
+        """Share of the openings asked for that A does not reach."""
+        return max(0.0, 1.0 - self.a.last / self.asked_end)
+
+    @property
+    def peak_difference(self) -> float:
+        return self.a.peak_load / self.b.peak_load - 1.0
+
+    @property
+    def peak_shift(self) -> float:
+        """How much later, in opening over that of B, the peak of A comes."""
+        return _ratio(self.a.peak_opening - self.b.peak_opening, self.b.peak_opening)
+
+    @property
+    def energy_difference(self) -> float:
+        return _ratio(self.a.work - self.b.work, abs(self.b.work))
+
+    @property
+    def worst(self) -> tuple[float, float, float]:
+        """Opening at which the loads differ most, load of A and of B there."""
+        with np.errstate(all="ignore"):
+            i = int(np.argmax(np.abs(self.load_a_n - self.load_b_n)))
+        return float(self.opening_n[i]), float(self.load_a_n[i]), float(self.load_b_n[i])
+
+    def loads_at(self, openings: Sequence[float]) -> list[tuple[float, float, float]]:
+        """Opening, load of A and load of B, on the envelopes.
+
+        Raises
+        ------
+        CurveError : an opening outside (begin, end].
+        """
+        outside = [at for at in openings if not self.begin < at <= self.end]
+        if outside:
+            reach = f"> {self.begin:.6g} and <= {self.end:.6g}, the end of the comparison"
+            raise CurveError(f"at: must be {reach}, got {outside[0]:g}")
+        with np.errstate(all="ignore"):
+            loads = [load_at((part.opening, part.load), openings).tolist() for part in (self.a, self.b)]
+        return list(zip(openings, *loads, strict=True))
+
+
+def compare(
+    a: Points,
+    b: Points,
+    end: float | None = None,
+    names: tuple[str, str] = ("A", "B"),
+    begin: float | None = None,
+    programme: Sequence[float] | None = None,
+) -> Comparison:
+    """Hold A against B over the openings that both reach, from ``begin`` on and up to ``end``.
+
+    Without them from 0, and to the last opening of B. What counts of a path begins where it first comes to ``begin``.
+    Where the load ``programme`` turns, its legs are compared as well; without it the turns are those of B, see
+    `verify.curves.legs.programme_of`.
+
+    A curve that begins at an opening above 0 is joined to the origin by a straight line: there the specimen bears
+    nothing, and a beginning that is left out shows as an error.
+
+    Raises
+    ------
+    CurveError : ``end`` beyond B, ``begin`` not before the end, nothing in common, no load of B above 0, or a
+        ``programme`` with one of both, or one that B does not follow.
+    """
+    if begin is not None and not 0.0 <= begin < np.inf:
+        raise CurveError(f"begin: must be >= 0, got {begin:g}")
+    (first_a, last_a), (first_b, last_b) = ((float(d[0]), float(np.max(d))) for d, _ in (a, b))
+    asked = last_b if end is None else float(end)
+    if not 0.0 < asked <= last_b * (1.0 + ROUNDING):
+        raise CurveError(f"end: must be > 0 and <= {last_b:.6g}, the last opening of {names[1]}, got {asked:g}")
+    common, begin = min(asked, last_a, last_b), float(begin or 0.0)
+    if begin >= common:
+        raise CurveError(f"begin: must be < {common:.6g}, the end of the comparison, got {begin:g}")
+    if max(first_a, first_b) >= common:
+        ranges = f"{first_a:.6g} to {last_a:.6g} and {first_b:.6g} to {min(asked, last_b):.6g}"
+        raise CurveError(f"{' and '.join(names)}: must have openings in common, got {ranges}")
+    with np.errstate(all="ignore"):  # numbers near the ends of the range end as inf or NaN, and so fail
+        part_a, part_b = _part(a, begin, common), _part(b, begin, common)
+        top = part_b.peak_load
+        if not top > 0.0:
+            span = f"up to {common:.6g}" if begin == 0.0 else f"from {begin:.6g} to {common:.6g}"
+            raise CurveError(f"{names[1]}: the loads {span} must go above 0, got at most {top:g}")
+        length = common - begin
+        grid = np.minimum(begin + length * (np.arange(1, SAMPLES + 1) / SAMPLES), common)  # the sum may round beyond
+        loads = [load_at((part.opening, part.load), grid) for part in (part_a, part_b)]
+        error = _distance(*(load / top for load in loads))
+        whole = (part_a, part_b) if begin == 0.0 else (_part(a, 0.0, common), _part(b, 0.0, common))
+        size = whole[1].peak_load
+        wave = _wave([(part.opening / common, part.load / size) for part in whole], whole[1].peak_opening / common)
+        given = end is not None or begin > 0.0
+        ways = [(part.opening, part.load) for part in (part_a, part_b)] if given else [from_origin(*a), from_origin(*b)]
+        paths = _paths(ways[0], ways[1], names[1], programme, given)
+    return Comparison(part_a, part_b, asked, common, error, *wave, grid, *loads, names, begin, paths)
+
+
+def checks(
+    comparison: Comparison, curve: float | None = None, peak: float | None = None, energy: float | None = None
+) -> list[Check]:
+    """What the given relative tolerances ask for; and with any of them, that A goes as far as it was to be compared.
+
+    That of the curve asks for every leg of a programme that turns, and `OF_A_POINT` times as much of every point of A.
+    """
+    limits = (
+        ("curve-error", comparison.curve_error, curve, "relative L2 distance of the loads over the opening"),
+        ("peak-load", comparison.peak_difference, peak, "difference of the peak loads over that of B"),
+        ("energy", comparison.energy_difference, energy, "difference of the works along the path over that of B"),
+    )
+    found = [Check(name, "A / B", v, limit, "cross-code", text) for name, v, limit, text in limits if limit is not None]
+    if not found:
+        return []
+    near = NEAR if curve is None else min(NEAR, max(ROUNDING, OF_AN_END * curve))
+    far = "share of the opening that A does not reach"
+    along = [] if curve is None else _along(comparison, curve, near)
+    return [*found, *along, Check("end", "A / B", comparison.missing, near, "cross-code", far)]
+
+
+def _along(comparison: Comparison, curve: float, near: float) -> list[Check]:
+    """The farthest point of A, its turns, and its legs."""
+    (a, b), (name, other) = comparison.paths, comparison.names
+    with np.errstate(all="ignore"):
+        worst = farthest(a, b, OF_A_POINT * curve, snap_backs=False)
+        found: list[Check] = []
+        if worst is not None:
+            text = f"distance of the farthest point of {name}, at opening {worst.opening:.6g}, from {other}"
+            found.append(Check("farthest-point", "A / B", worst.value, OF_A_POINT * curve, "cross-code", text))
+        if comparison.legs:
+            goals = ", ".join(f"{leg.end:g}" for leg in b.legs)
+            text = f"distance of the turns of {name} from those of {other}, {goals}, over the largest opening"
+            found.append(Check("legs", "A / B", a.misfit, near, "cross-code", text))
+        return [*found, *leg_checks(comparison.legs, "A / B", curve)]
+
+
+def _paths(a: Points, b: Points, name: str, programme: Sequence[float] | None, cut: bool) -> tuple[Path, Path]:
+    """Both curves along the programme that is given, or along that of B."""
+    if programme is None:
+        way = programme_of(b)
+        there = path(b, way)
+        return (path(a, way), there) if there.complete else (path(a, way[-1:]), path(b, way[-1:]))
+    goals = [float(goal) for goal in programme]
+    still = any(here == goal for here, goal in zip([0.0, *goals], goals, strict=False))
+    if not goals or still or not np.all(np.isfinite(goals)):
+        raise CurveError(f"programme: must be openings, each different from the one before it, got {goals}")
+    if cut:
+        raise CurveError("programme: must be left out with a begin or an end")
+    there = path(b, goals)
+    if not there.complete:
+        listed = ", ".join(f"{goal:g}" for goal in turns(goals))
+        raise CurveError(f"programme: {name} must turn, and end, at {listed}; it does not where {there.legs[-1].words}")
+    return path(a, goals), there
+
+
+def _part(curve: Points, begin: float, end: float) -> Part:
+    first, last = float(curve[0][0]), float(np.max(curve[0]))
+    d, P = _up_to(*from_origin(*curve), end)
+    if begin > 0.0:
+        before, start = _up_to(d, P, begin)
+        d, P = np.append(begin, d[len(before) - 1 :]), np.append(start[-1], P[len(before) - 1 :])
+    at, load = peak(envelope(d, P))
+    work = float(np.sum((P[1:] / 2.0 + P[:-1] / 2.0) * np.diff(d)))
+    return Part(d, P, first, last, at, load, work)
+
+
+def _distance(load: np.ndarray, wanted: np.ndarray) -> float:
+    """Relative L2 distance of the very samples that are shown: taken anew at openings over their range, one that falls
+    on a vertical drop may come out on its other side."""
+    return float(np.sqrt(np.sum((load - wanted) ** 2) / np.sum(wanted**2)))
+
+
+def _up_to(d: np.ndarray, P: np.ndarray, end: float) -> Points:
+    """The path until it first comes to the opening ``end``, which it reaches."""
+    i = int(np.argmax(d >= end))
+    share = (end - d[i - 1]) / (d[i] - d[i - 1])
+    load = P[i - 1] + share * (P[i] - P[i - 1])
+    return np.append(d[:i], end), np.append(P[:i], load)
+
+
+def _wave(scaled: list[Points], peak_opening: float) -> tuple[float, float]:
+    """Oscillation of A about B, where both have the points to show one."""
+    points = min(np.count_nonzero(envelope(*curve)[0] > PROPAGATION * peak_opening) for curve in scaled)
+    if points < POINTS_OF_A_WAVE:
+        return np.nan, np.nan
+    found = oscillation(*scaled, end=1.0, n=SAMPLES)
+    return found["rms"], found["excess_variation"]
+
+
+def _ratio(value: float, reference: float) -> float:
+    return value / reference if reference else 0.0 if value == 0.0 else np.nan

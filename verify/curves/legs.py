@@ -1,0 +1,160 @@
+"""The legs of a load programme: where a curve turns from one to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from verify.curves.curve import Curve, envelope, from_origin
+from verify.scene.schema import turns
+
+#: Turns that differ by this part of the largest opening are the same, up to rounding.
+ROUNDING = 1e-6
+
+#: A fifth of the tolerance between two codes: what the turns and the end of a curve may miss of the largest opening.
+#: The load of a branch ``P ~ opening^-1/2`` changes by half of it, the stiffness of an unloading by 3/2.
+NEAR = 1e-3
+
+#: Without a programme: a curve unloads where its opening falls by this part of its largest one, and comes back at no
+#: smaller loads, but for this part of the work. A snap-back comes back at smaller loads: its crack has grown.
+DEEP, LOST = 0.05, 0.02
+
+#: A curve that ends while its opening falls has unloaded where its load keeps this part of what a straight line to the
+#: origin would keep.
+SECANT = 0.9
+
+
+@dataclass(frozen=True)
+class Leg:
+    """The path between two turns; ``begin`` and ``end`` are the openings of the programme."""
+
+    begin: float
+    end: float
+    opening: np.ndarray  # (n,) from the turn that the path has made at the beginning to that at the end
+    load: np.ndarray  # (n,)
+
+    @property
+    def heading(self) -> float:
+        """1 where the opening grows, -1 where it falls."""
+        return 1.0 if self.end > self.begin else -1.0
+
+    @property
+    def unloads(self) -> bool:
+        """Whether the opening comes closer to zero."""
+        return self.heading * self.begin < 0.0
+
+    @property
+    def words(self) -> str:
+        if self.heading < 0.0:
+            what = "unloading" if self.begin > 0.0 else "closing"
+        else:
+            what = "loading" if self.begin == 0.0 else "reloading"
+        return f"{what} from {self.begin:g} to {self.end:g}"
+
+    @property
+    def onward(self) -> tuple[np.ndarray, np.ndarray]:
+        """The path over ``heading`` times the opening, in whose envelope that grows."""
+        return self.heading * self.opening, self.load
+
+
+@dataclass(frozen=True)
+class Path:
+    """A curve along a programme.
+
+    ``legs`` end with the first that does not turn where the programme does; ``misfit`` is by how much, as part of the
+    largest opening of the programme.
+    """
+
+    legs: tuple[Leg, ...]
+    misfit: float
+
+    @property
+    def complete(self) -> bool:
+        return self.misfit <= NEAR
+
+
+def path(curve: Curve, programme: Sequence[float]) -> Path:
+    """The legs of a curve along a programme.
+
+    A leg ends where the path first comes to its goal, or is farthest as long as it stays there: before that the
+    opening may fall, as at a snap-back. A curve that begins beyond 0 is joined to the origin by a straight line.
+
+    Where the turns are not those of the programme to the last digits, all that lie within `NEAR` of it count.
+    """
+    corners = turns(programme)
+    d, P = from_origin(*curve, ahead=corners[0])
+    exact = _split(d, P, corners, ROUNDING)
+    return exact if exact.misfit <= ROUNDING else _split(d, P, corners, NEAR)
+
+
+def _split(d: np.ndarray, P: np.ndarray, corners: Sequence[float], near: float) -> Path:
+    size, here, misfit = max(map(abs, corners)), 0, 0.0
+    legs: list[Leg] = []
+    for begin, end in zip((0.0, *corners[:-1]), corners, strict=True):
+        heading = 1.0 if end > begin else -1.0
+        ahead = heading * d[here:]
+        there = ahead >= heading * end - near * size
+        first = int(np.argmax(there)) if there.any() else 0
+        stay = first + int(np.argmin(there[first:])) if there.any() and not there[first:].all() else len(ahead)
+        last = here + first + int(np.argmax(ahead[first:stay]))
+        beyond = heading * (d[last] - end) / size
+        misfit = max(misfit, -beyond if len(legs) == len(corners) - 1 else abs(beyond))
+        legs.append(Leg(begin, end, d[here : last + 1], P[here : last + 1]))
+        if misfit > near:
+            break
+        here = last
+    return Path(tuple(legs), float(misfit))
+
+
+def programme_of(curve: Curve) -> tuple[float, ...]:
+    """The programme that a curve itself shows: its turns and its last opening.
+
+    A fall of the opening is an unloading where it is `DEEP`, and where the path does not come back at smaller loads;
+    otherwise it is a snap-back, or what the converged steps make of one.
+    """
+    d, P = from_origin(*curve)
+    pivots = _pivots(d, DEEP * float(np.max(np.abs(d))))
+    while (high := _snap_back(d, P, pivots)) is not None:
+        again = high + 2 < len(pivots) and d[pivots[high + 2]] >= d[pivots[high]]
+        pivots = pivots[:high] + pivots[high + 2 :] if again else pivots[: high + 1] + pivots[high + 3 :]
+    return tuple(float(d[i]) for i in pivots[1:])
+
+
+def _pivots(d: np.ndarray, deep: float) -> list[int]:
+    """The first point, the turns between which the opening changes by ``deep`` or more, and the farthest after them."""
+    change = np.sign(np.diff(d))
+    moving = np.flatnonzero(change)
+    turning = moving[1:][change[moving[1:]] != change[moving[:-1]]]
+    pivots, farthest = [0], 0
+    for i in [*turning.tolist(), len(d) - 1]:
+        heading = np.sign(d[farthest] - d[pivots[-1]]) or np.sign(d[i] - d[pivots[-1]])
+        if heading * (d[i] - d[farthest]) >= 0.0:
+            farthest = i
+        elif abs(d[i] - d[farthest]) >= deep:
+            pivots.append(farthest)
+            farthest = i
+    return [*pivots, farthest]
+
+
+def _snap_back(d: np.ndarray, P: np.ndarray, pivots: Sequence[int]) -> int | None:
+    """Which of the pivots is where the opening begins to fall at the first snap-back."""
+    for k in range(1, len(pivots) - 1):
+        high, low = pivots[k], pivots[k + 1]
+        if d[low] > d[high]:
+            continue
+        if k + 2 == len(pivots):
+            straight = SECANT * P[high] * d[low] / d[high] if d[low] > 0.0 else -np.inf
+            return k if P[low] < straight else None
+        fall, rise = slice(high, low + 1), slice(low, pivots[k + 2] + 1)
+        grid = np.linspace(d[low], min(d[high], d[pivots[k + 2]]), 101)
+        down = _loads(-d[fall], P[fall], -grid)
+        lost = np.sum(down - _loads(d[rise], P[rise], grid))
+        if lost > LOST * np.sum(np.abs(down)):
+            return k
+    return None
+
+
+def _loads(d: np.ndarray, P: np.ndarray, at: np.ndarray) -> np.ndarray:
+    return np.interp(at, *envelope(d, P))

@@ -1,0 +1,43 @@
+"""The load curve of a run by cubics, and its distance from another one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from verify.curves.curve import Curve, curve_error, dense, envelope, peak
+from verify.result import Result
+
+#: Points of a curve between two converged ones.
+PER_STEP = 20
+
+
+def cubics(result: Result) -> Curve:
+    """The path with points between the steps, on the cubics that their exact slopes give."""
+    steps = result.steps
+    if not {"load_slope", "heading"} <= set(steps):
+        return result.opening, result.load
+    return dense(result.opening, result.load, steps["load_slope"], steps["heading"], PER_STEP)
+
+
+def distance(curve: Curve, exact: Result) -> float:
+    """Relative L2 distance of the load of a complete run to that of another; where one has come apart there is none."""
+    known = cubics(exact)
+    end = max(float(envelope(*one)[0][-1]) for one in (curve, known))
+    return curve_error(_onward(curve, end), _onward(known, end))
+
+
+def _onward(curve: Curve, end: float) -> Curve:
+    """A curve that has ended before ``end`` goes on there without load."""
+    opening, load = (np.asarray(values, dtype=float) for values in curve)
+    if float(np.max(opening)) >= end:
+        return curve
+    return np.append(opening, (opening[-1], end)), np.append(load, (0.0, 0.0))
+
+
+def peak_load(result: Result) -> float:
+    return peak(cubics(result))[1]
+
+
+def dissipated(result: Result) -> float:
+    """At the end of the programme."""
+    return float(result.steps["dissipated_energy"][-1])

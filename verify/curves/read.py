@@ -1,0 +1,227 @@
+"""Load-opening curves in files: of a run, or of anybody's code or testing machine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from verify.curves.curve import envelope
+from verify.curves.text_table import Dialect, Row, Table, read_table
+from verify.support.refusal import Refusal
+
+Column = str | int
+
+
+class CurveError(Refusal):
+    """What holds no curve."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Which columns of a table are opening and load, and what they are multiplied by.
+
+    A column is a name, in capitals or not, or a number from 1. Without either it is the one that is called so, and in
+    a table without a header the first is the opening and the second the load. A negative scale turns a sign.
+
+    Raises
+    ------
+    CurveError : a column number below 1, a scale that is 0 or not finite.
+    """
+
+    opening: Column | None = None
+    load: Column | None = None
+    opening_scale: float = 1.0
+    load_scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("opening", "load"):
+            column = getattr(self, name)
+            if isinstance(column, int) and column < 1:
+                raise CurveError(f"{name}: must be the name or the number of a column, 1 or more, got {column}")
+            scale = getattr(self, f"{name}_scale")
+            if scale == 0 or not math.isfinite(scale):
+                raise CurveError(f"{name}_scale: must be a finite number other than 0, got {scale:g}")
+
+    @property
+    def columns(self) -> tuple[Column, Column]:
+        return self.opening or "opening", self.load or "load"
+
+
+def read_curve(path: Path, reading: Reading | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Opening (n,) and load (n,) of a text file or of the folder of a run, scaled.
+
+    Semicolons, tabs, commas or blanks separate; the decimal mark is a point or, where it does not separate, a comma.
+    The header is the first line, comments included, that has the names. What stands above it, and lines without any
+    number right below it (units), do not count.
+
+    Raises
+    ------
+    CurveError
+        Naming the file, the line and the column.
+    """
+    reading = reading or Reading()
+    path = path / "curve.csv" if path.is_dir() else path
+    table = read_table(_text(path))
+    if not (table.lead or table.body):
+        raise CurveError(f"{path}: must hold a curve of at least 2 points, got an empty file")
+    header, body = _header(path, table, reading)
+    points = np.array(
+        [
+            [_value(f"{path}:{line}", table.dialect, cells, header, column) for column in header.chosen]
+            for line, cells in _of_one_width(path, table.dialect, body, header)
+        ]
+    ).reshape(-1, 2)
+    with np.errstate(over="ignore", invalid="ignore"):
+        d, P = points.T * [[reading.opening_scale], [reading.load_scale]]
+    return sound(str(path), d, P)
+
+
+def sound(source: str, d: np.ndarray, P: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The curve, if it can be held against another one: finite, of growing opening.
+
+    Raises
+    ------
+    CurveError : beginning with ``source``.
+    """
+    if not (np.isfinite(d).all() and np.isfinite(P).all()):
+        row = int(np.flatnonzero(~(np.isfinite(d) & np.isfinite(P)))[0])
+        raise CurveError(f"{source}: must hold finite numbers, got {d[row]:g} and {P[row]:g} in point {row + 1}")
+    if d.size < 2 or not d.max() > d.min():
+        raise CurveError(f"{source}: must hold at least 2 points of different opening, got {d.size}")
+    if d.max() <= 0:
+        raise CurveError(f"{source}: the openings must go above 0, got at most {d.max():g}; a scale of -1 turns signs")
+    with np.errstate(all="ignore"):
+        monotone = envelope(d, P)[0]
+    if monotone.size < 2:
+        raise CurveError(f"{source}: the opening must grow from the first point on, got the largest, {d[0]:g}, first")
+    return d, P
+
+
+@dataclass(frozen=True)
+class _Header:
+    """The chosen columns, counted from 0, and how many there are; names where there is a header."""
+
+    chosen: tuple[int, int]
+    width: int
+    names: Sequence[str] = ()
+
+    def name(self, column: int) -> str:
+        return f"column {self.names[column]!r}" if self.names else f"column {column + 1}"
+
+
+def _text(path: Path) -> str:
+    try:
+        raw = path.read_bytes()
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or "a name that no file can have"
+        raise CurveError(f"{path}: must be a file with a curve, got: {why}") from None
+    wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
+    for encoding in ("utf-16",) if wide else ("utf-8-sig", "latin-1"):
+        try:
+            text = raw.decode(encoding)
+        except ValueError:
+            continue
+        if "\0" not in text:
+            return text
+    raise CurveError(f"{path}: must be a file with a curve, got: not a text")
+
+
+def _header(path: Path, table: Table, reading: Reading) -> tuple[_Header, list[Row]]:
+    """Where opening and load stand, and the rows below the header."""
+    wanted = [column for column in reading.columns if isinstance(column, str)]
+    rows = [*table.lead, *table.body]
+    width = len(table.body[0][1]) if table.body else 0
+    remarks = [row for row in table.remarks if len(row[1]) == width]
+    for line, cells in [*table.lead, *remarks] if wanted else []:
+        if {_key(name) for name in wanted} <= {_key(cell) for cell in cells}:
+            below = _below_units(table.dialect, [row for row in rows if row[0] > line])
+            return _named(f"{path}:{line}", cells, reading), below
+    below = _below_units(table.dialect, rows)
+    titles = rows[: len(rows) - len(below)]
+    if wanted and (titles or isinstance(reading.opening, str) or isinstance(reading.load, str)):
+        raise _no_such_column(path, table, wanted)
+    if not below:
+        raise CurveError(f"{path}: must hold at least 2 points of different opening, got no number")
+    line, first = below[0]
+    width = len(first)
+    if width < 2:
+        raise CurveError(f"{path}:{line}: must have two columns, opening and load, got {width}")
+    return _counted(f"{path}:{line}", reading, width), below
+
+
+def _below_units(dialect: Dialect, rows: list[Row]) -> list[Row]:
+    """Without the rows at the top that hold no number."""
+    start = next((i for i, (_, cells) in enumerate(rows) if dialect.numbers(cells)), len(rows))
+    return rows[start:]
+
+
+def _named(place: str, names: list[str], reading: Reading) -> _Header:
+    known = [_key(name) for name in names]
+    for column in reading.columns:
+        if isinstance(column, str) and known.count(_key(column)) > 1:
+            raise CurveError(f"{place}: must name {column} once, got {_listed(names)}; numbers choose columns as well")
+    chosen = [_position(place, c, len(names)) if isinstance(c, int) else known.index(_key(c)) for c in reading.columns]
+    return _Header(_different(place, chosen), len(names), names)
+
+
+def _counted(place: str, reading: Reading, width: int) -> _Header:
+    columns = (reading.opening or 1, reading.load or 2)
+    return _Header(_different(place, [_position(place, column, width) for column in columns]), width)
+
+
+def _position(place: str, column: int, width: int) -> int:
+    if column > width:
+        raise CurveError(f"{place}: has {width} columns, got column number {column}")
+    return column - 1
+
+
+def _different(place: str, chosen: Sequence[int]) -> tuple[int, int]:
+    opening, load = chosen
+    if opening == load:
+        raise CurveError(f"{place}: opening and load must be different columns, got column {opening + 1} for both")
+    return opening, load
+
+
+def _no_such_column(path: Path, table: Table, wanted: list[str]) -> CurveError:
+    heads = [row for row in table.lead if len(row[1]) > 1] or table.lead
+    if not heads:
+        line = table.body[0][0]
+        return CurveError(f"{path}:{line}: has no header, so columns go by number, got {' and '.join(wanted)}")
+    line, names = heads[0]
+    known = {_key(name) for name in names}
+    missing = [name for name in wanted if _key(name) not in known] or wanted
+    return CurveError(
+        f"{path}:{line}: the header must name {' and '.join(missing)}, got {_listed(names)}; "
+        "other columns are chosen by name or number"
+    )
+
+
+def _key(name: str) -> str:
+    """Names are the same whatever their capitals, and whatever stood between them where blanks separate the numbers."""
+    return name.strip(" ,;").casefold()
+
+
+def _listed(names: Sequence[str]) -> str:
+    text = ", ".join(names)
+    return text if len(text) <= 300 else f"{text[:300]}..."
+
+
+def _of_one_width(path: Path, dialect: Dialect, body: list[Row], header: _Header) -> list[Row]:
+    """The rows. One of more cells than there are columns would put numbers under wrong names; so would one of fewer
+    where blanks separate, which leave no cell empty."""
+    for line, cells in body:
+        if len(cells) > header.width or (len(cells) < header.width and not dialect.separator):
+            raise CurveError(f"{path}:{line}: must have {header.width} columns as above, got {len(cells)}")
+    return body
+
+
+def _value(place: str, dialect: Dialect, cells: list[str], header: _Header, column: int) -> float:
+    cell = cells[column] if column < len(cells) else ""
+    value = dialect.value(cell)
+    if value is None or not math.isfinite(value):
+        raise CurveError(f"{place}: {header.name(column)} must be a finite number, got {cell[:30]!r}")
+    return value

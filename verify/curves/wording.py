@@ -1,0 +1,123 @@
+"""A comparison of two curves in words: the lines of its table, and a sentence for whatever is wrong."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from verify.curves.compare import Comparison
+from verify.curves.leg_checks import LegDifference
+from verify.verdict import Check
+
+Loads = Sequence[tuple[float, float, float]]
+
+_FARTHEST = "farthest point, in parts of its own"
+
+
+def table(comparison: Comparison, loads: Loads, found: Sequence[Check]) -> list[str]:
+    """Lines for people: what, A, B, A against B, tolerance and verdict."""
+    a, b = comparison.names
+    limits = {check.name: f"<= {_percent(check.tolerance)}, " for check in found if check.name != "end"}
+    verdicts = {check.name: limits.get(check.name, "") + _verdict(check) for check in found}
+    lines = [("", a, b, "difference", "")]
+    cells = rows(comparison, loads, found)
+    lines += [(name, of_a, of_b, off, verdicts.get(key, "")) for name, key, of_a, of_b, off in cells]
+    widths = [max(len(line[i]) for line in lines) for i in range(4)]
+    return [
+        "  ".join((line[0].ljust(widths[0]), *(line[i].rjust(widths[i]) for i in (1, 2, 3)), line[4])).rstrip()
+        for line in lines
+    ]
+
+
+def rows(comparison: Comparison, loads: Loads, found: Sequence[Check] = ()) -> list[tuple[str, str, str, str, str]]:
+    """Name, name of its check, value of A, of B, and relative difference."""
+    a, b = comparison.a, comparison.b
+    at, worst_a, worst_b = comparison.worst
+    pairs = [(f"load at {at:.6g}", P_a, P_b) for at, P_a, P_b in loads]
+    pairs.append((f"largest deviation, at {at:.6g}", worst_a, worst_b))
+    return [
+        ("curve error", "curve-error", "", "", _percent(comparison.curve_error)),
+        ("peak load", "peak-load", *_both(a.peak_load, b.peak_load), _change(comparison.peak_difference)),
+        ("opening at peak", "", *_both(a.peak_opening, b.peak_opening), _change(comparison.peak_shift)),
+        ("energy", "energy", *_both(a.work, b.work), _change(comparison.energy_difference)),
+        ("oscillation, RMS", "", "", "", _percent(comparison.oscillation_rms)),
+        ("oscillation, excess variation", "", "", "", _percent(comparison.excess_variation)),
+        *((name, "", *_both(P_a, P_b), _change(_over(P_a - P_b, P_b))) for name, P_a, P_b in pairs),
+        *((_FARTHEST, c.name, "", "", _percent(c.value)) for c in found if c.name == "farthest-point"),
+        *(("turns", c.name, "", "", _percent(c.value)) for c in found if c.name == "legs"),
+        *(row for leg in comparison.legs for row in _leg(leg)),
+        ("last opening", "end", *_both(a.last, b.last), ""),
+    ]
+
+
+def _leg(leg: LegDifference) -> list[tuple[str, str, str, str, str]]:
+    """What can be told of one leg."""
+    first = (f"leg {leg.number}, {leg.words}", f"curve-leg-{leg.number}", "", "", _percent(leg.error))
+    cells = [
+        ("  secant stiffness", "slope", leg.slope),
+        ("  residual opening", "residual", leg.residual),
+        ("  work lost there and back", "loop", leg.loop),
+    ]
+    told = [(name, f"{key}-leg-{leg.number}", "", "", _change(value)) for name, key, value in cells if value == value]
+    return [first, *told]
+
+
+def remarks(comparison: Comparison) -> list[str]:
+    """What a reader should know before trusting the numbers."""
+    a, b = comparison.names
+    said = [
+        f"{name} begins at the opening {part.first:.6g} and is joined to the origin by a straight line"
+        for name, part in ((a, comparison.a), (b, comparison.b))
+        if part.first > max(comparison.begin, comparison.end / 100)
+    ]
+    if not comparison.a.peak_load > 0.0:
+        said.append(f"no load of {a} is above 0: a load scale of -1 turns its sign")
+    return [*said, *_too_short(comparison)]
+
+
+def complaints(comparison: Comparison, found: Sequence[Check]) -> list[str]:
+    """One sentence for every tolerance that is broken."""
+    words = {"curve-error": "curve error", "peak-load": "peak load differs by", "energy": "energy differs by"}
+    return [
+        f"{words.get(check.name, check.meaning.rstrip('.') + ':')} {_percent(abs(check.value))}, "
+        f"more than {_percent(check.tolerance)}"
+        for check in found
+        if not check.passed and check.name != "end"
+    ]
+
+
+def _too_short(comparison: Comparison) -> list[str]:
+    if comparison.reaches:
+        return []
+    a = comparison.names[0]
+    common = _rounded_down(comparison.a.last)
+    return [
+        f"{a} ends at the opening {comparison.a.last:.6g}, before {comparison.asked_end:.6g}; "
+        f"an end of {common} judges the common part"
+    ]
+
+
+def _rounded_down(value: float) -> str:
+    """Six digits of an opening that the curve reaches."""
+    text = f"{value:.6g}"
+    return text if float(text) <= value else f"{value * (1 - 5e-6):.6g}"
+
+
+def _verdict(check: Check) -> str:
+    return "holds" if check.passed else "FAILS"
+
+
+def _both(a: float, b: float) -> tuple[str, str]:
+    return f"{a:.6g}", f"{b:.6g}"
+
+
+def _over(value: float, reference: float) -> float:
+    return value / abs(reference) if reference else math.nan
+
+
+def _percent(value: float) -> str:
+    return f"{100 * value:.4g} %" if math.isfinite(value) else "cannot be told"
+
+
+def _change(value: float) -> str:
+    return f"{100 * value:+.4g} %" if math.isfinite(value) else "cannot be told"

@@ -1,0 +1,94 @@
+"""Bodies of a scene from files of a CAD system, held against the specimen that the scene describes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from iga.files.cad_body import body_mesh
+from iga.interface.surface import surface
+from iga.mesh.extraction import Mesh
+from iga.mesh.mirror import upside_down
+from verify.scene.schema import Scene
+from verify.support.refusal import Refusal
+
+#: Part of the specimen's length within which two places are the same.
+SAME = 1e-6
+
+#: The method that solves on meshes from files.
+METHOD = "tspline"
+
+#: The override with which a method makes a mesh of its own, for a scene that names files.
+OWN = "specimen.mesh=[]"
+
+
+def own_mesh(scene: Scene) -> Scene:
+    """The scene without its mesh files, as `OWN` makes it."""
+    return scene.model_copy(update={"specimen": scene.specimen.model_copy(update={"mesh": ()})})
+
+
+def refuse_files(scene: Scene, who: str) -> None:
+    """Raise Refusal where a scene names mesh files and ``who``, a method or a command, takes none."""
+    if scene.specimen.mesh:
+        text = f"must be left out (--set {OWN}) for {who}, which takes no mesh files: only the method {METHOD} does"
+        raise Refusal(f"specimen.mesh: {text}, got {list(scene.specimen.mesh)}")
+
+
+def remarks(others: Sequence[str]) -> tuple[str, ...]:
+    """Which runs of a scene with mesh files have not solved on them."""
+    text = f"specimen.mesh: the mesh of {METHOD} alone; {', '.join(others)} ran without it"
+    return (text,) if others else ()
+
+
+def given_meshes(scene: Scene) -> tuple[Mesh, ...]:
+    """Meshes of the bodies, upper first, in the specimen's own frame; none where the scene names no files.
+
+    Raises
+    ------
+    Refusal
+        For a file that is no mesh, or one that is not that of the specimen: its interface must lie on Y = 0 from X = 0
+        on, its ends on the specimen's, and an element boundary where the bond ends.
+    """
+    specimen = scene.specimen
+    if specimen.kind == "peel":
+        lengths, tip = (specimen.strip_length, specimen.substrate_length), specimen.bond_length
+    else:
+        lengths, tip = (specimen.length, specimen.length), specimen.precrack
+    meshes = []
+    for file, length, side in zip(specimen.mesh, lengths, ("bottom", "top"), strict=False):
+        mesh = _read(file)
+        _require(file, mesh, length, side, tip)
+        meshes.append(mesh)
+    if len(meshes) == 1:
+        meshes.append(upside_down(meshes[0]))
+    return tuple(meshes)
+
+
+def _read(file: str) -> Mesh:
+    try:
+        return body_mesh(Path(file))
+    except OSError as error:
+        raise Refusal(f"specimen.mesh: cannot read {file}: {error.strerror}") from None
+    except ValueError as error:
+        raise Refusal(f"specimen.mesh: {error}") from None
+
+
+def _require(file: str, mesh: Mesh, length: float, interface: str, tip: float) -> None:
+    for side, axis, place in (("left", 0, 0.0), ("right", 0, length), (interface, 1, 0.0)):
+        away = _bezier_points(mesh, side)[..., axis] - place
+        if np.abs(away).max() > SAME * length:
+            found = place + away.ravel()[np.argmax(np.abs(away))]
+            where = f"{'XY'[axis]} = {place:g}"
+            raise Refusal(f"specimen.mesh: {file}: its {side} side must lie on {where}, got {found:.6g}")
+    x = np.unique(_bezier_points(mesh, interface)[:, [0, -1], 0])
+    if np.abs(x - tip).min() > SAME * length:
+        near = x[np.argmin(np.abs(x - tip))]
+        text = f"an element boundary on its {interface} side must lie at the end of the bond, X = {tip:g}"
+        raise Refusal(f"specimen.mesh: {file}: {text}, got {near:.6g} as the nearest")
+
+
+def _bezier_points(mesh: Mesh, side: str) -> np.ndarray:
+    face = surface(mesh, mesh.chains[side], 0)
+    return face.bezier_points(mesh.P_AI) / face.w_cb[..., None]

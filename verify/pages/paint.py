@@ -1,0 +1,92 @@
+"""A field on sampling grids as an image: every pixel one colour of the map, however the cells overlap.
+
+Semi-transparent cells drawn one by one would blend where they touch. So the values are painted first, opaque and as
+grey levels; the colours, transparent near zero, come after.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+from verify.pages.strokes import sides, strokes
+from verify.pages.style import STRESS_MAP, colour
+
+_DPI = 150
+_CELLS = 2, 8  # colour cells per sampling interval, along the smaller and along the larger variation
+_MANY_ELEMENTS = 900  # from here on outlines become pixels
+
+Limits = tuple[float, float]
+
+
+def paint(
+    axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, x: Limits, y: Limits, dpi: int = _DPI
+) -> None:
+    """Fill the axes with a field and its element outlines, and set their limits.
+
+    Parameters
+    ----------
+    x_euvi : positions (n_e, m, m, 2) of the sampling grids
+    value_euv : (n_e, m, m), coloured from -limit to limit
+    """
+    box = axes.get_position()
+    width, height = axes.figure.get_size_inches() * (box.width, box.height)
+    levels = _grey_levels(x_euvi, value_euv, limit, (x, y), (width, height), dpi)
+    pixels = STRESS_MAP(levels[..., 0] / 255.0)
+    pixels[..., 3] *= levels[..., 3] > 0
+    axes.imshow(pixels, extent=(*x, *y), aspect="auto", interpolation="none", zorder=1)
+    many = len(x_euvi) > _MANY_ELEMENTS
+    ink = "#808a96" if many else colour("ink")  # pixels cannot follow the page
+    sides_nki = sides(x_euvi)
+    lines_pi = strokes(sides_nki[seen(sides_nki, (x, y))])  # one path: a path each would be long
+    axes.plot(*lines_pi.T, color=ink, linewidth=0.25, alpha=0.7, zorder=2, rasterized=many)
+    axes.set(xlim=x, ylim=y)
+
+
+def _grey_levels(
+    x_euvi: np.ndarray,
+    value_euv: np.ndarray,
+    limit: float,
+    frame: tuple[Limits, Limits],
+    size: tuple[float, float],
+    dpi: int,
+) -> np.ndarray:
+    """Image (rows, columns, 4): grey from 0 at -limit to 255 at limit, alpha 0 where there is no element."""
+    steep_v = np.abs(np.diff(value_euv, axis=1)).sum() < np.abs(np.diff(value_euv, axis=2)).sum()
+    cells = _CELLS if steep_v else _CELLS[::-1]
+    x_fine, value = _finer(x_euvi, *cells), _finer(value_euv[..., None], *cells)[..., 0]
+    corners = np.stack([x_fine[:, :-1, :-1], x_fine[:, 1:, :-1], x_fine[:, 1:, 1:], x_fine[:, :-1, 1:]], axis=-2)
+    middle = (value[:, :-1, :-1] + value[:, 1:, :-1] + value[:, 1:, 1:] + value[:, :-1, 1:]) / 4
+    corners, middle = corners.reshape(-1, 4, 2), middle.ravel()
+    inside = seen(corners, frame)
+    figure = Figure(figsize=size, dpi=dpi, facecolor="none")
+    axes = figure.add_axes((0, 0, 1, 1), xlim=frame[0], ylim=frame[1])
+    axes.set_axis_off()
+    fill = PolyCollection(corners[inside], array=middle[inside], cmap="gray", clim=(-limit, limit))
+    fill.set(antialiased=False, edgecolor="face", linewidth=0.2)
+    axes.add_collection(fill, autolim=False)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())
+
+
+def _finer(values: np.ndarray, cells_u: int, cells_v: int) -> np.ndarray:
+    """Bilinear refinement of the sampling grids (n_e, m, m, c), so many cells an interval in each direction."""
+    along, across = (_interpolation(values.shape[1], cells) for cells in (cells_u, cells_v))
+    return np.einsum("Uu,Vv,euvc->eUVc", along, across, values, optimize=True)
+
+
+def _interpolation(points: int, cells: int) -> np.ndarray:
+    """Weights (cells (points - 1) + 1, points) of linear interpolation between equally spaced points."""
+    at = np.linspace(0, points - 1, cells * (points - 1) + 1)
+    return np.maximum(1 - np.abs(at[:, None] - np.arange(points)), 0)
+
+
+def seen(lines_nki: np.ndarray, frame: tuple[Limits, Limits]) -> np.ndarray:
+    """Whether the box around each line (n, k, 2) meets the frame: bool (n,)."""
+    low, high = lines_nki.min(axis=1), lines_nki.max(axis=1)
+    least, most = np.transpose(frame)
+    return np.all((high >= least) & (low <= most), axis=1)

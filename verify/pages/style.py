@@ -1,0 +1,236 @@
+"""Colours, line styles and the way a matplotlib figure becomes SVG that follows the page.
+
+Figures are drawn with stand-in colours; in the SVG each is replaced by a CSS custom property, so that one figure serves
+the light page, the dark page and the print. The pairs in ``PALETTE`` are the only place where a colour is written.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from textwrap import fill
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
+
+from verify.pages.svg import adapted
+
+#: name: (light, dark). The methods follow Okabe and Ito 2008, whose colours stay apart in all common colour blindness;
+#: two of them are darker here, so that text in them has a contrast of 4.5 with the page.
+PALETTE = {
+    "ink": ("#1b2330", "#e4e8ee"),
+    "muted": ("#566171", "#a3aebc"),
+    "rule": ("#d5dbe3", "#39424e"),
+    "paper": ("#ffffff", "#12161c"),
+    "panel": ("#f5f7f9", "#1a2028"),
+    "accent": ("#2b5c8a", "#8dbbe6"),
+    "good": ("#1f7a4d", "#5fce97"),
+    "bad": ("#b3261e", "#ff8a7d"),
+    "zone": ("#e6b400", "#e6b400"),
+    "nurbs": ("#0072b2", "#5bb8f0"),
+    "tspline": ("#4b3fa0", "#b0a5ff"),
+    "lagrange": ("#bf5400", "#ff9a52"),
+    "dolfinx": ("#00805e", "#3dd1a5"),
+    "beam": ("#b0478f", "#ee9ad2"),
+    "lefm": ("#6b7280", "#a0a9b5"),
+    "phase-mesh": ("#b9c4d0", "#566373"),
+    "phase-basis": ("#8fa3b8", "#7a8da3"),
+    "phase-assembly": ("#3f6f9f", "#79aee0"),
+    "phase-factor": ("#d9a441", "#e8bd6a"),
+    "phase-solve": ("#a3672b", "#c88b4f"),
+    "phase-other": ("#dfe3e8", "#3d4652"),
+}
+
+_STAND_IN = {name: f"#0a0b{i + 1:02x}" for i, name in enumerate(PALETTE)}
+
+METHODS = ("dolfinx", "nurbs", "tspline", "lagrange", "beam", "lefm")
+METHOD_NAMES = {
+    "nurbs": "NURBS",
+    "tspline": "T-spline",
+    "lagrange": "Lagrange",
+    "dolfinx": "DOLFINx",
+    "beam": "cohesive beam",
+    "lefm": "LEFM limit",
+}
+PHASES = ("mesh", "basis", "assembly", "factor", "solve", "other")
+
+#: Width of a figure in inches; every figure is drawn at the size that makes 8 pt text readable where it is shown.
+THIRD, HALF, WIDE = 3.3, 4.6, 9.4
+
+#: Inches around what is drawn: a browser's font may be a little larger than that of the layout.
+_MARGIN = 0.04
+
+# A stress near zero is transparent: it takes the page's own colour, light or dark.
+STRESS_MAP = LinearSegmentedColormap.from_list(
+    "stress",
+    [(0.0, "#1668b8ff"), (0.25, "#3b8ad6b0"), (0.5, "#8a929c18"), (0.75, "#e5742fb0"), (1.0, "#c8480cff")],
+)
+
+_RC = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8.0,
+    "axes.titlesize": 8.0,
+    "axes.titleweight": "normal",
+    "axes.titlelocation": "left",
+    "axes.labelsize": 8.0,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
+    "axes.formatter.limits": (-3, 5),
+    "axes.unicode_minus": True,
+    "grid.linewidth": 0.5,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 3.0,
+    "ytick.major.size": 3.0,
+    "legend.frameon": False,
+    "legend.fontsize": 7.5,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "debond",
+    "path.simplify": True,
+    "figure.facecolor": "none",
+    "axes.facecolor": "none",
+    "savefig.facecolor": "none",
+    "mathtext.fontset": "dejavusans",
+    "text.parse_math": False,  # units are the user's own text
+}
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One figure of the page."""
+
+    svg: str
+    caption: str
+    size: str = "half"  # wide, half or third of the page
+
+
+@dataclass(frozen=True)
+class Line:
+    """How one run is drawn, the same in every figure."""
+
+    colour: str  # name in PALETTE
+    width: float
+    dashes: tuple[float, ...]  # on, off, ... in points; empty: solid
+    alpha: float
+    order: float
+
+    def options(self) -> dict[str, Any]:
+        """Keyword arguments for ``Axes.plot``."""
+        style = (0, self.dashes) if self.dashes else "solid"
+        return {
+            "color": colour(self.colour),
+            "linewidth": self.width,
+            "linestyle": style,
+            "alpha": self.alpha,
+            "zorder": self.order,
+        }
+
+
+_BASE_LINES = {
+    "dolfinx": Line("dolfinx", 3.4, (), 0.5, 2.0),
+    "nurbs": Line("nurbs", 1.2, (), 1.0, 4.0),
+    "tspline": Line("tspline", 1.2, (), 1.0, 4.2),
+    "lagrange": Line("lagrange", 1.1, (5.0, 2.0), 1.0, 3.8),
+    "beam": Line("beam", 1.5, (1.2, 1.8), 1.0, 4.5),
+    "lefm": Line("lefm", 0.8, (4.0, 3.0), 1.0, 1.5),
+}
+
+
+#: Of methods of other packages and of other codes.
+OTHERS = Line("ink", 1.3, (6.0, 1.5, 1.2, 1.5), 1.0, 4.7)
+
+
+def line(method: str, repeat: int = 0) -> Line:
+    """Style of the ``repeat``-th run of a method: further runs of the same method get thinner and fainter."""
+    base = _BASE_LINES.get(method, OTHERS)
+    fade = 0.6**repeat
+    width, alpha = max(base.width * fade, 0.6), base.alpha * max(fade, 0.4)
+    return Line(base.colour, width, base.dashes, alpha, base.order - 0.1 * repeat)
+
+
+def colour(name: str) -> str:
+    """The stand-in for a palette colour, to be used in figures."""
+    return _STAND_IN[name]
+
+
+def custom_properties(dark: bool) -> str:
+    """CSS declarations of the palette."""
+    return " ".join(f"--{name}: {pair[int(dark)]};" for name, pair in PALETTE.items())
+
+
+@contextmanager
+def drawing() -> Iterator[None]:
+    """The figure settings of the report, for the block."""
+    inks = {key: colour("muted") for key in ("axes.edgecolor", "xtick.color", "ytick.color", "hatch.color")}
+    inks |= {key: colour("ink") for key in ("text.color", "axes.labelcolor", "lines.color", "patch.edgecolor")}
+    with matplotlib.rc_context({**_RC, **inks, "grid.color": colour("rule")}):
+        yield
+
+
+def panel(width: float, height: float, left: float = 0.57, top: float = 0.17) -> tuple[Figure, Axes]:
+    """A figure of one pair of axes with fixed margins, so that panels line up (lengths in inches)."""
+    figure, bottom = Figure(figsize=(width, height)), 0.43
+    place = (left / width, bottom / height, 1 - (left + 0.1) / width, 1 - (bottom + top) / height)
+    return figure, figure.add_axes(place)
+
+
+def sheet_of(figure: Figure) -> Bbox:
+    """The sheet in inches: the figure's own, and more where numbers or labels of axes would stick out of it.
+
+    Units are the user's own words, and numbers are as long as these units make them: no margin is wide enough for all.
+    A label that is longer than its axis is broken into lines first.
+    """
+    for axes in figure.axes:
+        size = axes.get_window_extent()
+        _broken(axes.xaxis.label, size.width)
+        _broken(axes.yaxis.label, size.height)
+    return Bbox.union([figure.bbox_inches, figure.get_tightbbox().padded(_MARGIN)])
+
+
+def _broken(label: Text, room: float) -> None:
+    """Break a label into lines of ``room`` in pixels at most, within words where it must be."""
+    text, columns = label.get_text(), len(label.get_text())
+    while not label.get_parse_math() and columns > 1 and _length(label) > room:
+        columns -= 1
+        label.set_text(fill(text, columns))
+
+
+def _length(label: Text) -> float:
+    """Along its writing, which goes along its axis."""
+    extent = label.get_window_extent()
+    return max(extent.width, extent.height)
+
+
+def to_svg(figure: Figure, key: str, title: str, dpi: float = 180.0, sheet: Bbox | None = None) -> str:
+    """The figure as an inline SVG element that follows the colours and the font of the page.
+
+    Parameters
+    ----------
+    key : unique in the page; ids inside the SVG carry it, as all figures share one document.
+    title : read out by screen readers in place of the drawing.
+    sheet : what of it is shown, in inches; where it is not told, all that is drawn (``sheet_of``).
+    """
+    buffer = io.StringIO()
+    sheet = sheet_of(figure) if sheet is None else sheet
+    shown = None if np.array_equal(sheet.extents, figure.bbox_inches.extents) else sheet
+    none = {"Date": None, "Creator": None}
+    figure.savefig(buffer, format="svg", dpi=dpi, transparent=True, metadata=none, bbox_inches=shown)
+    svg = buffer.getvalue()
+    for name, stand_in in _STAND_IN.items():
+        svg = svg.replace(stand_in, f"var(--{name})")
+    return adapted(svg, key, title)

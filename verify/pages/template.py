@@ -1,0 +1,41 @@
+"""Pages from templates: texts are escaped, and a name that is not there is an error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from verify.pages.style import custom_properties
+from verify.pages.svg import with_classes
+from verify.pages.text import number, tone
+
+_CSS = Path(__file__).with_name("page.css")
+
+
+def rendered(package: str, template: str, filters: Mapping[str, Callable], /, **content: object) -> str:
+    """The page that a template of a package makes.
+
+    Parameters
+    ----------
+    filters : what the template calls, beside ``svg`` and ``number``
+    content : what the template names, beside the palettes ``light`` and ``dark`` and the style sheet ``css``
+    """
+    jinja = Environment(
+        loader=ChoiceLoader([PackageLoader(package, "."), PackageLoader("verify", ".")]),  # parts of other pages
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    # drawings are made by this package, which has escaped their texts
+    jinja.filters |= {"svg": Markup, "number": number, "tone": tone, **filters}
+    page = jinja.get_template(template).render(
+        light=Markup(custom_properties(dark=False)),
+        dark=Markup(custom_properties(dark=True)),
+        css=Markup(_CSS.read_text(encoding="utf-8")),
+        **content,
+    )
+    return with_classes(page)

@@ -1,0 +1,234 @@
+"""Numbers, units and sentences of the page."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup, escape
+
+from verify.methods.reference_mesh import reference_mesh
+from verify.scene.bodies import MATERIALS
+from verify.scene.effects import simulated
+
+if TYPE_CHECKING:
+    from verify.scene.bodies import Dcb, Material, Peel
+    from verify.scene.schema import Discretization, Scene
+    from verify.verdict import Counts
+
+_SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+NO_VALUE = "no value"
+
+
+@dataclass(frozen=True)
+class Units:
+    """Unit labels, empty where the scene's label does not tell them apart."""
+
+    force: str = ""
+    length: str = ""
+    stress: str = ""
+
+    @staticmethod
+    def of(label: str) -> Units:
+        """Read ``"N, mm, MPa"``: force, length, stress."""
+        parts = [part.strip() for part in str(label).split(",")]
+        return Units(*parts) if len(parts) == 3 else Units()
+
+    @property
+    def energy(self) -> str:
+        return f"{self.force} {self.length}".strip()
+
+    @property
+    def stiffness(self) -> str:
+        return f"{self.stress}/{self.length}" if self.stress and self.length else ""
+
+    @property
+    def toughness(self) -> str:
+        return f"{self.force}/{self.length}" if self.force and self.length else ""
+
+
+def axis(name: str, unit: str) -> str:
+    """Label of an axis."""
+    return f"{name} ({unit})" if unit else name
+
+
+def number(value: float | None, digits: int = 3, pad: bool = False) -> str:
+    """A number in running text: 0.0123, 1200, 1.2 × 10⁻⁹; ``pad`` keeps trailing zeros."""
+    if value is None or math.isnan(value):
+        return NO_VALUE
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    if value == 0:
+        return "0"
+    exponent = math.floor(math.log10(abs(value)))
+    if -4 <= exponent < 6:
+        text = f"{value:.{max(digits - 1 - exponent, 0)}f}"
+        text = text.rstrip("0").rstrip(".") if "." in text and not pad else text
+    else:
+        mantissa = f"{value / 10.0**exponent:.{digits - 1}f}".rstrip("0").rstrip(".")
+        text = f"{mantissa}\u00a0×\u00a010{str(exponent).translate(_SUPERSCRIPTS)}"
+    whole, point, rest = text.partition(".")
+    if whole.lstrip("-").isdigit() and len(whole.lstrip("-")) > 4:
+        whole = f"{int(whole):,}".replace(",", "\u202f")
+    return (whole + point + rest).replace("-", "−")
+
+
+def power_of_ten(value: float) -> str:
+    """10⁻⁴ for 1e-4: a label of a logarithmic axis."""
+    return f"10{str(round(math.log10(value))).translate(_SUPERSCRIPTS)}" if value > 0 else ""
+
+
+def symbols(text: str) -> Markup:
+    """``p_max`` as an italic letter with an index."""
+    return Markup(re.sub(r"\b([A-Za-z])_(\w+)", r"<i>\1</i><sub>\2</sub>", str(escape(text))))
+
+
+def quantity(value: float | None, unit: str, digits: int = 6) -> str:
+    """A number with its unit, e.g. 14 mm."""
+    return f"{number(value, digits)}\u00a0{unit}".strip()
+
+
+def percent(fraction: float | None) -> str:
+    """A relative number in per cent, two digits: 0.12 %."""
+    if fraction is None or math.isnan(fraction):
+        return NO_VALUE
+    if 0 < abs(fraction) < 5e-6:
+        return "<\u00a00.0005\u00a0%"
+    return f"{number(100 * fraction, 2, pad=True)}\u00a0%"
+
+
+def seconds(value: float | None, unknown: str = NO_VALUE) -> str:
+    """A duration: 0.31 s, 8.9 s, 2 min 5 s."""
+    if value is None or math.isnan(value):
+        return unknown
+    if value < 0.095:
+        return "<\u00a00.1\u00a0s"
+    if value < 99.5:
+        return f"{number(value, 2, pad=True)}\u00a0s"
+    return f"{int(round(value)) // 60}\u00a0min\u00a0{int(round(value)) % 60}\u00a0s"
+
+
+def span(values: list[float], form: object) -> str:
+    """``form`` of the smallest and the largest value, once if they read the same."""
+    low, high = form(min(values)), form(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+def programme(scene: Scene) -> tuple[float, ...]:
+    """The openings of the displacement programme."""
+    return tuple(scene.load.opening)
+
+
+def sentence(scene: Scene) -> str:
+    """What was solved, and with which effects, in words."""
+    units, specimen = Units.of(scene.units), scene.specimen
+    openings = " → ".join(number(v, 4) for v in programme(scene))
+    moved = f"to {openings} {units.length}".rstrip()
+    law, done = f"a {scene.interface.law} traction law", f"{_body(specimen, units.length)} {moved}"
+    return f"{done}, in plane {specimen.plane}, with {law} and {_effects(scene)}."
+
+
+def _body(specimen: Dcb | Peel, unit: str) -> str:
+    """The specimen and what is done to it."""
+    if specimen.kind == "peel":
+        lengths = ("strip_length", "strip_thickness", "substrate_length", "substrate_thickness", "bond_length")
+        strip, thick, substrate, depth, bond = (quantity(getattr(specimen, name), unit) for name in lengths)
+        bodies = f"A strip of {strip} by {thick}, bonded over {bond} to a clamped substrate of {substrate} by {depth},"
+        return f"{bodies} is peeled off by lifting its free end"
+    length, thick, crack = (
+        quantity(value, unit) for value in (specimen.length, specimen.arm_thickness, specimen.precrack)
+    )
+    return f"A double cantilever beam with arms of {length} by {thick} and a precrack of {crack} is opened"
+
+
+def _effects(scene: Scene) -> str:
+    found, chosen = simulated(scene, "nurbs"), [key for key, value in scene.effects if value == "auto"]
+    words = {
+        "kinematics": {
+            "finite": "finite kinematics (large rotations)",
+            "linear": "linear kinematics (small displacements)",
+        },
+        "irreversible": {True: "irreversible damage", False: "reversible damage (nothing is dissipated)"},
+        "contact": {True: "contact on closing", False: "no contact"},
+        "search": {True: "points look for the other face", False: "points keep their places on the other face"},
+        "symmetry": {True: "one arm against the symmetry plane", False: f"both {_bodies(scene)} modelled"},
+    }
+    return ", ".join(words[key][found[key]] + (", chosen automatically" if key in chosen else "") for key in words)
+
+
+def _bodies(scene: Scene) -> str:
+    return "bodies" if scene.specimen.kind == "peel" else "arms"
+
+
+def modelled(scene: Scene, method: str) -> str:
+    """The effects as a method simulates them, in short."""
+    effects = simulated(scene, method)
+    damage = "irreversible" if effects["irreversible"] else "reversible"
+    return ", ".join(
+        (
+            f"{effects['kinematics']} kinematics",
+            *(() if method == "lefm" else (f"{damage} damage", "contact" if effects["contact"] else "no contact")),
+            "one arm" if effects["symmetry"] else f"both {_bodies(scene)}",
+        )
+    )
+
+
+def inputs(scene: Scene) -> list[tuple[str, str, str]]:
+    """Rows of the table of inputs: group, name, value."""
+    units = Units.of(scene.units)
+    specimen, law, mesh, other = scene.specimen, scene.interface, scene.discretization, reference_mesh(scene)
+    scale, bilinear = 2 * law.toughness / law.strength, law.law == "bilinear"
+    rows = [
+        *(
+            ("specimen", name.replace("_", " "), quantity(value, units.length))
+            for name, value in specimen
+            if isinstance(value, float)
+        ),
+        *(
+            (body, name, quantity(value, unit))
+            for body in MATERIALS[specimen.kind]
+            for name, value, unit in _moduli(getattr(scene, body), units)
+        ),
+        ("interface", "strength p_max", quantity(law.strength, units.stress)),
+        ("interface", "toughness G_Ic", quantity(law.toughness, units.toughness)),
+        *[("interface", "full opening g_u = 2 G_Ic / p_max", quantity(scale, units.length))] * bilinear,
+        ("interface", "opening at peak g_max", quantity(scale / law.ductility, units.length)),
+        ("interface", f"ductility {'g_u / g_max' if bilinear else '2 G_Ic / (p_max g_max)'}", number(law.ductility, 6)),
+        ("interface", "contact penalty", quantity(law.penalty, units.stiffness)),
+        ("isogeometric mesh", "degree", str(mesh.degree)),
+        ("isogeometric mesh", "target unknowns", str(mesh.dofs)),
+        ("isogeometric mesh", "interface points", _points(mesh)),
+        ("DOLFINx mesh", "degree", str(other.degree)),
+        ("DOLFINx mesh", "elements along", str(other.elements)),
+        ("DOLFINx mesh", f"elements through the {'strip' if specimen.kind == 'peel' else 'arm'}", str(other.layers)),
+    ]
+    return rows
+
+
+def _points(mesh: Discretization) -> str:
+    if mesh.interface_rule == "lumped":
+        return "lumped at the control points"
+    return f"{mesh.interface_points} per element, {mesh.interface_rule}"
+
+
+def _moduli(material: Material, units: Units) -> list[tuple[str, float, str]]:
+    """Elastic constants as they are given."""
+    names = (
+        ("young", "Young's modulus", units.stress),
+        ("poisson", "Poisson's ratio", ""),
+        ("E1", "E1", units.stress),
+        ("E2", "E2", units.stress),
+        ("G12", "G12", units.stress),
+        ("nu12", "nu12", ""),
+    )
+    values = [(label, getattr(material, key, None), unit) for key, label, unit in names]
+    return [row for row in values if row[1] is not None]
+
+
+def tone(counts: Counts) -> str:
+    """The class of a verdict in the style sheet: ``bad`` where a check is broken, ``open`` where one is unresolved."""
+    if not counts.total:
+        return "none"
+    return "bad" if counts.broken else "open" if counts.unresolved else "good"

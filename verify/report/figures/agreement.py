@@ -1,0 +1,92 @@
+"""How far the curves of a scene are from its reference curve."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from verify.curves.curve import PROPAGATION, curve_error, envelope, load_at, oscillation, peak
+from verify.result import Result
+from verify.verdict import Run, SceneReport
+
+SAMPLES = 400
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """One run against the reference run of its scene."""
+
+    error: float  # relative L2 of the load over the opening
+    oscillation: float  # RMS of load / reference - 1 on the propagation branch, mean removed
+    peak_load: float
+    peak_opening: float
+    end: float  # compared up to this opening
+
+
+def usable(run: Run) -> bool:
+    """Whether there is a curve to draw."""
+    return run.result is not None and len(run.result.opening) > 1
+
+
+def reference_run(report: SceneReport) -> Run | None:
+    """The curve that the others are held against: DOLFINx, or else the cohesive beam. LEFM is a limit, never this."""
+    for method in ("dolfinx", "beam"):
+        runs = [run for run in report.runs if run.method == method and usable(run)]
+        complete = [run for run in runs if run.result.complete]
+        if complete:
+            return max(complete, key=lambda run: run.result.dofs)
+    return None
+
+
+def path(result: Result, refine: int = 6) -> tuple[np.ndarray, np.ndarray]:
+    """Opening and load to draw: cubic Hermite arcs between converged steps where the method knows the slope.
+
+    A straight line where the arc would leave the chord by more than 1 % of the peak: there the step went over a turn
+    of the path, and the arc would invent one. LEFM stays a polygon: its path has a kink.
+    """
+    x, y = np.asarray(result.opening, float), np.asarray(result.load, float)
+    if "load_slope" not in result.steps or result.method == "lefm" or len(x) < 2:
+        return x, y
+    slope = np.asarray(result.steps["load_slope"], float)
+    h, chord = np.diff(x), np.diff(y)
+    m0, m1 = slope[:-1] * h, slope[1:] * h
+    bulge = 4 / 27 * (np.abs(m0 - chord) + np.abs(m1 - chord))  # the cubic stays within this of its chord
+    smooth = np.isfinite(bulge) & (bulge <= 0.01 * np.max(np.abs(y)))
+    m0, m1 = np.where(smooth, m0, chord), np.where(smooth, m1, chord)
+    t = np.linspace(0, 1, refine, endpoint=False)[None, :]
+    load = (
+        (1 + 2 * t) * (1 - t) ** 2 * y[:-1, None]
+        + t * (1 - t) ** 2 * m0[:, None]
+        + t**2 * (3 - 2 * t) * y[1:, None]
+        + t**2 * (t - 1) * m1[:, None]
+    )
+    return np.append((x[:-1, None] + t * h[:, None]).ravel(), x[-1]), np.append(load.ravel(), y[-1])
+
+
+def branch(result: Result, reference: Result) -> tuple[np.ndarray, np.ndarray]:
+    """Opening, and load / reference - 1, on the propagation branch of the reference; empty where there is none."""
+    start = PROPAGATION * peak(envelope(*path(reference)))[0]
+    end = min(float(reference.opening.max()), float(result.opening.max()))
+    if not end > start:
+        return np.zeros(0), np.zeros(0)
+    openings = np.linspace(start, end, SAMPLES)
+    return openings, load_at(path(result), openings) / load_at(path(reference), openings) - 1
+
+
+def agreement(run: Run, reference: Run | None) -> Agreement:
+    """The numbers of one run; the comparison is NaN without a reference, for the reference itself and for LEFM."""
+    curve = run.result.opening, run.result.load
+    top, end = peak(curve), float(np.max(run.result.opening))
+    if reference is None or run is reference or run.method == "lefm":
+        return Agreement(math.nan, math.nan, peak_load=top[1], peak_opening=top[0], end=end)
+    base = reference.result.opening, reference.result.load
+    end = min(end, float(np.max(reference.result.opening)))
+    return Agreement(
+        error=curve_error(curve, base, end),
+        oscillation=oscillation(curve, base, end)["rms"],
+        peak_load=top[1],
+        peak_opening=top[0],
+        end=end,
+    )

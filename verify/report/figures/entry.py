@@ -1,0 +1,73 @@
+"""A run together with what the page needs of it everywhere: its line and its distance to the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from verify.pages.style import METHOD_NAMES, METHODS, Line, line
+from verify.report.figures.agreement import Agreement, agreement, reference_run, usable
+from verify.result import Result
+from verify.verdict import Run, SceneReport
+
+
+@dataclass(frozen=True, eq=False)
+class Entry:
+    """One run on the page; ``agreement`` is None where there is no curve."""
+
+    run: Run
+    repeat: int  # how many runs of the same method come before, or of methods of other packages and other codes
+    line: Line
+    agreement: Agreement | None
+    is_reference: bool
+
+    @property
+    def method(self) -> str:
+        return self.run.method
+
+    @property
+    def label(self) -> str:
+        return self.run.label
+
+    @property
+    def name(self) -> str:
+        """The method's name."""
+        return METHOD_NAMES.get(self.run.method, self.run.method)
+
+    @property
+    def legend(self) -> str:
+        """The label, with a word where the curve is no solution of the scene."""
+        return f"{self.label} (limit)" if self.method == "lefm" else self.label
+
+    @property
+    def result(self) -> Result:
+        return self.run.result
+
+    @property
+    def complete(self) -> bool:
+        return self.run.result is not None and self.run.result.complete
+
+
+def rank(method: str) -> int:
+    """Place of a method in tables and legends."""
+    return METHODS.index(method) if method in METHODS else len(METHODS)
+
+
+def short_names(among: Sequence[Entry]) -> dict[Entry, str]:
+    """The method's name for each, or the full label where the method occurs more than once."""
+    methods = [entry.method for entry in among]
+    return {entry: entry.label if methods.count(entry.method) > 1 else entry.name for entry in among}
+
+
+def entries(report: SceneReport) -> tuple[Entry, ...]:
+    """All runs of a scene, the reference method first, LEFM last."""
+    reference = reference_run(report)
+    seen: dict[str, int] = {}
+    found = []
+    for run in sorted(report.runs, key=lambda run: rank(run.method)):
+        kind = run.method if run.method in METHODS else ""  # the others share a line
+        repeat = seen.get(kind, 0)
+        seen[kind] = repeat + 1
+        compared = agreement(run, reference) if usable(run) else None
+        found.append(Entry(run, repeat, line(run.method, repeat), compared, run is reference))
+    return tuple(found)

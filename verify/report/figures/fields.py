@@ -1,0 +1,100 @@
+"""Snapshots of the runs side by side, and the traction along the interface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from verify.pages.style import HALF, THIRD, Panel, colour, drawing, panel, to_svg
+from verify.pages.text import Units, axis, quantity
+from verify.report.figures.entry import Entry, rank, short_names
+from verify.result import Snapshot
+
+if TYPE_CHECKING:
+    from verify.scene.schema import Scene
+
+
+def shared_snapshots(runs: Sequence[Entry]) -> list[list[tuple[Entry, Snapshot]]]:
+    """The snapshots of all runs, grouped by opening; the first run in the order of METHODS sets the openings."""
+    owners = sorted(
+        (entry for entry in runs if entry.result.snapshots),
+        key=lambda entry: (-len(entry.result.snapshots), rank(entry.method)),
+    )
+    if not owners:
+        return []
+    openings = np.array([snapshot.opening for snapshot in owners[0].result.snapshots])
+    reach = 0.25 * (np.min(np.diff(openings)) if len(openings) > 1 else openings[0])
+    groups: list[list[tuple[Entry, Snapshot]]] = [[] for _ in openings]
+    for entry in sorted(owners, key=lambda entry: rank(entry.method)):
+        for snapshot in entry.result.snapshots:
+            nearest = int(np.argmin(np.abs(openings - snapshot.opening)))
+            if abs(openings[nearest] - snapshot.opening) <= reach:
+                groups[nearest].append((entry, snapshot))
+    return groups
+
+
+def process_zone(snapshot: Snapshot) -> tuple[float, float] | None:
+    """Start and end of the damaged, not yet open part of the interface; None where nothing is damaged."""
+    s, damage = np.asarray(snapshot.s_q), np.asarray(snapshot.damage_q)
+    active = (damage > 1e-9) & (damage < 1 - 1e-9)
+    if not active.any():
+        return None
+    return float(s[active].min()), float(s[active].max())
+
+
+def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, small: bool) -> Panel:
+    """Traction along the interface at one opening, all methods over each other; ``small`` for three in a row."""
+    units, strength = Units.of(scene.units), scene.interface.strength
+    opening = group[0][1].opening
+    zone = process_zone(group[0][1])
+    with drawing():
+        figure, axes = panel(THIRD, 2.35, left=0.5) if small else panel(HALF, 2.65)
+        axes.set_xlabel(axis("distance from the loaded end", units.length))
+        axes.set_ylabel(axis("normal traction", units.stress))
+        for entry, snapshot in group:
+            options = {**entry.line.options(), "marker": ".", "markersize": 2.6 if entry.line.width < 3 else 0}
+            axes.plot(snapshot.s_q, snapshot.traction_q, **options)
+        window = _window(scene, group)
+        low = min(float(np.nanmin(_inside(s.s_q, s.traction_q, window), initial=0.0)) for _, s in group)
+        top = 1.22 * strength - 0.08 * max(low, -4 * strength)
+        axes.set(xlim=window, ylim=(1.1 * max(low, -4 * strength) - 0.05 * strength, top))
+        axes.axhline(strength, color=colour("muted"), linewidth=0.6, dashes=(2, 2))
+        axes.axhline(0, color=colour("ink"), linewidth=0.5)
+        axes.text(window[1], strength, "strength ", ha="right", va="bottom", color=colour("muted"), fontsize=7)
+        if zone is not None:
+            axes.axvspan(*zone, color=colour("zone"), alpha=0.22, linewidth=0, zorder=0)
+            axes.text(sum(zone) / 2, (strength + top) / 2, "process zone", ha="center", va="center", fontsize=7)
+        svg = to_svg(figure, key, f"Normal traction along the interface at opening {opening:.3g}, {scene.name}")
+    return Panel(svg, _traction_caption(group, units), "third" if small else "half")
+
+
+def _traction_caption(group: Sequence[tuple[Entry, Snapshot]], units: Units) -> str:
+    first = group[0][1].opening
+    names = short_names([entry for entry, _ in group])
+    zones = []
+    for entry, snapshot in group:
+        if (zone := process_zone(snapshot)) is not None:
+            elsewhere = abs(snapshot.opening - first) > 2e-3 * abs(first)
+            where = f" (at {quantity(snapshot.opening, units.length, 3)})" if elsewhere else ""
+            zones.append(f"{names[entry]} {quantity(zone[1] - zone[0], units.length, 3)}{where}")
+    head = f"Opening {quantity(first, units.length, 3)}. "
+    if not zones:
+        return head + "The interface is still intact everywhere."
+    return f"{head}Process zone, damaged and not yet open: {', '.join(zones)}; marked for {names[group[0][0]]}."
+
+
+def _inside(s: np.ndarray, values: np.ndarray, window: tuple[float, float]) -> np.ndarray:
+    return np.asarray(values)[(s >= window[0]) & (s <= window[1])]
+
+
+def _window(scene: Scene, group: Sequence[tuple[Entry, Snapshot]]) -> tuple[float, float]:
+    zones = [zone for _, snapshot in group if (zone := process_zone(snapshot)) is not None]
+    body = scene.specimen
+    bonded = body.extent - body.free_length
+    if not zones:
+        return body.free_length, body.free_length + 0.15 * bonded
+    start, end = min(z[0] for z in zones), max(z[1] for z in zones)
+    length = max(end - start, 0.02 * bonded)
+    return max(start - 0.35 * length, 0.0), min(end + 1.1 * length, body.extent)

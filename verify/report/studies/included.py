@@ -1,0 +1,187 @@
+"""What other commands have found, on the page of a verification: cost, effects, scaling, hard cases."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from verify.pages.style import METHOD_NAMES
+from verify.pages.text import NO_VALUE, number
+from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
+from verify.studies.cost.page import Chart, Level, chart
+from verify.studies.effects.page import BARS
+from verify.studies.effects.row import Row as EffectRow
+from verify.studies.found import Included
+from verify.studies.hard.case import BASES
+from verify.studies.hard.cases import CASES
+from verify.studies.hard.one import Verdict
+from verify.studies.hard.page import Row as HardRow
+from verify.studies.hard.suite import Cell
+from verify.studies.scaling.page import readable
+from verify.studies.scaling.row import PARTS
+
+TITLES = {
+    "cost": "What accuracy costs",
+    "effects": "What each effect does",
+    "scaling": "How it scales",
+    "hard": "Hard cases",
+}
+
+#: Columns of the table of growth: what of ``scaling.json``, and its name.
+GROWTH = {"iteration": "time of an iteration", "peak_memory_mb": "peak memory", "model_memory_mb": "less the program's"}
+
+
+@dataclass(frozen=True)
+class SharedRow:
+    """A size on some ranks against the same on one, in words."""
+
+    dofs: int
+    ranks: int
+    faster: str
+    efficiency: str
+    not_shared: str
+    parts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """How a study found time and memory to grow, and what more ranks gain.
+
+    growth : method, and an exponent with its standard error for each of `GROWTH`
+    """
+
+    growth: tuple[tuple[str, tuple[str, ...]], ...]
+    shared: tuple[SharedRow, ...]
+    columns: tuple[str, ...] = tuple(GROWTH.values())
+    parts: tuple[str, ...] = PARTS
+
+
+@dataclass(frozen=True, eq=False)
+class IncludedSection:
+    """A study as the template prints it: of ``chart``, ``effects``, ``scaling`` and ``hard`` what its command found.
+
+    prefix : leads from the page to the folder of the study
+    runs : and to the runs of its scene
+    """
+
+    anchor: str
+    command: str
+    title: str
+    prefix: str
+    runs: str
+    lead: tuple[str, ...]
+    outdated: bool
+    has_page: bool
+    chart: Chart | None = None
+    levels: tuple[Level, ...] = ()
+    effects: tuple[EffectRow, ...] = ()
+    scaling: Scaling | None = None
+    hard: tuple[HardRow, ...] = ()
+
+    @property
+    def bases(self) -> dict[str, str]:
+        return {basis: METHOD_NAMES[basis] for basis in BASES}
+
+    @property
+    def columns(self) -> dict[str, tuple[str, str]]:
+        """Of the table of effects."""
+        return BARS
+
+
+def section(study: Included, out: Path, anchor: str) -> IncludedSection:
+    """One study."""
+    name = study.about.get("scene", {}).get("name", "")
+    prefix = quote(Path(os.path.relpath(study.folder, out)).as_posix())
+    head = {
+        "anchor": anchor,
+        "command": study.command,
+        "title": f"{TITLES[study.command]}: {name}" if name else TITLES[study.command],
+        "prefix": prefix,
+        "runs": f"{prefix}/{quote(name)}",
+        "outdated": study.outdated,
+        "has_page": (study.folder / "report.html").exists(),
+    }
+    own = {"cost": _cost, "effects": _effects, "scaling": _scaling, "hard": _hard}[study.command]
+    return IncludedSection(**head, **own(study, anchor))
+
+
+def _cost(study: Included, anchor: str) -> dict[str, Any]:
+    rows, about = study.rows, study.about
+    equal = of_equal_steps(rows)
+    levels = tuple(Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS)
+    lead = (*(level.sentence for level in levels), _reference(about["reference"]), *about["left_out"])
+    measured = any(row.measured for row in rows)
+    return {"lead": lead, "chart": chart(rows, anchor) if measured else None, "levels": levels}
+
+
+def _reference(known: dict[str, Any]) -> str:
+    uncertainty = f"{known['uncertainty']['curve']:.3%}" if known["uncertainty"]["curve"] is not None else "unknown"
+    text = f"Reference: {known['label']}, {known['dofs']} unknowns, uncertainty {uncertainty}"
+    if known["other_code_apart"] is None:
+        return f"{text}; no other code was at hand."
+    return f"{text}; {known['other_code']} is {known['other_code_apart']:.3%} away."
+
+
+def _effects(study: Included, anchor: str) -> dict[str, Any]:
+    return {"lead": tuple(study.about["left_out"]), "effects": study.rows}
+
+
+def _scaling(study: Included, anchor: str) -> dict[str, Any]:
+    about = study.about
+    growth = tuple(
+        (METHOD_NAMES.get(method, method), tuple(_exponent(fits.get(what)) for what in GROWTH))
+        for method, fits in about["growth"].items()
+    )
+    shared = tuple(_shared(one) for one in about["strong_scaling"])
+    lead = (*map(readable, about["sentences"]), *about["left_out"])
+    return {"lead": lead, "scaling": Scaling(growth, shared)}
+
+
+def _exponent(fit: dict[str, float | None] | None) -> str:
+    """1.02 ± 0.01, where there is a fit."""
+    if fit is None or fit["exponent"] is None or fit["standard_error"] is None:
+        return NO_VALUE
+    return f"{fit['exponent']:.2f} ± {fit['standard_error']:.2f}".replace("-", "−")
+
+
+def _shared(one: dict[str, Any]) -> SharedRow:
+    faster = {name: one["speed_up"].get(name) for name in ("iteration", *PARTS)}
+    return SharedRow(
+        one["dofs"],
+        one["ranks"],
+        _times(faster["iteration"]),
+        NO_VALUE if one["efficiency"] is None else f"{number(100 * one['efficiency'], 2)} %",
+        NO_VALUE if one["serial"].get("iteration") is None else number(one["serial"]["iteration"], 2),
+        tuple(_times(faster[name]) for name in PARTS),
+    )
+
+
+def _times(faster: float | None) -> str:
+    return NO_VALUE if faster is None else f"{number(faster, 2)} ×"
+
+
+def _hard(study: Included, anchor: str) -> dict[str, Any]:
+    verdicts = {(verdict.case, verdict.basis): verdict for verdict in study.rows}
+    names = {case for case, _ in verdicts}
+    rows = tuple(_row(name, verdicts) for name in CASES if name in names)
+    held = sum(row.passed for row in rows)
+    return {"lead": (f"{held} of {len(rows)} hard cases hold.",), "hard": rows}
+
+
+def _row(name: str, verdicts: Mapping[tuple[str, str], Verdict]) -> HardRow:
+    case = CASES[name]
+    cells = (
+        Cell(case, basis, found, "" if found else "not run")
+        for basis in case.bases
+        for found in [verdicts.get((name, basis))]
+    )
+    return HardRow(case, tuple((cell, None) for cell in cells))
+
+
+def sections(studies: Sequence[Included], out: Path) -> tuple[IncludedSection, ...]:
+    """All of them, in the order in which they are given."""
+    return tuple(section(study, out, f"study-{i + 1}") for i, study in enumerate(studies))

@@ -1,0 +1,80 @@
+"""The study of the interface quadrature on the page: a table and the tractions of one opening."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from verify.pages.style import HALF, METHOD_NAMES, Panel, colour, drawing, panel, to_svg
+from verify.pages.text import Units, axis, number, percent, quantity
+from verify.studies.interface_rules import Study, finding
+
+#: Rules that are drawn: (rule, points, colour of the palette).
+DRAWN = (("gauss", 2, "bad"), ("lobatto", 4, "lagrange"), ("lumped", None, "nurbs"))
+
+
+@dataclass(frozen=True)
+class StudySection:
+    """A section of its own, after the scenes."""
+
+    anchor: str
+    finding: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, tuple[str, ...]], ...]
+    notes: tuple[str, ...]
+    panels: tuple[Panel, ...]
+
+
+def section(study: Study, anchor: str) -> StudySection:
+    """Everything that the template prints of the study."""
+    methods = tuple(dict.fromkeys(trial.method for trial in study.trials))
+    ductilities = tuple(dict.fromkeys(trial.ductility for trial in study.trials))
+    rules = tuple(dict.fromkeys((trial.rule, trial.points) for trial in study.trials))
+    heads = [(method, ductility) for method in methods for ductility in ductilities]
+    unfinished = [trial for trial in study.trials if trial.status != "complete"]
+    return StudySection(
+        anchor,
+        finding(study),
+        columns=tuple(f"{METHOD_NAMES[method]}, ductility {number(ductility)}" for method, ductility in heads),
+        rows=tuple(
+            (
+                _name(*rule),
+                tuple(percent(study.of(method, *rule, ductility).oscillation) for method, ductility in heads),
+            )
+            for rule in rules
+        ),
+        notes=tuple(
+            f"{METHOD_NAMES[t.method]}, {_name(t.rule, t.points)}, ductility {number(t.ductility)}: {t.status}"
+            for t in unfinished
+        ),
+        panels=tuple(_tractions(study, method, max(ductilities), f"{anchor}-{method}") for method in methods),
+    )
+
+
+def _name(rule: str, points: int | None) -> str:
+    return f"{rule}, {points} points" if points else rule
+
+
+def _tractions(study: Study, method: str, ductility: float, key: str) -> Panel:
+    """Traction ahead of the crack by three rules, over that of the beam."""
+    units, strength = Units.of(study.scene.units), study.scene.interface.strength
+    beam = dict(study.beams)[ductility]
+    with drawing():
+        figure, axes = panel(HALF, 2.65)
+        axes.plot(beam.s_q, beam.traction_q / strength, color=colour("muted"), linewidth=3, alpha=0.5, label="beam")
+        for rule, points, ink in DRAWN:
+            profile = study.of(method, rule, points, ductility).profile
+            if profile is not None:
+                style = {"linewidth": 0.9, "marker": ".", "markersize": 3}
+                axes.plot(
+                    profile.s_q, profile.traction_q / strength, color=colour(ink), label=_name(rule, points), **style
+                )
+        start = study.scene.specimen.free_length
+        axes.set(
+            xlabel=axis("position along the specimen", units.length),
+            ylabel="traction / strength",
+            xlim=(start, start + 2.5),
+        )
+        axes.legend(loc="lower right")
+        svg = to_svg(figure, key, f"Traction ahead of the crack by interface rule, {METHOD_NAMES[method]}")
+    where = quantity(beam.opening, units.length, 3)
+    return Panel(svg, f"{METHOD_NAMES[method]}, ductility {number(ductility)}, opening {where}.")

@@ -1,0 +1,50 @@
+"""How many checks of each kind hold, are broken, or are unresolved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from verify.verdict import Counts, counted
+
+if TYPE_CHECKING:
+    from verify.verdict import Check
+
+
+#: kind: what stands behind a check of that kind
+KINDS = {
+    "exact": "An identity that any solution must meet. Nothing else is needed to judge it.",
+    "analytical": "Against a closed form or the cohesive-beam solution, which rests on beam theory.",
+    "cross-code": "Against another code or a published value: two programs that share nothing but the problem.",
+    "regression": "Against this code, earlier: says that nothing has changed, not that it is right.",
+}
+
+
+@dataclass(frozen=True)
+class Tally:
+    """How many checks there are of one kind, and in which state."""
+
+    kind: str
+    meaning: str
+    counts: Counts
+
+
+def headline(counts: Counts, scenes: int, planes: int = 0) -> str:
+    """The verdict in one line."""
+    total = counts.total
+    places = [f"{scenes} scene{'s' if scenes != 1 else ''}"] if scenes or not planes else []
+    places += [f"{planes} plane problem{'s' if planes != 1 else ''}"] if planes else []
+    where = f"on {' and '.join(places)}"
+    if not total:
+        return f"No check was made {where}"
+    if counts.broken or counts.unresolved:
+        words = {"broken": counts.broken, "unresolved": counts.unresolved}
+        found = " and ".join(f"{number} {state}" for state, number in words.items() if number)
+        return f"{found} of {total} checks {where}"
+    return f"All {total} checks hold {where}" if total > 1 else f"The one check holds {where}"
+
+
+def tally(kind: str, checks: Sequence[Check]) -> Tally:
+    of_kind = [check for check in checks if check.kind == kind]
+    return Tally(kind, KINDS[kind], counted(of_kind))

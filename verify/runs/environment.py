@@ -1,0 +1,77 @@
+"""Machine, versions, threads and MPI ranks of a run."""
+
+from __future__ import annotations
+
+import os
+import platform
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from verify import __version__
+
+
+def mpi_rank() -> int:
+    """Rank of this process by what mpirun puts in the environment: mpi4py is not ours to import."""
+    return _number("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", default=0)
+
+
+def mpi_size() -> int:
+    """Number of processes of this run."""
+    return _number("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", default=1)
+
+
+def versions() -> dict[str, str]:
+    """Python and those of the packages that are installed."""
+    names = ("numpy", "scipy", "pydantic", "fenics-dolfinx", "petsc4py", "mpi4py")
+    found = {name: number for name in names if (number := _version(name))}
+    return {"debond": __version__, "python": platform.python_version(), **found}
+
+
+@cache
+def _version(name: str) -> str:
+    """Empty where it is not installed. Finding out takes milliseconds, and every fingerprint asks."""
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return ""
+
+
+def machine() -> dict[str, Any]:
+    """What the timings were taken on."""
+    return {"system": platform.platform(), "processor": _processor(), "cores": os.cpu_count()}
+
+
+def threads() -> int:
+    """Threads that numerical libraries may take."""
+    return _number("OMP_NUM_THREADS", default=os.cpu_count() or 1)
+
+
+def environment() -> dict[str, str]:
+    """Versions, machine and threads in words, for the foot of a page."""
+    about = machine()
+    return {
+        **versions(),
+        "machine": f"{about['processor']}, {about['cores']} cores, {about['system']}",
+        "threads a run": os.environ.get("OMP_NUM_THREADS", "as many as cores"),
+    }
+
+
+def _processor() -> str:
+    cpuinfo = Path("/proc/cpuinfo")
+    lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
+    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return models[0] if models else platform.processor() or platform.machine()
+
+
+def _number(*names: str, default: int) -> int:
+    values = [os.environ[name] for name in names if os.environ.get(name, "").isdigit()]
+    return int(values[0]) if values else default
+
+
+#: What the times of a study rest on.
+ALL_PACKAGES = ("iga", "fem_reference")
+
+#: Variables that keep numerical libraries to one thread.
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")

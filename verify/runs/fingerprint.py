@@ -1,0 +1,68 @@
+"""What a result rests on, as one hash: the same hash, the same result, and on the same machine the same time."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+from functools import cache
+from pathlib import Path
+
+from verify.methods import plugins
+from verify.methods.names import METHODS, WITH_DOFS
+from verify.runs.environment import machine, versions
+from verify.scene.schema import Scene
+
+PROJECT = Path(__file__).resolve().parents[2]
+
+#: What every run and its checks rest on; pages, commands and studies take no part in a run.
+GROUND = (
+    *(f"verify/{name}" for name in ("scene", "theory", "curves", "methods", "fields", "checks", "runs", "support")),
+    "verify/result.py",
+    "verify/verdict.py",
+)
+
+#: Packages whose source a method runs besides.
+_PACKAGES = {**dict.fromkeys(WITH_DOFS, ("iga",)), "dolfinx": ("fem_reference",)}
+
+
+def fingerprint(scene: Scene, method: str, *besides: str) -> str:
+    """Hash of the scene as solved, the method with its source, library versions, machine and threads.
+
+    Parameters
+    ----------
+    besides : what else tells two runs apart
+    """
+    plugged = [] if method in METHODS else plugins.content(method)
+    return digest(_ground(scene, method), besides, source(_PACKAGES.get(method, ())), plugged, _here())
+
+
+def source(packages: tuple[str, ...] = ()) -> str:
+    """Hash of the source files of `GROUND` and of whole packages, which are named by their paths in the project."""
+    places = [PROJECT / name for name in (*packages, *GROUND)]
+    files = [path for place in places for path in (sorted(place.rglob("*.py")) if place.is_dir() else [place])]
+    return _content(tuple(files))
+
+
+def digest(*content: object) -> str:
+    """20 hexadecimal digits of anything that JSON can hold."""
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:20]
+
+
+def _ground(scene: Scene, method: str) -> list[object]:
+    meshes = [hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in scene.specimen.mesh]
+    return [scene.model_dump(mode="json"), method, meshes]
+
+
+@cache
+def _content(files: tuple[Path, ...]) -> str:
+    found = hashlib.sha256()
+    for path in files:
+        found.update(str(path.relative_to(PROJECT)).encode() + b"\0" + path.read_bytes() + b"\0")
+    return found.hexdigest()
+
+
+def _here() -> list[object]:
+    """Versions, machine and threads: a time that was taken elsewhere is no answer."""
+    return [versions(), machine(), platform.node(), os.environ.get("OMP_NUM_THREADS", "")]

@@ -1,0 +1,227 @@
+"""The folder of a run: curve.csv and evidence.csv as the run goes, result.json and fields when it is over."""
+
+from __future__ import annotations
+
+import csv
+import errno
+import json
+import math
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, fields
+from io import FileIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Result, Snapshot
+from verify.support.checked_files import ANY, NUMBER, Damaged, number, read_json
+
+FILES = ("curve.csv", "evidence.csv", "result.json", "fields.npz", "moments.npz", "error.log")
+
+#: Numbers of the errors of a disk that is full, over its quota or a limit, read-only or broken.
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
+
+
+class CurveWriter:
+    """Writes every row of a run at once, so that a killed run leaves a valid, shorter file."""
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in FILES:  # nothing of an earlier run may pass for this one
+            (folder / name).unlink(missing_ok=True)
+        self._curve = _opened(folder / "curve.csv", CURVE_COLUMNS)
+        self._evidence: FileIO | None = None
+        self._evidence_path = folder / "evidence.csv"
+        self._columns: tuple[str, ...] = ()
+
+    def __call__(self, row: Mapping[str, float]) -> None:
+        if self._evidence is None:
+            self._columns = tuple(name for name in (*CURVE_COLUMNS, *EVIDENCE_COLUMNS) if name in row)
+            self._evidence = _opened(self._evidence_path, self._columns)
+            _append(self._curve, CURVE_COLUMNS, dict.fromkeys(CURVE_COLUMNS, 0.0))  # by contract, the crack included
+        else:
+            _append(self._curve, CURVE_COLUMNS, dict.fromkeys(CURVE_COLUMNS, math.nan) | dict(row))
+        _append(self._evidence, self._columns, row)
+
+    def close(self) -> None:
+        for stream in (self._curve, self._evidence):
+            if stream is not None:
+                stream.close()
+
+
+def write_json(path: Path, content: Mapping[str, Any]) -> None:
+    """Write beside and rename, so that the file is whole or absent. NaN and infinity, which JSON lacks, become null."""
+    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    text = json.dumps(_finite(content), indent=2) + "\n"
+    try:
+        beside.write_text(text)
+        beside.replace(path)
+    except OSError as error:  # of a full disk, which does not say where
+        beside.unlink(missing_ok=True)
+        raise OSError(error.errno, error.strerror, str(path)) from None
+
+
+def write_csv(path: Path, kind: type, rows: Iterable[Any]) -> None:
+    """One line a row; the columns are the fields of ``kind``, the dataclass of the rows."""
+    with path.open("w", newline="") as stream:
+        writer = csv.DictWriter(stream, [field.name for field in fields(kind)])
+        writer.writeheader()
+        writer.writerows(asdict(row) for row in rows)
+
+
+def write_fields(path: Path, snapshots: tuple[Snapshot, ...]) -> None:
+    """All snapshots in one compressed file, keys ``0.gap_q``, ``0.s_q``, ... ``1.gap_q``, ..."""
+    arrays = {f"{i}.{key}": value for i, snapshot in enumerate(snapshots) for key, value in asdict(snapshot).items()}
+    beside = path.with_name(f".{os.getpid()}.{path.name}")  # savez insists on the ending
+    np.savez_compressed(beside, **arrays)
+    beside.replace(path)
+
+
+def read_columns(path: Path) -> dict[str, np.ndarray]:
+    """Columns of a CSV file with a header; an incomplete last row, as a killed run may leave, is dropped."""
+    with path.open(newline="") as stream:
+        header, *rows = csv.reader(stream)
+    rows = [row for row in rows if len(row) == len(header) and all(row)]
+    return {name: np.array([float(row[i]) for row in rows]) for i, name in enumerate(header)}
+
+
+#: What is read of result.json; the rest is for people and their scripts.
+_RESULT = {
+    "method": str,
+    "status": str,
+    "steps": int,
+    "dofs": float,
+    "elements": float,
+    "rejected_steps": float,
+    "peak_memory_mb": float,
+    "seconds": {ANY: float},
+    "ending?": str,
+    "condition?": NUMBER,
+    "nonzeros?": float,
+    "jit_seconds?": float,
+}
+
+
+def read_result(folder: Path) -> Result:
+    """The run in a folder. Without result.json it counts as stopped.
+
+    Raises
+    ------
+    Damaged : a file is not as a run has written it.
+    """
+    evidence = folder / "evidence.csv"
+    try:
+        steps = read_columns(evidence) if evidence.exists() else {name: np.zeros(0) for name in CURVE_COLUMNS}
+    except (OSError, ValueError, csv.Error) as error:
+        raise Damaged(evidence, error) from None
+    if not {"opening", "load"} <= steps.keys():
+        raise Damaged(evidence, f"the columns {', '.join(steps)}"[:200])
+    about = folder / "result.json"
+    if not about.exists():
+        return Result(method="", steps=steps, status="stopped: the run was killed")
+    known = read_json(about, _RESULT)
+    return Result(
+        method=known["method"],
+        steps=steps,
+        status=known["status"],
+        ending=known.get("ending", ""),
+        condition=number(known.get("condition", 0.0)),
+        dofs=known["dofs"],
+        elements=known["elements"],
+        rejected_steps=known["rejected_steps"],
+        snapshots=read_fields(folder / "fields.npz"),
+        between=read_fields(folder / "moments.npz"),
+        seconds=known["seconds"],
+        peak_memory_mb=known["peak_memory_mb"],
+        nonzeros=known.get("nonzeros", 0),
+        jit_seconds=known.get("jit_seconds", 0.0),
+    )
+
+
+def damage(folder: Path, proof: str) -> str:
+    """What cannot be read of a result that was whole once, or nothing; ``proof`` is the file that was written last."""
+    name = proof
+    try:
+        if proof == "result.json":
+            read_result(folder)
+        about = json.loads((folder / proof).read_bytes()) if proof.endswith(".json") else (folder / proof).read_bytes()
+        whole = proof == "result.json" and about["status"] == "complete"
+        for name in ("curve.csv", "evidence.csv"):
+            if whole or (folder / name).exists():
+                rows = min(map(len, read_columns(folder / name).values()))
+                if whole and rows != about["steps"] + 1:
+                    return name
+    except Damaged as error:
+        return error.path.name
+    except (OSError, ValueError, csv.Error):
+        return name
+    return ""
+
+
+def read_fields(path: Path) -> tuple[Snapshot, ...]:
+    """The snapshots of ``write_fields``; none where there is no file.
+
+    Raises
+    ------
+    Damaged : the file holds something else.
+    """
+    if not path.exists():
+        return ()
+    names = [field.name for field in fields(Snapshot)]
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            count = len({key.split(".")[0] for key in arrays})
+            tables = [{name: arrays[key] for name in names if (key := f"{i}.{name}") in arrays} for i in range(count)]
+        return tuple(_snapshot(table) for table in tables)
+    except Exception as error:  # of NumPy, zip and zlib, whatever is in the file
+        raise Damaged(path, error) from None
+
+
+def _snapshot(table: Mapping[str, np.ndarray]) -> Snapshot:
+    """Numbers of the sizes that belong together."""
+    scalars = ("opening", "load")
+    found = Snapshot(**{name: float(array) if name in scalars else array for name, array in table.items()})
+    sizes = {len(array) for array in (found.s_q, found.gap_q, found.traction_q, found.damage_q)}
+    grids = found.X_euvi.shape == found.u_euvi.shape and found.stress_euv.shape in (found.X_euvi.shape[:-1], (0,))
+    if not (grids and len(sizes) == 1 and all(array.dtype.kind in "fiu" for array in table.values())):
+        raise ValueError("arrays that do not belong together")
+    return found
+
+
+def _opened(path: Path, columns: tuple[str, ...]) -> FileIO:
+    stream = FileIO(path, "w")
+    _write(stream, ",".join(columns) + "\n")
+    return stream
+
+
+def _append(stream: FileIO, columns: tuple[str, ...], row: Mapping[str, float]) -> None:
+    _write(stream, ",".join(f"{float(row[name]):.17g}" for name in columns) + "\n")
+
+
+def _write(stream: FileIO, line: str) -> None:
+    """One write call a row, line end included: a reader or a kill never sees half of one, nor does a full disk leave
+    half of one behind, whose last number would be another.
+
+    Raises
+    ------
+    OSError : with the name of the file.
+    """
+    start, rest = stream.tell(), line.encode()
+    try:
+        while rest:
+            rest = rest[stream.write(rest) :]
+    except OSError as error:
+        stream.truncate(start)
+        raise OSError(error.errno, error.strerror, str(stream.name)) from None
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _finite(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(v) for v in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value

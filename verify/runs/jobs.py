@@ -1,0 +1,159 @@
+"""Runs of ``debond solve``, as a sweep does them, and what became of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from verify.checks.identities import OF_THE_ZONE
+from verify.methods.given_meshes import OWN
+from verify.methods.names import NotRun
+from verify.methods.solve import require
+from verify.result import Result
+from verify.runs.estimate import seconds
+from verify.runs.fingerprint import fingerprint
+from verify.runs.folder import read_result
+from verify.runs.pools import pool
+from verify.runs.sweep import FOLDER, Done, Task, listed, sweep
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
+from verify.support.checked_files import Damaged
+from verify.support.refusal import Refusal
+from verify.verdict import Check
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run to do. ``source`` is the scene as the user named it, ``variant`` the name of the run and its folder.
+
+    ``fields`` are kept of a few steps for the figures; ``repeat`` tells runs apart that are made for their times.
+    """
+
+    source: str
+    scene: Scene
+    method: str
+    variant: str
+    overrides: tuple[str, ...] = ()
+    fields: bool = True
+    repeat: int = 0
+
+    def command(self, out: Path) -> list[str]:
+        """Arguments of ``debond`` that repeat the run."""
+        return self._words(str(self.folder(out)))
+
+    def _words(self, folder: str) -> list[str]:
+        sets = [word for override in self.overrides for word in ("--set", override)]
+        fields = ["--fields", "--frames", "0"] if self.fields else []
+        return ["solve", self.source, "--method", self.method, *sets, *fields, "--out", folder]
+
+    @property
+    def place(self) -> str:
+        """Name of the run, and where it is found under an output folder."""
+        return f"{self.scene.name}/{self.variant}"
+
+    @property
+    def solved(self) -> Scene:
+        """The scene with its overrides."""
+        return parse_scene(self.scene.model_dump(), self.overrides) if self.overrides else self.scene
+
+    def task(self) -> Task:
+        """The run as a sweep does it.
+
+        All DOLFINx runs are one lane: they share a cache of compiled forms, and the second to compile the same form
+        would wait for the first, and give up after ten seconds.
+        """
+        scene = self.solved
+        return Task(
+            self.place,
+            fingerprint(scene, self.method, f"fields {self.fields}", f"repeat {self.repeat}"),
+            ("verify.cli", *self._words(FOLDER)),
+            "result.json",
+            lane="dolfinx" if self.method == "dolfinx" else "",
+            seconds=seconds(scene, self.method),
+        )
+
+    def meant_for(self, check: Check) -> bool:
+        """On coarse meshes what rests on the J-integral measures the mesh and not the solver."""
+        keys = [override.partition("=")[0] for override in self.overrides if override != OWN]
+        coarse = keys == ["discretization.dofs"] or "dolfinx.layers" in keys
+        return not (coarse and check.name in OF_THE_ZONE)
+
+    def folder(self, out: Path) -> Path:
+        return out / self.place
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a job: a result, or why there is none; ``failed`` where that is nobody's choice."""
+
+    job: Job
+    result: Result | None
+    left_out: str = ""
+    failed: bool = False
+
+
+def run_all(plan: Sequence[Job], out: Path, jobs: int, scheduler: str | None = None) -> Iterator[Outcome]:
+    """Do the jobs, ``jobs`` at a time or through a dask scheduler; every outcome as it comes."""
+    able = []
+    for job in plan:
+        why = left_out(job)
+        if why:
+            yield Outcome(job, None, why)
+        else:
+            able.append((job.task(), job))
+    of_task = dict(able)
+    with pool(jobs, scheduler) as workers:
+        for done in sweep(list(of_task), out, workers, "runs", _in_short):
+            yield outcome(of_task[done.task], done)
+
+
+def dry_run(plan: Sequence[Job], out: Path, jobs: int) -> list[str]:
+    """The runs with their times, a line each, and what is left out."""
+    able = [job for job in plan if not left_out(job)]
+    return [
+        *(f"{job.place:60} {left_out(job)}" for job in plan if job not in able),
+        *listed([job.task() for job in able], out, jobs),
+    ]
+
+
+def left_out(job: Job) -> str:
+    """Why a job cannot be done here, or nothing."""
+    try:
+        require(job.solved, job.method)
+    except (NotRun, Refusal) as error:
+        text = str(error)
+        return text if text.startswith("not run") else f"not run: {text}"
+    return ""
+
+
+def is_missing(job: Job) -> bool:
+    """Whether this machine lacks the method of a job that it is made for."""
+    try:
+        require(job.solved, job.method)
+    except NotRun:
+        return True
+    except Refusal:
+        pass
+    return False
+
+
+def outcome(job: Job, done: Done) -> Outcome:
+    """What became of a job; one that failed with a result has that, and says itself why it stopped."""
+    if not (done.folder / "result.json").exists():
+        return Outcome(job, None, done.why, failed=True)
+    try:
+        return Outcome(job, read_result(done.folder))
+    except Damaged as error:
+        return Outcome(job, None, f"failed: {error}", failed=True)
+
+
+def _in_short(done: Done) -> str:
+    if not (done.folder / "result.json").exists():
+        return done.why
+    try:
+        result = read_result(done.folder)
+    except Damaged as error:
+        return f"failed: {error}"
+    taken = (result.seconds or {}).get("total", 0.0)
+    return f"{result.status}, peak load {result.load.max(initial=0.0):.5g}, {taken:.1f} s"

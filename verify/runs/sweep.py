@@ -1,0 +1,246 @@
+"""Many independent runs: each a process of its own, its result a folder named by its hash, whole or absent.
+
+A crash costs one run, and a second call does only what is missing. Runs go through a `concurrent.futures.Executor`
+(see `verify.runs.pools`): threads of this process, each of which waits for a process, or the workers of a dask cluster
+that see the same files.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TextIO
+
+from verify.runs.folder import damage
+from verify.runs.pools import Pool
+from verify.runs.store import NAME, Store, link, opened
+from verify.support.checked_files import Damaged
+from verify.support.progress import Progress, duration
+
+PROJECT = Path(__file__).resolve().parents[2]
+
+#: Stands in a program for the folder that it is to write into.
+FOLDER = "{folder}"
+
+ALIVE_EVERY_SECONDS = 1.0
+
+#: Exit codes of a program that came to its end: all is well, or what it found is not.
+ENDED = (0, 1)
+
+
+@dataclass(frozen=True)
+class Task:
+    """One run to do.
+
+    Parameters
+    ----------
+    place : where the result is found under the output folder, and the name of the run for people
+    key : what the result rests on, as a hash (`verify.runs.fingerprint`)
+    program : module and arguments; ``FOLDER`` stands for the folder to write into
+    proof : the file that a program writes last
+    lane : tasks of one lane, unless it is empty, run one after the other
+    seconds : about how long it takes
+    timeout : after so many seconds it is given up
+    read : reads the result in a folder; what was damaged since it was written is done again
+    """
+
+    place: str
+    key: str
+    program: tuple[str, ...]
+    proof: str
+    lane: str = ""
+    seconds: float = 1.0
+    timeout: float = 3600.0
+    read: Callable[[Path], object] | None = None
+
+
+@dataclass(frozen=True)
+class Done:
+    """What became of a task: its folder, and why it failed or nothing.
+
+    What a failed one has left, if anything, is in the folder as well.
+    """
+
+    task: Task
+    folder: Path
+    why: str = ""
+    at_hand: bool = False  # done by an earlier call
+
+
+def sweep(tasks: Sequence[Task], out: Path, pool: Pool, title: str, say: Callable[[Done], str]) -> Iterator[Done]:
+    """Do those of the tasks that ``out`` lacks; every one as it comes, those at hand first.
+
+    Parameters
+    ----------
+    say : what to tell of a task that is done, in short
+    """
+    with opened(out) as store:
+        damaged = {task.key: name for task in tasks if store.whole(task.key) and (name := _damage(task, store))}
+        for key in damaged:
+            store.set_aside(key)
+        missing = [task for task in tasks if not store.whole(task.key)]
+        at_hand = [task for task in tasks if store.whole(task.key)]
+        with Progress(title, sum(task.seconds for task in missing), pace=_at_once(pool)) as progress:
+            if damaged:
+                names = ", ".join(sorted(set(damaged.values())))
+                progress.line(f"{title}: {len(damaged)} runs in {out} are damaged ({names}) and are done again")
+            if at_hand:
+                progress.line(f"{title}: {len(at_hand)} of {len(tasks)} runs are at hand in {out}")
+            for task in at_hand:
+                link(out, task.place, store.folder(task.key))
+                yield Done(task, out / task.place, at_hand=True)
+            spent = 0.0
+            alive = partial(_alive, progress)
+            for count, (task, why) in enumerate(_done(missing, store, pool, alive), len(at_hand) + 1):
+                kept = store.failed(task.key) if why else store.folder(task.key)
+                if kept.is_dir():
+                    link(out, task.place, kept)
+                done = Done(task, out / task.place, why)
+                spent += task.seconds
+                progress.advance(spent, f"{count} of {len(tasks)} runs")
+                progress.line(f"{task.place}: {say(done)} ({count} of {len(tasks)}{progress.left})")
+                yield done
+
+
+def _damage(task: Task, store: Store) -> str:
+    folder = store.folder(task.key)
+    try:
+        if task.read is not None:
+            task.read(folder)
+    except Damaged as error:
+        return error.path.name
+    return damage(folder, task.proof)
+
+
+def listed(tasks: Sequence[Task], out: Path, jobs: int) -> list[str]:
+    """What a sweep would do, one line a run, and about how long it would take."""
+    store = Store(out / NAME)
+    lines, missing = [], {}
+    for task in tasks:
+        at_hand = store.whole(task.key)
+        lines.append(f"{task.place:60} {'at hand' if at_hand else 'about ' + duration(task.seconds)}")
+        if not at_hand:
+            missing[task.key] = task
+    lanes: dict[str, float] = {}
+    for task in missing.values():
+        lanes[task.lane] = lanes.get(task.lane, 0.0) + task.seconds
+    longest = max((seconds for lane, seconds in lanes.items() if lane), default=0.0)
+    whole = max(sum(lanes.values()) / jobs, longest)
+    at_once = f", {jobs} at a time" if jobs > 1 else ""
+    return [*lines, f"{len(missing)} of {len(tasks)} runs to do{at_once}: about {duration(whole)}"]
+
+
+def _at_once(pool: Pool) -> int:
+    """Runs at a time, which is how many of their seconds pass in one; 0 where nobody answers."""
+    try:
+        return pool.slots()
+    except OSError:
+        return 0
+
+
+def _alive(progress: Progress, running: Sequence[Task]) -> None:
+    progress.alive(f"{running[0].place} and {len(running) - 1} more" if len(running) > 1 else running[0].place)
+
+
+def _done(
+    tasks: Sequence[Task], store: Store, pool: Pool, alive: Callable[[Sequence[Task]], None]
+) -> Iterator[tuple[Task, str]]:
+    """Tasks with why they failed, as they end; of those with the same key only one runs.
+
+    ``alive`` is told every second what is running.
+
+    No more than the pool can do at once are handed over, so that a lane's next task never waits behind all the others.
+    """
+    waiting = list({task.key: task for task in tasks}.values())
+    running: dict[Future, Task] = {}
+    try:
+        while waiting or running:
+            try:
+                room = pool.slots() - len(running)
+            except OSError as error:  # a scheduler that is gone; what it had begun ends by itself
+                room, lost = 0, {task.key for task in waiting}
+                waiting.clear()
+                yield from ((task, f"failed: {error}") for task in tasks if task.key in lost)
+            for task in _next(waiting, list(running.values()), room):
+                waiting.remove(task)
+                running[_submitted(task, store, pool)] = task
+            ended = wait(running, ALIVE_EVERY_SECONDS, return_when=FIRST_COMPLETED).done
+            if running and not ended:
+                alive(list(running.values()))
+            for future in ended:
+                task = running.pop(future)
+                why = _why(future)
+                yield from ((twin, why) for twin in tasks if twin.key == task.key)
+    except BaseException:  # an interrupt, or a caller that wants no more
+        pool.stop()
+        raise
+
+
+def _next(waiting: Sequence[Task], running: Sequence[Task], room: int) -> list[Task]:
+    """Tasks to begin with: lanes come first, as their tasks cannot be made up for by others at the end."""
+    busy = {task.lane for task in running}
+    chosen: list[Task] = []
+    for task in sorted(waiting, key=lambda task: not task.lane):
+        if len(chosen) < room and not (task.lane and task.lane in busy):
+            chosen.append(task)
+            busy.add(task.lane)
+    return chosen
+
+
+def _submitted(task: Task, store: Store, pool: Pool) -> Future:
+    try:
+        return pool.submit(execute, task, store.root.absolute(), Path.cwd())
+    except Exception as error:  # a cluster that is gone
+        lost: Future = Future()
+        lost.set_exception(error)
+        return lost
+
+
+def _why(future: Future) -> str:
+    try:
+        return future.result()
+    except CancelledError:
+        return "failed: the run was cancelled with its scheduler"
+    except Exception as error:
+        return f"failed: {type(error).__name__}: {error}"
+
+
+def execute(task: Task, root: Path, cwd: Path, running: set[subprocess.Popen] | None = None) -> str:
+    """Do one task, wherever the files are seen; why it failed, or nothing. ``running`` knows its process meanwhile."""
+    store = Store(root)
+    work = store.begin(task.key)
+    words = [str(work) if word == FOLDER else word for word in task.program]
+    with (work / "log.txt").open("w+") as log:
+        code = call([sys.executable, "-P", "-m", "verify.runs.child", *words], log, cwd, task.timeout, running)
+        log.seek(0)
+        said = log.read().strip().splitlines()
+    if code in ENDED and (work / task.proof).exists() and not next(work.rglob("error.log"), None):
+        store.keep(work, task.key)
+        return ""
+    store.give_up(work, task.key)
+    why = f"signal {-code}" if code < 0 else f"exit {code}"
+    return f"failed: {said[-1]}" if said and code >= 0 else f"failed: {why}"
+
+
+def call(
+    command: list[str], log: TextIO, cwd: Path, timeout: float, running: set[subprocess.Popen] | None = None
+) -> int:
+    """Run a command to its end, or kill it where that takes too long; its exit code, -n after signal n."""
+    paths = [str(PROJECT), *filter(None, [os.environ.get("PYTHONPATH")])]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)}
+    running = set() if running is None else running
+    with subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, env=environment, cwd=cwd) as process:
+        running.add(process)
+        try:
+            return process.wait(timeout)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            return process.wait()
+        finally:
+            running.discard(process)

@@ -1,0 +1,83 @@
+"""``verdict.json``: what a verification says, for other programs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, get_args
+
+from verify.checks.judgement import Judgement
+from verify.runs.environment import machine, threads, versions
+from verify.runs.folder import write_json
+from verify.verdict import Check, Kind, SceneReport, counted, of_state
+
+NAME = "verdict.json"
+
+
+def write(out: Path, reports: Sequence[SceneReport], judgement: Judgement, included: Sequence[str] = ()) -> None:
+    """Write ``out``/verdict.json.
+
+    Parameters
+    ----------
+    included : folders of studies that the report shows; they take no part in the verdict
+    """
+    write_json(out / NAME, content(reports, judgement, included))
+
+
+def content(reports: Sequence[SceneReport], judgement: Judgement, included: Sequence[str] = ()) -> dict[str, Any]:
+    """What the file holds. A value that is no number, as of a run that ended without one, becomes null."""
+    checks = [check for _, check in judgement.checks]
+    of_scene = {report.scene.name: report for report in reports}
+    return {
+        "passed": judgement.passed,
+        "counts": _counts(checks) | {"of_kind": {kind: _counts(_of(kind, checks)) for kind in get_args(Kind)}},
+        "checks": [_check(name, check, of_scene.get(name)) for name, check in judgement.checks],
+        "not_judged": [asdict(gap) for gap in judgement.gaps],
+        "runs": [_run(report, run) for report in reports for run in report.runs],
+        "remarks": {report.scene.name: list(report.remarks) for report in reports if report.remarks},
+        "included": list(included),
+        "versions": versions(),
+        "machine": machine(),
+        "threads": threads(),
+    }
+
+
+def _of(kind: str, checks: Sequence[Check]) -> list[Check]:
+    return [check for check in checks if check.kind == kind]
+
+
+def _counts(checks: Sequence[Check]) -> dict[str, int]:
+    found = counted(checks)
+    return {"checks": found.total, "passed": found.held, "failed": found.broken, "unresolved": found.unresolved}
+
+
+def _check(scene: str, check: Check, report: SceneReport | None) -> dict[str, Any]:
+    runs = report.judged(check) if report is not None else ()
+    return {
+        "scene": scene,
+        "method": runs[0].method if runs else None,
+        "subject": check.subject,
+        "name": check.name,
+        "value": check.value,
+        "tolerance": check.tolerance,
+        "kind": check.kind,
+        **of_state(check),
+        "run": runs[0].folder if runs else None,
+        "against": runs[1].folder if len(runs) > 1 else None,
+        "meaning": check.meaning,
+    }
+
+
+def _run(report: SceneReport, run: Any) -> dict[str, Any]:
+    result = run.result
+    return {
+        "scene": report.scene.name,
+        "method": run.method,
+        "label": run.label,
+        "folder": run.folder,
+        "hash": run.key or None,
+        "command": run.command,
+        "status": result.status if result is not None else run.left_out,
+        "seconds": (result.seconds or {}).get("total") if result is not None else None,
+    }

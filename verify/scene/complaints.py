@@ -1,0 +1,154 @@
+"""What is wrong with a scene, as sentences: key path, allowed range, value."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from verify.scene.bodies import Dcb, Isotropic, Orthotropic, Peel
+from verify.scene.schema import Scene
+from verify.scene.tables import Section, one_of
+
+_MATERIALS: Mapping[str, type[Section]] = {"isotropic": Isotropic, "orthotropic": Orthotropic}
+_SPECIMENS: Mapping[str, type[Section]] = {"dcb": Dcb, "peel": Peel}
+_ALTERNATIVES = {"specimen": _SPECIMENS, **dict.fromkeys(("material", "strip", "substrate"), _MATERIALS)}
+_BOUNDS = (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))
+_KINDS = {float: "a number", int: "an integer", bool: "true or false", str: "a text"}
+
+
+def complaints(error: ValidationError, raw: Mapping[str, Any]) -> list[str]:
+    """One sentence for every error, in the order of the schema."""
+    details = [e for e in error.errors() if e["type"] != "default_factory_not_called"]
+    kind = ("specimen", "dcb", "kind")
+    if any(e["loc"] == kind for e in details):
+        # another specimen has other keys, so nothing can be said about those that belong to it
+        details = [e for e in details if e["loc"] == kind or e["loc"][0] not in _ALTERNATIVES]
+    sentences = (sentence for e in details for sentence in _sentences(e, raw))
+    return list(dict.fromkeys(sentences))  # one number that stands for two is wrong once
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """``did you mean "x" or "y"?`` or nothing."""
+    near = difflib.get_close_matches(word, list(known), n=3, cutoff=0.6)
+    return f"did you mean {one_of(near)}?" if near else ""
+
+
+def _sentences(e: ErrorDetails, raw: Mapping[str, Any]) -> list[str]:
+    if e["type"] != "rule":
+        return [_sentence(e, raw)]
+    text, found = e["ctx"]["text"], e["ctx"]["found"]
+    keys = [_dotted(_place((*e["loc"], *rest))[2], raw) for rest, _ in found]
+    return [f"{key}: must be {text}, got {_shown(_plain(v))}" for key, (_, v) in zip(keys, found, strict=True)]
+
+
+def _sentence(e: ErrorDetails, raw: Mapping[str, Any]) -> str:
+    model, field, path = _place(e["loc"])
+    key = _dotted(path, raw)
+    if e["type"] == "extra_forbidden":
+        known = list(model.model_fields)
+        name = str(path[-1])
+        other = "" if path[0] in _ALTERNATIVES else _elsewhere(name)  # bodies of one kind lack keys of the others
+        hint = other or suggestion(name, known) or f"the keys here are {', '.join(known)}"
+        return f"{key}: is not a key of a scene, got {_shown(e['input'])}; {hint}"
+    if e["type"] == "missing":
+        return f"{key}: is missing, must be {_expected(field, path, full=True)}"
+    outside = e["type"].startswith(("greater_than", "less_than"))
+    return f"{key}: must be {_expected(field, path, full=not outside)}, got {_shown(e['input'])}"
+
+
+def _elsewhere(name: str) -> str:
+    """Where a key of this name would be one, if it has been put into the wrong table."""
+    from verify.scene.keys import dotted_keys  # which reads scenes, and so needs this file
+
+    places = [key for key in dotted_keys() if "." in key and key.rpartition(".")[2] == name]
+    return f"did you mean {one_of(places)}?" if places else ""
+
+
+def _place(loc: tuple[str | int, ...]) -> tuple[type[Section], FieldInfo | None, tuple[str | int, ...]]:
+    """The table that an error is in, the key's definition, and its path without the names of alternatives."""
+    model: type[Section] = Scene
+    here: type[Section] | None = Scene
+    field: FieldInfo | None = None
+    path: list[str | int] = []
+    for part in loc:
+        if len(path) == 1 and part in _ALTERNATIVES.get(str(path[0]), ()):
+            here = _ALTERNATIVES[str(path[0])][str(part)]
+            continue
+        path.append(part)
+        if here is not None and isinstance(part, str):
+            model, field = here, here.model_fields.get(part)
+            here = _table(field.annotation if field else None)
+    return model, field, tuple(path)
+
+
+def _table(annotation: object) -> type[Section] | None:
+    """The table that a key holds, or holds a list of."""
+    inner = get_args(annotation)[0] if get_origin(annotation) is tuple else annotation
+    return inner if isinstance(inner, type) and issubclass(inner, Section) else None
+
+
+def _dotted(path: tuple[str | int, ...], raw: Mapping[str, Any]) -> str:
+    """``load.opening[1]``; without the index where the file has a single value."""
+    text = ""
+    value: object = raw
+    for part in path:
+        if isinstance(part, str):
+            text += f".{part}" if text else part
+            value = value.get(part) if isinstance(value, Mapping) else None
+        elif isinstance(value, list):
+            text += f"[{part}]"
+            value = value[part]
+    return text
+
+
+def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) -> str:
+    """The range of a key; with its type in front where ``full``."""
+    annotation = _without_none(field.annotation if field else None)
+    if path == ("specimen", "kind"):
+        return one_of(_SPECIMENS)
+    if get_origin(annotation) is Literal:
+        return one_of(get_args(annotation))
+    if get_origin(annotation) is tuple and _table(annotation) is None:
+        if "mesh" in path:
+            return "a file name" if isinstance(path[-1], int) else "a file name, or a list of two"
+        how_many = "at least one number" if get_args(annotation)[-1] is ... else "two"
+        return "a number" if isinstance(path[-1], int) else f"a number, or a list of {how_many}"
+    if annotation not in _KINDS:
+        table = _table(annotation)
+        tables = [table] if table is not None else list(_ALTERNATIVES[str(path[0])].values())
+        return "a table of " + ", or of ".join(", ".join(table.model_fields) for table in tables)
+    if annotation is str and field is not None and field.metadata:
+        return "1 to 80 letters, digits, dots, dashes and underscores, a letter or digit first"
+    bounds = [f"{sign} {limit:g}" for limit, sign in (_bounds(field) if field is not None else ())]
+    return " ".join([_KINDS[annotation]] * (full or not bounds) + [" and ".join(bounds)] * bool(bounds))
+
+
+def _without_none(annotation: object) -> object:
+    """The kind of a number that may be left out."""
+    kinds = [kind for kind in get_args(annotation) if kind in _KINDS]
+    return kinds[0] if type(None) in get_args(annotation) and kinds else annotation
+
+
+def _bounds(field: FieldInfo) -> list[tuple[float, str]]:
+    return [(getattr(m, name), sign) for m in field.metadata for name, sign in _BOUNDS if hasattr(m, name)]
+
+
+def _plain(value: object) -> object:
+    """An integer that a valid number key turned into a float is shown as it was written."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+def _shown(value: object) -> str:
+    """A value as the user would write it, shortened."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of more digits than Python prints
+        return "an integer of thousands of digits"
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,201 @@
+"""Which effects a scene needs: what ``auto`` means, and why.
+
+Every estimate is of beam theory, made before anything is solved; `verify.checks.neglected` looks at the run afterwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import atan2, degrees, exp, sqrt
+from typing import Any
+
+from verify.scene.bodies import Isotropic, Material
+from verify.scene.schema import Scene
+
+FINITE_ABOVE_DEGREES = 5.0
+
+#: What is left out counts for nothing up to here: within this two codes that share nothing must draw the same curve.
+NEGLIGIBLE = 0.005
+
+#: What finite kinematics makes of the load of a beam whose end turns by theta, at the same opening: 1 + c theta^2.
+#: The elastica (Bisshopp and Drucker 1945, Quart. Appl. Math. 3) to second order, ``P a^2 / (E I) = 2 theta (1 + 16/35
+#: theta^2)`` with theta = 3 d / (2 a); for a crack that grows with the length a that keeps ``2 P sin(theta) = G w``.
+STANDING, GROWING = 16.0 / 35.0, 6.0 / 35.0
+
+#: A rigid foundation under the squeezed part of a bond makes a beam stiffer by this many times the part of the work
+#: that it would have held (1.54 to 1.60 for crack lengths of 1 to 40 / lambda, see `load_of_squeezing`).
+RIGID = 1.6
+
+#: What a method cannot choose: the DOLFINx model has both arms, the beam one; LEFM has no interface, and its crack
+#: never heals. Beneath the strip of a peel test the beam has its substrate, too.
+_FIXED: dict[str, dict[str, Any]] = {
+    "dolfinx": {"symmetry": False, "search": False},
+    "beam": {"symmetry": True, "search": False},
+    "lefm": {"symmetry": True, "search": False, "contact": False, "irreversible": True},
+}
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What ``auto`` stands for: the key in ``[effects]``, its value, and the reason in words."""
+
+    key: str
+    value: str | bool
+    why: str
+
+    def __str__(self) -> str:
+        value = str(self.value).lower() if isinstance(self.value, bool) else self.value
+        return f"effects.{self.key}: {value}, as {self.why}"
+
+
+def simulated(scene: Scene, method: str) -> dict[str, Any]:
+    """The effects as a method simulates them: ``auto`` replaced by what it stands for, the rest as far as it has it."""
+    found = scene.effects.model_dump() | {one.key: one.value for one in decided(scene)} | _fixed(scene, method)
+    return found if searches(found) else found | {"search": False}
+
+
+def searches(effects: Mapping[str, Any]) -> bool:
+    """Whether anything is looked for: not for one arm alone, nor where nothing moves away from where it was."""
+    return effects["search"] and effects["kinematics"] == "finite" and not effects["symmetry"]
+
+
+def decided(scene: Scene, method: str = "") -> tuple[Decision, ...]:
+    """What is chosen for every effect that is ``auto``, but those that a method cannot choose."""
+    rules: Mapping[str, Callable[[Scene], tuple[str | bool, str]]] = {
+        "kinematics": _kinematics,
+        "contact": _contact,
+        "irreversible": _irreversible,
+        "symmetry": _symmetry,
+        "search": _search,
+    }
+    fixed = _fixed(scene, method)
+    chosen = (key for key, value in scene.effects if value == "auto" and key not in fixed)
+    return tuple(Decision(key, *rules[key](scene)) for key in chosen)
+
+
+def end_rotation(scene: Scene) -> float:
+    """Largest rotation of a loaded end face over the programme, in radians, by simple beam theory.
+
+    An arm of bending stiffness E I, bent to the deflection d over a free length a, turns by theta = 3 d / (2 a). The
+    free length is that before any growth or, if larger, that at the end.
+    """
+    specimen = scene.specimen
+    length = specimen.strip_length if specimen.kind == "peel" else specimen.length
+    free = min(max(specimen.free_length, specimen.loaded_thickness, crack_at_the_end(scene)), length)
+    return 1.5 * _deflection(scene) / free
+
+
+def crack_at_the_end(scene: Scene) -> float:
+    """Free length that holds the largest opening in equilibrium, by simple beam theory, however long the specimen is.
+
+    d = a^2/3 sqrt(c w G / (E I)). Of a dcb d is half the opening and c = 1, as two arms share G; a strip is peeled
+    alone, and c = 2.
+    """
+    specimen = scene.specimen
+    share = 2.0 if specimen.kind == "peel" else 1.0
+    return sqrt(3 * _deflection(scene) * sqrt(_bending(scene) / (share * specimen.width * scene.interface.toughness)))
+
+
+def load_of_squeezing(scene: Scene) -> float:
+    """By how much contact changes the load before anything is damaged, as part of it, for the squeezing of the bond
+    ahead of the crack alone.
+
+    A long beam on an elastic foundation k, pulled at a distance a: with ``lambda = (k / 4 E I)^(1/4)``,
+    ``alpha = lambda a`` and X in parts of 1 / lambda the gap is ``exp(-X) ((1 + alpha) cos X - alpha sin X)`` times a
+    constant. Where it is negative the foundation holds the part `squeezed` of the work, and there contact alters k to
+    r k; see `stiffer`. In series with the bond, of a dcb up to its plane of symmetry, are the arm or strip itself,
+    which gives way across by h / (2 E2) (Kanninen 1973, Int. J. Fract. 9), and the substrate under a strip.
+    """
+    specimen, law, peel = scene.specimen, scene.interface, scene.specimen.kind == "peel"
+    initial = law.strength**2 * law.ductility / (2.0 * law.toughness)
+    across = specimen.loaded_thickness / (2.0 * _modulus(scene.materials[0], 2))
+    if specimen.kind == "peel":
+        across += specimen.substrate_thickness / _modulus(scene.materials[1], 2)
+    k, closed = (1.0 / (1.0 / (bond if peel else 2.0 * bond) + across) for bond in (initial, law.penalty))
+    alpha = specimen.free_length * (k * specimen.width / (4.0 * _bending(scene))) ** 0.25
+    return squeezed(alpha) * stiffer(closed / k)
+
+
+def squeezed(alpha: float) -> float:
+    """Part of the work that the squeezed part of an elastic foundation holds; ``alpha`` as in `load_of_squeezing`.
+
+    The end gives way by ``1/2 + alpha + alpha^2 + alpha^3 / 3``; of ``exp(-X) C sin(X_0 - X)`` the part beyond X_0 has
+    ``4 C^2 exp(-2 X_0) / 8``.
+    """
+    whole = 0.5 + alpha + alpha**2 + alpha**3 / 3.0
+    return 0.25 * ((1.0 + alpha) ** 2 + alpha**2) * exp(-2.0 * atan2(1.0 + alpha, alpha)) / (2.0 * whole)
+
+
+def stiffer(ratio: float) -> float:
+    """Change of the load for each part of the work in a piece of foundation made ``ratio`` times as stiff.
+
+    ``c (1 - ratio^(-1/c))``: the first order is exact, ratio - 1, and the limit is `RIGID`. In between it is within 5 %
+    of the beam that is solved for ratios of 3 and 100.
+    """
+    return RIGID * (1.0 - ratio ** (-1.0 / RIGID))
+
+
+def _kinematics(scene: Scene) -> tuple[str, str]:
+    theta = end_rotation(scene)
+    turn = f"the loaded end turns by {degrees(theta):.2g} degrees"
+    if degrees(theta) > FINITE_ABOVE_DEGREES:
+        return "finite", f"{turn}, more than {FINITE_ABOVE_DEGREES:g}"
+    return "linear", f"{turn}, which changes the load by no more than {STANDING * theta**2:.2g} of it"
+
+
+def _contact(scene: Scene) -> tuple[bool, str]:
+    lowest, change = min(scene.load.opening), load_of_squeezing(scene)
+    if lowest < 0.0:
+        return True, f"the programme closes the faces, to {lowest:g}"
+    if crack_at_the_end(scene) >= scene.specimen.extent:
+        return True, "the crack comes to the far end, about which the specimen then turns"
+    squeeze = f"the bond is squeezed ahead of the crack, which is worth {abs(change):.2g} of the load"
+    return abs(change) > NEGLIGIBLE, squeeze + ("" if abs(change) > NEGLIGIBLE else ", and nothing else closes")
+
+
+def _irreversible(scene: Scene) -> tuple[bool, str]:
+    programme = scene.load.opening
+    falls = [(before, after) for before, after in zip((0.0, *programme), programme, strict=False) if after < before]
+    if not falls:
+        return False, "the programme only opens"
+    return True, "the programme goes from {:g} down to {:g}".format(*falls[0])
+
+
+def _symmetry(scene: Scene) -> tuple[bool, str]:
+    mesh, specimen = scene.discretization, scene.specimen
+    if specimen.kind == "peel":
+        return False, "strip and substrate differ"
+    if len(specimen.mesh) == 2:
+        return False, "each arm has a mesh of its own"
+    if mesh.mismatch != 1.0 or mesh.slave != "upper":
+        return False, "the arms are meshed differently, or the lower one carries the interface"
+    return True, "the arms are alike"
+
+
+def _search(scene: Scene) -> tuple[bool, str]:
+    alike, why = _symmetry(scene)
+    return not alike, f"{why} and turn alike" if alike else why
+
+
+def _fixed(scene: Scene, method: str) -> dict[str, Any]:
+    fixed = _FIXED.get(method, {})
+    return {**fixed, "symmetry": False} if method == "beam" and scene.specimen.kind == "peel" else fixed
+
+
+def _bending(scene: Scene) -> float:
+    """E I of an arm, or of the strip."""
+    specimen = scene.specimen
+    return _modulus(scene.materials[0], 1) * specimen.width * specimen.loaded_thickness**3 / 12
+
+
+def _modulus(material: Material, axis: int) -> float:
+    if isinstance(material, Isotropic):
+        return material.young
+    return material.E1 if axis == 1 else material.E2
+
+
+def _deflection(scene: Scene) -> float:
+    """Largest deflection of an arm."""
+    opening = max(map(abs, scene.load.opening))
+    return opening if scene.specimen.kind == "peel" else opening / 2

@@ -1,0 +1,58 @@
+"""Every key that a scene may have, read off the schema."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from pydantic.fields import FieldInfo
+
+from verify.scene.bodies import MATERIALS, Dcb, Isotropic, Orthotropic, Peel
+from verify.scene.schema import Scene
+from verify.scene.tables import Section
+
+SPECIMENS: Mapping[str, type[Section]] = {"dcb": Dcb, "peel": Peel}
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of a table of a scene; ``table`` is empty at the top."""
+
+    table: str
+    name: str
+    field: FieldInfo
+
+    @property
+    def dotted(self) -> str:
+        return f"{self.table}.{self.name}" if self.table else self.name
+
+
+def tables(kind: str, material: type[Section] = Isotropic) -> Iterator[tuple[str, type[Section]]]:
+    """Name and type of the tables of a scene with a specimen of this kind, in the order of the schema."""
+    for name, field in Scene.model_fields.items():
+        if name == "specimen":
+            yield name, SPECIMENS[kind]
+        elif name in MATERIALS[kind]:
+            yield name, material
+        elif isinstance(field.annotation, type) and issubclass(field.annotation, Section):
+            yield name, field.annotation
+
+
+def keys(kind: str) -> tuple[Key, ...]:
+    """The keys of a scene with isotropic materials; tables that stand there more than once are left out."""
+    known = dict(tables(kind))
+    several = {name for names in MATERIALS.values() for name in names} | {"published"}
+    top = [Key("", name, field) for name, field in Scene.model_fields.items() if name not in {*known, *several}]
+    return (*top, *(key for name, table in known.items() for key in keys_of(name, table)))
+
+
+def keys_of(name: str, table: type[Section]) -> tuple[Key, ...]:
+    return tuple(Key(name, key, field) for key, field in table.model_fields.items())
+
+
+def dotted_keys() -> tuple[str, ...]:
+    """What may stand before the equals sign of ``--set``, for any specimen and material."""
+    found = [key.dotted for kind in SPECIMENS for key in keys(kind)]
+    for kind in SPECIMENS:
+        found += [key.dotted for name in MATERIALS[kind] for key in keys_of(name, Orthotropic)]
+    return tuple(sorted(set(found)))

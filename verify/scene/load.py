@@ -1,0 +1,110 @@
+"""Scenes by name, by seed, or from a TOML file."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from verify.scene.complaints import suggestion
+from verify.scene.parse import SceneError, _key_of, parse_scene
+from verify.scene.schema import Scene
+
+_FOLDER = Path(__file__).with_name("scenes")
+_RANDOM = re.compile(r"random-(\d{1,9})")
+
+
+def packaged_scenes() -> tuple[str, ...]:
+    """Names of the scenes that come with the project."""
+    return tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
+
+
+def verified_scenes(full: bool = False) -> tuple[str, ...]:
+    """The scenes of the paper that are verified where none is named; ``full``: with every bond of the peel test."""
+    bonds = ("peel-60", "peel-80", "peel-100", "peel-120")
+    return ("dcb-czm1", "dcb-czm1-linear", "dcb-czm2", "dcb-czm2-linear", *(bonds if full else bonds[-1:]))
+
+
+def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene:
+    """Read, override and validate a scene.
+
+    Parameters
+    ----------
+    name_or_path : a packaged name, ``random-SEED`` (`verify.scene.random_scenes`), or the path of a TOML file
+    overrides : ``dotted.key=value`` with a TOML value; a bare word is taken as text. Mesh files that are named here are
+        found from the working directory and may lie anywhere; those of a scene file lie in its folder or below.
+
+    Raises
+    ------
+    SceneError
+        With one sentence for every thing that is wrong.
+    """
+    source = str(name_or_path)
+    if seed := _RANDOM.fullmatch(source):
+        from verify.scene.random_scenes import random_scene
+
+        return parse_scene(random_scene(int(seed[1])).model_dump(), overrides, source)
+    path = _FOLDER / f"{source}.toml" if source in packaged_scenes() else Path(name_or_path)
+    raw = _read(path, source)
+    if not any(_key_of(override) in ("specimen", "specimen.mesh") for override in overrides):
+        raw = _beside(path, raw, source)
+    return parse_scene({"name": _as_name(path.stem), **raw}, overrides, source)
+
+
+def _read(path: Path, source: str) -> dict[str, Any]:
+    try:
+        text = path.read_bytes().decode("utf-8-sig")  # some editors begin with a byte order mark
+    except FileNotFoundError:
+        known = packaged_scenes()
+        hint = suggestion(source, known) or f"the packaged scenes are {', '.join(known)}"
+        raise SceneError(source, [f"is neither a packaged scene nor a file; {hint}"]) from None
+    except UnicodeDecodeError as error:
+        raise SceneError(source, [f"is not a text in UTF-8 (byte {error.start})"]) from None
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        raise SceneError(source, [f"cannot be read: {getattr(error, 'strerror', None) or error}"]) from None
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(_file_and_line(source, text, str(error)), [f"is not TOML: {error}"]) from None
+    except (ValueError, RecursionError) as error:  # an integer of thousands of digits, arrays nested without end
+        raise SceneError(source, [f"is not a usable TOML file: {str(error)[:100]}"]) from None
+
+
+def _beside(path: Path, raw: dict[str, Any], source: str) -> dict[str, Any]:
+    """The scene with its mesh files found from where the scene file is, and not from elsewhere.
+
+    A scene comes from others more often than a command line: it must not have files read that it was not sent with.
+    """
+    specimen = raw.get("specimen")
+    if not isinstance(specimen, Mapping) or "mesh" not in specimen:
+        return raw
+    names = specimen["mesh"]
+    if not isinstance(names, str | list):
+        return raw
+    listed = [names] if isinstance(names, str) else names
+    outside = [name for name in listed if isinstance(name, str) and not _is_below(path.parent, name)]
+    if outside:
+        rule = "must name files in the folder of the scene or below it; --set specimen.mesh=... may name any other"
+        raise SceneError(source, [f"specimen.mesh: {rule}, got {name!r}" for name in outside])
+    found = [str(path.parent / name) if isinstance(name, str) else name for name in listed]
+    return {**raw, "specimen": {**specimen, "mesh": found}}
+
+
+def _is_below(folder: Path, name: str) -> bool:
+    """Whether a path, links followed, stays in a folder."""
+    try:
+        return (folder / name).resolve().is_relative_to(folder.resolve())
+    except (OSError, ValueError, RuntimeError):  # a NUL, links in a circle
+        return False
+
+
+def _file_and_line(source: str, text: str, message: str) -> str:
+    line = re.search(r"at line (\d+)", message)
+    return f"{source}:{line[1] if line else text.count(chr(10)) + 1}"
+
+
+def _as_name(stem: str) -> str:
+    """A usable default for ``name``: it becomes part of folder names."""
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", stem).lstrip("._-")[:80] or "scene"

@@ -1,0 +1,122 @@
+"""How large the numbers of a scene may be: each for itself, and beside the others.
+
+Every number alone leaves room for any consistent set of units; beyond that their products overflow, and a solver would
+end on an infinity. What has a dimension is then held against another of the same, far outside anything that is solved
+today: a strength of 1e20 times the modulus is a slip of the units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from verify.scene.bodies import Isotropic, Material
+from verify.scene.schema import Scene
+
+#: Absolute value of a number that is not 0.
+LEAST, MOST = 1e-30, 1e30
+
+#: Tables whose numbers have dimensions; the others count.
+TABLES = ("specimen", "material", "strip", "substrate", "interface", "load", "pose", "published")
+
+
+def too_large(raw: Mapping[str, Any]) -> list[str]:
+    """A sentence for every number of a scene file that no set of units makes so large or small."""
+    return [
+        f"{key}: must be of a size >= {LEAST:g} and <= {MOST:g}, got {_shown(value)}"
+        for table in TABLES
+        for key, value in _numbers(table, raw.get(table))
+        if value != 0 and not LEAST <= abs(value) <= MOST
+    ]
+
+
+def out_of_proportion(scene: Scene) -> list[str]:
+    """A sentence for every number of a valid scene that does not go with the others."""
+    return [
+        f"{key}: must be >= {low:.10g} and <= {high:.10g}, {why}, got {value:.10g}"
+        for key, value, low, high, why in (*_lengths(scene), *_stiffnesses(scene), *_cohesion(scene), *_paths(scene))
+        if not low <= value <= high
+    ]
+
+
+Range = tuple[str, float, float, float, str]
+
+
+def _beside(key: str, value: float, low: float, high: float, other: str, size: float) -> Range:
+    return key, value, low * size, high * size, f"{low:g} to {high:g} times {other}"
+
+
+def _lengths(scene: Scene) -> Iterator[Range]:
+    s = scene.specimen
+    bodies = [("strip", "strip_length"), ("substrate", "substrate_length")] if s.kind == "peel" else [("arm", "length")]
+    for body, length in bodies:
+        name, size = f"specimen.{length}", getattr(s, length)
+        yield _beside(f"specimen.{body}_thickness", getattr(s, f"{body}_thickness"), 1e-6, 1e3, name, size)
+    name, size = f"specimen.{bodies[0][1]}", getattr(s, bodies[0][1])
+    end = "bond_length" if s.kind == "peel" else "precrack"
+    yield _beside(f"specimen.{end}", getattr(s, end), 1e-6, 0.999999, name, size)
+    yield _beside("specimen.width", s.width, 1e-9, 1e9, name, size)
+    if s.kind == "peel":
+        yield _beside("specimen.substrate_length", s.substrate_length, 1e-6, 1e6, name, size)
+
+
+def _stiffnesses(scene: Scene) -> Iterator[Range]:
+    for key, material in _materials(scene):
+        if isinstance(material, Isotropic):
+            yield f"{key}.poisson", material.poisson, -0.999999, 0.499999, "short of what cannot be deformed"
+            continue
+        for name in ("E2", "G12"):
+            yield _beside(f"{key}.{name}", getattr(material, name), 1e-6, 1e6, f"{key}.E1", material.E1)
+    (first, one), *rest = _materials(scene)
+    for key, material in rest:
+        name = "young" if isinstance(material, Isotropic) else "E1"
+        yield _beside(f"{key}.{name}", _modulus(material), 1e-9, 1e9, f"the modulus of {first}", _modulus(one))
+
+
+def _cohesion(scene: Scene) -> Iterator[Range]:
+    law, thickness = scene.interface, scene.specimen.loaded_thickness
+    key, material = _materials(scene)[0]
+    yield _beside("interface.strength", law.strength, 1e-12, 1e3, f"the modulus of {key}", _modulus(material))
+    bending = "interface.strength times the thickness of what is peeled"
+    yield _beside("interface.toughness", law.toughness, 1e-9, 1e6, bending, law.strength * thickness)
+    yield "interface.ductility", law.ductility, 1.000001, 1e6, "g_u / g_max"
+    steepness = law.strength**2 * law.ductility / (2 * law.toughness)
+    yield _beside("interface.penalty", law.penalty, 1e-6, 1e12, "the stiffness of the bond", steepness)
+
+
+def _paths(scene: Scene) -> Iterator[Range]:
+    size, openings = scene.specimen.extent, scene.load.opening
+    for i, (before, after) in enumerate(zip((0.0, *openings[:-1]), openings, strict=True)):
+        key = f"load.opening[{i}]" if len(openings) > 1 else "load.opening"
+        far = abs(after - before)
+        if far < 1e-12 * size:
+            yield key, far, 1e-12 * size, 4 * size, "as its distance from the opening before it, 1e-12 times the length"
+    for i, shift in enumerate(scene.pose.shift):
+        yield f"pose.shift[{i}]", shift, -1e6 * size, 1e6 * size, "a million times the length"
+
+
+def _materials(scene: Scene) -> list[tuple[str, Material]]:
+    found = ((key, getattr(scene, key)) for key in ("material", "strip", "substrate"))
+    return [(key, material) for key, material in found if material is not None]
+
+
+def _modulus(material: Material) -> float:
+    return material.young if isinstance(material, Isotropic) else material.E1
+
+
+def _numbers(key: str, value: object) -> Iterator[tuple[str, int | float]]:
+    """Every number below a key with its path; NaN and infinity, which nothing takes, are left to the schema."""
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _numbers(f"{key}.{name}", inner)
+    elif isinstance(value, list | tuple):
+        for i, inner in enumerate(value):
+            yield from _numbers(f"{key}[{i}]", inner)
+    elif isinstance(value, int) and not isinstance(value, bool):
+        yield key, value
+    elif isinstance(value, float) and abs(value) < float("inf"):
+        yield key, value
+
+
+def _shown(value: int | float) -> str:
+    return f"{value:g}" if isinstance(value, float) or abs(value) < 10**300 else "an integer of hundreds of digits"

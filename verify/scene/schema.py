@@ -1,0 +1,316 @@
+"""The scene file as a type: one physical problem, its load programme, the effects to simulate, the meshes.
+
+Units are the user's own consistent set. Every bound here is physical or a limit of what is built; the sentences that a
+user reads about a broken one are made in ``verify.scene.complaints``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, ValidationInfo, ValidatorFunctionWrapHandler, field_validator
+from pydantic_core import PydanticCustomError
+
+from verify.scene.bodies import MATERIALS, Material, Specimen, definite
+from verify.scene.laws import PLAIN, known
+from verify.scene.published import Published
+from verify.scene.tables import Positive, Section, one_of, refuse
+
+if TYPE_CHECKING:
+    pass
+
+
+def _hundred_initial_stiffnesses(data: dict[str, Any]) -> float:
+    gap_at_strength = 2 * data["toughness"] / data["strength"] / data["ductility"]
+    return 100 * data["strength"] / gap_at_strength
+
+
+class Interface(Section):
+    law: str = PLAIN
+    """Traction over gap: up to the strength, then down to zero at g_u; the bilinear one along a line."""
+    strength: Positive
+    """Largest traction p_max [stress]."""
+    toughness: Positive
+    """Work of separation G_Ic [energy per area]."""
+    ductility: float = Field(default=12.5, gt=1)
+    """g_u / g_max, gap at separation over gap at the strength; 1 is a vertical drop, which no Newton follows. Of a law
+    that is not bilinear: 2 toughness / strength over the gap at the strength."""
+    penalty: float = Field(default_factory=_hundred_initial_stiffnesses, gt=0)
+    """Stiffness of the contact, on closing [stress per length]; left out: 100 times the stiffness of the bond."""
+
+    @field_validator("law", mode="before")
+    @classmethod
+    def _of_some_method(cls, law: object) -> object:
+        if law != PLAIN and law not in known():  # to know the others takes NumPy, and time
+            raise refuse(one_of(known()), ((), law))
+        return law
+
+
+def _as_programme(value: object) -> object:
+    """One number is a programme of one leg."""
+    return tuple(value) if isinstance(value, list | tuple) else (value,)
+
+
+class Load(Section):
+    opening: Annotated[tuple[float, ...], BeforeValidator(_as_programme), Field(min_length=1)]
+    """End of the displacement programme [length]; a list unloads and reloads, like [1.5, 0.2, 3.0]; below 0 the loaded
+    faces are pressed together."""
+
+    at: Literal["face", "node", "hinge"] = "face"
+    """Where load and opening are: even over the end face and its mean, its corner away from the bond, or its middle."""
+
+    @field_validator("opening")
+    @classmethod
+    def _every_leg_goes_somewhere(cls, opening: tuple[float, ...]) -> tuple[float, ...]:
+        legs = enumerate(zip((0.0, *opening[:-1]), opening, strict=True))
+        still = [((i,), after) for i, (before, after) in legs if before == after]
+        if still:
+            raise refuse("different from the opening before it (the first one: from 0)", *still)
+        return opening
+
+
+class Effects(Section):
+    """Only what is asked for is simulated."""
+
+    kinematics: Literal["linear", "finite", "auto"] = "finite"
+    """Large or small displacements."""
+    contact: bool | Literal["auto"] = True
+    """Whether the bodies push each other away on closing."""
+    irreversible: bool | Literal["auto"] = True
+    """Whether damage stays on unloading."""
+    symmetry: bool | Literal["auto"] = False
+    """Whether one arm is modelled for both; not for a peel."""
+    search: bool | Literal["auto"] = True
+    """For a dcb: whether points look for the place on the other face that they are opposite to now, or keep the first
+    one and the normal there; linear kinematics always keeps them."""
+
+    @field_validator("contact", "irreversible", "symmetry", "search", mode="before")
+    @classmethod
+    def _switched_or_chosen(cls, effect: object) -> object:
+        if not isinstance(effect, bool) and effect != "auto":
+            raise refuse('true, false or "auto"', ((), effect))
+        return effect
+
+
+def _as_pair(value: object) -> object:
+    """TOML has no tuples; anything but two things is refused here, what they are afterwards."""
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise refuse("a list of two numbers", ((), value))
+    return tuple(value)
+
+
+class Pose(Section):
+    """Where the specimen is solved: reflected (X to -X), then rotated, then moved, with its supports and its load.
+
+    Only the ``iga`` methods are told: no answer depends on it, and that is what it is there to show.
+    """
+
+    angle: float = Field(default=0.0, ge=-360, le=360)
+    """Rotation, counter-clockwise [degrees]."""
+    mirror: bool = False
+    """Whether X is reflected first."""
+    shift: Annotated[tuple[float, float], BeforeValidator(_as_pair)] = (0.0, 0.0)
+    """Movement along X and Y [length]."""
+
+
+class Discretization(Section):
+    """How finely the ``iga`` methods resolve the scene."""
+
+    degree: int = Field(default=3, ge=1, le=5)
+    """Degree of the basis; 3 for tspline."""
+    dofs: int = Field(default=1956, ge=40, le=1_000_000)
+    """Unknowns to aim at."""
+    interface_rule: Literal["gauss", "lobatto", "lumped"] = "gauss"
+    """How the interface is integrated."""
+    interface_points: int = Field(default=2, ge=1, le=12)
+    """Points in each interface element."""
+    mismatch: float = Field(default=1.0, ge=0.05, le=20)
+    """Element length of the lower body over that of the upper one."""
+    adaptive: bool = False
+    """For tspline: elements follow the process zone, and dofs is the most at any time."""
+    slave: Literal["upper", "lower"] = "upper"
+    """The body whose points carry the interface."""
+    steps: int | Literal["auto"] = 150
+    """Equal opening increments; "auto": chosen by accuracy where the mesh resolves the process zone."""
+    bend: float = Field(default=0.005, ge=1e-5, le=0.2)
+    """For steps "auto": how far off its tangent the load may be, as a part of the peak load."""
+
+    @field_validator("interface_points")
+    @classmethod
+    def _lobatto_has_both_ends(cls, points: int, info: ValidationInfo) -> int:
+        if info.data.get("interface_rule") == "lobatto" and points < 2:
+            raise refuse("an integer from 2 to 12 for the lobatto rule", ((), points))
+        return points
+
+    @field_validator("steps", mode="before")
+    @classmethod
+    def _counted_or_chosen(cls, steps: object) -> object:
+        counted = isinstance(steps, int) and not isinstance(steps, bool) and 1 <= steps <= 100_000
+        if not counted and steps != "auto":
+            raise refuse('an integer >= 1 and <= 100000, or "auto"', ((), steps))
+        return steps
+
+
+class Dolfinx(Section):
+    """How finely the DOLFINx model resolves the scene."""
+
+    degree: int | Literal["auto"] = "auto"
+    """Degree of the Lagrange elements, 1 to 4; "auto": 2, or 3 where one quadratic layer is too coarse."""
+    elements: int = Field(default=112, ge=2, le=100_000)
+    """Elements along the specimen."""
+    layers: int | Literal["auto"] = "auto"
+    """Elements through each arm, or through the strip, 1 to 100; "auto": as many as the geometry asks for."""
+
+    @field_validator("degree", "layers", mode="before")
+    @classmethod
+    def _counted_or_chosen(cls, value: object, info: ValidationInfo) -> object:
+        most = {"degree": 4, "layers": 100}[str(info.field_name)]
+        counted = isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= most
+        if not counted and value != "auto":
+            raise refuse(f'an integer >= 1 and <= {most}, or "auto"', ((), value))
+        return value
+
+
+def _as_tables(value: object) -> object:
+    if not isinstance(value, list | tuple):
+        raise refuse("a list of tables, each under [[published]]", ((), value))
+    return tuple(value)
+
+
+class Scene(Section):
+    """One physical problem. Every method solves the same one."""
+
+    name: str = Field(default="scene", pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=80)
+    """Names folders; left out: that of the file."""
+    units: str = "consistent units"
+    """Label of your own consistent set of units, which is only printed."""
+    specimen: Specimen
+    material: Material | None = Field(default=None, validate_default=True)
+    strip: Material | None = Field(default=None, validate_default=True)
+    substrate: Material | None = Field(default=None, validate_default=True)
+    interface: Interface
+    load: Load
+    pose: Pose = Pose()
+    effects: Effects = Effects()
+    discretization: Discretization = Discretization()
+    dolfinx: Dolfinx = Dolfinx()
+    published: Annotated[tuple[Published, ...], BeforeValidator(_as_tables)] = ()
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """Of the two bodies: of both arms the same, or of strip and substrate. A scene has no others."""
+        given = (self.material, self.material, self.strip, self.substrate)
+        return tuple(material for material in given if material is not None)
+
+    @field_validator("material", "strip", "substrate", mode="wrap")
+    @classmethod
+    def _of_this_specimen(cls, value: object, validate: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:
+        """Each kind of specimen has its own materials; nothing is said while the specimen itself is broken."""
+        specimen = info.data.get("specimen")
+        if specimen is None:
+            return validate(value) if value is not None else None
+        wanted = MATERIALS[specimen.kind]
+        if info.field_name in wanted:
+            if value is None:
+                raise PydanticCustomError("missing", "missing")
+            return definite(validate(value), specimen.plane)
+        if value is not None:
+            raise refuse(f"left out: the materials of a {specimen.kind} are {' and '.join(wanted)}", ((), value))
+        return None
+
+    @field_validator("load")
+    @classmethod
+    def _within_reach(cls, load: Load, info: ValidationInfo) -> Load:
+        """Two arms of length L cannot be further apart than 2 L.
+
+        Pressed together by one thickness both loaded faces would be in one place. A strip may be pressed down beside
+        the end of its substrate.
+        """
+        specimen = info.data.get("specimen")
+        if specimen is None:
+            return load
+        thickness, length = (
+            ("strip_thickness", "strip_length") if specimen.kind == "peel" else ("arm_thickness", "length")
+        )
+        times, why = (2, "-2 strip_thickness")
+        if specimen.kind == "dcb":
+            times, why = 1, "-arm_thickness, at which both loaded faces would be in one place"
+        low, high = -times * getattr(specimen, thickness), 2 * getattr(specimen, length)
+        outside = [(("opening", i), opening) for i, opening in enumerate(load.opening) if not low <= opening <= high]
+        if outside:
+            raise refuse(f">= {low:g} ({why}) and <= {high:g} (2 {length})", *outside)
+        return load
+
+    @field_validator("effects")
+    @classmethod
+    def _symmetric_specimen(cls, effects: Effects, info: ValidationInfo) -> Effects:
+        specimen = info.data.get("specimen")
+        if effects.symmetry is True and specimen is not None and specimen.kind == "peel":
+            raise refuse("false for a peel: strip and substrate differ", (("symmetry",), True))
+        if effects.search is False and specimen is not None and specimen.kind == "peel":
+            raise refuse("true for a peel: strip and substrate turn", (("search",), False))
+        return effects
+
+    @field_validator("discretization")
+    @classmethod
+    def _two_meshes(cls, mesh: Discretization, info: ValidationInfo) -> Discretization:
+        effects, specimen = info.data.get("effects"), info.data.get("specimen")
+        if mesh.adaptive and specimen is not None and (specimen.kind == "peel" or specimen.mesh):
+            why = "for a peel" if specimen.kind == "peel" else "with specimen.mesh, which is taken as it is"
+            raise refuse(f"false {why}", (("adaptive",), True))
+        if mesh.adaptive and mesh.mismatch != 1.0:
+            raise refuse("1 with discretization.adaptive, whose arms are alike", (("mismatch",), mesh.mismatch))
+        if effects is not None and effects.symmetry is True:
+            given = {"mismatch": mesh.mismatch, "slave": mesh.slave}
+            for key, plain in (("mismatch", 1.0), ("slave", "upper")):
+                if given[key] != plain:
+                    text = f"{plain:g}" if key == "mismatch" else f'"{plain}"'
+                    raise refuse(
+                        f"{text} with effects.symmetry, which models the upper arm alone", ((key,), given[key])
+                    )
+        return mesh
+
+    @field_validator("published")
+    @classmethod
+    def _on_the_way(cls, published: tuple[Published, ...], info: ValidationInfo) -> tuple[Published, ...]:
+        load = info.data.get("load")
+        if load is None:
+            return published
+        end = max(load.opening)
+        beyond = [((i, "opening"), known.opening) for i, known in enumerate(published) if (known.opening or 0) > end]
+        if beyond:
+            raise refuse(f"<= {end:g}, the largest load.opening", *beyond)
+        way = (0.0, *turns(load.opening))
+        for i, value in enumerate(published):
+            if value.leg is None or value.opening is None:
+                continue
+            if value.leg >= len(way):
+                raise refuse(f"<= {len(way) - 1}, the number of legs of load.opening", ((i, "leg"), value.leg))
+            low, high = sorted(way[value.leg - 1 : value.leg + 1])
+            if not low <= value.opening <= high:
+                rule = f">= {low:g} and <= {high:g}, leg {value.leg} of load.opening"
+                raise refuse(rule, ((i, "opening"), value.opening))
+        return published
+
+
+def turns(programme: Sequence[float]) -> tuple[float, ...]:
+    """The openings at which a programme turns, and its last one; at the beginning the opening is 0."""
+    way = (0.0, *programme)
+    later = zip(way[:-2], way[1:-1], way[2:], strict=True)
+    return (*(goal for before, goal, after in later if (goal - before) * (after - goal) < 0.0), way[-1])
+
+
+def only_opens(programme: Sequence[float]) -> bool:
+    """Whether the programme has one leg, on which the opening grows."""
+    return len(turns(programme)) == 1 and programme[-1] > 0.0
+
+
+#: Steps where the path does not choose them.
+STEPS = 150
+
+
+def counted_steps(scene: Scene) -> int:
+    """Steps for the methods that do not choose their own."""
+    steps = scene.discretization.steps
+    return STEPS if steps == "auto" else steps

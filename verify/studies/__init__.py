@@ -1,0 +1,1 @@
+"""Sweeps over many runs: cost, scaling, effects, hard cases."""

@@ -1,0 +1,143 @@
+"""Random scenes by every method: where all checks hold the plane codes must agree, where they disagree one is named."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from math import nan
+from pathlib import Path
+
+import numpy as np
+
+from verify.checks.between_codes import distance
+from verify.checks.odd_one_out import ODD
+from verify.checks.proof import MATCHED, REFERENCE, SECOND
+from verify.result import Result
+from verify.runs.folder import write_csv
+from verify.runs.jobs import Job, Outcome, dry_run, run_all
+from verify.scene.bodies import Orthotropic
+from verify.scene.load import load_scene
+from verify.scene.process_zone import bulk_length, slender_length
+from verify.scene.random_scenes import name_of
+from verify.scene.schema import Scene
+from verify.studies.one_scene import planned, scene_report
+from verify.verdict import SceneReport, counted
+
+#: What solves every scene; Lagrange meshes and LEFM are no judges at half a percent.
+METHODS = ("tspline", "nurbs", MATCHED, REFERENCE, SECOND, "beam")
+#: Plane codes that solve one model: with the search of the other face, and with the pairs of points kept.
+SAME_MODEL = (("tspline", "nurbs"), (MATCHED, REFERENCE))
+#: Distance of two plane codes beyond which one of them is wrong.
+APART = 0.005
+
+
+@dataclass(frozen=True)
+class Row:
+    """One scene: what it is, how far the codes are apart, how its checks came out, and what is wrong with that."""
+
+    scene: str
+    slenderness: float  # a0 / h
+    zone: float  # process zone over h
+    orthotropic: bool
+    plane: str
+    kinematics: str
+    ductility: float
+    apart: float  # largest distance of two plane codes on one model
+    beam: float  # distance of the reference to the beam
+    checks: int
+    broken: int
+    unresolved: int
+    names: str  # of the checks that do not hold
+    odd: str
+    fault: str  # "silent", "unnamed", "stopped", or nothing
+
+
+def campaign(seeds: Sequence[int], out: Path, jobs: int, scheduler: str | None = None) -> bool:
+    """Run the scenes of the seeds, write ``out``/random.csv, print a table; whether no row has a fault.
+
+    A fault is *silent* where all checks hold and two plane codes differ by more than `APART` or were not compared,
+    *unnamed* where a check is broken and no run is named as the odd one out, *stopped* where a run did not come to the
+    end of its programme.
+    """
+    plan = {seed: list(_jobs(seed)) for seed in seeds}
+    outcomes = {
+        found.job: found for found in run_all([job for jobs in plan.values() for job in jobs], out, jobs, scheduler)
+    }
+    rows = [row(_report(plan[seed], outcomes, out)) for seed in seeds]
+    write_csv(out / "random.csv", Row, rows)
+    print("\n".join(table(rows)))
+    faults = [one for one in rows if one.fault]
+    print(f"{len(rows) - len(faults)} of {len(rows)} random scenes without a fault: {out / 'random.csv'}")
+    return not faults
+
+
+def would_run(seeds: Sequence[int], out: Path, jobs: int) -> list[str]:
+    """The runs with their times, a line each."""
+    return dry_run([job for seed in seeds for job in _jobs(seed)], out, jobs)
+
+
+def row(report: SceneReport) -> Row:
+    """One scene that has been verified."""
+    scene, counts = report.scene, counted(report.checks)
+    results = {run.name: run.result for run in report.runs if run.result is not None and run.result.load.size > 1}
+    end = max(scene.load.opening)
+    pairs = [pair for group in _models(scene) for pair in combinations(group, 2) if set(pair) <= set(results)]
+    apart = float(np.max([_between(results, pair, end) for pair in pairs])) if pairs else nan  # NaN stays NaN
+    odd = next((remark for remark in report.remarks if remark.startswith(ODD)), "")
+    stopped = [run.name for run in report.runs if run.name != SECOND and not (run.result and run.result.complete)]
+    silent = counts.held == counts.total and not apart <= APART
+    fault = "stopped" if stopped else "silent" if silent else "unnamed" if counts.broken and not odd else ""
+    zone = 1.0 / (1.0 / slender_length(scene) + 1.0 / bulk_length(scene))
+    return Row(
+        scene=scene.name,
+        slenderness=scene.specimen.free_length / scene.specimen.loaded_thickness,
+        zone=zone / scene.specimen.loaded_thickness,
+        orthotropic=isinstance(scene.material, Orthotropic),
+        plane=scene.specimen.plane,
+        kinematics=str(scene.effects.kinematics),
+        ductility=scene.interface.ductility,
+        apart=apart,
+        beam=_between(results, (REFERENCE, "beam"), end),
+        checks=counts.total,
+        broken=counts.broken,
+        unresolved=counts.unresolved,
+        names=" ".join(f"{c.name}:{c.subject.replace(' ', '')}" for c in report.checks if not c.passed),
+        odd=odd,
+        fault=fault + (f" {','.join(stopped)}" if stopped else ""),
+    )
+
+
+def table(rows: Iterable[Row]) -> list[str]:
+    """One line a scene."""
+    head = f"{'scene':12}{'a0/h':>6}{'zone/h':>8} material  {'model':15}{'apart':>8}{'beam':>8}  checks"
+    return [head, *(_line(one) for one in rows)]
+
+
+def _line(one: Row) -> str:
+    kind = "ortho" if one.orthotropic else "iso"
+    judged = f"{one.checks - one.broken - one.unresolved}/{one.checks}"
+    said = "; ".join(filter(None, (one.fault, one.names, one.odd)))
+    return (
+        f"{one.scene:12}{one.slenderness:6.1f}{one.zone:8.2f} {kind:9} {one.plane + ' ' + one.kinematics:15}"
+        f"{one.apart:8.2%}{one.beam:8.2%}  {judged} {said}"
+    )
+
+
+def _jobs(seed: int) -> Iterable[Job]:
+    name = name_of(seed)
+    return (job for job in planned(name, load_scene(name)) if job.variant in METHODS)
+
+
+def _report(plan: Sequence[Job], outcomes: dict[Job, Outcome], out: Path) -> SceneReport:
+    return scene_report(plan[0].scene, [outcomes[job] for job in plan], out)
+
+
+def _models(scene: Scene) -> Sequence[Sequence[str]]:
+    """Groups of runs that solve one model; linear kinematics knows no search."""
+    return SAME_MODEL if scene.effects.kinematics == "finite" else (("tspline", "nurbs", REFERENCE),)
+
+
+def _between(results: dict[str, Result], pair: Sequence[str], end: float) -> float:
+    a, b = pair
+    return distance(results[a], results[b], end) if a in results and b in results else nan

@@ -1,0 +1,224 @@
+"""``debond solve --accuracy``: the first guess of method and mesh, and how long a run on it will take.
+
+Where a study of the same scene is at hand its front decides. Otherwise the elements that must span the process zone
+are read off `known.csv`, which says where its numbers come from; a trial of a few steps on the chosen mesh tells the
+time of an iteration, on this machine and now, and the length of the crack to be grown how many there will be. The guess
+is verified by solving on finer meshes (`verify.studies.cost.verified`).
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from verify.methods.names import WITH_DOFS, NotRun
+from verify.methods.reference_mesh import thickness_error
+from verify.methods.solve import require, solve
+from verify.methods.through_thickness import degree_through
+from verify.methods.zone_resolution import expected
+from verify.runs.environment import machine
+from verify.runs.estimate import steps
+from verify.runs.fingerprint import source
+from verify.scene.effects import simulated
+from verify.scene.parse import SceneError, parse_scene
+from verify.scene.schema import STEPS, Scene
+from verify.studies.cost.ladder import MORE_POINTS
+from verify.support.checked_files import Damaged, read_json
+from verify.support.progress import duration
+from verify.support.refusal import Refusal
+from verify.support.say import say
+
+KNOWN = Path(__file__).with_name("known.csv")
+
+#: The method that is chosen where only the table is known, and the methods whose meshes can be refined.
+METHOD, REFINED = "nurbs", (*WITH_DOFS, "dolfinx")
+
+#: Unknowns that a scene may have at most.
+LARGEST = 1_000_000
+
+#: A quadratic element through an arm is chosen where it costs at most this part of the accuracy.
+THROUGH = 0.25
+
+#: For steps "auto": how far off its tangent the load may be, as a part of the accuracy.
+BEND = 1.0
+
+#: Accuracies that can be asked for; from the table more elements than it says are taken.
+FINEST, COARSEST, SAFETY = 0.0005, 0.05, 1.2
+
+#: Newton iterations a step, as long as those of the trial: 3.0 to 4.0 on random scenes of finite kinematics, and those
+#: after damage begins take longer; a linear bulk takes one.
+ITERATIONS_PER_STEP = {"finite": 4.2, "linear": 1.0}
+
+#: A trial goes this part of the way in about so many steps.
+TRIAL, TRIAL_STEPS = 0.02, 10
+
+
+#: What is read of a study.
+_STUDY = {
+    "scene": dict,
+    "machine": dict,
+    "source": str,
+    "pareto": [
+        {
+            **dict.fromkeys(("method", "solver"), str),
+            **dict.fromkeys(("degree", "dofs"), int),
+            **dict.fromkeys(("curve_error", "seconds"), float),
+            "overrides": [str],
+        }
+    ],
+}
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What to run first for an accuracy: overrides of the scene, and the words that say so beforehand."""
+
+    method: str
+    overrides: tuple[str, ...]
+    seconds: float
+    why: str
+
+
+def choose(scene: Scene, accuracy: float, study: Path) -> Choice:
+    """First guess of method and mesh for a curve error of at most ``accuracy``, with the effects of the scene.
+
+    Parameters
+    ----------
+    study : a ``cost.json``, which counts if it is of the same scene and machine and of this source
+
+    Raises
+    ------
+    Refusal : an accuracy beyond what is known, or a scene of which no mesh is fine enough.
+    """
+    if not FINEST <= accuracy <= COARSEST:
+        raise Refusal(f"--accuracy: must be >= {FINEST:.2%} and <= {COARSEST:.0%}, got {100 * accuracy:g}%")
+    return _from_study(scene, accuracy, study) or _from_table(scene, accuracy)
+
+
+def _from_study(scene: Scene, accuracy: float, path: Path) -> Choice | None:
+    known = _same_study(scene, path)
+    for run in known:
+        if run["curve_error"] > accuracy or run["solver"] not in REFINED:
+            continue
+        overrides = tuple(one for one in run["overrides"] if not one.startswith("effects."))
+        try:
+            require(parse_scene(scene.model_dump(), overrides), run["solver"])
+        except (NotRun, Refusal):
+            continue
+        what = f"{run['method']} of degree {run['degree']} with {run['dofs']} unknowns"
+        took = f"took {duration(run['seconds'])} in {path} and was within {run['curve_error']:.2g}"
+        return Choice(run["solver"], overrides, run["seconds"], f"{what}: {took}")
+    return None
+
+
+def _same_study(scene: Scene, path: Path) -> Sequence[Mapping[str, Any]]:
+    """Runs of a study of the same problem, machine and source, the quickest first; none of one that is damaged."""
+    if not path.exists():
+        return ()
+    try:
+        found = read_json(path, _STUDY)
+    except Damaged as error:
+        say(f"{error}; it does not count")
+        return ()
+    meshes = {"discretization", "dolfinx", "published"}
+    ours = json.loads(scene.model_dump_json(exclude=meshes))
+    theirs = {key: value for key, value in found["scene"].items() if key not in meshes}
+    same = (theirs, found["machine"], found["source"]) == (ours, machine(), source(("iga", "fem_reference")))
+    return sorted(found["pareto"], key=lambda run: run["seconds"]) if same else ()
+
+
+def _from_table(scene: Scene, accuracy: float) -> Choice:
+    elements = SAFETY * elements_for(accuracy)
+    degree = 2 if thickness_error(scene, 2, 1) <= THROUGH * accuracy else 3
+    overrides = (*_steps(scene, accuracy), *with_elements(scene, METHOD, degree, elements))
+    chosen = parse_scene(scene.model_dump(), overrides)
+    require(chosen, METHOD)
+    seconds = run_seconds(chosen, METHOD, iterations(chosen, METHOD))
+    mesh = f"NURBS of degree {degree} with {chosen.discretization.dofs} unknowns"
+    zone = f"{expected(chosen, METHOD).elements:.1f} elements in the process zone"
+    return Choice(METHOD, overrides, seconds, f"{mesh}, {zone}: about {duration(seconds)}")
+
+
+def _steps(scene: Scene, accuracy: float) -> tuple[str, ...]:
+    """At least as many steps as the scene asks for, or steps by accuracy that are as short as the scene's."""
+    asked = scene.discretization
+    if asked.steps == "auto":
+        return (f"discretization.bend={min(asked.bend, max(BEND * accuracy, 1e-5))!r}",)
+    return (f"discretization.steps={max(asked.steps, STEPS)}",)
+
+
+def iterations(scene: Scene, method: str) -> float:
+    """Newton iterations of a whole run, about."""
+    return ITERATIONS_PER_STEP[simulated(scene, method)["kinematics"]] * steps(scene, method)
+
+
+def elements_for(accuracy: float) -> float:
+    """Elements that span the process zone where the curve error of every scene in the table is at most this."""
+    with KNOWN.open(newline="") as stream:
+        rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
+    scenes = dict.fromkeys(row["scene"] for row in rows)
+    return max(_crossing([row for row in rows if row["scene"] == scene], accuracy) for scene in scenes)
+
+
+def _crossing(rows: Sequence[Mapping[str, str]], accuracy: float) -> float:
+    """Where the error comes below a value for good; beyond the table on with its slope.
+
+    A mesh that a finer one is worse than is good by chance, and does not count.
+    """
+    e, error = (np.log([float(row[key]) for row in rows]) for key in ("elements", "curve_error"))
+    counts = error == np.maximum.accumulate(error[::-1])[::-1]
+    e, error = e[counts], error[counts]
+    if np.log(accuracy) < error[-1]:
+        return float(np.exp(e[-1] + (np.log(accuracy) - error[-1]) / np.polyfit(e, error, 1)[0]))
+    return float(np.exp(np.interp(-np.log(accuracy), -error, e)))
+
+
+def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tuple[str, ...]:
+    """Overrides for a mesh of a method of `iga` with at least so many elements in the process zone.
+
+    The mesh has the degree through the arms, too: coarse meshes of higher degree are quadratic there.
+
+    Raises
+    ------
+    Refusal : no mesh is fine enough.
+    """
+    points = max(degree + MORE_POINTS, scene.discretization.interface_points)
+    of_degree = (f"discretization.degree={degree}", f"discretization.interface_points={points}")
+    now = expected(scene, method).elements
+    size = min(round(scene.discretization.dofs * (elements / now if now > 0.0 else 1.0)), LARGEST)
+    for _ in range(60):
+        overrides = (*of_degree, f"discretization.dofs={size}")
+        try:
+            chosen = parse_scene(scene.model_dump(), overrides)
+        except SceneError:  # more unknowns than a scene may have
+            break
+        there = expected(chosen, method).elements
+        if there >= elements and degree_through(chosen, method) >= degree:
+            return overrides
+        size = round(size * (min(elements / there, 1.5) if 0.0 < there < elements else 1.2)) + 8
+    raise Refusal(f"--accuracy: no mesh is known with {elements:.1f} elements in the process zone of {scene.name}")
+
+
+def run_seconds(scene: Scene, method: str, iterations: float) -> float:
+    """Time of a run of so many Newton iterations, from a few steps on the same mesh.
+
+    An iteration, with what belongs to it, takes the median over these steps; the rest is for what is done once.
+    """
+    begun = max(map(abs, scene.load.opening)) * TRIAL
+    short = (f"load.opening={begun!r}", f"discretization.steps={TRIAL_STEPS}")
+    times, numbers = [perf_counter()], []
+
+    def note(row: Mapping[str, float]) -> None:
+        times.append(perf_counter())
+        numbers.append(max(row["newton_iterations"], 1.0))
+
+    solve(parse_scene(scene.model_dump(exclude={"published"}), short), method, note)
+    each = float(np.median(np.diff(times)[1:] / numbers[1:]))
+    return perf_counter() - times[0] + each * (iterations - sum(numbers))

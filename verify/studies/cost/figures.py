@@ -1,0 +1,151 @@
+"""Figures of the page: error against unknowns with orders, the time-accuracy-size triple, growth, the process zone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from verify.pages.parts import phase_bars, plain
+from verify.pages.style import HALF, PHASES, THIRD, Panel, colour, drawing, panel, to_svg
+from verify.studies.cost.findings import LEVELS, by_family, pareto
+from verify.studies.cost.row import Row
+
+#: method: (name, colour of the palette).
+METHODS: Mapping[str, tuple[str, str]] = {
+    "tspline": ("T-spline", "tspline"),
+    "tspline-adaptive": ("T-spline, adaptive", "accent"),
+    "nurbs": ("NURBS", "nurbs"),
+    "lagrange": ("Lagrange", "lagrange"),
+    "dolfinx": ("DOLFINx", "dolfinx"),
+    "beam": ("cohesive beam", "beam"),
+}
+
+_MARKERS = {0: "*", 1: "v", 2: "s", 3: "o", 4: "D", 5: "P"}
+
+Value = Callable[[Row], float]
+
+
+def named(row: Row) -> str:
+    """T-spline, degree 3."""
+    name = METHODS[row.method][0]
+    return f"{name}, degree {row.degree}" if row.degree else name
+
+
+def work_precision(rows: Sequence[Row], key: str) -> Panel:
+    """Error against time, for a page without scripts: all runs, and those that no other beats."""
+    with drawing():
+        figure, axes = panel(HALF * 1.5, 3.6)
+        for row in rows:
+            if row.measured:
+                axes.plot(row.seconds, 100 * row.curve_error, _MARKERS[row.degree], **_ink(row), markersize=4)
+        best = pareto(rows)
+        axes.plot([r.seconds for r in best], [100 * r.curve_error for r in best], color=colour("muted"), linewidth=0.8)
+        _levels(axes, 100.0)
+        _logarithmic(axes, "seconds", "curve error (%)")
+        svg = to_svg(figure, key, "Curve error against time")
+    return Panel(svg, "Every run; the line joins those that no other beats in both error and time.", "wide")
+
+
+def error_and_unknowns(rows: Sequence[Row], orders: Mapping[str, float], key: str) -> Panel:
+    """Error against unknowns for every family."""
+    with drawing():
+        figure, axes = panel(HALF * 1.7, 3.4)
+        box = axes.get_position()
+        axes.set_position((box.x0, box.y0, 0.68 * box.width, box.height))
+        for name, ladder in sorted(by_family(rows).items()):
+            if ladder[0].dofs:
+                order = orders.get(name, np.nan)
+                label = f"{named(ladder[0])}: {order:.1f}" if np.isfinite(order) else named(ladder[0])
+                _curve(axes, ladder, _unknowns, _percent, label)
+        _levels(axes, 100.0)
+        _logarithmic(axes, "unknowns", "curve error (%)")
+        axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
+        svg = to_svg(figure, key, "Curve error against unknowns")
+    caption = (
+        "Curve error against unknowns, at equal steps; the number is the observed order in one over the unknowns, of "
+        "the four finest meshes whose error the reference can tell. The kink at the tip of the zone bounds the orders."
+    )
+    return Panel(svg, caption, "wide")
+
+
+def triple(rows: Sequence[Row], key: str) -> tuple[Panel, ...]:
+    """Time, accuracy and size (Chang, Fabien, Knepley, Mills 2018): digits of accuracy against digits of size, the rate
+    of unknowns against time, and digits of efficacy, -log10(error x time), against time."""
+    parts: tuple[tuple[str, str, str, Value, Value, str], ...] = (
+        ("size", "unknowns", "digits of accuracy", _unknowns, _digits, "What a mesh resolves: -log10(curve error)."),
+        ("rate", "seconds", "unknowns a second", _seconds, _rate, "What the code makes of its unknowns."),
+        ("efficacy", "seconds", "digits of efficacy", _seconds, _efficacy, "Both: -log10(error x seconds)."),
+    )  # fmt: skip
+    panels = []
+    for name, across, up, x, y, caption in parts:
+        with drawing():
+            figure, axes = panel(THIRD, 2.7)
+            for ladder in by_family(rows).values():
+                if ladder[0].dofs:
+                    _curve(axes, ladder, x, y, named(ladder[0]))
+            axes.set(xscale="log", yscale="log" if name == "rate" else "linear", xlabel=across, ylabel=up)
+            plain(axes.xaxis)
+            if name == "rate":
+                plain(axes.yaxis)
+            svg = to_svg(figure, f"{key}-{name}", f"{up} against {across}")
+        panels.append(Panel(svg, caption, "third"))
+    return tuple(panels)
+
+
+def phases(rows: Sequence[Row], key: str) -> Panel:
+    """Where the time of the cheapest runs goes."""
+    with drawing():
+        left_margin = 0.3 + 0.062 * max(len(named(row)) + 7 for row in rows)
+        figure, axes = panel(HALF * 1.5, 0.3 * len(rows) + 0.85, left=left_margin, top=0.4)
+        labels = [f"{named(row)}, {row.dofs}" if row.dofs else named(row) for row in rows]
+        phase_bars(axes, labels, {name: [getattr(row, name) for row in rows] for name in PHASES})
+        axes.set(xlabel="seconds")
+        figure.legend(loc="upper center", ncols=6, handlelength=0.9, columnspacing=0.9, handletextpad=0.4)
+        svg = to_svg(figure, key, "Where the time of the cheapest runs goes")
+    return Panel(svg, "Where the time goes: the cheapest run of every method for an error of 0.3 %.", "wide")
+
+
+def _curve(axes: Axes, ladder: Sequence[Row], x: Value, y: Value, label: str) -> None:
+    style = {"marker": _MARKERS[ladder[0].degree], "markersize": 3, "linewidth": 0.9, **_ink(ladder[0])}
+    axes.plot([x(row) for row in ladder], [y(row) for row in ladder], label=label, **style)
+
+
+def _ink(row: Row) -> dict[str, str]:
+    return {"color": colour(METHODS[row.method][1])}
+
+
+def _levels(axes: Axes, scale: float) -> None:
+    for level in LEVELS.values():
+        axes.axhline(scale * level, color=colour("rule"), linewidth=0.8, zorder=0)
+
+
+def _logarithmic(axes: Axes, x: str, y: str) -> None:
+    axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
+    for part in (axes.xaxis, axes.yaxis):
+        plain(part)
+
+
+def _unknowns(row: Row) -> float:
+    return row.dofs
+
+
+def _seconds(row: Row) -> float:
+    return row.seconds
+
+
+def _percent(row: Row) -> float:
+    return 100.0 * row.curve_error
+
+
+def _digits(row: Row) -> float:
+    return -float(np.log10(row.curve_error))
+
+
+def _rate(row: Row) -> float:
+    return row.dofs / row.seconds
+
+
+def _efficacy(row: Row) -> float:
+    return -float(np.log10(row.curve_error * row.seconds))

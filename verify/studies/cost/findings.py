@@ -1,0 +1,140 @@
+"""What the rows say: the cheapest run for every accuracy, ratios, observed orders, growth of the cost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite, nan
+
+import numpy as np
+
+from verify.studies.cost.ladder import STEPS
+from verify.studies.cost.row import Row
+
+#: Errors of the curve that are asked for, as people write them.
+LEVELS: Mapping[str, float] = {"1%": 0.01, "0.3%": 0.003, "0.1%": 0.001}
+
+#: A theory with an error of its own, which no mesh makes smaller; it is compared and never called the cheapest.
+THEORIES = ("beam",)
+
+#: An order is read off no more rungs than these, the finest ones.
+RUNGS_OF_AN_ORDER = 4
+
+
+@dataclass(frozen=True)
+class Cheapest:
+    """The cheapest run of all methods with a mesh for an accuracy, and of every method.
+
+    ratio : seconds of every other method's cheapest run over its own; a method that never gets there has none
+    """
+
+    level: str
+    best: Row | None
+    of_method: Mapping[str, Row]
+
+    @property
+    def ratio(self) -> dict[str, float]:
+        if self.best is None:
+            return {}
+        return {m: row.seconds / self.best.seconds for m, row in self.of_method.items() if m != self.best.method}
+
+    def summary(self) -> dict[str, object]:
+        if self.best is None:
+            return {"method": None, "ratio": {}}
+        keys = ("method", "degree", "dofs", "steps", "asked", "curve_error", "seconds", "run")
+        return {key: getattr(self.best, key) for key in keys} | {"ratio": self.ratio}
+
+
+def cheapest(rows: Sequence[Row], level: str) -> Cheapest:
+    """Cheapest runs whose curve error is at most that of a level."""
+    enough = sorted((row for row in rows if row.measured and row.curve_error <= LEVELS[level]), key=_seconds)
+    of_method: dict[str, Row] = {}
+    for row in enough:
+        of_method.setdefault(row.method, row)
+    return Cheapest(level, next((row for row in enough if row.method not in THEORIES), None), of_method)
+
+
+def of_equal_steps(rows: Sequence[Row]) -> list[Row]:
+    """Rows of the runs that were asked for the same number of steps."""
+    return [row for row in rows if row.asked == str(STEPS)]
+
+
+def pareto(rows: Sequence[Row]) -> list[Row]:
+    """Runs that no other beats in both error and time, the quickest first."""
+    kept: list[Row] = []
+    for row in sorted((row for row in rows if row.measured), key=lambda row: (row.seconds, row.curve_error)):
+        if not kept or row.curve_error < kept[-1].curve_error:
+            kept.append(row)
+    return kept
+
+
+def by_family(rows: Sequence[Row]) -> dict[str, list[Row]]:
+    """Rows of equal steps by method and degree, with rising unknowns."""
+    found: dict[str, list[Row]] = {}
+    for row in sorted(of_equal_steps(rows), key=lambda row: row.dofs):
+        if row.measured:
+            found.setdefault(row.family, []).append(row)
+    return found
+
+
+def orders(rows: Sequence[Row], floor: float) -> dict[str, float]:
+    """Observed p of curve error ~ unknowns^-p on the finest rungs of every family; NaN for fewer than three.
+
+    Along a thin specimen the unknowns grow as one over the element length. Errors below ``floor``, where the
+    reference's own would be measured, are left out.
+    """
+    found = {}
+    for name, ladder in sorted(by_family(rows).items()):
+        seen = [row for row in ladder if row.curve_error > floor][-RUNGS_OF_AN_ORDER:]
+        found[name] = -slope(seen, lambda row: row.curve_error)
+    return found
+
+
+def growth(rows: Sequence[Row]) -> dict[str, dict[str, float]]:
+    """Exponents q of cost ~ unknowns^q by family: time of a Newton iteration, of its parts, and memory."""
+    each: dict[str, Callable[[Row], float]] = {
+        "iteration": lambda row: row.seconds / row.newton_iterations,
+        "assembly": lambda row: row.assembly / row.newton_iterations,
+        "factor": lambda row: row.factor / row.newton_iterations,
+        "memory": lambda row: row.peak_memory_mb,
+    }
+    families = {name: ladder for name, ladder in sorted(by_family(rows).items()) if _sizes(ladder) >= 3}
+    return {name: {what: slope(ladder, value) for what, value in each.items()} for name, ladder in families.items()}
+
+
+def slope(rows: Sequence[Row], value: Callable[[Row], float]) -> float:
+    """Least-squares exponent of a value over the unknowns; NaN for fewer than three meshes."""
+    points = [(row.dofs, value(row)) for row in rows if row.dofs and row.newton_iterations and value(row) > 0.0]
+    if _sizes(rows) < 3 or len(points) < 3:
+        return nan
+    dofs, values = np.log(np.array(points)).T
+    return float(np.polyfit(dofs, values, 1)[0])
+
+
+def _sizes(rows: Sequence[Row]) -> int:
+    """How many meshes."""
+    return len({row.dofs for row in rows if row.dofs})
+
+
+def table(rows: Sequence[Row]) -> list[str]:
+    """The cheapest run of every method for every accuracy, and its ratio to the cheapest of all."""
+    lines = []
+    for level in LEVELS:
+        found, equal = cheapest(rows, level), cheapest(of_equal_steps(rows), level)
+        lines.append(f"curve error <= {level}")
+        for method, row in found.of_method.items():
+            ratio = row.seconds / found.best.seconds if found.best else nan
+            same = equal.of_method.get(method)
+            same_ratio = same.seconds / equal.best.seconds if same and equal.best else nan
+            apart = f"{same_ratio:6.2f} at equal steps" if isfinite(same_ratio) else ""
+            lines.append(
+                f"  {row.family:18} {row.dofs:6d} unknowns {row.steps:4d} steps {row.curve_error:8.3%} "
+                f"{row.seconds:8.2f} s {ratio:6.2f} x {apart}".rstrip()
+            )
+        missed = sorted({row.method for row in rows} - set(found.of_method))
+        lines += [f"  not reached: {', '.join(missed)}"] if missed else []
+    return lines
+
+
+def _seconds(row: Row) -> float:
+    return row.seconds

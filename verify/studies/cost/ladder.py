@@ -1,0 +1,141 @@
+"""Which meshes are tried: for every basis and degree a ladder whose rungs divide the process zone ever more finely."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from verify.methods.zone_resolution import expected
+from verify.runs.jobs import Job, left_out
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
+
+#: The finer of two rungs has so many times the elements of the other, and a ladder so many rungs.
+RATIO, RUNGS = 1.4, 8
+
+#: Steps asked for in the first place, enough for the sharp peak of ``peel-120``; few ones for every mesh that is
+#: accurate, and others for the best of them. The ``iga`` path chooses its own, few where it is asked to, fewer where
+#: they may leave their tangents further; those of the DOLFINx path are counted, and the front adds to them.
+STEPS, FEW_STEPS, OTHER_STEPS = 80, {"dolfinx": (20,)}, (40, 150)
+FEW_STEPS_OF_IGA = ("auto", "auto-0.02", "auto-0.05", "auto-0.1")
+
+
+@dataclass(frozen=True)
+class Family:
+    """A method with a degree: the meshes of one ladder.
+
+    ``first`` is the number of elements that span the process zone on the coarsest one.
+    """
+
+    method: str  # as the tables call it
+    solver: str  # as ``debond solve`` does
+    degree: int
+    first: float
+
+    @property
+    def name(self) -> str:
+        return self.method if self.method in ("beam", "tspline-adaptive") else f"{self.method}-p{self.degree}"
+
+
+#: Integration points an element on the interface beyond the degree, for the ``iga`` methods: they cost next to nothing,
+#: and on ``dcb-czm1`` with 500 unknowns 5 points instead of 2 take the error of cubic NURBS from 0.43 to 0.17 %, of
+#: T-splines from 0.20 to 0.13 %, and of Lagrange elements from 3.3 to 0.6 %. DOLFINx has three beyond the degree.
+MORE_POINTS = 2
+
+FAMILIES = (
+    Family("tspline", "tspline", 3, 2.0),
+    Family("tspline-adaptive", "tspline", 3, 2.0),
+    *(Family("nurbs", "nurbs", p, 1.4) for p in (2, 3, 4)),
+    *(Family("lagrange", "lagrange", p, first) for p, first in ((2, 1.0), (3, 0.7), (4, 0.5))),
+    *(Family("dolfinx", "dolfinx", p, first) for p, first in ((1, 4.0), (2, 1.0), (3, 0.7), (4, 0.5))),
+)
+BEAM = Family("beam", "beam", 0, 0.0)
+
+
+@dataclass(frozen=True)
+class Try:
+    """One run of the study: a rung of a ladder, a number of steps asked for, the first or a repeated time."""
+
+    family: Family
+    rung: int
+    size: int  # ``dofs`` or ``elements``, as the method counts
+    steps: int | str
+    repeat: int = 0
+
+    @property
+    def variant(self) -> str:
+        size = f"-{self.size}" if self.size else ""
+        return f"cost/{self.family.name}{size}-{self.steps}-steps" + (f"-again-{self.repeat}" if self.repeat else "")
+
+    def job(self, source: str, scene: Scene, given: Sequence[str] = ()) -> Job:
+        """The run; ``given`` are the overrides that the whole study has."""
+        own = _overrides(self.family, scene, self.size, self.steps)
+        return Job(source, scene, self.family.solver, self.variant, (*given, *own), repeat=self.repeat)
+
+    def with_few_steps(self) -> Iterator[Try]:
+        """The same mesh with as few steps as the path takes."""
+        if self.family is not BEAM:
+            yield from (replace(self, steps=few) for few in FEW_STEPS.get(self.family.solver, FEW_STEPS_OF_IGA))
+
+    def with_other_steps(self) -> Iterator[Try]:
+        """The same mesh with other numbers of steps."""
+        if self.family is not BEAM:
+            yield from (replace(self, steps=steps) for steps in OTHER_STEPS)
+
+
+def ladder(scene: Scene, family: Family) -> list[Try]:
+    """The rungs of a family on a scene, coarse to fine; none where no mesh is possible."""
+    if family.solver == "beam":
+        return [Try(family, rung, 0, steps) for rung, steps in enumerate((STEPS, *OTHER_STEPS))]
+    each = size_of_an_element(scene, family)
+    sizes = np.unique(np.rint(each * family.first * RATIO ** np.arange(RUNGS))) if np.isfinite(each) else ()
+    return [Try(family, rung, int(size), STEPS) for rung, size in enumerate(sizes)]
+
+
+def ladders(source: str, scene: Scene, given: Sequence[str]) -> tuple[dict[Family, list[Try]], list[str]]:
+    """Rungs of every family of which there is a mesh, and a sentence for every method that cannot solve the scene."""
+    found: dict[Family, list[Try]] = {}
+    reasons: dict[str, str] = {}
+    for family in (*FAMILIES, BEAM):
+        if family.method == "tspline-adaptive" and scene.specimen.kind == "peel":
+            reasons.setdefault(family.method, "left out: only the mesh of a dcb follows the process zone")
+            continue
+        rungs = {one: left_out(one.job(source, scene, given)) for one in ladder(scene, family)}
+        possible = [one for one, why in rungs.items() if not why]
+        if possible:
+            found[family] = possible
+        else:
+            reasons.setdefault(family.method, next(iter(rungs.values()), "not run: no mesh is possible"))
+    known = {family.method for family in found}
+    return found, [f"{method}: {why}" for method, why in reasons.items() if method not in known]
+
+
+def _overrides(family: Family, scene: Scene, size: int, steps: int | str) -> tuple[str, ...]:
+    """As the DOLFINx model keeps its pairs of points for good, ``iga`` does, too, where the arms are alike."""
+    asked, _, bend = str(steps).partition("-")
+    paced = (f"discretization.steps={asked}", *((f"discretization.bend={bend}",) if bend else ()))
+    if family.solver == "beam":
+        return paced
+    if family.solver == "dolfinx":
+        return (*paced, f"dolfinx.degree={family.degree}", f"dolfinx.elements={size}")
+    points = max(family.degree + MORE_POINTS, scene.discretization.interface_points)
+    return (
+        *paced,
+        *(("effects.search=auto",) if scene.effects.search is True else ()),
+        f"discretization.degree={family.degree}",
+        f"discretization.dofs={size}",
+        f"discretization.interface_points={points}",
+        *(("discretization.adaptive=true",) if family.method == "tspline-adaptive" else ()),
+    )
+
+
+def size_of_an_element(scene: Scene, family: Family) -> float:
+    """Unknowns, or elements along the specimen, for every element that is to span the process zone; NaN without a mesh.
+
+    Both grow in proportion. Of a mesh that follows the zone only the parts around it count: as many as if it stood.
+    """
+    now = scene.discretization.dofs if family.solver != "dolfinx" else scene.dolfinx.elements
+    given = parse_scene(scene.model_dump(), _overrides(replace(family, method=family.solver), scene, now, STEPS))
+    return now / expected(given, family.solver).elements

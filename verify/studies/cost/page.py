@@ -1,0 +1,125 @@
+"""The study as a page: one self-contained HTML file with a chart that answers questions."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup
+
+from verify.pages.style import Panel
+from verify.pages.template import rendered
+from verify.pages.text import percent, seconds, sentence
+from verify.runs.environment import environment
+from verify.studies.cost.figures import METHODS, error_and_unknowns, named, phases, triple, work_precision
+from verify.studies.cost.findings import LEVELS, Cheapest, cheapest, growth, of_equal_steps, orders
+from verify.studies.cost.row import Row
+
+if TYPE_CHECKING:
+    from verify.studies.cost.study import Study
+
+_SCRIPT = Path(__file__).with_name("chart.js")
+
+#: What the chart can show on its axes: key of a row, name, factor.
+ACROSS = (
+    ("seconds", "seconds", 1),
+    ("dofs", "unknowns", 1),
+    ("nonzeros", "entries of the tangent", 1),
+    ("newton_iterations", "Newton iterations", 1),
+    ("peak_memory_mb", "peak memory (MB)", 1),
+)
+UP = (
+    ("curve_error", "curve error (%)", 100),
+    ("peak_error", "error of the peak load (%)", 100),
+    ("energy_error", "error of the dissipated energy (%)", 100),
+    ("oscillation", "oscillation (%)", 100),
+    ("traction_error", "error of the tractions (%)", 100),
+)
+
+
+@dataclass(frozen=True)
+class Level:
+    """What an accuracy costs, at each method's best number of steps and at the same one."""
+
+    name: str
+    best: Cheapest
+    equal: Cheapest
+
+    @property
+    def sentence(self) -> str:
+        row = self.best.best
+        if row is None:
+            return f"Curve error {self.name}: no run is that accurate."
+        beaten = ", ".join(f"{METHODS[m][0]} {ratio:.2g} ×" for m, ratio in self.best.ratio.items())
+        took = f"{named(row)}, {row.dofs} unknowns, {row.steps} steps, {seconds(row.seconds)}"
+        return f"Curve error {self.name}: {took}. " + (f"Times of the others: {beaten}." if beaten else "")
+
+
+@dataclass(frozen=True)
+class Chart:
+    """What the template of the chart prints; ``data`` is for the script, ``static`` for a page without."""
+
+    across: tuple[tuple[str, str, int], ...]
+    up: tuple[tuple[str, str, int], ...]
+    methods: Mapping[str, tuple[str, str]]
+    data: Markup
+    static: Panel
+
+
+def chart(rows: Sequence[Row], key: str) -> Chart:
+    """The chart of some runs; ``key`` is unique in the page."""
+    methods = {method: METHODS[method] for method in METHODS if any(row.method == method for row in rows)}
+    return Chart(ACROSS, UP, methods, _for_script(rows), work_precision(rows, f"{key}-work-precision"))
+
+
+def script() -> Markup:
+    """What makes the charts of a page answer."""
+    return Markup(_SCRIPT.read_text(encoding="utf-8"))
+
+
+def write(study: Study, path: Path) -> None:
+    """Write the page."""
+    rows, equal = study.rows, of_equal_steps(study.rows)
+    levels = [Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS]
+    found = orders(rows, 2.0 * study.against.uncertainty["curve"])
+    typical = list(levels[1].best.of_method.values())
+    page = rendered(
+        "verify.studies.cost",
+        "page.html.j2",
+        {"percent": percent, "seconds": seconds, "named": named},
+        name=study.scene.name,
+        sentence=sentence(study.scene),
+        against=study.against,
+        levels=levels,
+        left_out=study.left_out,
+        chart=chart(rows, "chart"),
+        figures=[error_and_unknowns(rows, found, "orders")],
+        triple=triple(rows, "triple"),
+        bars=phases(typical, "phases") if typical else None,
+        growth=growth(rows),
+        rows=sorted(rows, key=lambda row: (row.method, row.degree, row.dofs, row.asked)),
+        environment=environment(),
+        script=script(),
+    )
+    path.write_text(page, encoding="utf-8")
+
+
+def _for_script(rows: Sequence[Row]) -> Markup:
+    """The rows as JSON that cannot end the element that it stands in."""
+    data = {
+        "rows": [asdict(row) | {"words": _words(row)} for row in rows if row.measured],
+        "colours": {method: colour for method, (_, colour) in METHODS.items()},
+    }
+    text = json.dumps(data).replace("NaN", "null")
+    return Markup(text.replace("<", "\\u003c"))
+
+
+def _words(row: Row) -> str:
+    size = f"{row.dofs} unknowns, " if row.dofs else ""
+    return (
+        f"{named(row)}: {size}{row.steps} steps ({row.asked} asked), {row.newton_iterations} iterations, "
+        f"{row.seconds:.2f} s, curve error {row.curve_error:.3%}, peak {row.peak_error:.3%}"
+    )

@@ -1,0 +1,127 @@
+"""The converged curve that every run is held against, with its own uncertainty, and what another code says of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import nan
+
+import numpy as np
+
+from verify.curves.convergence import SAFETY, assess
+from verify.curves.of_run import cubics, dissipated, distance, peak_load
+from verify.methods.dolfinx import dolfinx_installed
+from verify.result import Result
+from verify.runs.jobs import Job, Outcome
+from verify.scene.schema import Scene
+from verify.studies.cost.ladder import Family, Try, size_of_an_element
+
+#: Elements that span the process zone on the three meshes of the reference, and the steps asked for.
+ZONE, STEPS = (4.0, 8.0, 16.0), 200
+
+#: And those of the two meshes of the other code, with elements of degree 3.
+OTHER_ZONE = (2.5, 5.0)
+
+#: Where no order is observed, the distance of the two finest meshes is multiplied by this (Roache 1994).
+CAUTION = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """The finest of three meshes.
+
+    uncertainty : of curve, peak load and dissipated energy, relative; grid convergence index of the three meshes
+    order : observed order of the curve, NaN where there is none
+    apart : relative L2 distance of the other code's finest curve, NaN where there is no other code
+    other : uncertainty of that curve
+    """
+
+    label: str
+    result: Result
+    uncertainty: Mapping[str, float]
+    order: float
+    other_label: str = ""
+    apart: float = nan
+    other: float = nan
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the other code is within the two uncertainties."""
+        return self.apart <= self.uncertainty["curve"] + self.other
+
+    @property
+    def sentence(self) -> str:
+        """What the reference is and how good."""
+        sure = ", ".join(f"{name} {value:.3%}" for name, value in self.uncertainty.items())
+        order = f"observed order {self.order:.1f}" if np.isfinite(self.order) else "no order observed"
+        text = f"Reference: {self.label}, {self.result.dofs} unknowns; uncertainty (GCI): {sure}; {order}."
+        if not np.isfinite(self.apart):
+            return f"{text} No other code was at hand to hold it against."
+        within = "within" if self.agrees else "not within"
+        return (
+            f"{text} {self.other_label} is {self.apart:.3%} away, {within} the two uncertainties "
+            f"({self.uncertainty['curve']:.3%} and {self.other:.3%})."
+        )
+
+
+def reference_jobs(source: str, scene: Scene, given: Sequence[str]) -> tuple[tuple[Job, ...], tuple[Job, ...]]:
+    """Runs of the reference, coarse to fine, and of the other code: none where DOLFINx is missing."""
+    one_arm = scene.specimen.kind == "dcb" and scene.discretization.mismatch == 1.0
+    halved = ("effects.symmetry=true",) if one_arm else ()
+    own = _jobs(source, scene, Family("nurbs", "nurbs", 3, 0.0), ZONE, (*given, *halved))
+    other = _jobs(source, scene, Family("dolfinx", "dolfinx", 3, 0.0), OTHER_ZONE, given) if dolfinx_installed() else ()
+    return own, other
+
+
+def _jobs(source: str, scene: Scene, family: Family, zone: Sequence[float], given: Sequence[str]) -> tuple[Job, ...]:
+    each = size_of_an_element(scene, family)
+    tries = (Try(family, i, int(round(each * elements)), STEPS) for i, elements in enumerate(zone))
+    jobs = (one.job(source, scene, given) for one in tries)
+    return tuple(Job(j.source, j.scene, j.method, j.variant.replace("cost/", "reference/"), j.overrides) for j in jobs)
+
+
+def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | None:
+    """What the runs give; None where one of the three of the reference did not come to its end."""
+    results = [outcome.result for outcome in own]
+    if any(result is None or not result.complete for result in results):
+        return None
+    finest, h = results[-1], [1.0 / result.elements for result in results]
+    apart = [distance(cubics(result), finest) for result in results[:2]]
+    order, index = _of_distances(h, apart)
+    values = {"peak": [peak_load(r) for r in results], "energy": [dissipated(r) for r in results]}
+    sure = {"curve": index} | {name: _index(h, found) for name, found in values.items()}
+    label = "cubic NURBS" + (", one arm" if results[-1].method == "nurbs" and "symmetry" in str(own[-1].job) else "")
+    second = [outcome.result for outcome in other]
+    if not second or any(result is None or not result.complete for result in second):
+        return Reference(label, finest, sure, order)
+    return Reference(
+        label,
+        finest,
+        sure,
+        order,
+        f"DOLFINx of degree 3 with {second[-1].dofs} unknowns",
+        distance(cubics(second[-1]), finest),
+        distance(cubics(second[0]), second[-1]),
+    )
+
+
+def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, float]:
+    """Order and grid convergence index from the distances of two coarser meshes to the finest one.
+
+    Distances to the finest are e(h) - e(h_1) for errors e = C h^p of one shape: p from their ratio.
+    """
+    orders = np.linspace(0.5, 8.0, 751)
+    ratio = (h[0] ** orders - h[2] ** orders) / (h[1] ** orders - h[2] ** orders)
+    wanted = apart[0] / apart[1] if apart[1] > 0.0 else np.inf
+    if not ratio[0] <= wanted <= ratio[-1]:
+        return nan, CAUTION * apart[1]
+    p = float(np.interp(wanted, ratio, orders))
+    return p, SAFETY * apart[1] / ((h[1] / h[2]) ** p - 1.0)
+
+
+def _index(h: Sequence[float], values: Sequence[float]) -> float:
+    """Grid convergence index of one number."""
+    found = assess(h, values)
+    if np.isfinite(found.gci) and found.asymptotic:
+        return found.gci
+    return CAUTION * max(abs(values[-1] - value) for value in values[:2]) / abs(values[-1])

@@ -1,0 +1,250 @@
+"""The sweep: references first, then ever finer meshes of every family, other steps for the best, and repeated times."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import inf
+from pathlib import Path
+from time import monotonic
+
+from verify.runs.environment import ALL_PACKAGES, THREADS, machine, versions
+from verify.runs.fingerprint import source as source_of
+from verify.runs.folder import write_csv, write_json
+from verify.runs.jobs import Job, Outcome, dry_run, run_all
+from verify.scene.schema import Scene
+from verify.studies.cost.findings import LEVELS, cheapest, growth, of_equal_steps, orders, pareto, table
+from verify.studies.cost.ladder import Family, Try, ladders
+from verify.studies.cost.nonzeros import nonzeros
+from verify.studies.cost.reference import Reference, reference, reference_jobs
+from verify.studies.cost.row import Row, row
+from verify.support.say import say, write_page
+
+#: A ladder ends below this part of the finest level, where a rung took so many times as long as the cheapest run that
+#: is accurate enough, where another degree of the method is as accurate in so much less time, or after so many seconds.
+ENOUGH, PATIENCE, BEATEN, LONGEST = 0.7, 12.0, 2.5, 120.0
+
+#: Seconds after which no more of it is begun: the ladders, other numbers of steps, repetitions. What was begun is
+#: remembered, so that a second call goes further.
+CLIMB, VARY, REPEAT = 1200.0, 1700.0, 2000.0
+
+#: Fewer steps are tried on meshes whose error is this close to the coarsest level.
+NEAR = 1.2
+
+#: Runs that are within the first factor of a method's cheapest one for a level, or the second one as long as they were
+#: timed once, and so many seconds, are timed so many times: on a machine that does something else as well any run may
+#: come out late by these seconds, and one that is timed once by half (measured: 0.36 to 0.63 s for one and the same).
+CLOSE, ONCE, LATE, TIMES = 1.25, 1.7, 0.03, 5
+
+
+@dataclass(frozen=True)
+class Study:
+    """What a sweep found.
+
+    left_out : a sentence for every method that cannot solve the scene here
+    how : overrides of the scene with which a run was made, by its name
+    """
+
+    scene: Scene
+    against: Reference
+    rows: tuple[Row, ...]
+    left_out: tuple[str, ...]
+    how: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def summary(self) -> dict[str, object]:
+        """The content of ``cost.json``."""
+        equal = of_equal_steps(self.rows)
+        known = self.against
+        return {
+            "scene": self.scene.model_dump(),
+            "reference": {
+                "label": known.label,
+                "dofs": known.result.dofs,
+                "uncertainty": dict(known.uncertainty),
+                "order": known.order,
+                "other_code": known.other_label,
+                "other_code_apart": known.apart,
+                "other_code_uncertainty": known.other,
+                "agrees": known.agrees,
+            },
+            "cheapest": {level: cheapest(self.rows, level).summary() for level in LEVELS},
+            "cheapest_at_equal_steps": {level: cheapest(equal, level).summary() for level in LEVELS},
+            "pareto": [self._front(one) for one in pareto(self.rows)],
+            "orders": orders(self.rows, 2.0 * known.uncertainty["curve"]),
+            "growth": growth(self.rows),
+            "left_out": list(self.left_out),
+            "source": source_of(ALL_PACKAGES),
+            "versions": versions(),
+            "machine": machine(),
+            "threads": 1,
+        }
+
+    def _front(self, one: Row) -> dict[str, object]:
+        """A run of the front, with what repeats it."""
+        keys = ("method", "degree", "dofs", "steps", "curve_error", "seconds", "run")
+        solver = {"tspline-adaptive": "tspline"}.get(one.method, one.method)
+        return {key: getattr(one, key) for key in keys} | {
+            "solver": solver,
+            "overrides": list(self.how.get(one.run, ())),
+        }
+
+
+@dataclass(frozen=True)
+class Runner:
+    """Does the runs of a study, one at a time, and remembers what came of them."""
+
+    source: str
+    scene: Scene
+    given: tuple[str, ...]
+    out: Path
+    against: Reference
+    found: dict[Try, Outcome] = field(default_factory=dict)
+    start: float = field(default_factory=monotonic)
+
+    def __call__(self, tries: Iterable[Try], seconds: float = inf) -> bool:
+        """Do what has not been done; whether all of it was begun within so many seconds after the start."""
+        jobs = {one.job(self.source, self.scene, self.given): one for one in tries if one not in self.found}
+        for outcome in run_all(list(jobs), self.out, jobs=1):
+            self.found[jobs[outcome.job]] = outcome
+            if monotonic() - self.start > seconds:
+                break
+        return all(one in self.found for one in jobs.values())
+
+    @property
+    def rows(self) -> dict[Try, Row]:
+        """First runs, each with the times of its repetitions."""
+        firsts = [one for one in self.found if one.repeat == 0]
+        return {one: row(one, [self.found[same] for same in self.again(one)], self.against) for one in firsts}
+
+    def again(self, one: Try) -> list[Try]:
+        """A run and its repetitions so far."""
+        return [found for found in self.found if replace(found, repeat=0) == one]
+
+
+def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> Study | None:
+    """Run the study into ``out``: cost.csv, cost.json, report.html; None where there is no reference.
+
+    Parameters
+    ----------
+    given : overrides that ``scene`` has, and that every run repeats
+    jobs : runs of the reference at a time; what is timed runs alone
+    """
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    rungs, reasons = ladders(source, scene, given)
+    plans = reference_jobs(source, scene, given)
+    outcomes = {outcome.job: outcome for outcome in run_all([job for plan in plans for job in plan], out, jobs)}
+    against = reference(*([outcomes[job] for job in plan] for plan in plans))
+    if against is None:
+        say(_no_reference([outcomes[job] for job in plans[0]]))
+        return None
+    print(against.sentence, file=sys.stderr, flush=True)
+    runner = Runner(source, scene, tuple(given), out, against)
+    whole = [
+        climb(rungs, partial(runner, seconds=CLIMB), lambda: runner.rows),
+        runner(_between(runner.rows), VARY),
+        runner([other for one, row in runner.rows.items() if _worth(row) for other in one.with_few_steps()], VARY),
+        runner([other for one in _best(runner.rows) for other in one.with_other_steps()], VARY),
+    ]
+    for repeat in range(1, TIMES):
+        whole.append(runner([replace(one, repeat=repeat) for one in _best(runner.rows, CLOSE, ONCE, LATE)], REPEAT))
+    if not all(whole):
+        reasons.append("The time allowed for a study is over; the same command goes on from here.")
+    how = {one.variant: one.job(source, scene).overrides for one in runner.found}
+    study = Study(scene, against, tuple(_counted(runner)), tuple(reasons), how)
+    write_csv(out / "cost.csv", Row, study.rows)
+    write_json(out / "cost.json", study.summary())
+    write_page("verify.studies.cost.page", study, out / "report.html")
+    print("\n".join([against.sentence, *study.left_out, *table(study.rows), f"written: {out / 'cost.csv'}"]))
+    return study
+
+
+def climb(
+    ladders: Mapping[Family, Sequence[Try]], run: Callable[[list[Try]], bool], rows: Callable[[], Mapping[Try, Row]]
+) -> bool:
+    """Rung after rung of all families, until each is accurate enough, too slow, or at its end.
+
+    Parameters
+    ----------
+    run : does some runs; whether there was time for all
+    rows : all that has been found so far
+    """
+    left = {family: list(rungs) for family, rungs in ladders.items() if rungs}
+    while left:
+        if not run([rungs[0] for rungs in left.values()]):
+            return False
+        found = rows()
+        for family, (done, *rest) in list(left.items()):
+            left[family] = rest
+            if not rest or _high_enough(found[done], list(found.values())):
+                del left[family]
+    return True
+
+
+def _high_enough(last: Row, rows: Sequence[Row]) -> bool:
+    finest = min(LEVELS.values())
+    others = [one for one in rows if one.measured and one.dofs]
+    accurate = [one.seconds for one in others if one.curve_error <= finest]
+    too_slow = last.measured and last.seconds > min(LONGEST, PATIENCE * min(accurate, default=LONGEST))
+    beaten = any(
+        one.method == last.method and one.curve_error <= last.curve_error and BEATEN * one.seconds <= last.seconds
+        for one in others
+    )
+    return too_slow or beaten or last.curve_error <= ENOUGH * finest
+
+
+def _worth(found: Row) -> bool:
+    """Whether a run comes near the coarsest level, so that fewer steps may make it cheaper."""
+    return found.curve_error <= NEAR * max(LEVELS.values())
+
+
+def _best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late: float = 0.0) -> list[Try]:
+    """The cheapest runs of every method for every level, and those within a factor of them and so many seconds.
+
+    The factor of runs that were timed ``once`` is another.
+    """
+    chosen: dict[Try, None] = {}
+    for level, error in LEVELS.items():
+        for method, best in cheapest(list(rows.values()), level).of_method.items():
+            for one, found in rows.items():
+                most = (once if found.times == 1 else within) * best.seconds + late
+                if found.method == method and found.curve_error <= error and found.seconds <= most:
+                    chosen[one] = None
+    return list(chosen)
+
+
+def _between(rows: Mapping[Try, Row]) -> list[Try]:
+    """Meshes between the last that misses a level and the first that meets it, of every method's best family."""
+    chosen: dict[Try, None] = {}
+    for error in LEVELS.values():
+        for one in _best(rows):
+            coarser = [other for other in rows if other.family == one.family and other.size < one.size]
+            below = max(coarser, key=lambda other: other.size, default=None)
+            if below is not None and rows[one].curve_error <= error < rows[below].curve_error:
+                chosen[replace(one, size=round((one.size * below.size) ** 0.5))] = None
+    return list(chosen)
+
+
+def _counted(runner: Runner) -> Iterable[Row]:
+    """Rows with the entries of their tangents, which the ``iga`` runs do not tell."""
+    for one, found in runner.rows.items():
+        job = runner.found[one].job
+        known = found.nonzeros or not found.measured
+        yield found if known else replace(found, nonzeros=nonzeros(job.solved, job.method))
+
+
+def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> list[str]:
+    """The runs at most, with their times, a line each; ladders end sooner, and the best runs are repeated."""
+    rungs, reasons = ladders(source, scene, given)
+    plan: list[Job] = [job for jobs_of in reference_jobs(source, scene, given) for job in jobs_of]
+    plan += [one.job(source, scene, given) for ones in rungs.values() for one in ones]
+    note = "ladders end where they are accurate enough; the best runs are made again with other steps, and repeated"
+    return [*dry_run(plan, out, jobs), note, *reasons]
+
+
+def _no_reference(outcomes: Sequence[Outcome]) -> str:
+    ends = [(o.left_out, o.result) for o in outcomes if o.result is None or not o.result.complete]
+    why = [left_out or (result.status if result is not None else "") for left_out, result in ends]
+    return f"no converged reference, so that nothing can be measured: {why[0]}"

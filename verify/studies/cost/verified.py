@@ -1,0 +1,346 @@
+"""``debond solve --accuracy``, verified: solutions on ever finer meshes until two of them agree.
+
+Level 0 is the first guess (`verify.studies.cost.accuracy`). Every further level has `RATIO` times the elements along
+the specimen, a higher degree, so that the thickness of the arms is resolved better, too, and another number of steps.
+What bounds the error of the finer one of two levels is said in `bound`.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from math import ceil, inf, isfinite
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from verify.curves.curve import Curve, peak
+from verify.curves.leg_checks import leg_differences
+from verify.curves.legs import path
+from verify.curves.of_run import PER_STEP, cubics, distance
+from verify.fields.frames import cleared
+from verify.methods.names import WITH_DOFS
+from verify.methods.reference_mesh import reference_mesh
+from verify.methods.zone_resolution import expected
+from verify.result import Result
+from verify.runs import estimate
+from verify.runs.folder import FILES, write_json
+from verify.runs.store import alone_in
+from verify.scene.effects import simulated
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene, only_opens, turns
+from verify.studies.cost.accuracy import Choice, with_elements
+from verify.support.checked_files import read_json
+from verify.support.progress import duration
+from verify.support.refusal import Refusal
+from verify.support.say import say
+from verify.verdict import Check
+
+#: Elements along the specimen over those of the level before, and levels at most.
+RATIO, LEVELS = 1.5, 4
+
+#: Highest degree of a method.
+HIGHEST = {"nurbs": 5, "lagrange": 5, "tspline": 3, "dolfinx": 4}
+
+#: The error of the straight lines between the steps may be this part of the accuracy; the next level has more steps
+#: where it is larger, and some more in any case, so that they end in other places.
+STRAIGHT, MORE_STEPS, MOST_STEPS = 0.25, 1.1, 3.0
+
+#: Bound of the error of the finer one of two levels over their distance, at least and at most. On random scenes the
+#: error was up to 1.33 times the distance, where the ripple of the integration points on the peak outweighs the rest,
+#: and 0.3 times at the median.
+CAUTION, SLOWEST = 1.5, 5.0
+
+#: Largest factor by which the error falls from one level to the next: up to 57 times on random scenes.
+GAIN = 60.0
+
+#: Power of the unknowns with which the time of a run grows where a linear bulk is condensed.
+CONDENSED = 0.3
+
+#: What solves a scene by a method into a folder, the last one, and draws fields where it is asked to.
+Solve = Callable[[Scene, str, Path, bool], tuple[Result, tuple[Check, ...]]]
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """A run: ``distance`` to the level before and ``bound`` of the error, infinite where there is none to compare."""
+
+    folder: str
+    scene: Scene
+    method: str
+    overrides: tuple[str, ...]
+    result: Result
+    checks: tuple[Check, ...]
+    seconds: float
+    distance: float = inf
+    bound: float = inf
+
+    def summary(self) -> dict[str, Any]:
+        keys = ("folder", "method", "overrides", "seconds", "distance")
+        return {key: getattr(self, key) for key in keys} | {"status": self.result.status}
+
+
+@dataclass(frozen=True, eq=False)
+class Verified:
+    """The levels of a solution with the accuracy ``asked``, coarse to fine; ``why`` they end before it is reached."""
+
+    asked: float
+    levels: tuple[Level, ...]
+    why: str = ""
+
+    @property
+    def delivered(self) -> Level:
+        """The finest level that came to its end; the last one where no level did."""
+        return next((one for one in reversed(self.levels) if one.result.complete), self.levels[-1])
+
+    @property
+    def reached(self) -> tuple[float, float] | None:
+        """Interval of the error of the delivered level, None where it is compared with no other level.
+
+        From below: the distance of two levels is at most ``GAIN + 1`` times the error of the finer one, for errors that
+        are opposite and fall by `GAIN`.
+        """
+        last = self.delivered
+        return (last.distance / (GAIN + 1.0), last.bound) if isfinite(last.bound) else None
+
+    @property
+    def close(self) -> bool:
+        """Whether the last two curves are so near each other that the error is within what was asked."""
+        return self.delivered.bound <= self.asked
+
+    @property
+    def holds(self) -> bool:
+        """Whether they do, and no identity is broken: on a finer mesh it may hold."""
+        return self.close and all(check.state != "broken" for check in self.delivered.checks)
+
+    @property
+    def sentence(self) -> str:
+        """What was reached, of what was asked."""
+        asked = f"asked {percent(self.asked)}"
+        if self.reached is None:
+            return f"error of the curve unknown, {asked}"
+        low, high = self.reached
+        return f"curve and peak load within {percent(high)} (between {percent(low)} and {percent(high)}), {asked}"
+
+    def summary(self) -> dict[str, Any]:
+        """The entry ``accuracy`` of result.json."""
+        number = self.levels.index(self.delivered)
+        return {
+            "asked": self.asked,
+            "holds": self.holds,
+            "reached": self.reached,
+            "against": self.levels[number - 1].folder if self.reached else None,
+            "why": self.why,
+            "levels": [one.summary() | ({"folder": "."} if one is self.delivered else {}) for one in self.levels],
+        }
+
+
+def verified(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Solve) -> Verified:
+    """Solve on finer and finer meshes, each in a folder in ``out``, until two bound the error by ``accuracy``.
+
+    The files of the delivered run are moved to ``out`` itself; so are those of a run that is interrupted.
+
+    Raises
+    ------
+    Refusal : another run is at work in ``out``.
+    """
+    with alone_in(out):
+        _clear(out)
+        with _kept_if_interrupted(out):
+            found = _refined(scene, first, accuracy, out, solve)
+        _deliver(out, found)
+    return found
+
+
+def _refined(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Solve) -> Verified:
+    overrides = first.overrides
+    levels: list[Level] = []
+    for number in range(LEVELS):
+        folder = f"level-{number}"
+        chosen = parse_scene(scene.model_dump(), overrides)
+        begun = perf_counter()
+        result, checks = solve(chosen, first.method, out / folder, number > 0)
+        seconds = perf_counter() - begun
+        level = Level(folder, chosen, first.method, overrides, result, checks, seconds)
+        if levels and result.complete:
+            off = apart(result, levels[-1].result, scene.load.opening)
+            level = replace(level, distance=off, bound=bound(off, levels[-1].distance))
+        levels.append(level)
+        found = Verified(accuracy, tuple(levels))
+        if not result.complete:
+            return replace(found, why=f"{folder} {result.status}")
+        if found.holds:
+            return found
+        if number + 1 == LEVELS:
+            break
+        try:
+            overrides = finer(chosen, first.method, overrides, _more_steps(result, scene.load.opening, accuracy))
+            _announce(level, parse_scene(scene.model_dump(), overrides), number + 1)
+        except Refusal as error:
+            return replace(found, why=f"no mesh is finer than that of {folder}: {error}")
+    return replace(found, why=f"{LEVELS} levels are the most")
+
+
+def apart(fine: Result, coarse: Result, programme: Sequence[float]) -> float:
+    """Distance of the curve of a run, straight between its steps, from the path of another, relative.
+
+    The largest one of: L2 of the load over the opening, of every leg where the programme turns; and of the peak loads.
+    Infinite where they cannot be compared.
+    """
+    if min(len(fine.load), len(coarse.load)) < 2:
+        return inf
+    curve, known = (fine.opening, fine.load), _curved(coarse, programme)
+    size = float(np.max(np.abs(known[1])))
+    found = [abs(peak(curve)[1] - peak(known)[1]) / size if size > 0.0 else inf]
+    if only_opens(programme):
+        found.append(distance(curve, coarse))
+    else:
+        legs = leg_differences(path(curve, programme), path(known, programme))
+        found += [leg.error for leg in legs] if len(legs) == len(turns(programme)) else [inf]
+    return max(one if isfinite(one) else inf for one in found)
+
+
+def _curved(result: Result, programme: Sequence[float]) -> Curve:
+    """The path of a run, with points between its steps.
+
+    Where a programme turns, steps across which faces begin to touch are straight: their cubics would swing far beyond
+    the turn, as the slopes at both ends have nothing to do with each other.
+    """
+    (d, P), ends = map(np.asarray, cubics(result)), result.opening
+    if only_opens(programme) or len(d) == len(ends):
+        return d, P
+    at = np.linspace(0.0, len(ends) - 1.0, len(d))
+    low, high = (np.repeat(of(ends[:-1], ends[1:]), PER_STEP) for of in (np.minimum, np.maximum))
+    trifle = 1e-9 * float(np.max(np.abs(ends)))
+    beyond = np.maximum(low - d[1:], d[1:] - high) > trifle
+    straight = np.append(False, np.repeat(beyond.reshape(-1, PER_STEP).any(axis=1), PER_STEP))
+    steps = np.arange(len(ends))
+    return np.where(straight, np.interp(at, steps, ends), d), np.where(straight, np.interp(at, steps, result.load), P)
+
+
+def bound(distance: float, before: float = inf) -> float:
+    """Bound of the error of the finer one of two levels from their distance, and from that of the two before them.
+
+    `CAUTION` times the distance is enough where the coarser one is at least 5/3 times as far off: with `RATIO` 1.5 from
+    an order of 1.3 on. Where distances have fallen more slowly, to the part f, the ones to come add up to f / (1 - f)
+    of the last one, as in a geometric series, of which `SLOWEST` is the most that is taken for one.
+    """
+    f = distance / before if before > 0.0 else 0.0
+    return distance * min(max(CAUTION, f / (1.0 - f) if f < 1.0 else inf), SLOWEST)
+
+
+def finer(scene: Scene, method: str, overrides: Sequence[str], more: float = MORE_STEPS) -> tuple[str, ...]:
+    """Overrides of the next level.
+
+    Parameters
+    ----------
+    scene, overrides : of this level, the scene with its overrides
+    more : number of steps over that of this level
+
+    Raises
+    ------
+    Refusal : there is no finer mesh.
+    """
+    asked = scene.discretization
+    if method in WITH_DOFS:
+        degree = min(asked.degree + 1, HIGHEST[method])
+        mesh = with_elements(scene, method, degree, RATIO * expected(scene, method).elements)
+    else:
+        own = reference_mesh(scene)
+        degree = min(own.degree + 1, HIGHEST[method])
+        layers = own.layers + (degree == own.degree)
+        finest = {"degree": degree, "elements": ceil(RATIO * own.elements), "layers": layers}
+        mesh = tuple(f"dolfinx.{key}={value}" for key, value in finest.items())
+    steps = f"discretization.steps={ceil(more * asked.steps)}" if asked.steps != "auto" else ""
+    pace = steps or f"discretization.bend={max(asked.bend / more**2, 1e-5)!r}"
+    found = {one.partition("=")[0]: one for one in (*overrides, pace, *mesh)}
+    return tuple(found.values())
+
+
+def _more_steps(result: Result, programme: Sequence[float], accuracy: float) -> float:
+    """So many times the steps that straight lines between them are good enough."""
+    straight = apart(result, result, programme)
+    wanted = (straight / (STRAIGHT * accuracy)) ** 0.5 if isfinite(straight) else MOST_STEPS
+    return min(max(wanted, MORE_STEPS), MOST_STEPS)
+
+
+def growth(scene: Scene, following: Scene, method: str) -> float:
+    """How much longer a run on a finer mesh takes: in proportion to steps and unknowns.
+
+    A linear bulk that is condensed onto the interface counts for less: 1.1 to 1.6 times the time for twice the
+    unknowns on random scenes.
+    """
+    unknowns, steps = (of(following, method) / of(scene, method) for of in (estimate.unknowns, estimate.steps))
+    if scene.discretization.steps == "auto":
+        steps *= (scene.discretization.bend / following.discretization.bend) ** 0.5
+    condensed = method in WITH_DOFS and simulated(scene, method)["kinematics"] == "linear"
+    return steps * unknowns ** (CONDENSED if condensed else 1.0)
+
+
+def planned(scene: Scene, first: Choice) -> str:
+    """What is said before the first run: the guess, and the time of the two levels that are needed at least.
+
+    Raises
+    ------
+    Refusal : there is no finer mesh to verify it with.
+    """
+    guess = parse_scene(scene.model_dump(), first.overrides)
+    following = parse_scene(scene.model_dump(), finer(guess, first.method, first.overrides))
+    total = duration(first.seconds * (1.0 + growth(guess, following, first.method)))
+    return f"{first.why}; with a second run on a finer mesh, to verify it, about {total} in all"
+
+
+def _announce(level: Level, following: Scene, number: int) -> None:
+    took = f"{level.folder} took {duration(level.seconds)}"
+    if isfinite(level.distance):
+        took += f" and is {percent(level.distance)} from the level before"
+    degree = following.discretization.degree if level.method in WITH_DOFS else reference_mesh(following).degree
+    unknowns = estimate.unknowns(following, level.method)
+    about = duration(level.seconds * growth(level.scene, following, level.method))
+    say(f"{took}; level-{number}: degree {degree} with {unknowns} unknowns, about {about}")
+
+
+@contextmanager
+def _kept_if_interrupted(out: Path) -> Iterator[None]:
+    """Move the files of a run that is interrupted, or for which there is no room, to where those of a whole one are."""
+    try:
+        yield
+    except (KeyboardInterrupt, OSError):
+        last = max(out.glob("level-[0-9]"), default=None)
+        if last is not None:
+            _move(last, out)
+        raise
+
+
+def _deliver(out: Path, found: Verified) -> None:
+    _move(out / found.delivered.folder, out)
+    file = out / "result.json"
+    if file.exists():
+        write_json(file, {**read_json(file, {}), "accuracy": found.summary()})
+
+
+def _move(folder: Path, out: Path) -> None:
+    for item in folder.glob("*"):
+        if (out / item.name).is_dir():
+            shutil.rmtree(out / item.name)
+        item.replace(out / item.name)
+    if folder.is_dir():
+        folder.rmdir()
+
+
+def _clear(out: Path) -> None:
+    """Remove earlier runs."""
+    for folder in out.glob("level-[0-9]"):
+        if (folder / "curve.csv").exists():
+            shutil.rmtree(folder)
+    cleared(out)
+    for name in FILES:
+        (out / name).unlink(missing_ok=True)
+
+
+def percent(part: float) -> str:
+    return f"{100.0 * part:.2g} %"

@@ -1,0 +1,194 @@
+"""Two runs that differ by one effect, held against each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from math import isfinite, nan
+
+import numpy as np
+
+from verify.curves.curve import Curve, load_at
+from verify.curves.of_run import cubics, dissipated, distance, peak_load
+from verify.result import Result, run_seconds
+from verify.runs.jobs import Job, Outcome
+from verify.studies.effects.plan import Pair
+
+#: Part of the work, or of the largest load, that counts as none.
+NOTHING = 1e-9
+
+#: Equal runs whose times differ by more than this tell little of small differences.
+BUSY = 1.2
+
+#: Changes by the name of their column, in the words of the table.
+CHANGES: Mapping[str, str] = {
+    "peak_change": "peak load",
+    "end_change": "load at the end",
+    "dissipated_change": "dissipated energy",
+    "work_change": "work",
+}
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of ``effects.csv``. What cannot be told is NaN.
+
+    scene_has : whether the scene as it is has the effect
+    curve_change : relative L2 distance of the load with the effect to that without it, along the programme
+    peak_change, end_change, dissipated_change, work_change : with over without, less 1: of the largest load, of the
+        load, of the energy dissipated and of the external work at the end; NaN where there is nothing without it
+    seconds_with, seconds_without : wall time without imports and without what is compiled, the least of ``times`` runs
+    time_ratio : with over without
+    time_spread : largest over least time of equal runs; far from 1 the machine was busy, and the ratio says little
+    """
+
+    effect: str
+    key: str
+    with_it: str
+    without: str
+    scene_has: bool
+    curve_change: float
+    peak_change: float
+    end_change: float
+    dissipated_change: float
+    work_change: float
+    seconds_with: float
+    seconds_without: float
+    time_ratio: float
+    time_spread: float
+    times: int
+    status: str
+
+    @property
+    def complete(self) -> bool:
+        return self.status == "complete"
+
+    @property
+    def sentence(self) -> str:
+        """finite kinematics: curve 0.69 %, +0.2 % peak load, +0.7 % load at the end, 3.1 x time"""
+        if not self.complete:
+            return f"{self.effect}: {self.status}"
+        changes = [f"curve {signed(self.curve_change).lstrip('+')}"] if isfinite(self.curve_change) else []
+        for key, name in CHANGES.items():
+            value = getattr(self, key)
+            changes.append(f"{signed(value)} {name}" if isfinite(value) else f"no {name} without it")
+        return f"{self.effect}: {', '.join([*changes, self.time])}"
+
+    @property
+    def time(self) -> str:
+        if not isfinite(self.time_ratio):
+            return "no time"
+        busy = f" (equal runs differ by up to {self.time_spread:.2g} x)" if self.time_spread > BUSY else ""
+        return f"{self.time_ratio:.2g} x time{busy}"
+
+
+def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[Outcome]]) -> Row:
+    """Hold the two runs of a pair against each other; times are those of the repetitions ``again``."""
+    head = {
+        "effect": pair.switch.name,
+        "key": pair.switch.key,
+        "with_it": pair.switch.on,
+        "without": pair.switch.off,
+        "scene_has": len(pair.with_it.overrides) < len(pair.without.overrides),
+    }
+    times = {f"seconds_{side}": _least(again[job]) for side, job in _sides(pair).items()}
+    times["time_ratio"] = times["seconds_with"] / times["seconds_without"]
+    times["time_spread"] = max(_spread(again[job]) for job in _sides(pair).values())
+    times["times"] = min(len(again[job]) for job in _sides(pair).values())
+    stopped = [f"{side} it: {why}" for side, job in _sides(pair).items() if (why := _failed(first[job]))]
+    if stopped:
+        unknown = {field.name: nan for field in fields(Row) if field.name.endswith("_change")}
+        return Row(**head, **unknown, **times, status="; ".join(stopped))
+    results = (first[job].result for job in _sides(pair).values())
+    found = changes(*results, pair.with_it.scene.load.opening)
+    return Row(**head, **found, **times, status="complete")
+
+
+def changes(with_it: Result, without: Result, programme: Sequence[float]) -> dict[str, float]:
+    """What one effect makes of curve, peak, end and energies: with over without, less 1."""
+    top = max(abs(peak_load(with_it)), abs(peak_load(without)))
+    most = max(abs(_work(with_it)), abs(_work(without)))
+    return {
+        "curve_change": apart(with_it, without, programme),
+        "peak_change": change(peak_load(with_it), peak_load(without), top),
+        "end_change": change(float(with_it.load[-1]), float(without.load[-1]), top),
+        "dissipated_change": change(dissipated(with_it), dissipated(without), most),
+        "work_change": change(_work(with_it), _work(without), most),
+    }
+
+
+def apart(with_it: Result, without: Result, programme: Sequence[float], n: int = 400) -> float:
+    """Relative L2 distance of the load over the opening: of the envelopes, or leg by leg of a programme that has more.
+
+    What unloads is no part of an envelope, and the whole point of some effects.
+    """
+    ours, theirs = (legs(result, programme) for result in (with_it, without))
+    if len(programme) == 1 or min(len(ours), len(theirs)) < len(programme):
+        return distance(cubics(with_it), without)
+    off = size = 0.0
+    for mine, known, end, start in zip(ours, theirs, programme, (0.0, *programme), strict=False):
+        at = abs(end - start) * (np.arange(1, n + 1) / n)
+        wanted = load_at(known, at)
+        off += abs(end - start) * float(np.sum((load_at(mine, at) - wanted) ** 2))
+        size += abs(end - start) * float(np.sum(wanted**2))
+    return (off / size) ** 0.5
+
+
+def legs(result: Result, programme: Sequence[float]) -> list[Curve]:
+    """The curve of every leg that was walked to its end, over the way from its start."""
+    found, at = [], 0
+    for goal, start in zip(programme, (0.0, *programme), strict=False):
+        there = np.flatnonzero(np.isclose(result.opening[at + 1 :], goal, rtol=0.0, atol=1e-9 * abs(goal - start)))
+        if not there.size:
+            break
+        end = at + 1 + int(there[0])
+        part = replace(result, steps={name: column[at : end + 1] for name, column in result.steps.items()})
+        opening, load = cubics(part)
+        found.append((np.sign(goal - start) * (np.asarray(opening) - start), load))
+        at = end
+    return found
+
+
+def change(value: float, before: float, scale: float) -> float:
+    """value / before - 1: 0 where both are nothing on the ``scale``, NaN where only ``before`` is."""
+    if abs(before) <= NOTHING * scale:
+        return 0.0 if abs(value) <= NOTHING * scale else nan
+    return value / before - 1.0
+
+
+def signed(fraction: float) -> str:
+    """+0.69 %, two digits, and no more than five behind the point."""
+    per_cent = 100.0 * fraction
+    return "0 %" if abs(per_cent) < 1e-5 else f"{float(f'{per_cent:.2g}'):+.6g} %"
+
+
+def table(rows: Sequence[Row], reasons: Sequence[str]) -> list[str]:
+    """A sentence an effect."""
+    return [*(one.sentence for one in rows), *reasons]
+
+
+def _sides(pair: Pair) -> dict[str, Job]:
+    return {"with": pair.with_it, "without": pair.without}
+
+
+def _least(outcomes: Sequence[Outcome]) -> float:
+    return min(_seconds(outcomes), default=nan)
+
+
+def _spread(outcomes: Sequence[Outcome]) -> float:
+    seconds = _seconds(outcomes)
+    return max(seconds, default=nan) / min(seconds, default=nan)
+
+
+def _seconds(outcomes: Sequence[Outcome]) -> list[float]:
+    return [run_seconds(one.result) for one in outcomes if one.result is not None and one.result.seconds]
+
+
+def _failed(outcome: Outcome) -> str:
+    if outcome.result is None:
+        return outcome.left_out
+    return "" if outcome.result.complete else outcome.result.status
+
+
+def _work(result: Result) -> float:
+    return float(result.steps["external_work"][-1])

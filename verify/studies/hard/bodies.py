@@ -1,0 +1,91 @@
+"""Bodies that lock, turn over, or hardly resist."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from verify.methods.solve import solve
+from verify.studies.hard.case import Case, Finding, Number, Trials, Variant, variant
+from verify.verdict import Check
+
+
+def _slender() -> Sequence[Variant]:
+    body = ("specimen.length=200.0", "specimen.precrack=180.0", "interface.toughness=0.001", "interface.strength=1.0")
+    return [variant("1-1000", "dcb-czm1", *body, "load.opening=90.0", "discretization.dofs=2400")]
+
+
+def _judge_slender(trials: Trials) -> Iterator[Finding]:
+    for name, trial in trials.items():
+        beam = solve(trial.scene, "beam")
+        error = trial.result.steps["load_slope"][0] / beam.steps["load_slope"][0] - 1.0
+        yield Check("compliance", name, error, 0.005, "analytical", "The initial stiffness is that of the beam.")
+
+
+def _incompressible() -> Sequence[Variant]:
+    body = ("specimen.plane=strain", "material.poisson=0.4999")
+    return [
+        variant("coarse", "dcb-czm1", *body, "discretization.dofs=1200"),
+        variant("fine", "dcb-czm1", *body, "discretization.dofs=2400", "load.opening=0.1"),
+    ]
+
+
+def _judge_incompressible(trials: Trials) -> Iterator[Finding]:
+    coarse, fine = (trials[name].result.steps["load_slope"][0] for name in ("coarse", "fine"))
+    yield Check(
+        "compliance", "coarse", coarse / fine - 1.0, 0.02, "regression", "The initial stiffness of a fine mesh."
+    )
+
+
+def _large_rotation() -> Sequence[Variant]:
+    return [variant("upright", "peel-soft", "discretization.dofs=5000", "discretization.interface_points=4")]
+
+
+def _judge_large_rotation(trials: Trials) -> Iterator[Finding]:
+    for name, trial in trials.items():
+        steps, scene = trial.result.steps, trial.scene
+        sine = float(np.abs(steps["face_slope_top"][-1]))
+        yield Number("slope", name, sine, "Sine of the rotation of the strip's end, 1 where it is upright.")
+        meaning = "At the end the load is G_Ic w / sin(theta)."
+        griffith = scene.interface.toughness * scene.specimen.width
+        yield Check("end-load", name, steps["load"][-1] * sine / griffith - 1.0, 0.01, "analytical", meaning)
+
+
+def _contrast() -> Sequence[Variant]:
+    return [variant("million", "peel-60", "strip.young=5e9", "discretization.dofs=1200")]
+
+
+def _judge_contrast(trials: Trials) -> Iterator[Finding]:
+    for name, trial in trials.items():
+        condition = trial.result.condition
+        yield Number("condition", name, condition, "Largest condition number of the tangents.")
+        known = 0.0 if condition > 0.0 else 1.0
+        yield Check("condition-known", name, known, 0.0, "exact", "The condition number is reported.")
+
+
+def _short_ligament() -> Sequence[Variant]:
+    return [
+        variant("ligament-0.5", "dcb-czm1", "specimen.precrack=13.5", "load.opening=10.0", "discretization.dofs=480")
+    ]
+
+
+#: T-splines are cubic.
+RECTANGULAR = ("nurbs", "lagrange")
+
+
+def _degrees() -> Sequence[Variant]:
+    return [
+        variant(f"degree-{p}", "dcb-czm1", f"discretization.degree={p}", f"discretization.dofs={dofs}")
+        for p, dofs in ((1, 640), (2, 2400), (4, 640), (5, 640))
+    ]
+
+
+CASES = (
+    Case("slender", "Arms a thousand times as long as thick lock where shear does.", _slender, _judge_slender),
+    Case("incompressible", "Plane strain at Poisson's ratio 0.4999 locks.", _incompressible, _judge_incompressible),
+    Case("large-rotation", "A soft strip is peeled until its end is vertical.", _large_rotation, _judge_large_rotation),
+    Case("stiffness-contrast", "A strip a million times stiffer than its substrate.", _contrast, _judge_contrast),
+    Case("short-ligament", "The precrack is nearly as long as the specimen: the zone never fits.", _short_ligament),
+    Case("degrees", "Elements of degree 1 lock, those of degree 5 overshoot.", _degrees, bases=RECTANGULAR),
+)

@@ -1,0 +1,35 @@
+"""All hard cases by name, in the order of the matrix."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from verify.scene.complaints import suggestion
+from verify.studies.hard import bodies, interfaces, invariance, programmes, strength
+from verify.studies.hard.case import Case
+from verify.support.refusal import Refusal
+
+CASES: dict[str, Case] = {
+    case.name: case
+    for case in (
+        *strength.CASES,
+        *interfaces.CASES,
+        *bodies.CASES,
+        *programmes.CASES,
+        *invariance.CASES,
+    )
+}
+
+
+def chosen(names: Sequence[str]) -> tuple[Case, ...]:
+    """The named cases, all of them without a name.
+
+    Raises
+    ------
+    Refusal : for names that are no case's
+    """
+    wrong = [name for name in names if name not in CASES]
+    if wrong:
+        hints = [suggestion(name, CASES) or f"the hard cases are {', '.join(CASES)}" for name in wrong]
+        raise Refusal("\n".join(f"{name}: is no hard case; {hint}" for name, hint in zip(wrong, hints, strict=True)))
+    return tuple(CASES[name] for name in dict.fromkeys(names)) if names else tuple(CASES.values())

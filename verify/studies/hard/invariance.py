@@ -1,0 +1,113 @@
+"""What must not matter: units, place and direction, rounding."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from verify.scene.load import load_scene
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
+from verify.studies.hard.case import Case, Finding, Trials, Variant, variant
+from verify.studies.hard.criteria import difference
+from verify.verdict import Check
+
+_MESH = "discretization.dofs=280"
+
+#: Exponents of force and length of every key of a scene that has units.
+_FORCE_AND_LENGTH = {
+    **dict.fromkeys(("young", "E1", "E2", "G12", "strength"), (1, -2)),
+    **dict.fromkeys(("length", "arm_thickness", "precrack", "width", "opening", "shift"), (0, 1)),
+    **dict.fromkeys(
+        ("strip_length", "strip_thickness", "substrate_length", "substrate_thickness", "bond_length"), (0, 1)
+    ),
+    "toughness": (1, -1),
+    "penalty": (1, -3),
+}
+
+#: Sizes of a newton and a millimetre in other units, and their label.
+_UNITS = {
+    "n-mm": (1.0, 1.0, "N, mm, MPa"),
+    "n-m": (1.0, 1e-3, "N, m, Pa"),
+    "kn-in": (1e-3, 1.0 / 25.4, "kN, in, kN/in2"),
+}
+
+
+def every_number(scene: Scene, change: Callable[[str, float], float]) -> Scene:
+    """The scene with ``change(key, value)`` for all of its numbers, which are those that are not whole by nature."""
+
+    def walk(key: str, value: Any) -> Any:
+        if isinstance(value, Mapping):
+            return {inner: walk(inner, part) for inner, part in value.items()}
+        if isinstance(value, list | tuple):
+            return [walk(key, part) for part in value]
+        return change(key, value) if isinstance(value, float) else value
+
+    return parse_scene({key: part for key, part in walk("", scene.model_dump()).items() if part is not None})
+
+
+def in_units(scene: Scene, force: float, length: float, label: str) -> Scene:
+    """The scene in units in which a newton is ``force`` and a millimetre ``length``."""
+
+    def convert(key: str, value: float) -> float:
+        forces, lengths = _FORCE_AND_LENGTH.get(key, (0, 0))
+        return value * force**forces * length**lengths
+
+    return every_number(scene, convert).model_copy(update={"units": label})
+
+
+def _units() -> Sequence[Variant]:
+    scene = load_scene("dcb-czm1", [_MESH])
+    return [Variant(name, in_units(scene, *sizes)) for name, sizes in _UNITS.items()]
+
+
+def _judge_units(trials: Trials) -> Iterator[Finding]:
+    for name, (force, length, _) in list(_UNITS.items())[1:]:
+        away = difference(trials[name].result, trials["n-mm"].result, 1.0 / length, 1.0 / force)
+        yield Check("same-curve", name, away, 1e-9, "exact", "The curve does not know the units.")
+
+
+def _poses() -> Sequence[Variant]:
+    poses = {
+        "rotated": ("pose.angle=37.0",),
+        "mirrored": ("pose.mirror=true",),
+        "moved": ("pose.shift=[1e4, 1e4]",),
+        "all": ("pose.angle=37.0", "pose.mirror=true", "pose.shift=[1e4, 1e4]"),
+    }
+    return [variant("plain", "dcb-czm1", _MESH)] + [
+        variant(name, "dcb-czm1", _MESH, *keys) for name, keys in poses.items()
+    ]
+
+
+def _same_curve(trials: Trials, meaning: str) -> Iterator[Finding]:
+    plain = trials["plain"].result
+    for name, trial in trials.items():
+        if name != "plain":
+            away = difference(trial.result, plain)
+            yield Check("same-curve", name, away, 1e-8, "exact", meaning)
+
+
+NOISES, NOISE = 20, 1e-14
+
+
+def _noises() -> Sequence[Variant]:
+    scene = load_scene("dcb-czm1", [_MESH])
+
+    def noisy(seed: int) -> Scene:
+        rng = np.random.default_rng(seed)
+        return every_number(scene, lambda key, value: value * (1.0 + NOISE * rng.uniform(-1.0, 1.0)))
+
+    return [Variant("plain", scene), *(Variant(f"noise-{seed}", noisy(seed)) for seed in range(1, NOISES + 1))]
+
+
+_judge_poses = partial(_same_curve, meaning="The curve does not know where the specimen is.")
+_judge_noises = partial(_same_curve, meaning="The algorithm does not amplify rounding.")
+
+CASES = (
+    Case("units", "The same scene in N and mm, N and m, kN and inches.", _units, _judge_units),
+    Case("pose", "The specimen is rotated by 37 degrees, mirrored, moved by 1e4 mm.", _poses, _judge_poses),
+    Case("noise", "Every number of the scene is off by 1e-14 of itself, twenty times.", _noises, _judge_noises),
+)

@@ -1,0 +1,149 @@
+"""One case on one basis: run all variants, judge them, leave a verdict."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from verify.methods.names import Unsuitable
+from verify.methods.solve import solve
+from verify.result import Result, steps_from_rows
+from verify.runs.folder import read_result, write_json
+from verify.runs.run import Solver, run
+from verify.scene.schema import Scene
+from verify.studies.hard.case import Case, Finding, Number, Trial, Trials
+from verify.studies.hard.cases import CASES
+from verify.studies.hard.criteria import common, ledger
+from verify.support.checked_files import read_json, shape_of
+from verify.verdict import Check
+
+
+@dataclass(frozen=True)
+class Line:
+    """One run in the verdict: what the matrix sums up."""
+
+    name: str
+    status: str
+    steps: int
+    rejected: int
+    ledger: float
+    condition: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a case showed on a basis."""
+
+    case: str
+    basis: str
+    runs: tuple[Line, ...]
+    checks: tuple[Check, ...]
+    numbers: tuple[Number, ...]
+
+    @property
+    def passed(self) -> bool:
+        return bool(self.checks) and all(check.passed for check in self.checks)
+
+    @property
+    def completed(self) -> int:
+        return sum(line.status.startswith("complete") for line in self.runs)
+
+
+def run_case(case: Case, basis: str, folder: Path, solver: Solver = solve) -> Verdict:
+    """Run every variant of a case into a folder of its own in ``folder``, and write ``verdict.json`` beside them."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "verdict.json").unlink(missing_ok=True)
+    trials = {}
+    for variant in case.variants():
+        trials[variant.name] = Trial(variant, _run(variant.scene, basis, folder / variant.name, solver))
+        print(f"{case.name} {basis} {variant.name}: {_ending(trials[variant.name].result)}", flush=True)
+    findings = list(judged(case, trials))
+    verdict = Verdict(
+        case.name,
+        basis,
+        tuple(_line(trial) for trial in trials.values()),
+        tuple(found for found in findings if isinstance(found, Check)),
+        tuple(found for found in findings if isinstance(found, Number)),
+    )
+    write_json(folder / "verdict.json", asdict(verdict))
+    return verdict
+
+
+def judged(case: Case, trials: Trials) -> Iterator[Finding]:
+    """All findings; a criterion that cannot even be computed is one that fails."""
+    for trial in trials.values():
+        yield from common(trial, case.may_stop)
+    try:
+        yield from list(case.judge(trials))
+    except Exception as error:
+        traceback.print_exc()
+        yield Check("judged", "all", float("nan"), 0.0, "exact", f"Cannot be judged: {type(error).__name__}: {error}")
+
+
+def read_verdict(folder: Path) -> Verdict:
+    """The verdict in the folder of a case and basis.
+
+    Raises
+    ------
+    Damaged : it is not as `run_case` has written it.
+    """
+    kinds = {"runs": Line, "checks": Check, "numbers": Number}
+    shape = {"case": str, "basis": str, **{key: [shape_of(kind)] for key, kind in kinds.items()}}
+    known = read_json(folder / "verdict.json", shape)
+
+    def read(key: str, kind: type) -> tuple[Any, ...]:
+        names = [field.name for field in fields(kind)]
+        return tuple(kind(**{n: np.nan if record[n] is None else record[n] for n in names}) for record in known[key])
+
+    return Verdict(known["case"], known["basis"], *(read(key, kind) for key, kind in kinds.items()))
+
+
+def read_cell(folder: Path) -> Verdict:
+    """The verdict, where the runs that it is about can be read as well."""
+    verdict = read_verdict(folder)
+    for line in verdict.runs:
+        if line.steps > 0:
+            read_result(folder / line.name)
+    return verdict
+
+
+def _run(scene: Scene, basis: str, folder: Path, solver: Solver) -> Result:
+    """A run; one that is refused, for a mesh too coarse or a specimen not known, is a run without a step."""
+    try:
+        return run(scene, basis, folder, keep_fields=False, solver=solver)[0]
+    except Unsuitable as error:
+        return Result(basis, steps_from_rows([]), f"stopped: {error}")
+
+
+def _line(trial: Trial) -> Line:
+    result = trial.result
+    return Line(
+        trial.name,
+        _ending(result),
+        max(result.load.size - 1, 0),
+        result.rejected_steps,
+        ledger(result) if result.load.size > 1 else float("nan"),
+        result.condition,
+        (result.seconds or {}).get("total", 0.0),
+    )
+
+
+def _ending(result: Result) -> str:
+    return ", ".join(filter(None, (result.status, result.ending)))
+
+
+def main(arguments: Sequence[str]) -> int:
+    """``python -m verify.studies.hard.one CASE BASIS DIR``."""
+    name, basis, folder = arguments
+    return 0 if run_case(CASES[name], basis, Path(folder)).passed else 1
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))

@@ -1,0 +1,167 @@
+"""Load programmes: few steps and many, back and forth, to the very end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from verify.studies.hard.case import FINE, Case, Finding, Trial, Trials, Variant, variant
+from verify.studies.hard.criteria import distance
+from verify.verdict import Check
+
+
+def _big_steps() -> Sequence[Variant]:
+    keys = (*FINE, "effects.kinematics=linear")
+    return [variant(f"steps-{n}", "dcb-czm1", f"discretization.steps={n}", *keys) for n in (5, 5000)]
+
+
+def _judge_big_steps(trials: Trials) -> Iterator[Finding]:
+    away = distance(trials["steps-5"].result, trials["steps-5000"].result)
+    yield Check("same-curve", "steps-5", away, 0.002, "regression", "The envelope is that of 5000 steps.")
+
+
+_CLOSING = -0.1
+
+
+def _unload() -> Sequence[Variant]:
+    keys = (*FINE, "interface.penalty=1e3")  # soft enough for the mesh to see how it gives way
+    return [
+        variant(f"{name}-{kinematics}", "dcb-czm1", f"effects.kinematics={kinematics}", f"load.opening={way}", *keys)
+        for kinematics in ("linear", "finite")
+        for name, way in (
+            ("monotone", "3.0"),
+            ("to-zero", "[1.5, 0.0, 1.5, 3.0]"),
+            ("closing", f"[1.5, {_CLOSING}, 1.5, 3.0]"),
+        )
+    ]
+
+
+def _judge_unload(trials: Trials) -> Iterator[Finding]:
+    for name, trial in trials.items():
+        if name.startswith("monotone"):
+            continue
+        down, up = legs(trial)
+        if down.size < 2 or up.size < 2:
+            yield Check("legs", name, float("nan"), 0.0, "exact", "All legs of the programme were run.")
+            continue
+        linear = name.endswith("linear")
+        yield _secant(trial, down, linear)
+        yield from _penetration(trial) if name.startswith("closing") else ()
+        back = trial.result.load[up[-1]] / trial.result.load[down[0]] - 1.0
+        yield Check("return", name, back, 1e-6, "exact", "Reloaded to where it unloaded, the load is what it was.")
+        monotone = trials[f"monotone-{'linear' if linear else 'finite'}"].result
+        away = distance(trial.result, monotone)
+        yield Check("same-envelope", name, away, 0.002, "regression", "The envelope is that of the monotone programme.")
+
+
+def legs(trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+    """Steps of the leg that unloads and of the one that reloads to where it began, both ends included."""
+    d = trial.result.opening
+    top, low = trial.scene.load.opening[:2]
+    scale = 1e-9 * max(trial.scene.load.opening)
+    at_top, at_low = np.flatnonzero(np.abs(d - top) <= scale), np.flatnonzero(np.abs(d - low) <= scale)
+    at_low = at_low[at_low > at_top[0]] if at_top.size else at_low[:0]
+    again = at_top[at_top > at_low[0]] if at_low.size else at_top[:0]
+    if not again.size:
+        return np.zeros(0, dtype=int), np.zeros(0, dtype=int)
+    turn = at_top[at_top < at_low[0]][-1]
+    return np.arange(turn, at_low[0] + 1), np.arange(at_low[0], again[0] + 1)
+
+
+def _secant(trial: Trial, down: np.ndarray, linear: bool) -> Finding:
+    """Frozen damage makes a linear specimen positively homogeneous, contact included; a finite one only when closed."""
+    d, P = trial.result.opening[down], trial.result.load[down]
+    open_ = d >= 0.0
+    deviation = float(np.max(np.abs(P[open_] / P[0] - d[open_] / d[0])))
+    if linear:
+        return Check("secant", trial.name, deviation, 1e-6, "exact", "It unloads along the secant to the origin.")
+    at_zero = abs(float(np.interp(0.0, d[::-1], P[::-1]) / P[0]))
+    return Check("secant", trial.name, at_zero, 1e-3, "exact", "It unloads to the origin.")
+
+
+def _penetration(trial: Trial) -> Iterator[Finding]:
+    """Closed by -P, the ends of the arms press on each other like beams on springs that push and do not pull.
+
+    Both arms on springs of ``penalty`` between them: k = 2 w penalty an arm (Winkler). Each is a beam, free where it is
+    pressed and clamped where the bond is whole: the pressed part alone could not balance the moment of its load.
+    """
+    scene, steps = trial.scene, trial.result.steps
+    if "mouth_opening" not in steps:
+        return
+    body, young = scene.specimen, scene.material.young
+    at = int(np.argmin(steps["opening"]))
+    bending = young * body.width * body.arm_thickness**3 / 12.0
+    k = 2.0 * body.width * scene.interface.penalty
+    wanted = 2.0 * pressed_end(abs(steps["load"][at]), steps["damage_front"][at], bending, k)
+    found = -float(steps["mouth_opening"][at])
+    meaning = "Closed, the arms pass through each other by p / penalty, p that of beams on springs: over it, less 1."
+    yield Check("contact", trial.name, found / wanted - 1.0, 0.1, "analytical", meaning)
+
+
+def pressed_end(load: float, length: float, bending: float, k: float, elements: int = 400) -> float:
+    """Deflection of the end of a cantilever that a load presses there on one-sided springs k; cubic elements."""
+    n, h = elements, length / elements
+    K_e = bending / h**3 * np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], dtype=float)
+    K = np.zeros((2 * n + 2, 2 * n + 2))  # deflections and, times h, slopes
+    for e in range(n):
+        K[2 * e : 2 * e + 4, 2 * e : 2 * e + 4] += K_e
+    springs, closed = k * h * np.append(0.5, np.ones(n)), np.ones(n + 1, dtype=bool)
+    while True:
+        held = K.copy()
+        held[range(0, 2 * n + 2, 2), range(0, 2 * n + 2, 2)] += springs * closed
+        deflection = np.linalg.solve(held[:-2, :-2], np.append(load, np.zeros(2 * n - 1)))[::2]
+        touching = np.append(deflection > 0.0, False)
+        if (touching == closed).all():
+            return float(deflection[0])
+        closed = touching
+
+
+def _reversals() -> Sequence[Variant]:
+    tiny = "[0.5, 0.499999999, 1.0, 0.999999, 1.5, 1.499, 2.0]"
+    return [
+        variant(f"reversals-{basis}", "dcb-czm1", f"load.opening={way}", *FINE)
+        for basis, way in (("none", "2.0"), ("tiny", tiny))
+    ]
+
+
+def _judge_reversals(trials: Trials) -> Iterator[Finding]:
+    away = distance(trials["reversals-tiny"].result, trials["reversals-none"].result)
+    yield Check("same-envelope", "tiny", away, 0.002, "regression", "Reversals of no size change nothing.")
+
+
+def _separation() -> Sequence[Variant]:
+    return [
+        variant("dcb", "dcb-czm1", "load.opening=8.0", "discretization.dofs=1200"),
+        variant("peel", "peel-60", "specimen.bond_length=20.0", "load.opening=20.0", "discretization.dofs=1200"),
+    ]
+
+
+def _judge_separation(trials: Trials) -> Iterator[Finding]:
+    for name, trial in trials.items():
+        body, result = trial.scene.specimen, trial.result
+        said = result.complete and result.ending.startswith("separated")
+        yield Check("separated", name, 0.0 if said else 1.0, 0.0, "exact", "The run ends by itself and says separated.")
+        if result.load.size < 2:
+            continue
+        left = abs(result.load[-1]) / np.max(np.abs(result.load))
+        yield Check("no-load", name, left, 0.01, "exact", "Nothing is carried any more, over the peak load.")
+        bond = body.bond_length if body.kind == "peel" else body.length - body.precrack
+        whole = trial.scene.interface.toughness * body.width * bond
+        lost = result.steps["dissipated_energy"][-1] / whole - 1.0
+        hinge = 1.0 / result.snapshots[0].s_q.size
+        meaning = "The whole bond was paid for, but for one point, on which the bodies turn without any load."
+        yield Check("all-dissipated", name, lost, 0.01 + hinge, "exact", meaning)
+
+
+CASES = (
+    Case("big-steps", "The whole programme in 5 requested steps, and in 5000.", _big_steps, _judge_big_steps),
+    Case("unload-reload", "The crack closes, presses, and opens again.", _unload, _judge_unload),
+    Case("tiny-reversals", "The programme turns back by a billionth and goes on.", _reversals, _judge_reversals),
+    Case(
+        "full-separation",
+        "The crack runs through the whole specimen, snapping back to no load.",
+        _separation,
+        _judge_separation,
+    ),
+)

@@ -1,0 +1,139 @@
+"""Strong and brittle interfaces: process zones shorter than an element, and the limit that they tend to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from verify.checks.identities import law_of
+from verify.curves.curve import PROPAGATION, load_at, peak
+from verify.methods.solve import solve
+from verify.methods.zone_resolution import warnings
+from verify.studies.hard.case import FINE, Case, Finding, Number, Trial, Trials, Variant, variant
+from verify.studies.hard.criteria import smooth
+from verify.theory.law import Bilinear
+from verify.verdict import Check
+
+
+def _coarse() -> Sequence[Variant]:
+    return [variant("d0-280", "dcb-czm2", "discretization.dofs=280")]
+
+
+def _under_resolved() -> Sequence[Variant]:
+    sizes = (10, 20, 40)
+    return [variant(f"strength-{p}", "dcb-czm1", f"interface.strength={p}.0", "discretization.dofs=280") for p in sizes]
+
+
+def _judge_under_resolved(trials: Trials) -> Iterator[Finding]:
+    for name, trial in trials.items():
+        yield warned(trial)
+        broken, paid = broken_area(trial)
+        yield Number("broken", name, broken, "Area of the points that broke.")
+        if paid > 0.0:
+            steps = trial.result.steps
+            spent = steps["external_work"][-1] - steps["stored_energy"][-1]
+            meaning = "What the load did and the specimen has not stored, over G_Ic times the new area of crack."
+            yield Check("crack-cost", name, spent / paid - 1.0, 0.02, "exact", meaning)
+
+
+def broken_area(trial: Trial) -> tuple[float, float]:
+    """Area of the points that have broken by the end of the run, and what it costs.
+
+    Where the zone is shorter than the distance of two points, the crack runs from point to point, and a length of crack
+    between them means nothing: what is new is the area of the points with k >= g_u, at G_Ic each. The few that are on
+    their way have cost the part of the law that they have been through.
+    """
+    snapshot, mesh, law = trial.result.snapshots[-1], trial.scene.discretization, law_of(trial.scene)
+    nodes, weights = np.polynomial.legendre.leggauss(mesh.interface_points)
+    length_e = np.ptp(snapshot.s_q.reshape(-1, nodes.size), axis=1) * 2.0 / np.ptp(nodes)
+    dA_q = np.outer(length_e, weights / 2.0).ravel() * trial.scene.specimen.width
+    assert isinstance(law, Bilinear), "the hard cases of strength are those of a bilinear law"
+    # d = g_u (k - g_max) / (k (g_u - g_max)) between first damage and full opening
+    k_q = law.g_open * law.g_peak / (law.g_open - snapshot.damage_q * (law.g_open - law.g_peak))
+    return float(dA_q @ (snapshot.damage_q >= 1.0)), float(dA_q @ law.dissipated(k_q))
+
+
+def warned(trial: Trial) -> Check:
+    """Whether the user is told before the run that the mesh is too coarse for the process zone."""
+    silent = 0.0 if warnings(trial.scene, trial.result.method) else 1.0
+    return Check("warned", trial.name, silent, 0.0, "exact", "An under-resolved process zone is announced.")
+
+
+#: Strength, and unknowns with which any basis resolves its process zone.
+_LIMIT = ((4, 5000), (8, 7000), (15, 9000), (30, 13000), (60, 18000))
+#: Two curves of different meshes that are closer than this are the same.
+_SAME = 0.002
+
+
+def _toward_lefm() -> Sequence[Variant]:
+    plain = ("effects.kinematics=linear", "effects.symmetry=true")
+    return [
+        variant(f"strength-{p}", "dcb-czm1", *plain, f"interface.strength={p}.0", f"discretization.dofs={dofs}")
+        for p, dofs in _LIMIT
+    ]
+
+
+def _judge_toward_lefm(trials: Trials) -> Iterator[Finding]:
+    """On the propagation branch: before it the curves differ by what the strength is there for.
+
+    Corrected beam theory is there P = (2/3)^(1/2) (G w)^(3/4) (E I)^(1/4) opening^(-1/2), whatever its correction.
+    """
+    limit = solve(next(iter(trials.values())).scene, "lefm")
+    begin, end = PROPAGATION * peak((limit.opening, limit.load))[0], limit.opening[-1]
+    grid = np.linspace(begin, end, 400)
+    wanted = load_at((limit.opening, limit.load), grid)
+    away = []
+    for name, trial in trials.items():
+        ratio = load_at(smooth(trial.result), grid) / wanted - 1.0
+        away.append(float(np.sqrt(np.mean(ratio**2))))
+        yield Number("distance", name, away[-1], "Distance to corrected beam theory on the propagation branch (RMS).")
+    ratios = np.divide(away[1:], np.maximum(away[:-1], _SAME))
+    meaning = f"Largest ratio of successive distances, down to {_SAME:.1%}: each strength comes closer to the limit."
+    yield Check("monotone", "all", float(np.max(ratios)), 1.0, "analytical", meaning)
+
+
+def _brittle() -> Sequence[Variant]:
+    return [variant(f"ductility-{r:g}", "dcb-czm1", f"interface.ductility={r}", *FINE) for r in (1.01, 1e4)]
+
+
+def _as_printed() -> Sequence[Variant]:
+    return [variant("mpa", "peel-as-printed", "discretization.dofs=1200")]
+
+
+def _judge_as_printed(trials: Trials) -> Iterator[Finding]:
+    for trial in trials.values():
+        status = trial.result.status
+        fine = trial.result.complete or (status.startswith("stopped: process zone") and trial.result.load.size > 1)
+        meaning = "The run completes, or stops and says that the process zone is shorter than an element."
+        yield Check("honest-end", trial.name, 0.0 if fine else 1.0, 0.0, "exact", meaning)
+        yield warned(trial)
+
+
+CASES = (
+    Case(
+        "coarse-czm2",
+        "The mesh only just resolves the process zone: the load-opening path snaps back at every element.",
+        _coarse,
+    ),
+    Case(
+        "under-resolved",
+        "The process zone is a half, a quarter and a tenth of an element long.",
+        _under_resolved,
+        _judge_under_resolved,
+    ),
+    Case(
+        "toward-lefm",
+        "Stronger and stronger interfaces on meshes that resolve them tend to fracture mechanics.",
+        _toward_lefm,
+        _judge_toward_lefm,
+    ),
+    Case("brittle-ratio", "Softening that is almost vertical, and an initial slope that is.", _brittle),
+    Case(
+        "peel-as-printed",
+        "The strength is above the modulus and the process zone a fiftieth of an element.",
+        _as_printed,
+        _judge_as_printed,
+        may_stop=True,
+    ),
+)

@@ -1,0 +1,1 @@
+"""Convergence of plane elasticity on one patch."""

@@ -1,0 +1,65 @@
+"""Distance of a plane solution to an exact one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from iga.elements.bulk import gradient
+from iga.elements.kinematics import small_stress
+from iga.elements.plane_elasticity import bulk_bases
+from iga.mesh.extraction import Mesh
+from verify.theory.plane_fields import PlaneField
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Relative errors: displacement in L2, stress in energy, and the largest of the stress over the largest stress."""
+
+    displacement: float
+    energy: float
+    stress: float
+
+
+def errors(mesh: Mesh, D: np.ndarray, u_Ai: np.ndarray, exact: PlaneField, up_to_rigid: bool = False) -> Errors:
+    """Errors at p + 3 or more Gauss points a direction.
+
+    Parameters
+    ----------
+    D : (3, 3) elasticity matrix of the numerical solution.
+    u_Ai : (n_A, 2) its control displacements.
+    up_to_rigid : leave out the rigid motion between both, which tractions alone do not determine.
+    """
+    u, miss, X, dV, stress, gap = [], [], [], [], [], []
+    for basis in bulk_bases(mesh, 2):
+        sigma_ijeq = small_stress(D, gradient(basis, u_Ai))[0]
+        exact_ijeq = np.moveaxis(exact.stress(basis.X_eqI), (2, 3), (0, 1))
+        u_eqi = exact.displacement(basis.X_eqI)
+        u.append(u_eqi.reshape(-1, 2))
+        miss.append((np.einsum("eqa,eai->eqi", basis.N_eqa, u_Ai[basis.conn_ea]) - u_eqi).reshape(-1, 2))
+        X.append(basis.X_eqI.reshape(-1, 2))
+        dV.append(basis.dV_eq.ravel())
+        stress.append(exact_ijeq.reshape(4, -1))
+        gap.append((sigma_ijeq - exact_ijeq).reshape(4, -1))
+    u, miss, X, dV = (np.concatenate(part) for part in (u, miss, X, dV))
+    stress, gap = np.concatenate(stress, axis=1), np.concatenate(gap, axis=1)
+    if up_to_rigid:
+        u, miss = (_without_rigid_motion(v, X, dV) for v in (u, miss))
+    return Errors(
+        float(np.sqrt(np.sum(miss**2 * dV[:, None]) / np.sum(u**2 * dV[:, None]))),
+        float(np.sqrt(_energy(gap, D, dV) / _energy(stress, D, dV))),
+        float(np.max(np.abs(gap)) / np.max(np.abs(stress))),
+    )
+
+
+def _energy(stress_kq: np.ndarray, D: np.ndarray, dV: np.ndarray) -> float:
+    voigt = stress_kq[[0, 3, 1]]
+    return float(np.sum(voigt * np.linalg.solve(D, voigt) * dV))
+
+
+def _without_rigid_motion(u: np.ndarray, X: np.ndarray, dV: np.ndarray) -> np.ndarray:
+    """Less its projection in L2 onto translations and the rotation about the middle."""
+    x = X - dV @ X / dV.sum()
+    turn = np.stack([-x[:, 1], x[:, 0]], -1)
+    return u - dV @ u / dV.sum() - turn * (np.sum(turn * u, 1) @ dV) / (np.sum(turn**2, 1) @ dV)

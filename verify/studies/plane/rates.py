@@ -1,0 +1,104 @@
+"""Rates of convergence in plane elasticity, basis by basis: NURBS, T-splines, and around extraordinary points.
+
+The same smooth field, by tractions on the whole boundary, on meshes of 4, 8 and 16 elements a direction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from iga.bases.bspline import open_knots
+from iga.bases.nurbs import nurbs_rectangle
+from iga.bases.unstructured import polygon_mesh
+from iga.elements.elasticity import isotropic
+from iga.elements.plane_elasticity import no_rigid_motion, solve, stiffness, traction_forces
+from iga.mesh.boundary import boundary_chains
+from iga.mesh.extraction import Mesh
+from iga.tsplines.lines import tensor_grid, with_line
+from iga.tsplines.tspline import tspline_rectangle
+from verify.studies.plane.errors import Errors, errors
+from verify.studies.plane.study import SOLID
+from verify.theory.plane_fields import smooth
+from verify.verdict import Check
+
+COUNTS = (4, 8, 16)
+RATE_TOLERANCE = 0.15
+
+
+@dataclass(frozen=True)
+class Family:
+    """Meshes by their number of elements a direction; ``order`` in L2 is that of theory, None where none is known."""
+
+    name: str
+    ink: str  # its colour in the palette of the report
+    build: Callable[[int], Mesh]
+    order: int | None
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """What was found of one family."""
+
+    family: Family
+    unknowns: tuple[int, ...]
+    errors: tuple[Errors, ...]
+
+    @property
+    def rates(self) -> tuple[float, float]:
+        """In L2 and in energy, between the last two meshes."""
+        (a, b) = ((e.displacement, e.energy) for e in self.errors[-2:])
+        return tuple(float(np.log2(x / y)) for x, y in zip(a, b, strict=True))
+
+
+def half_fine(n: int) -> Mesh:
+    """The unit square, twice as many columns below its middle as above: T-junctions all along it."""
+    mesh = tensor_grid(np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, n + 1))
+    for x in (np.arange(n) + 0.5) / n:
+        mesh = with_line(mesh, "vertical", float(x), (0.0, 0.5))
+    return tspline_rectangle(mesh)
+
+
+def square(n: int) -> Mesh:
+    """The unit square in n x n elements."""
+    return nurbs_rectangle(*[open_knots(np.linspace(0.0, 1.0, n + 1), 3)] * 2)
+
+
+FAMILIES = (
+    Family("NURBS, unit square", "nurbs", square, 4),
+    Family("T-spline with T-junctions, unit square", "tspline", half_fine, 4),
+    *(
+        Family(f"extraordinary point of valence {N}, regular polygon", ink, lambda n, N=N: polygon_mesh(N, n), None)
+        for N, ink in ((3, "zone"), (5, "bad"), (6, "muted"))
+    ),
+)
+
+
+def rates(families: tuple[Family, ...] = FAMILIES, counts: tuple[int, ...] = COUNTS) -> tuple[Convergence, ...]:
+    """Solve all families; some 5 s."""
+    return tuple(_convergence(family, counts) for family in families)
+
+
+def rate_checks(found: tuple[Convergence, ...]) -> tuple[Check, ...]:
+    """The rate of every family whose order is known."""
+    meaning = "The rate in L2 is p + 1."
+    return tuple(
+        Check("rate", c.family.name, c.rates[0] - c.family.order, RATE_TOLERANCE, "analytical", meaning)
+        for c in found
+        if c.family.order is not None
+    )
+
+
+def _convergence(family: Family, counts: tuple[int, ...]) -> Convergence:
+    D, unknowns, found = isotropic(**SOLID), [], []
+    for n in counts:
+        mesh = family.build(n)
+        size = 1.0 if mesh.P_AI.min() > -1e-9 else 2.0
+        exact = smooth(0.3 + 0.2j, size, 1.0, **SOLID)
+        f_Ai = traction_forces(mesh, boundary_chains(mesh), exact.traction)
+        u_Ai = solve(stiffness(mesh, D), f_Ai, no_rigid_motion(mesh))
+        unknowns.append(u_Ai.size)
+        found.append(errors(mesh, D, u_Ai, exact, up_to_rigid=True))
+    return Convergence(family, tuple(unknowns), tuple(found))

@@ -1,0 +1,142 @@
+"""Which runs tell how time and memory grow: ladders of sizes, and the largest on more ranks."""
+
+from __future__ import annotations
+
+import shutil
+from bisect import bisect_left
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from verify.methods.problems import dolfinx_problem
+from verify.runs.fingerprint import digest
+from verify.runs.jobs import Job, left_out
+from verify.runs.sweep import Task
+from verify.scene.effects import simulated
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Dolfinx, Scene
+from verify.studies.scaling.ranks import MPIRUN_MISSING, cores
+
+#: Unknowns of the ladder, and of one more mesh, so small that its memory is that of the program alone.
+SMALLEST, LARGEST, RUNGS, BARE = 2_000, 100_000, 6, 200
+
+#: The programme is this part of the largest opening in so many steps: what counts is the time of an iteration.
+SHORT, STEPS = 0.005, 2
+
+#: Degree of every method's elements.
+DEGREES = {"nurbs": 3, "dolfinx": 2}
+
+#: Ranks that are tried as far as there are cores, on these rungs of the ladder: two sizes tell what every iteration
+#: costs whatever the size from what grows with it.
+RANKS, SHARED = (1, 2, 4, 8, 16), (-3, -1)
+
+#: Every run is made so many times; the least time counts.
+TIMES = 2
+
+
+@dataclass(frozen=True)
+class Run(Job):
+    """A run of the study on some ranks; ``bare`` is the one that tells the memory of the program."""
+
+    ranks: int = 1
+    bare: bool = False
+
+    def task(self) -> Task:
+        """The run as a sweep does it, under mpirun on more than one rank."""
+        alone = super().task()
+        if self.ranks == 1:
+            return alone
+        program = ("verify.studies.scaling.ranks", str(self.ranks), *alone.program[1:])
+        return replace(alone, key=digest(alone.key, program), program=program)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Every run once, and a sentence for what is left out."""
+
+    runs: tuple[Run, ...]
+    reasons: tuple[str, ...]
+
+    def again(self) -> list[Run]:
+        """Every run and its repetitions: all of them one after the other, and then again."""
+        return [
+            replace(run, repeat=repeat, variant=f"{run.variant}-again-{repeat}") if repeat else run
+            for repeat in range(TIMES)
+            for run in self.runs
+        ]
+
+
+def planned(source: str, scene: Scene, given: Sequence[str] = ()) -> Plan:
+    """The runs of a scene; ``given`` are the overrides that all of them have."""
+    runs: list[Run] = []
+    reasons: list[str] = []
+    for method in DEGREES:
+        ladder = [_run(source, scene, method, size, given) for size in sizes()]
+        bare = replace(_run(source, scene, method, BARE, given), bare=True)
+        possible = [run for run in (bare, *ladder) if not left_out(run)]
+        if not any(run in possible for run in ladder):
+            reasons.append(f"{method}: {left_out(ladder[-1])}")
+            continue
+        runs += possible
+        if method == "dolfinx":
+            more, why = _shared([run for run in possible if not run.bare])
+            runs += more
+            reasons += why
+    return Plan(tuple(runs), tuple(reasons))
+
+
+def sizes() -> list[int]:
+    """Unknowns to aim at, evenly spaced on a logarithmic scale."""
+    return [int(n) for n in np.rint(np.geomspace(SMALLEST, LARGEST, RUNGS))]
+
+
+def _run(source: str, scene: Scene, method: str, size: int, given: Sequence[str]) -> Run:
+    """One size on one rank, with the effects that the whole programme has: those of a short one might be others."""
+    effects = (f"effects.{key}={_toml(value)}" for key, value in simulated(scene, method).items())
+    mesh = (
+        (f"dolfinx.degree={DEGREES[method]}", f"dolfinx.elements={elements(scene, size)}")
+        if method == "dolfinx"
+        else (
+            f"discretization.degree={DEGREES[method]}",
+            f"discretization.dofs={size}",
+            "discretization.adaptive=false",
+        )
+    )
+    opening = SHORT * max(scene.load.opening, key=abs)
+    paced = (f"load.opening={opening!r}", f"discretization.steps={STEPS}", "published=[]")
+    return Run(source, scene, method, f"scaling/{method}-{size}", (*given, *paced, *effects, *mesh), fields=False)
+
+
+def _toml(value: object) -> str:
+    return f'"{value}"' if isinstance(value, str) else str(value).lower()
+
+
+def elements(scene: Scene, size: int) -> int:
+    """DOLFINx elements along the specimen for about so many unknowns."""
+    return max(bisect_left(range(most_elements()), size, lo=2, key=lambda n: _unknowns(scene, n)), 2)
+
+
+def most_elements() -> int:
+    """Elements along the specimen that a scene may ask of DOLFINx."""
+    return next(rule.le for rule in Dolfinx.model_fields["elements"].metadata if hasattr(rule, "le"))
+
+
+def _unknowns(scene: Scene, n: int) -> int:
+    mesh = [f"dolfinx.elements={n}", f"dolfinx.degree={DEGREES['dolfinx']}", "effects.symmetry=false"]
+    specimen, p = dolfinx_problem(parse_scene(scene.model_dump(), mesh)).specimen(), DEGREES["dolfinx"]
+    along = [int(np.sum(specimen.X < body.length + specimen.near)) - 1 for body in specimen.bodies]
+    across = [body.Y.size - 1 for body in specimen.bodies]
+    return sum(2 * (p * n + 1) * (p * m + 1) for n, m in zip(along, across, strict=True))
+
+
+def _shared(ladder: Sequence[Run]) -> tuple[list[Run], list[str]]:
+    """Two rungs on more ranks than one, as many as there are cores; and why not more."""
+    if shutil.which("mpirun") is None:
+        return [], [f"more than 1 rank: left out: {MPIRUN_MISSING}"]
+    rungs = dict.fromkeys(ladder[at] for at in SHARED if len(ladder) >= -at)
+    there = [n for n in RANKS if 1 < n <= cores()]
+    beyond = [str(n) for n in RANKS if n > cores()]
+    runs = [replace(run, ranks=n, variant=f"{run.variant}-{n}-ranks") for run in rungs for n in there]
+    plural = "core" if cores() == 1 else "cores"
+    return runs, [f"{', '.join(beyond)} ranks: left out: {cores()} {plural} here"] if beyond else []

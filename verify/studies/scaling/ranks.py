@@ -1,0 +1,35 @@
+"""``python -m verify.studies.scaling.ranks N ARGUMENT ...``: ``debond ARGUMENT ...`` on N ranks.
+
+mpirun takes the place of this process, so that what ends the one ends all ranks.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from collections.abc import Sequence
+
+MPIRUN_MISSING = "mpirun is not installed"
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def command(ranks: str, words: Sequence[str]) -> list[str]:
+    """The program and its arguments."""
+    return ["mpirun", "-n", ranks, sys.executable, "-P", "-m", "verify.cli", *words]
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Become mpirun."""
+    if shutil.which("mpirun") is None:
+        raise SystemExit(MPIRUN_MISSING)
+    sys.stdout.flush()
+    os.execvp("mpirun", command(arguments[0], arguments[1:]))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

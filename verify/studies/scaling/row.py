@@ -1,0 +1,92 @@
+"""One run and its repetitions, measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from math import isfinite, nan
+
+import numpy as np
+
+from verify.result import Result
+from verify.runs.jobs import Outcome
+from verify.studies.scaling.plan import DEGREES, Run
+
+#: Parts of a Newton iteration; "other" is all that belongs to none: step control, energies, the rows that are written.
+PARTS = ("assembly", "factor", "solve", "other")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of ``scaling.csv``. What cannot be measured, as of a run that stopped, is NaN.
+
+    iteration : wall seconds of a Newton iteration: all but mesh, basis and compiling, over the iterations; the least of
+        ``times`` runs, with its parts
+    spread : largest over least ``iteration`` of equal runs; far from 1 the machine was busy
+    set_up : seconds of mesh and basis, without compiling
+    peak_memory_mb : of the first rank
+    bare : the run that tells the memory of the program
+    """
+
+    method: str
+    degree: int
+    ranks: int
+    dofs: int
+    elements: int
+    newton_iterations: int
+    iteration: float
+    assembly: float
+    factor: float
+    solve: float
+    other: float
+    spread: float
+    set_up: float
+    peak_memory_mb: float
+    nonzeros: int
+    times: int
+    bare: bool
+    run: str
+    status: str
+
+    @property
+    def measured(self) -> bool:
+        return isfinite(self.iteration)
+
+
+def row(run: Run, outcomes: Sequence[Outcome]) -> Row:
+    """Measure a run, the first of ``outcomes``, and its repetitions."""
+    head = {"method": run.method, "degree": DEGREES[run.method], "ranks": run.ranks, "bare": run.bare}
+    head["run"] = run.variant
+    results = [o.result for o in outcomes if o.result is not None and o.result.complete and o.result.seconds]
+    if not results:
+        first = outcomes[0]
+        unknown = {field.name: nan if field.type == "float" else 0 for field in fields(Row)}
+        return Row(**unknown | head | {"status": first.result.status if first.result else first.left_out})
+    each = [seconds(result) for result in results]
+    whole = [sum(parts.values()) for parts in each]
+    least = int(np.argmin(whole))
+    result = results[least]
+    return Row(
+        **head,
+        **each[least],
+        dofs=result.dofs,
+        elements=result.elements,
+        newton_iterations=iterations(result),
+        iteration=whole[least],
+        spread=max(whole) / whole[least],
+        set_up=result.seconds["mesh"] + result.seconds["basis"] - result.jit_seconds,
+        peak_memory_mb=max(one.peak_memory_mb for one in results),
+        nonzeros=result.nonzeros,
+        times=len(results),
+        status=result.status,
+    )
+
+
+def iterations(result: Result) -> int:
+    """Newton iterations of the whole run."""
+    return int(np.sum(result.steps["newton_iterations"]))
+
+
+def seconds(result: Result) -> Mapping[str, float]:
+    """Seconds of a Newton iteration by its parts."""
+    return {name: result.seconds[name] / max(iterations(result), 1) for name in PARTS}

@@ -1,0 +1,1 @@
+"""Messages, progress, refusals, timing, checked files."""

@@ -1,0 +1,132 @@
+"""Files of plain values that this toolkit has written and reads again: whether they still are what was written."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from verify.support.refusal import Refusal
+
+#: Stands for every key of a mapping whose keys are names of their own; a key that ends in ? may be absent.
+ANY = "*"
+
+#: A number, or null where it is none, as NaN is written.
+NUMBER = (float, type(None))
+
+#: What a value must be: a type (``float`` is finite), a tuple of types, ``{key: shape}``, or ``[shape]`` of all items.
+Shape = Any
+
+_WORDS = {
+    str: "a text",
+    int: "an integer",
+    float: "a number",
+    bool: "true or false",
+    type(None): "null",
+    dict: "a table",
+}
+
+#: By the types of the fields of a dataclass.
+_OF_FIELDS: Mapping[str, Shape] = {"float": NUMBER, "int": int, "str": str, "bool": bool, "Kind": str}
+
+
+_FROM_TEXT: Mapping[str, Callable[[str], Any]] = {
+    "float": float,
+    "int": int,
+    "str": str,
+    "bool": {"True": True, "False": False}.__getitem__,
+}
+
+
+class Damaged(Refusal):
+    """A file that is not as it was written; ``path`` is the file."""
+
+    def __init__(self, path: Path, why: object) -> None:
+        self.path = path
+        text = " ".join(str(why).split()) or type(why).__name__
+        super().__init__(f"{path}: must be as debond has written it, got: {text}")
+
+
+def read_json(path: Path, shape: Shape) -> dict[str, Any]:
+    """The content of a JSON file.
+
+    Raises
+    ------
+    Damaged : it cannot be read, is no JSON, or of another shape.
+    """
+    try:
+        content = json.loads(path.read_bytes())
+    except (OSError, ValueError, RecursionError) as error:
+        raise Damaged(path, _why(error)) from None
+    if why := wrong(content, shape):
+        raise Damaged(path, why)
+    return content
+
+
+def read_table(path: Path, kind: type) -> list[Any]:
+    """Rows of a CSV file as a dataclass, which named its columns.
+
+    Raises
+    ------
+    Damaged : it cannot be read, has other columns, or a cell that is not of its field's type.
+    """
+    types = {field.name: _FROM_TEXT[str(field.type)] for field in fields(kind)}
+    try:
+        with path.open(newline="", encoding="utf-8") as stream:
+            lines = csv.DictReader(stream)
+            if list(lines.fieldnames or []) != list(types):
+                raise Damaged(path, f"the columns {', '.join(lines.fieldnames or []) or 'of an empty file'}"[:200])
+            return [kind(**{name: types[name](text) for name, text in line.items()}) for line in lines]
+    except (OSError, ValueError, KeyError, TypeError, csv.Error) as error:
+        raise (error if isinstance(error, Damaged) else Damaged(path, _why(error))) from None
+
+
+def shape_of(kind: type) -> Shape:
+    """That of a dataclass of plain fields."""
+    return {field.name: _OF_FIELDS[str(field.type)] for field in fields(kind)}
+
+
+def wrong(value: Any, shape: Shape, place: str = "") -> str:
+    """Where and how a value differs from its shape, at the first such place; nothing where it does not."""
+    if isinstance(shape, Mapping):
+        if not isinstance(value, dict):
+            return _not(value, (dict,), place)
+        missing = [key for key in shape if key != ANY and not key.endswith("?") and key not in value]
+        if missing:
+            return f"no {'.'.join(filter(None, [place, missing[0]]))}"
+        known = {key.removesuffix("?"): inner for key, inner in shape.items()}
+        inside = ((key, item, known.get(key, shape.get(ANY))) for key, item in value.items())
+        pairs = [(f"{place}.{key}".lstrip("."), item, inner) for key, item, inner in inside if inner is not None]
+    elif isinstance(shape, list):
+        if not isinstance(value, list):
+            return f"{place or 'the whole'} must be a list, got {str(value)[:30]!r}"
+        pairs = [(f"{place}[{i}]", item, shape[0]) for i, item in enumerate(value)]
+    else:
+        types = shape if isinstance(shape, tuple) else (shape,)
+        return "" if any(_is(value, kind) for kind in types) else _not(value, types, place)
+    return next(filter(None, (wrong(item, inner, at) for at, item, inner in pairs)), "")
+
+
+def number(value: float | None) -> float:
+    """What a file holds for a number: null is NaN."""
+    return math.nan if value is None else value
+
+
+def _is(value: Any, kind: type) -> bool:
+    if kind is float:
+        return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, kind) and not (kind is int and isinstance(value, bool))
+
+
+def _not(value: Any, kinds: tuple[type, ...], place: str) -> str:
+    return f"{place or 'the whole'} must be {' or '.join(_WORDS[kind] for kind in kinds)}, got {str(value)[:30]!r}"
+
+
+def _why(error: Exception) -> str:
+    if isinstance(error, OSError):
+        return error.strerror or type(error).__name__
+    return f"a cell {error}" if isinstance(error, KeyError) else str(error)

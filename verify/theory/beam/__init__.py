@@ -1,0 +1,1 @@
+"""The cohesive beam, solved to rounding."""
