@@ -16,7 +16,7 @@ from types import ModuleType, SimpleNamespace
 import pytest
 
 PROJECT = Path(__file__).resolve().parent.parent
-LAUNCHER = PROJECT / ".ci" / "launcher"
+LAUNCHER = PROJECT / "launcher"
 sys.path.insert(0, str(LAUNCHER))
 
 import bubblewrap  # noqa: E402

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 PROJECT = Path(__file__).parents[1]
-SITE = PROJECT / "examples" / "site"
+SITE = PROJECT / "docs"
 
 
 def loaded(name: str):

@@ -10,16 +10,15 @@ from pathlib import Path
 
 import made_up_studies
 import numpy as np
-import test_figure9
-import test_paper
-import test_plane_page
-import test_plane_rates
-import test_quadrature_study
 from iga_files import SMALL
 from made_up_costs import SCENE, a_row, against
 from made_up_runs import ENVIRONMENT, made_up, scene_report
-from test_hard import FAKE, faulty, stub
 
+from tests.verify.report.studies import test_plane_page
+from tests.verify.studies import test_interface_rules as test_quadrature_study
+from tests.verify.studies.hard.test_hard import FAKE, faulty, stub
+from tests.verify.studies.paper import test_figure9, test_paper
+from tests.verify.studies.plane import test_rates as test_plane_rates
 from verify import report
 from verify.checks.identities import run_checks
 from verify.cli import main

@@ -1,0 +1,203 @@
+"""Plane elasticity on every kind of mesh: patch tests, known solutions, rates of convergence."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tmeshes import half_fine
+
+from iga.bases.bspline import KnotVector, insert_knot, open_knots
+from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
+from iga.bases.unstructured import polygon_mesh
+from iga.elements.elasticity import isotropic
+from iga.elements.plane_elasticity import (
+    body_forces,
+    no_rigid_motion,
+    prescribed,
+    solve,
+    stiffness,
+    symmetry,
+    traction_forces,
+)
+from iga.files.iga_format import mesh as mesh_of
+from iga.files.iga_reader import read_iga
+from iga.mesh.boundary import boundary_chains
+from iga.mesh.refinement import bezier_refined
+from iga.tsplines.tspline import tspline_rectangle
+from tests.iga.mesh.test_refinement import two_degrees
+from verify.studies.plane.errors import errors
+from verify.theory.plane_fields import kirsch, smooth, uniform
+
+SOLID = {"young": 100.0, "poisson": 0.3, "plane": "stress"}
+D = isotropic(**SOLID)
+FILES = Path(__file__).parents[4] / "shared" / "iga"
+
+
+def real_mesh(name):
+    path = FILES / f"{name}.iga"
+    if not path.exists():
+        pytest.skip(f"the file {path.name} is not at hand")
+    return mesh_of(read_iga(path))
+
+
+def ring(n, inner=1.0, outer=2.0):
+    """Quarter of a ring in n x n bicubic elements: an exact cubic arc, its knots inserted."""
+    r = np.sqrt(0.5)
+    quadratic = np.array([[1, 0, 1], [r, r, r], [0, 1, 1]])  # homogeneous
+    Q = np.array([quadratic[0], quadratic[0] + 2 * quadratic[1], quadratic[2] + 2 * quadratic[1], quadratic[2]])
+    Q[1:3] /= 3.0
+    kv = KnotVector(3, np.array([0, 0, 0, 0, 1, 1, 1, 1.0]))
+    for x in np.linspace(0, 1, n + 1)[1:-1]:
+        kv, T = insert_knot(kv, x)
+        Q = T @ Q
+    radial = open_knots(np.linspace(inner, outer, n + 1), 3)
+    P = radial.greville[:, None] * (Q[:, :2] / Q[:, 2:])[:, None]
+    return nurbs_mesh(radial, kv, P.reshape(-1, 2), np.repeat(Q[:, 2], radial.functions))
+
+
+def square_mesh(n):
+    return nurbs_rectangle(*[open_knots(np.linspace(0, 1, n + 1), 3)] * 2)
+
+
+def by_tractions(mesh, exact, chains=None):
+    chains = boundary_chains(mesh) if chains is None else chains
+    u_Ai = solve(stiffness(mesh, D), traction_forces(mesh, chains, exact.traction), no_rigid_motion(mesh))
+    return errors(mesh, D, u_Ai, exact, up_to_rigid=True)
+
+
+def by_displacements(mesh, exact):
+    u_Ai = solve(
+        stiffness(mesh, D), np.zeros_like(mesh.P_AI), prescribed(mesh, boundary_chains(mesh), exact.displacement)
+    )
+    return errors(mesh, D, u_Ai, exact)
+
+
+MESHES = {
+    "nurbs": lambda: square_mesh(3),
+    "ring": lambda: ring(3),
+    "t-spline": lambda: tspline_rectangle(half_fine(4)),
+    "triangle": lambda: polygon_mesh(3, 3),
+    "pentagon": lambda: polygon_mesh(5, 3),
+    "hexagon": lambda: polygon_mesh(6, 3),
+    "two degrees": two_degrees,
+    "refined": lambda: bezier_refined(polygon_mesh(5, 2)),
+}
+REAL = ("arch_nurbs", "arch_tsplines", "plate_with_hole", "square_structured", "square_unstructured")
+
+
+@pytest.mark.parametrize("solved", [by_tractions, by_displacements])
+@pytest.mark.parametrize("name", [*MESHES, *REAL])
+def test_patch(name, solved):
+    """Any constant stress is found exactly, whether it is asked for by tractions or by displacements."""
+    mesh = MESHES[name]() if name in MESHES else real_mesh(name)
+    found = solved(mesh, uniform(1.0, -0.4, 0.3, **SOLID))
+    assert found.displacement < 1e-10 and found.energy < 1e-10 and found.stress < 1e-10
+
+
+class Squares:
+    """u = (x^2, 0) and the stress and force per volume that belong to it."""
+
+    def displacement(self, X):
+        return np.stack([X[..., 0] ** 2, 0.0 * X[..., 1]], -1)
+
+    def stress(self, X):
+        return 2.0 * X[..., 0, None, None] * np.array([[D[0, 0], 0.0], [0.0, D[0, 1]]])
+
+    def force(self, X):
+        return np.stack([np.full(X.shape[:-1], -2.0 * D[0, 0]), 0.0 * X[..., 1]], -1)
+
+
+def test_a_body_force_and_supports_together():
+    """A quadratic displacement is found exactly; without the force it is not."""
+    mesh, exact = tspline_rectangle(half_fine(4)), Squares()
+    held = prescribed(mesh, [mesh.chains[side] for side in ("left", "right", "bottom", "top")], exact.displacement)
+    K, f = stiffness(mesh, D), body_forces(mesh, exact.force)
+    found = errors(mesh, D, solve(K, f, held), exact)
+    assert found.displacement < 1e-12 and found.stress < 1e-11
+    assert errors(mesh, D, solve(K, 0.0 * f, held), exact).energy > 0.1
+    assert f.sum(0) == pytest.approx([-2.0 * D[0, 0], 0.0], abs=1e-12)
+
+
+def test_symmetry_lines_hold_what_the_whole_plate_would():
+    """A quarter of the plate with a hole, tractions on the far arc alone."""
+    mesh, exact = ring(12, 1.0, 3.0), kirsch(1.0, 1.0, **SOLID)
+    held = symmetry(mesh, mesh.chains["bottom"]) + symmetry(mesh, mesh.chains["top"])
+    f = traction_forces(mesh, [mesh.chains["right"]], exact.traction)
+    found = errors(mesh, D, solve(stiffness(mesh, D), f, held), exact)
+    assert found.displacement < 3e-4 and found.energy < 4e-3
+    with pytest.raises(ValueError, match="along an axis"):
+        symmetry(mesh, mesh.chains["right"])
+
+
+def test_the_first_support_is_heard():
+    mesh = square_mesh(2)
+    push = prescribed(mesh, [mesh.chains["left"]], lambda X: np.stack([0 * X[..., 0] + 0.5, 0 * X[..., 0]], -1))
+    both = push + symmetry(mesh, mesh.chains["left"])
+    assert np.array_equal(both.dof_d, push.dof_d) and both.value_d == pytest.approx(push.value_d)
+
+
+def rates(meshes, exact, solved=by_tractions):
+    """Errors of a family, and the rates of displacement and energy between its members by halves."""
+    found = [solved(mesh, exact) for mesh in meshes]
+    table = np.array([(e.displacement, e.energy) for e in found])
+    return table, np.log2(table[:-1] / table[1:])
+
+
+EXACT = {
+    "smooth": smooth(0.3 + 0.2j, 1.0, 1.0, **SOLID),
+    "kirsch": kirsch(1.0, 1.0, **SOLID),
+}
+
+
+@pytest.mark.parametrize(
+    ("family", "exact", "level"),
+    [
+        (square_mesh, "smooth", 5e-6),
+        (lambda n: ring(2 * n), "kirsch", 2e-6),
+        (lambda n: tspline_rectangle(half_fine(n)), "smooth", 5e-6),
+        (lambda n: polygon_mesh(4, n // 2), "smooth", 3e-5),
+    ],
+    ids=["nurbs", "ring", "t-spline", "square around an ordinary point"],
+)
+@pytest.mark.parametrize("solved", [by_tractions, by_displacements])
+def test_the_rate_is_optimal(family, exact, level, solved):
+    """Order p + 1 in L2 and p in energy, with tractions as with displacements."""
+    meshes = [family(n) for n in (4, 8, 16)]
+    table, found = rates(meshes, EXACT[exact], solved)
+    assert np.all(np.abs(found[:, 0] - meshes[0].order) < 0.35) and abs(found[-1, 0] - meshes[0].order) < 0.15
+    assert abs(found[-1, 1] - (meshes[0].order - 1)) < 0.15
+    assert table[-1, 0] < level
+
+
+@pytest.mark.parametrize(("corners", "level"), [(3, 1.3e-5), (5, 2e-5), (6, 3e-5)])
+def test_the_rate_at_an_extraordinary_point(corners, level):
+    """2.5 in L2 and 1.5 in energy, whatever the valence: the elements at the point reproduce linear fields only.
+
+    The stress is off by O(h) there, on an area O(h^2), while the other elements would give 4 and 3.
+    """
+    table, found = rates([polygon_mesh(corners, n) for n in (4, 8, 16)], smooth(0.1 + 0.2j, 2.0, 1.0, **SOLID))
+    assert np.all(np.abs(found[:, 0] - 2.5) < 0.12) and np.all(np.abs(found[:, 1] - 1.5) < 0.12)
+    assert table[-1, 0] < level
+
+
+def test_refinement_restores_the_rate_at_an_extraordinary_point():
+    """In Bezier pieces of one coarse mesh there is nothing extraordinary left."""
+    coarse = polygon_mesh(5, 2)
+    table, found = rates([bezier_refined(coarse, k) for k in (0, 1, 2)], smooth(0.1 + 0.2j, 2.0, 1.0, **SOLID))
+    assert abs(found[-1, 0] - 4.0) < 0.15 and abs(found[-1, 1] - 3.0) < 0.15 and table[-1, 0] < 2e-6
+
+
+@pytest.mark.parametrize(
+    ("name", "exact", "order", "band", "level"),
+    [
+        ("plate_with_hole", "kirsch", 4, 0.7, 2e-5),
+        ("square_unstructured", "smooth", 5, 0.15, 1e-6),
+        ("arch_tsplines", "kirsch", 4, 0.15, 2e-5),
+    ],
+)
+def test_real_files_refined(name, exact, order, band, level):
+    """The file itself and its Bezier refinements; the plate's coarse elements are long, its rate is still rising."""
+    mesh = real_mesh(name)
+    table, found = rates([mesh, bezier_refined(mesh, 0), bezier_refined(mesh, 1)], EXACT[exact])
+    assert np.all(np.diff(table, axis=0) < 0), "the spaces are nested"
+    assert abs(found[-1, 0] - order) < band and table[-1, 0] < level

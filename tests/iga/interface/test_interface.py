@@ -1,0 +1,240 @@
+"""Projection on curved surfaces, and the complete tangent of the interface in every state it can be in."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from iga.bases.lagrange import lagrange_rectangle
+from iga.dcb.dcb import build
+from iga.dcb.problem import Problem
+from iga.interface.closest_point import FREE, closest_points, nearest_samples
+from iga.interface.interface import contact, forces, rounding, settled, stiffness, traction
+from iga.interface.surface import surface
+from iga.mesh.extraction import Mesh
+from tests.iga.bases.test_splines import quarter_annulus
+
+
+def project(surface, x, y):
+    return closest_points(surface, x, y, nearest_samples(surface, x, y))
+
+
+def position(surface, pairing, y):
+    (r,) = surface.coefficients(pairing.c_q, pairing.xi_q, 0)
+    return np.einsum("qb,qbi->qi", r, surface.bezier_points(y)[pairing.c_q])
+
+
+ARCS = [quarter_annulus(1.0, 2.0, refine) for refine in (0, 4)]
+
+
+@given(st.sampled_from(ARCS), st.floats(0.02, np.pi / 2 - 0.02), st.floats(0.8, 6.0))
+def test_closest_points_on_a_circle_lie_on_the_ray_from_its_centre(mesh, angle, radius):
+    """From inside and outside of the exact circle; the gap along the normal is the difference of the radii."""
+    arc = surface(mesh, mesh.chains["top"], 0)
+    ray = np.array([[np.cos(angle), np.sin(angle)]])
+    pairing = project(arc, radius * ray, mesh.P_AI)
+    assert np.all(pairing.on_q)
+    assert np.max(np.abs(position(arc, pairing, mesh.P_AI) - 2.0 * ray)) < 1e-11
+
+
+def test_points_beyond_the_ends_are_marked_and_held_at_the_end():
+    mesh = lagrange_rectangle(np.linspace(0, 3, 4), np.array([0.0, 1.0]), 3)
+    bottom = surface(mesh, mesh.chains["bottom"], 0)
+    x = np.array([[-0.5, -0.1], [0.2, 0.3], [2.9, -0.2], [3.4, 0.1]])
+    pairing = project(bottom, x, mesh.P_AI)
+    assert pairing.on_q.tolist() == [False, True, True, False]
+    assert np.allclose(
+        position(bottom, pairing, mesh.P_AI), np.stack([np.clip(x[:, 0], 0, 3), 0 * x[:, 0]], -1), atol=1e-12
+    )
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_closest_points_on_a_wavy_surface_with_kinks_beat_every_sample(degree, rng):
+    mesh = lagrange_rectangle(np.linspace(0, 6, 7), np.array([0.0, 1.0]), degree)
+    y = mesh.P_AI + np.stack([0 * mesh.P_AI[:, 0], 0.3 * np.sin(2.0 * mesh.P_AI[:, 0])], -1)
+    top = surface(mesh, mesh.chains["top"], 0)
+    x = np.stack([rng.uniform(0.1, 5.9, 60), 1.4 + rng.uniform(-0.2, 0.6, 60)], -1)
+    found = np.linalg.norm(x - position(top, project(top, x, y), y), axis=1)
+    c, xi = np.repeat(np.arange(6), 401), np.tile(np.linspace(0, 1, 401), 6)
+    (r,) = top.coefficients(c, xi, 0)
+    samples = np.einsum("qb,qbi->qi", r, top.bezier_points(y)[c])
+    best = np.min(np.linalg.norm(x[:, None] - samples[None], axis=2), axis=1)
+    assert np.all(found < best + 1e-3)
+
+
+PROBLEM = Problem(
+    length=6.0,
+    arm_thickness=0.5,
+    precrack=2.0,
+    E1=1000.0,
+    E2=900.0,
+    G12=300.0,
+    nu12=0.2,
+    strength=4.0,
+    toughness=0.4,
+    ductility=4.0,
+    penalty=5e3,
+    opening=(1.0,),
+    dofs=800,
+)
+
+#: gap of the deformed arms in units of g_max, history in the same units
+STATES = {
+    "open elastic": (0.6, 0.0),
+    "softening": (2.0, 1.0),
+    "unloading": (1.5, 2.5),
+    "fully open": (6.0, 1.0),
+    "closed": (-0.4, 0.0),
+    "closed after damage": (-0.4, 2.5),
+}
+
+
+def deformed(system, opening: float, shift: float, rng) -> np.ndarray:
+    """Both arms bent along one curve, the upper one slid along it by ``shift`` and lifted off by ``opening``."""
+    X, Y = system.interface.P_AI.T
+    upper = np.arange(len(X)) < len(X) // 2
+    s, t = X + np.where(upper, shift, 0.0), Y + np.where(upper, opening, 0.0)
+    slope = 0.225 * np.cos(0.9 * s)
+    n = np.stack([-slope, np.ones_like(slope)], -1) / np.sqrt(1 + slope**2)[:, None]
+    x = np.stack([s, 0.25 * np.sin(0.9 * s)], -1) + t[:, None] * n
+    return (x - system.interface.P_AI + 1e-5 * rng.standard_normal(x.shape)).ravel()
+
+
+@pytest.mark.parametrize("slave", ["upper", "lower"])
+@pytest.mark.parametrize("basis", ["tspline", "nurbs", "lagrange"])
+@pytest.mark.parametrize("state", STATES)
+def test_tangent_on_a_curved_sliding_interface(state, basis, slave, rng):
+    """Central difference to 1e-6 in every state; slid by a third of an element, so that no point meets its twin."""
+    system = build(replace(PROBLEM, basis=basis, slave=slave)).system
+    interface, law = system.interface, system.interface.law
+    opening, history = (v * law.g_max for v in STATES[state])
+    u, h = deformed(system, opening, 0.11, rng), 1e-6
+    k = np.full(interface.points, history)
+    start = system.start().pairing
+    touch = contact(interface, u, start)
+    closed = touch.g_q < 0
+    assert np.ptp(touch.n_qi[:, 0]) > 0.1, "the surface is curved"
+    on = touch.on_q
+    assert np.all(closed[on] == (opening < 0)) and np.sum(~on) < 5, f"gaps {touch.g_q.min()} .. {touch.g_q.max()}"
+
+    def residual(u):
+        touch = contact(interface, u, start)
+        return forces(interface, touch, traction(interface, touch, k, closed)[0], system.n_dof)
+
+    p, dp, _ = traction(interface, touch, k, closed)
+    K, d = stiffness(interface, touch, p, dp), touch.dof_qd
+    whole = K[(touch.share_q == 0.0) | (touch.share_q == 1.0)]  # a point that fades has no potential
+    assert np.allclose(whole, whole.transpose(0, 2, 1), rtol=0, atol=1e-12 * max(np.abs(K).max(), 1e-300))
+    matrix = np.zeros((system.n_dof, system.n_dof))
+    np.add.at(matrix, (d[:, :, None], d[:, None, :]), K)
+    for _ in range(3):
+        v = rng.standard_normal(system.n_dof)
+        difference = (residual(u + h * v) - residual(u - h * v)) / (2 * h)
+        assert np.allclose(
+            matrix @ v, difference, rtol=0, atol=1e-6 * max(np.abs(difference).max(), 1e-9 * law.stiffness)
+        )
+
+
+def test_the_gap_does_not_change_when_everything_turns(rng):
+    system = build(PROBLEM).system
+    interface = system.interface
+    u = deformed(system, 0.05, 0.1, rng).reshape(-1, 2)
+    Q = np.array([[0.8, -0.6], [0.6, 0.8]])
+    turned = (interface.P_AI + u) @ Q.T - interface.P_AI
+    start = system.start().pairing
+    before, after = contact(interface, u.ravel(), start), contact(interface, turned.ravel(), start)
+    assert np.max(np.abs(before.g_q - after.g_q)) < 1e-12
+    assert np.allclose(before.n_qi @ Q.T, after.n_qi, atol=1e-10)
+
+
+@pytest.mark.parametrize("kinematics", ["finite", "linear"])
+def test_gaps_are_rounded_as_displacements_are_wherever_the_specimen_lies(kinematics, rng):
+    """A penalty of 1e10 makes a traction of every bit lost: tilted, 1e4 away, gaps of 1e-9 keep all their digits."""
+    interface = build(PROBLEM).system.interface
+    Q = np.array([[0.8, -0.6], [0.6, 0.8]])
+    moved = replace(interface, P_AI=interface.P_AI @ Q.T + [1e4, -2e4], X_qi=interface.X_qi @ Q.T + [1e4, -2e4])
+    moved = settled(moved) if kinematics == "linear" else moved
+    start, u_Ai = moved.pairing, np.zeros_like(moved.P_AI)
+    assert np.max(np.abs(contact(moved, u_Ai.ravel(), start).g_q)) < 1e-25
+    u_Ai[: len(u_Ai) // 2] = 1e-9 * Q[:, 1]
+    touch = contact(moved, u_Ai.ravel(), start)
+    assert np.max(np.abs(touch.g_q - 1e-9)) < 1e-23
+    small = rounding(moved, u_Ai.ravel())
+    assert small == pytest.approx(0.5 * rounding(moved, 2.0 * u_Ai.ravel())) and small > 0.0
+    assert rounding(moved, u_Ai.ravel(), np.zeros(moved.points)) == 0.0
+
+
+def test_gaps_are_the_distances_between_positions_however_far_the_projection_has_slid(rng):
+    """Within a side and from side to side, whatever the gap is put together from."""
+    system = build(PROBLEM).system
+    interface, start = system.interface, system.start().pairing
+    for shift, elsewhere in ((0.005, 0.0), (0.11, 1.0), (0.9, 1.0)):
+        u = deformed(system, 0.05, shift, rng)
+        x, touch = interface.P_AI + u.reshape(-1, 2), contact(interface, u, start)
+        assert np.mean(touch.pairing.c_q != start.c_q) == pytest.approx(elsewhere, abs=0.2)
+        apart = interface.at_slave(x) - position(interface.master, touch.pairing, x)
+        assert np.max(np.abs(touch.g_q - np.sum(apart * touch.n_qi, 1))) < 1e-13
+
+
+def test_interface_forces_are_in_balance_when_meshes_do_not_match(rng):
+    """The traction acts along the line from a point to its projection: forces and moments cancel on any two meshes."""
+    system = build(PROBLEM).system
+    interface = system.interface
+    u = deformed(system, 0.04, 0.3, rng)
+    touch = contact(interface, u, system.start().pairing)
+    R = forces(interface, touch, touch.on_q * rng.standard_normal(interface.points), system.n_dof).reshape(-1, 2)
+    x = interface.P_AI + u.reshape(-1, 2)
+    scale = np.abs(R).sum()
+    assert np.all(np.abs(R.sum(0)) < 1e-12 * scale)
+    assert abs(np.sum(x[:, 0] * R[:, 1] - x[:, 1] * R[:, 0])) < 1e-11 * scale
+
+
+def test_a_point_off_the_master_is_free():
+    system = build(PROBLEM).system
+    interface = system.interface
+    u = np.zeros((system.n_dof // 2, 2))
+    u[: len(u) // 2] = [1.0, 0.1]
+    touch = contact(interface, u.ravel(), system.start().pairing)
+    X = interface.master.bezier_points(interface.P_AI)[-1, :, 0]
+    beyond = interface.X_qi[:, 0] + 1.0 - PROBLEM.length
+    gone = beyond > FREE * (X[-1] - X[0])
+    assert np.array_equal(~touch.on_q, gone) and gone.any()
+    assert np.array_equal(~touch.pairing.on_q, beyond > 0.0)
+    p, dp, k = traction(interface, touch, np.zeros(interface.points), touch.g_q < 0)
+    assert np.all(p[gone] == 0) and np.all(dp[gone] == 0) and np.all(k[gone] == 0)
+
+
+def test_a_surface_must_have_one_degree():
+    a, b = (
+        lagrange_rectangle(np.linspace(0, 1, 2), np.array([0.0, 1.0]), 2),
+        lagrange_rectangle(np.linspace(0, 1, 2), np.array([0.0, 1.0]), 3),
+    )
+    sides = np.array(["TOP", "TOP"])
+    chain = replace(a.chains["top"], block_c=np.array([0, 1]), element_c=np.array([0, 0]), side_c=sides)
+    both = Mesh(np.concatenate([a.P_AI, b.P_AI]), np.ones(len(a.P_AI) + len(b.P_AI)), (*a.blocks, *b.blocks))
+    with pytest.raises(ValueError, match="one degree"):
+        surface(both, chain, 0)
+
+
+def test_partners_that_stay_are_searched_for_once(monkeypatch):
+    """Where gaps change in proportion all is known of the points, and what reads them asks for no search."""
+    probe = build(replace(PROBLEM, kinematics="linear")).probe
+    monkeypatch.setattr("iga.interface.interface.nearest_samples", lambda *given: pytest.fail("searched for again"))
+    assert probe.at_rest is not None and np.array_equal(probe.pairing.c_q, probe.at_rest.pairing.c_q)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_surfaces_touch_that_are_apart_by_less_than_a_billionth_of_the_model(unit):
+    """In whatever units its length of 6 is told; what is further apart has the gap that it has."""
+    lengths = {"length": 6.0 * unit, "arm_thickness": 0.5 * unit, "precrack": 2.0 * unit}
+    interface = build(replace(PROBLEM, **lengths)).system.interface
+    upper = interface.P_AI[:, 1] > 1e-6 * unit
+    upper[np.unique(interface.conn_qa)] = True
+    for part, touches in ((0.5e-9, True), (2e-9, False)):
+        P_AI = interface.P_AI + part * 6.0 * unit * upper[:, None] * np.array([0.0, 1.0])
+        apart_qi = replace(interface, P_AI=P_AI).home.apart_qi
+        assert np.all(apart_qi == 0.0) == touches
+        if not touches:
+            assert np.abs(apart_qi[:, 1]) == pytest.approx(part * 6.0 * unit, rel=1e-3)

@@ -1,0 +1,120 @@
+"""Energy that the ledger of a path must know of: in springs of supports, and in points that slide off the master."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from iga.interface.laws import BilinearLaw
+from iga.path.energy import leaks, slid_off
+from iga.peel.peel import solve
+from iga.system.state import Energies
+from tests.iga.peel.test_peel import PEEL, column, isotropic
+
+#: So soft that the bond hardly gives: strip and substrate stretch, slide on each other and tilt.
+SOFT = replace(PEEL, strip=isotropic(250.0, 0.2), substrate=isotropic(5.0, 0.2), dofs=900)
+
+
+def ledger(solution) -> float:
+    """Worst energy that is missing, in parts of the work."""
+    work = column(solution, "external_work")
+    missing = work - column(solution, "stored_energy") - column(solution, "dissipated_energy")
+    return float(np.abs(missing).max() / work.max())
+
+
+def test_springs_that_hold_tilted_tractions_store_energy():
+    """Work of a purely elastic path to 1e-9; 1e-4 of it is in the spring along the strip at opening 4."""
+    found = solve(replace(SOFT, opening=(4.0,)))
+    assert found.status == "complete" and column(found, "dissipated_energy").max() == 0.0
+    assert ledger(found) < 1e-9
+
+
+@pytest.mark.slow
+def test_what_slides_off_the_end_of_the_master_is_told():
+    """The outermost points fade before any damage: their energy is gone with them, and told to a percent of it."""
+    found = solve(replace(SOFT, opening=(22.0,), steps=110))
+    assert found.status == "complete"
+    gone = column(found, "dissipated_energy")[-1]
+    assert gone > 0.0 and column(found, "damage_front").max() == column(found, "damage_front")[0]
+    assert ledger(found) * column(found, "external_work").max() < 0.01 * gone
+
+
+#: Dissipated before and after a step that does a work of 1, what it leaks, the forces times displacements that balance
+#: has left over, and whether the leak is too much.
+LEAKS = [
+    pytest.param(0.5, 0.6, 0.9e-3, 1e-12, False, id="far less than is dissipated"),
+    pytest.param(0.5, 0.6, 1.1e-3, 1e-12, True, id="a part of the path left out"),
+    pytest.param(0.0, 0.0, 1e-6, 1e-12, True, id="nothing dissipated and energy gone"),
+    pytest.param(0.0, 0.0, 1e-6, 2e-6, False, id="nothing dissipated, no more gone than rounding leaves"),
+    pytest.param(0.0, 1e-5, 1e-6, 1e-12, False, id="damage has just begun"),
+    pytest.param(1e-17, 1e-5, 1e-6, 1e-12, False, id="damage has just begun, and rounding had left energy before"),
+    pytest.param(0.0, 1e-17, 1e-6, 1e-12, True, id="no damage, whatever rounding leaves"),
+    pytest.param(1e-5, 2e-5, 1e-6, 1e-12, True, id="a twentieth of all that is dissipated"),
+    pytest.param(1e-4, 5e-4, 4.9e-7, 1e-12, False, id="less than a thousandth of the little that is dissipated"),
+    pytest.param(1e-4, 5e-4, 5.1e-7, 1e-12, True, id="more than a thousandth of the little that is dissipated"),
+    pytest.param(1e-5, 1e-5, 0.9e-7, 1e-12, False, id="less than a tenth of a millionth of the work"),
+    pytest.param(1e-5, 1e-5, 1.1e-7, 1e-12, True, id="more than a tenth of a millionth of the work"),
+    pytest.param(1.1e-3, 1.1e-3, 0.9e-3, 1e-12, False, id="enough is dissipated to be held against all work"),
+    pytest.param(0.9e-3, 0.9e-3, 0.9e-3, 1e-12, True, id="not yet enough is"),
+]
+
+
+@pytest.mark.parametrize(("before", "after", "leak", "left_over", "refused"), LEAKS)
+def test_what_a_step_may_leak(before, after, leak, left_over, refused):
+    """A part of the work, but of what is dissipated as long as that is little; of the work with a reversible law."""
+    start, end = (
+        SimpleNamespace(
+            external_work=work,
+            energies=Energies(work - spent, 0.0, 0.0, spent),
+            state=SimpleNamespace(u_d=np.array([0.0, 2.0 * work])),
+        )
+        for work, spent in ((0.0, before), (1.0, after))
+    )
+    for reversible in (False, True):
+        law = SimpleNamespace(irreversible=not reversible)
+        system = SimpleNamespace(interface=SimpleNamespace(law=law))
+        off = replace(end.energies, bulk=end.energies.bulk - leak)
+        response = SimpleNamespace(scale=5.0)
+        after_it = SimpleNamespace(
+            external_work=1.0, energies=off, state=end.state, response=response, residuals=(1.0, 0.1 * left_over)
+        )
+        assert leaks(system, start, after_it, 0.0) == (refused if not reversible else leak > 1e-3)
+
+
+LAW = BilinearLaw(4.0, 0.1, 12.5, 1e3, True, True)
+
+
+def sliding(gaps: list[float], histories: list[float], before: list[float], after: list[float]) -> float:
+    """Energy that goes with points whose share falls while they keep their gap and their damage."""
+    shares = [np.array(share) for share in (before, after)]
+    g_q, k_q = np.array(gaps), np.array(histories)
+    start, end = (
+        SimpleNamespace(
+            response=SimpleNamespace(contact=SimpleNamespace(share_q=share, g_q=g_q, m_q=None)),
+            tangent=SimpleNamespace(rate_q=0.0 * g_q, du_d=np.zeros(2)),
+            state=SimpleNamespace(k_q=k_q),
+        )
+        for share in shares
+    )
+    interface = SimpleNamespace(law=LAW, bonded_q=None, dA_q=np.array([0.5, 0.25])[: g_q.size])
+    return slid_off(SimpleNamespace(interface=interface), start, end, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(("gap", "history"), [(0.5 * LAW.g_max, 0.0), (2.0 * LAW.g_max, 4.0 * LAW.g_max), (-1e-3, 0.0)])
+def test_a_point_that_slides_off_takes_what_it_had_stored(gap, history):
+    """Whole or in part; below first damage, damaged and partly closed again, and pressed on the other face."""
+    cohesive, touching, _ = (float(part) for part in LAW.energies(np.array(gap), np.array(max(gap, history))))
+    stored = 0.5 * (cohesive + touching)  # of an area of 0.5
+    assert stored > 0.0
+    assert sliding([gap], [history], [1.0], [0.0]) == pytest.approx(stored, rel=1e-12)
+    assert sliding([gap], [history], [0.75], [0.25]) == pytest.approx(0.5 * stored, rel=1e-12)
+    assert sliding([gap], [history], [0.25], [0.75]) == pytest.approx(-0.5 * stored, rel=1e-12)
+
+
+def test_points_slide_off_one_by_one_and_those_that_stay_take_nothing():
+    gaps, histories = [0.5 * LAW.g_max, 2.0 * LAW.g_max], [0.0, 3.0 * LAW.g_max]
+    both = sliding(gaps, histories, [1.0, 1.0], [0.25, 0.5])
+    alone = [sliding(gaps, histories, [1.0, 1.0], share) for share in ([0.25, 1.0], [1.0, 0.5])]
+    assert both == pytest.approx(sum(alone), rel=1e-12) and min(alone) > 0.0
+    assert sliding(gaps, histories, [1.0, 1.0], [1.0, 1.0]) == 0.0

@@ -1,0 +1,124 @@
+"""Wherever a specimen lies, it tells the same of itself."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from iga.dcb.dcb import build, solve
+from iga.dcb.problem import Problem
+from iga.mesh.mirror import from_behind
+from iga.specimen.pose import Pose
+from tests.iga.elements.test_bulk import D_GENERIC, unit_square, warped
+
+#: Orthotropic, so that the axes of the material have to turn with the specimen.
+FLAT = Problem(
+    length=14.0,
+    arm_thickness=0.2,
+    precrack=4.0,
+    E1=120e3,
+    E2=9e3,
+    G12=5e3,
+    nu12=0.3,
+    strength=4.0,
+    toughness=0.1,
+    ductility=12.5,
+    penalty=1e5,
+    opening=(0.8,),
+    snapshot_openings=(0.8,),
+    dofs=400,
+    steps=20,
+)
+
+POSES = {
+    "turned": {"angle": 37.0},
+    "mirrored": {"mirror": True},
+    "moved": {"shift": (1e4, -3e3)},
+    "all": {"angle": 37.0, "mirror": True, "shift": (1e4, -3e3)},
+}
+
+#: Columns that vanish in a perfect specimen, and what they are small against: force x length.
+SMALL = {
+    "reaction_x": "load",
+    "reaction_y": "load",
+    "load_moment": "load",
+    "interface_moment": "load",
+    "end_opening": "tip_opening",
+}
+
+
+FLATS = [("finite", "nurbs"), ("linear", "nurbs"), ("finite", "lagrange"), ("finite", "tspline")]
+
+
+def column(solution, name):
+    return np.array([row[name] for row in solution.rows])
+
+
+@pytest.fixture(scope="module", params=FLATS, ids="-".join)
+def flat(request):
+    kinematics, basis = request.param
+    problem = replace(FLAT, kinematics=kinematics, basis=basis)
+    return problem, solve(problem)
+
+
+@pytest.mark.parametrize("pose", POSES)
+def test_rows_are_the_same_in_any_pose(flat, pose):
+    problem, there = flat
+    here = solve(replace(problem, **POSES[pose]))
+    assert len(here.rows) == len(there.rows)
+    for name in set(there.rows[0]) - {"newton_iterations"}:
+        scale = np.abs(column(there, SMALL.get(name, name))).max()
+        assert np.max(np.abs(column(here, name) - column(there, name))) < 1e-8 * scale, name
+
+
+def test_snapshots_are_in_the_own_frame(flat):
+    problem, there = flat
+    (here,), (plain,) = solve(replace(problem, **POSES["all"])).snapshots, there.snapshots
+    for name in ("s_q", "gap_q", "traction_q", "damage_q"):
+        assert np.allclose(here[name], plain[name], rtol=0.0, atol=1e-7 * np.abs(plain[name]).max()), name
+    back = np.s_[:, :, ::-1]  # a mirrored mesh runs backwards
+    for name in ("X_euvi", "u_euvi", "stress_euv"):
+        assert np.allclose(here[name][back], plain[name], rtol=0.0, atol=1e-7 * np.abs(plain[name]).max()), name
+
+
+def test_the_specimen_really_lies_there():
+    P_AI = build(replace(FLAT, **POSES["all"])).system.interface.P_AI
+    middle = 0.5 * (P_AI.min(0) + P_AI.max(0)) - (1e4, -3e3)
+    c, s = np.cos(np.radians(37.0)), np.sin(np.radians(37.0))
+    assert np.allclose(middle, [-7.0 * c, -7.0 * s], atol=1e-9)
+    assert np.allclose(np.ptp(P_AI, axis=0), [14.0 * c + 0.4 * s, 14.0 * s + 0.4 * c], atol=1e-9)
+
+
+def test_own_coordinates_undo_the_pose(rng):
+    pose, X = Pose(**POSES["all"]), rng.standard_normal((7, 2))
+    assert np.allclose(pose.own(pose.place(X)), X, atol=1e-10)
+    assert np.allclose(pose.axes_kI @ pose.axes_kI.T, np.eye(2), atol=1e-15)
+    assert np.linalg.det(pose.axes_kI) == pytest.approx(-1.0)
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_stiff_direction_turns_with_the_specimen(mirror, rng):
+    """The energy of a strain given in the own frame is that of the material's own matrix."""
+    pose = Pose(angle=25.0, mirror=mirror)
+    E = rng.standard_normal((2, 2))
+    E = E + E.T
+    a = pose.axes_kI
+    turned = a.T @ E @ a
+
+    def voigt(E):
+        return np.array([E[0, 0], E[1, 1], 2.0 * E[0, 1]])
+
+    D = pose.turned(D_GENERIC)
+    assert voigt(turned) @ D @ voigt(turned) == pytest.approx(voigt(E) @ D_GENERIC @ voigt(E), rel=1e-12)
+    assert np.allclose(D, D.T, atol=1e-12 * D.max()) and abs(D[0, 2]) > 0.1
+
+
+@pytest.mark.parametrize("kind", ["nurbs", "lagrange"])
+def test_a_mesh_from_behind_is_the_same_body(kind):
+    mesh = warped(unit_square(kind, 3, 2), 0.05)
+    back = from_behind(mesh)
+    for name, chain in mesh.chains.items():
+        assert set(back.chains[name].side_c) == {{"left": "RIGHT", "right": "LEFT"}.get(name, name.upper())}
+        assert set(back.chains[name].element_c) == set(chain.element_c)
+    (one,), (other,) = mesh.blocks, back.blocks
+    assert np.allclose(one.C_eab.reshape(-1, 16, 4, 4)[..., ::-1].reshape(one.C_eab.shape), other.C_eab)

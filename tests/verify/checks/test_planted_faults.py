@@ -1,0 +1,550 @@
+"""Every check finds a fault of ten times its tolerance, alone or first; a check without a planted fault fails here.
+
+First is the check that is furthest beyond its tolerance. Faults are planted in the columns of cheap runs, consistently
+with all that the fault itself leaves right, and some in the solver itself.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from doctored_meshes import arch, function_scaled
+
+import verify
+from iga.interface import laws
+from iga.mesh.boundary import boundary_chains
+from tests.verify.checks.test_peel_checks import made_up as made_up_peel
+from verify.checks.between_codes import cross_checks, published_names
+from verify.checks.foreign_curves import checks_of
+from verify.checks.identities import growing, law_of, run_checks
+from verify.checks.odd_one_out import odd_one_out
+from verify.checks.proof import REFERENCE, SECOND
+from verify.curves.compare import checks, compare
+from verify.curves.legs import NEAR
+from verify.methods.solve import solve
+from verify.result import Result
+from verify.scene.bodies import elastic_constants
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
+from verify.studies.plane import study as plane_study
+from verify.studies.plane.errors import Errors
+from verify.studies.plane.rates import FAMILIES, Convergence, rate_checks
+from verify.studies.plane.study import Level, Plate, _checks, study
+from verify.verdict import Check
+
+DCB = load_scene("dcb-czm1-linear", ["discretization.steps=60"])
+PEEL = load_scene("peel-60")
+PRESSED = load_scene("dcb-czm1-linear", ["discretization.steps=4", "load.opening=-0.004"])
+BENCHMARK = load_scene("alfano-crisfield")
+SCENES: Mapping[str, Scene] = {"dcb": DCB, "peel": PEEL, "pressed": PRESSED}
+
+#: Opens, unloads to nearly half of the opening and opens on.
+TURNS = load_scene("dcb-czm1-linear", ["discretization.steps=60", "load.opening=[1.5, 0.7, 3.0]"])
+
+#: Ten times the tolerance of a check.
+SIZE = 10.0
+
+
+def beam() -> Result:
+    """The beam satisfies all identities to rounding; it lacks reactions and moments, which are zero here."""
+    result = solve(DCB, "beam")
+    zero = np.zeros_like(result.load)
+    names = ("load_moment", "interface_moment", "reaction_x", "reaction_y")
+    return replace(result, steps={**result.steps, **dict.fromkeys(names, zero)})
+
+
+@pytest.fixture(scope="module")
+def runs() -> Mapping[str, Result]:
+    return {"dcb": beam(), "peel": made_up_peel(PEEL), "pressed": solve(PRESSED, "nurbs")}
+
+
+def scaled(result: Result, factors: Mapping[str, float]) -> Result:
+    steps = {name: factors.get(name, 1.0) * column for name, column in result.steps.items()}
+    return replace(result, steps=steps)
+
+
+def shifted(result: Result, column: str, by: float) -> Result:
+    return replace(result, steps={**result.steps, column: result.steps[column] + by})
+
+
+def dearer(result: Result, by: float) -> Result:
+    """A crack that costs more than G_Ic, with the work that it takes."""
+    lost = by * result.steps["dissipated_energy"]
+    return shifted(shifted(result, "dissipated_energy", lost), "external_work", lost)
+
+
+def turned(result: Result, by: float) -> Result:
+    """A loaded end that is turned too far, and holds the energy that J gains by it."""
+    more = by * result.load * np.abs(result.steps["face_slope_top"])
+    return shifted(scaled(result, {"face_slope_top": 1.0 + by}), "face_energy", more)
+
+
+def short_of_load(result: Result, by: float) -> Result:
+    """An upright strip on which less than G_Ic w pulls, and end faces that hold what J lacks; balances as they were."""
+    G, grows = PEEL.interface.toughness, growing(PEEL, result.steps)
+    load = np.where(grows, (1.0 - by) * G, result.load)
+    part = np.divide(load, result.load, out=np.ones_like(load), where=result.load > 0.0)
+    acting = ("load", "interface_force", "load_moment", "interface_moment", "clamp_moment", "interface_pull")
+    limp = replace(result, steps=result.steps | {name: part * result.steps[name] for name in (*acting, "anchor_pull")})
+    upright = np.where(grows, 1.0, result.steps["face_slope_top"])
+    energy = np.where(grows, load - G, result.steps["face_energy"])
+    return replace(limp, steps={**limp.steps, "face_slope_top": upright, "face_energy": energy})
+
+
+def deep(result: Result, by: float) -> Result:
+    """Faces that are in each other by ``by`` more than contact gives way under its pressure."""
+    body, across = PRESSED.specimen, elastic_constants(PRESSED.material)["E2"]
+    gives = result.steps["contact_pressure"] * (1.0 / PRESSED.interface.penalty + body.loaded_thickness / across)
+    return replace(result, steps={**result.steps, "penetration": (1.0 + by) * gives})
+
+
+def strained_ends(result: Result, by: float) -> Result:
+    """End faces that hold less energy, by a part of what the contact at the mouth holds, or of G_Ic."""
+    touching = law_of(PRESSED).area(np.minimum(result.steps["mouth_opening"], 0.0))
+    return shifted(result, "face_energy", -by * np.maximum(touching, PRESSED.interface.toughness))
+
+
+#: Check of one run -> specimen, and the fault in its columns by the tolerance.
+IN_A_RUN: Mapping[str, tuple[str, Callable[[Result, float], Result]]] = {
+    "completed": ("dcb", lambda run, size: scaled(run, {"opening": 1.0 - size})),
+    "j-integral": ("dcb", lambda run, size: scaled(run, {"face_slope_top": 1.0 + 2.0 * size})),
+    "growth-load": ("peel", short_of_load),
+    "growth-angle": ("peel", turned),
+    "energy-ledger": ("dcb", lambda run, size: scaled(run, {"external_work": 1.0 / (1.0 - size)})),
+    "interface-force": ("dcb", lambda run, size: scaled(run, {"interface_force": 1.0 + size})),
+    "moment-balance": (
+        "dcb",
+        lambda run, size: shifted(run, "interface_moment", size * DCB.specimen.free_length * np.max(run.load)),
+    ),
+    "clamp-moment": (
+        "peel",
+        lambda run, size: shifted(run, "clamp_moment", size * PEEL.specimen.extent * np.max(run.load)),
+    ),
+    "lengthwise": ("peel", lambda run, size: shifted(run, "anchor_pull", size * np.max(run.load))),
+    "reactions": ("dcb", lambda run, size: shifted(run, "reaction_y", size * np.max(run.load))),
+    "dissipation": ("dcb", dearer),
+    "penetration": ("pressed", deep),
+    "j-pressed": ("pressed", strained_ends),
+}
+
+
+def of_run(kind: str, result: Result) -> tuple[Check, ...]:
+    return run_checks(SCENES[kind], result)
+
+
+def first(found: Iterable[Check]) -> str:
+    """The broken check that is furthest beyond its tolerance; empty where all hold."""
+    broken = [check for check in found if check.state == "broken"]
+    return max(broken, key=lambda check: abs(check.value) / check.tolerance).name if broken else ""
+
+
+@pytest.mark.parametrize("name", IN_A_RUN)
+def test_a_fault_in_a_run(name: str, runs: Mapping[str, Result]) -> None:
+    kind, plant = IN_A_RUN[name]
+    right = {check.name: check for check in of_run(kind, runs[kind])}
+    assert first(right.values()) == "" and right[name].state == "holds"
+    found = of_run(kind, plant(runs[kind], SIZE * right[name].tolerance))
+    assert first(found) == name and of_that_size(found, name)
+
+
+def test_what_pressed_faces_may_be_off_by(runs: Mapping[str, Result]) -> None:
+    tolerances = {check.name: check.tolerance for check in of_run("pressed", runs["pressed"])}
+    assert (tolerances["penetration"], tolerances["j-pressed"]) == (0.5, 0.1)
+
+
+def of_that_size(found: Iterable[Check], name: str) -> bool:
+    """Whether a fault is as large as it claims, for the check that finds it."""
+    return any(0.5 <= abs(check.value) / (SIZE * check.tolerance) <= 2.0 for check in found if check.name == name)
+
+
+def curve(method: str, factor: float = 1.0) -> Result:
+    """A load that rises, and falls along an unloaded crack."""
+    opening = np.linspace(0.0, max(DCB.load.opening), 3001)
+    load = np.minimum(opening, np.maximum(opening, 1e-9) ** -0.5)
+    return Result(method, {"opening": opening, "load": factor * load})
+
+
+def after_the_peak(result: Result, by: float) -> Result:
+    late = result.opening > 1.2
+    return replace(result, steps={**result.steps, "load": np.where(late, 1.0 - 2.0 * by, 1.0) * result.load})
+
+
+def spike(result: Result, by: float) -> Result:
+    top = np.arange(result.load.size) == np.argmax(result.load)
+    return replace(result, steps={**result.steps, "load": np.where(top, 1.0 + by, 1.0) * result.load})
+
+
+def short(result: Result, by: float) -> Result:
+    kept = result.opening <= (1.0 - by) * result.opening[-1]
+    steps = {name: column[kept] for name, column in result.steps.items()}
+    steps["opening"] = np.append(steps["opening"][:-1], (1.0 - by) * result.opening[-1])
+    return replace(result, steps=steps)
+
+
+def louder(result: Result, by: float) -> Result:
+    return scaled(result, {"load": 1.0 + by})
+
+
+def soft(result: Result, by: float) -> Result:
+    """Too stiff up to half of the peak load."""
+    early = result.load <= 0.5 * np.max(result.load)
+    early &= result.opening <= 1.0
+    return replace(result, steps={**result.steps, "load": np.where(early, 1.0 + by, 1.0) * result.load})
+
+
+def one_point(result: Result, by: float) -> Result:
+    """One load of the falling branch, below the peak load."""
+    there = np.arange(result.load.size) == int(np.argmin(np.abs(result.opening - 2.2)))
+    return replace(result, steps={**result.steps, "load": np.where(there, 1.0 + by, 1.0) * result.load})
+
+
+#: Points of the legs of `loop`.
+UP, DOWN, ON = slice(0, 1501), slice(1501, 2301), slice(2301, 4601)
+
+
+def loop(method: str) -> Result:
+    """The load of `curve` along the programme of `TURNS`; it unloads along the secant, and comes back on it."""
+    opening = np.concatenate(
+        [np.linspace(0.0, 1.5, 1501), np.linspace(1.5, 0.7, 801)[1:], np.linspace(0.7, 3.0, 2301)[1:]]
+    )
+    load = np.minimum(opening, np.maximum(opening, 1e-9) ** -0.5)
+    secant = 1.5**-1.5 * opening
+    unloaded = (np.arange(opening.size) > 1500) & (opening < 1.5)
+    return Result(method, {"opening": opening, "load": np.where(unloaded, secant, load)})
+
+
+def on_a_line(result: Result, aim: float) -> Result:
+    """Unloads towards an opening other than 0, and comes back on the same line."""
+    d, P = result.opening, result.load.copy()
+    unloaded = (np.arange(d.size) > 1500) & (d < 1.5)
+    return replace(result, steps={"opening": d, "load": np.where(unloaded, 1.5**-0.5 * (d - aim) / (1.5 - aim), P)})
+
+
+def steep(result: Result, by: float) -> Result:
+    return on_a_line(result, 1.5 - 1.5 / (1.0 + by))
+
+
+def left_open(result: Result, by: float) -> Result:
+    """Shut too early, by a part of the opening at which the unloading begins."""
+    return on_a_line(result, -1.5 * by)
+
+
+def wavy(result: Result, by: float) -> Result:
+    """An unloading that is once above and once below the secant: ends and work are right."""
+    d, P = result.opening, result.load.copy()
+    P[DOWN] += 1.1 * by * 1.5**-0.5 * np.sin(2.0 * np.pi * (1.5 - d[DOWN]) / 0.8)
+    return replace(result, steps={"opening": d, "load": P})
+
+
+def sagging(result: Result, by: float) -> Result:
+    """A way back below the unloading, between the right ends."""
+    d, P = result.opening, result.load.copy()
+    x = np.clip((d[ON] - 0.7) / 0.8, 0.0, 1.0)
+    P[ON] -= by * 6.0 * x * (1.0 - x) * 0.73 * 1.5**-0.5
+    return replace(result, steps={"opening": d, "load": P})
+
+
+def late_turn(result: Result, by: float) -> Result:
+    """Unloads from an opening that is too large, by a part of the largest one."""
+    d, P = result.opening, result.load
+    top = 1.5 + 3.0 * by
+    before, way = np.linspace(1.5, top, 50)[1:], np.linspace(top, 0.7, 801)[1:]
+    bond = top**-1.5
+    later = d[ON][d[ON] > top]
+    openings = (d[UP], before, way, way[::-1][1:], [top], later)
+    loads = (P[UP], before**-0.5, bond * way, bond * way[::-1][1:], [top**-0.5], later**-0.5)
+    return replace(result, steps={"opening": np.concatenate(openings), "load": np.concatenate(loads)})
+
+
+def against_the_beam(plant: Callable[[Result], Result]) -> tuple[Check, ...]:
+    """Two codes with the same fault agree with each other, on any mesh."""
+    both = {
+        name: replace(plant(curve("nurbs")), method=name.partition("-")[0]) for name in ("nurbs", REFERENCE, SECOND)
+    }
+    return cross_checks(DCB, {**both, "beam": curve("beam")})
+
+
+def reference(made: Callable[[str], Result]) -> dict[str, Result]:
+    """The reference, the same on its second mesh."""
+    return {name: made(REFERENCE) for name in (REFERENCE, SECOND)}
+
+
+def against_dolfinx(plant: Callable[[Result], Result]) -> tuple[Check, ...]:
+    return cross_checks(DCB, {"nurbs": plant(curve("nurbs")), **reference(curve)})
+
+
+def leg_by_leg(plant: Callable[[Result], Result]) -> tuple[Check, ...]:
+    return cross_checks(TURNS, {"nurbs": plant(loop("nurbs")), **reference(loop)})
+
+
+def from_elsewhere(*methods: str) -> Callable[[Callable[[Result], Result]], tuple[Check, ...]]:
+    others = {method: curve(method) for method in methods}
+    return lambda plant: checks_of(DCB, "mine", plant(curve("mine")), others)
+
+
+def legs_from_elsewhere(plant: Callable[[Result], Result]) -> tuple[Check, ...]:
+    return checks_of(TURNS, "mine", plant(loop("mine")), {"nurbs": loop("nurbs")})
+
+
+def compared(plant: Callable[[Result], Result], made: Callable[[str], Result] = curve) -> tuple[Check, ...]:
+    a, b = plant(made("a")), made("b")
+    return tuple(checks(compare((a.opening, a.load), (b.opening, b.load)), 0.005, 0.005, 0.005))
+
+
+def wave(result: Result, by: float) -> Result:
+    """Loads too large at first and too small then, behind the peak: peak and work are what they were."""
+    up, down = ((result.opening > a) & (result.opening < b) for a, b in ((1.3, 2.0), (2.0, 3.0)))
+    lost = np.trapezoid(result.load * up, result.opening) / np.trapezoid(result.load * down, result.opening)
+    return replace(result, steps={**result.steps, "load": (1.0 + by * (up - lost * down)) * result.load})
+
+
+def dropping(method: str) -> Result:
+    """A curve whose load drops by half at the opening 2."""
+    opening = np.concatenate([np.linspace(0.0, 2.0, 2001), np.linspace(2.0, 3.0, 1001)])
+    load = np.minimum(opening, np.maximum(opening, 1e-9) ** -0.5)
+    return Result(method, {"opening": opening, "load": np.where(np.arange(3002) > 2000, 0.5, 1.0) * load})
+
+
+def snapping_back(result: Result, by: float) -> Result:
+    """The drop as a snap-back, whose work no envelope shows: a triangle below the drop is cut out."""
+    d, P = result.opening, result.load
+    work, drop = np.trapezoid(P, d), P[2000] - P[2001]
+    corner = d[2000] - 2.0 * by * work / drop, P[2001]
+    return replace(result, steps={"opening": np.insert(d, 2001, corner[0]), "load": np.insert(P, 2001, corner[1])})
+
+
+def compared_at_a_drop(plant: Callable[[Result], Result]) -> tuple[Check, ...]:
+    return compared(plant, dropping)
+
+
+def compared_leg_by_leg(plant: Callable[[Result], Result]) -> tuple[Check, ...]:
+    return compared(plant, loop)
+
+
+#: Check between curves -> who judges, the tolerance, and the fault.
+BETWEEN: Mapping[str, tuple[Callable, float, Callable[[Result, float], Result]]] = {
+    "beam-curve": (against_the_beam, 0.002, louder),
+    "curve": (against_dolfinx, 0.005, after_the_peak),
+    "peak": (against_dolfinx, 0.005, spike),
+    "stiffness": (against_dolfinx, 0.005, soft),
+    "farthest-point": (against_dolfinx, 0.02, one_point),
+    "curve-leg-2": (leg_by_leg, 0.005, wavy),
+    "slope-leg-2": (leg_by_leg, 0.005, steep),
+    "residual-leg-2": (leg_by_leg, 0.005, left_open),
+    "loop-leg-2": (leg_by_leg, 0.005, sagging),
+    "beam-curve of a foreign curve": (from_elsewhere("beam"), 0.002, louder),
+    "farthest-point of a foreign curve and the beam": (from_elsewhere("beam"), 0.008, one_point),
+    "curve of a foreign curve": (from_elsewhere("nurbs"), 0.005, after_the_peak),
+    "peak of a foreign curve": (from_elsewhere("nurbs"), 0.005, spike),
+    "end": (from_elsewhere("nurbs"), NEAR, short),
+    "legs": (legs_from_elsewhere, NEAR, late_turn),
+    "end of a comparison": (compared, NEAR, short),
+    "legs of a comparison": (compared_leg_by_leg, NEAR, late_turn),
+    "curve-leg-2 of a comparison": (compared_leg_by_leg, 0.005, wavy),
+    "curve-error": (compared, 0.005, wave),
+    "peak-load": (compared, 0.005, spike),
+    "farthest-point of a comparison": (compared, 0.02, one_point),
+    "energy": (compared_at_a_drop, 0.005, snapping_back),
+}
+
+
+@pytest.mark.parametrize("name", BETWEEN)
+def test_a_fault_of_a_curve(name: str) -> None:
+    judged, tolerance, plant = BETWEEN[name]
+    right = {check.name: check for check in judged(lambda result: result)}
+    check = name.split(" of ")[0]
+    assert first(right.values()) == "" and right[check].tolerance == tolerance
+    found = judged(lambda result: plant(result, SIZE * tolerance))
+    assert first(found) == check and of_that_size(found, check)
+
+
+@pytest.mark.parametrize("number", range(len(BENCHMARK.published)))
+def test_a_load_that_nobody_published(number: int) -> None:
+    known, name = BENCHMARK.published[number], published_names(BENCHMARK)[number]
+    opening = np.linspace(0.0, max(BENCHMARK.load.opening), 101)
+
+    def judged(load: float) -> dict[str, Check]:
+        run = Result("nurbs", {"opening": opening, "load": np.where(opening > 0.0, load, 0.0)})
+        return {check.name: check for check in cross_checks(BENCHMARK, {"nurbs": run})}
+
+    assert judged(np.mean(known.value))[name].state == "holds"
+    assert judged(known.value[1] * (1.0 + SIZE * known.tolerance))[name].state == "broken"
+
+
+def level(displacement: float, energy: float, rate: float) -> Level:
+    return Level("", 1, 1, Errors(displacement, energy, energy), rate, rate - 1.0)
+
+
+def of_plate(patch: float = 1e-14, last: float = 1e-5, energy: float = 1e-4, rate: float = 4.0) -> tuple[Check, ...]:
+    levels = (level(1e-3, 1e-2, np.nan), level(1e-4, 1e-3, rate), level(last, energy, rate))
+    return tuple(_checks("plate", Errors(patch, patch, patch), levels, 4))
+
+
+def of_bases(rate: float = 4.0) -> tuple[Check, ...]:
+    return rate_checks((Convergence(FAMILIES[0], (1, 2), (Errors(2.0**rate, 8.0, 8.0), Errors(1.0, 1.0, 1.0))),))
+
+
+#: Check of a plane problem -> what it finds of a fault of ten tolerances.
+IN_THE_PLANE: Mapping[str, Callable[[float], tuple[Check, ...]]] = {
+    "patch-test": lambda size: of_plate(patch=size),
+    "nested-energy": lambda size: of_plate(energy=1e-3 * (1.0 + size)),
+    "exact-field": lambda size: of_plate(last=size),
+    "rate": lambda size: of_plate(rate=4.0 - size),
+    "rate of a basis": lambda size: of_bases(4.0 - size),
+}
+
+
+@pytest.mark.parametrize("name", IN_THE_PLANE)
+def test_a_fault_in_the_plane(name: str) -> None:
+    check, right = name.split(" of ")[0], of_bases() if "basis" in name else of_plate()
+    assert first(right) == ""
+    tolerance = next(one.tolerance for one in right if one.name == check)
+    assert first(IN_THE_PLANE[name](SIZE * tolerance)) == check
+
+
+@pytest.mark.parametrize("broken", [False, True])
+def test_functions_that_do_not_add_up(broken: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The rational functions divide by their sum: this check alone finds it."""
+    monkeypatch.setattr(plane_study, "MOST_UNKNOWNS", 3000)
+    fault = 2.3 * SIZE * plane_study.UNITY  # the largest coefficient of the function is 1 / 2.3
+    body = function_scaled(replace(arch(), chains={}), 1.0 + fault * broken)
+    chains = {f"boundary-{i}": chain for i, chain in enumerate(boundary_chains(body))}
+    found = study(Plate("body", replace(body, chains=chains), None)).checks
+    assert [check.name for check in found if not check.passed] == ["sum-of-functions"] * broken
+    assert not broken or of_that_size(found, "sum-of-functions")
+
+
+# --- faults of the reference
+
+#: Run -> the factor on its loads. The second mesh of the reference is off by little in any case.
+RIGHT = {"nurbs": 1.0, "tspline": 1.0002, "beam": 1.0004, REFERENCE: 1.0, SECOND: 1.0003}
+
+
+def with_factors(scene: Scene, made: Callable[[str], Result], **wrong: float) -> tuple[tuple[Check, ...], str]:
+    """Checks of runs of which some are wrong, and the sentence that names the odd one out."""
+    results = {name: louder(made(name.partition("-")[0]), part - 1.0) for name, part in {**RIGHT, **wrong}.items()}
+    found = cross_checks(scene, results)
+    return found, "; ".join(odd_one_out(scene, found, results))
+
+
+@pytest.mark.parametrize(("scene", "made"), [(DCB, curve), (TURNS, loop)], ids=["opens", "turns"])
+@pytest.mark.parametrize("off", [0.98, 1.02, 1.03])
+def test_a_wrong_reference_judges_nobody_and_is_named(scene: Scene, made: Callable[[str], Result], off: float) -> None:
+    right, said = with_factors(scene, made)
+    assert first(right) == "" and said == ""
+    found, said = with_factors(scene, made, dolfinx=off)
+    against = [check for check in found if check.subject.endswith(f"/ {REFERENCE}")]
+    assert {check.subject for check in against} == {f"nurbs / {REFERENCE}", f"tspline / {REFERENCE}"}
+    assert all(check.state != "broken" for check in against)
+    seen = [check for check in against if abs(check.value) > check.tolerance]
+    assert {"curve", "peak", "stiffness"} <= {check.name for check in seen}
+    assert all(check.state == "unresolved" and "second mesh" in check.unresolved for check in seen)
+    assert {check.subject for check in found if check.state == "broken"} == {f"{REFERENCE} / beam"}
+    assert said.startswith(f"odd one out: {REFERENCE}, ")
+
+
+def test_a_wrong_reference_on_both_meshes_is_named() -> None:
+    """Two meshes with one fault prove a wrong curve; the codes that it blames are not the odd one out."""
+    found, said = with_factors(DCB, curve, **{REFERENCE: 1.02, SECOND: 1.0203})
+    assert {check.subject for check in found if check.state == "broken"} >= {f"{REFERENCE} / beam"}
+    assert said.startswith(f"odd one out: {REFERENCE}, ")
+
+
+@pytest.mark.parametrize("off", [0.98, 1.02])
+@pytest.mark.parametrize(("scene", "made"), [(DCB, curve), (TURNS, loop)], ids=["opens", "turns"])
+def test_a_wrong_curve_is_broken_and_named(scene: Scene, made: Callable[[str], Result], off: float) -> None:
+    found, said = with_factors(scene, made, nurbs=off)
+    broken = [check for check in found if check.state == "broken"]
+    assert {(check.name, check.subject) for check in broken} >= {
+        ("curve", f"nurbs / {REFERENCE}"), ("peak", f"nurbs / {REFERENCE}"), ("beam-curve", "nurbs / beam"),
+    }  # fmt: skip
+    assert {check.subject.partition(" / ")[0] for check in broken} == {"nurbs"}
+    assert not any(check.state == "unresolved" for check in found)
+    assert said.startswith("odd one out: nurbs, ")
+
+
+# --- faults of the solver itself
+
+
+@pytest.fixture
+def small() -> Scene:
+    return load_scene("dcb-czm1", ["discretization.dofs=1200", "discretization.steps=40", "load.opening=1.2"])
+
+
+def test_a_law_of_a_larger_area(small: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """g_u 6 % too large, in traction and energies alike: the ledger closes, the cost of the crack is J's to tell."""
+    assert first(run_checks(small, solve(small, "nurbs"))) == ""
+    larger = property(lambda law: 1.06 * 2.0 * law.toughness / law.strength)
+    monkeypatch.setattr(laws.BilinearLaw, "g_u", larger)
+    assert first(run_checks(small, solve(small, "nurbs"))) == "j-integral"
+
+
+def test_a_width_that_energies_do_not_have(small: Scene) -> None:
+    """A run of a specimen that is 10 % wider: its forces balance, and J and its crack do not belong to this one."""
+    wide = solve(load_scene("dcb-czm1", ["specimen.width=1.1", "load.opening=1.2", "discretization.steps=40"]), "nurbs")
+    assert first(run_checks(small, wide)) == "j-integral"
+
+
+def test_a_contact_that_is_left_out(small: Scene) -> None:
+    """Without contact the far ends run through each other; what is compared is another problem, and the curve tells."""
+    short = ["discretization.dofs=1200", "specimen.length=5.5", "load.opening=0.6", "discretization.steps=40"]
+    scene = load_scene("dcb-czm1", short)
+    loose = solve(load_scene("dcb-czm1", [*short, "effects.contact=false"]), "nurbs")
+    assert first(cross_checks(scene, {"nurbs": loose, "beam": solve(scene, "beam")})) == "beam-curve"
+
+
+# --- no check without a fault
+
+
+def stem(name: str) -> str:
+    """The name of a check without the number of a leg, and without what follows of its place in a table of tests."""
+    return re.sub(r"(-leg)-\d+$", r"\1", name.split(" of ")[0])
+
+
+PLANTED = {stem(name) for name in (*IN_A_RUN, *BETWEEN, *IN_THE_PLANE)} | {"sum-of-functions"}
+#: Modules that make checks whose names stand in a table of rows, with the number of columns of that.
+TABLES = {"identities.py": 4, "compare.py": 4, "leg_checks.py": 3}
+#: Modules that make checks whose names come from the scene (values that others published).
+PUBLISHED = {"between_codes.py", "foreign_curves.py"}
+
+
+def named_in(source: Path) -> set[str]:
+    """Names of checks that a module spells out: first in a ``Check``, or in a row of a table of checks."""
+    names = set()
+    for node in ast.walk(ast.parse(source.read_text())):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Check":
+            arguments = node.args[:1]
+            assert isinstance(arguments[0], ast.Constant) or source.name in {*TABLES, *PUBLISHED}, (
+                f"{source.name}: where do the names of line {node.lineno} come from?"
+            )
+        elif isinstance(node, ast.Tuple) and len(node.elts) == TABLES.get(source.name):
+            arguments = node.elts[:1]
+        else:
+            continue
+        texts = [one.values[0] if isinstance(one, ast.JoinedStr) else one for one in arguments]
+        names |= {one.value for one in texts if isinstance(one, ast.Constant) and isinstance(one.value, str)}
+    return {name.rstrip("-") for name in names}
+
+
+def test_every_check_has_its_fault() -> None:
+    home = Path(verify.__file__).parent
+    hard = home / "studies" / "hard"  # whose criteria are judged by `test_hard_judges`
+    modules = [p for p in home.rglob("*.py") if "Check(" in p.read_text() and hard not in p.parents]
+    named = set().union(*(named_in(path) for path in modules))
+    assert named >= {"j-integral", "curve", "patch-test", "curve-error", "end", "slope-leg"}, "names are found"
+    for name in sorted(named):
+        assert name in PLANTED, f"plant a fault for {name}"
+
+
+def test_every_check_that_a_run_has_has_its_fault(runs: Mapping[str, Result]) -> None:
+    found = [check for kind, run in runs.items() for check in of_run(kind, run)]
+    judges = {judged for judged, _, _ in BETWEEN.values()}
+    found += [check for judged in judges for check in judged(lambda result: result)]
+    for check in found:
+        assert check.kind == "regression" or stem(check.name) in PLANTED, f"plant a fault for {check.name}"

@@ -1,0 +1,332 @@
+"""`debond mesh`: facts of mesh files, pictures, other formats, and refusals without a traceback."""
+
+import json
+import sys
+import time
+import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from doctored_meshes import SMOOTH, arch
+from hypothesis import given, settings
+from iga_files import REAL, SMALL, assert_same, real, small
+
+from iga.bases.bspline import open_knots
+from iga.bases.nurbs import nurbs_rectangle
+from iga.bases.unstructured import polygon_mesh
+from iga.files.iga_format import from_mesh, mesh, write_iga
+from iga.files.iga_reader import read_iga
+from iga.mesh import rank
+from iga.mesh.extraction import ElementBlock, Mesh
+from iga.tsplines.lines import tensor_grid, with_lines
+from iga.tsplines.tspline import tspline_rectangle
+from tests.iga.files.test_iga_format import MALFORMED, mutated
+from verify.cli import main
+from verify.command_line import mesh as mesh_command
+from verify.command_line import mesh_facts
+from verify.command_line.mesh import _continuity, _sets, _unity, examine
+from verify.command_line.mesh_facts import MeshFacts, independent
+from verify.support import progress
+from verify.support.refusal import Refusal
+
+#: control points, elements, T-junctions, valences, inner edges that are C0, C1, C2, area
+FACTS = {
+    "arch_nurbs": (49, 16, 0, [], (0, 0, 24), 0.75 * np.pi),
+    "arch_tsplines": (119, 80, 8, [], (0, 0, 146), 0.75 * np.pi),
+    "plate_with_hole": (275, 176, 8, [], (12, 0, 320), 16.0 - np.pi / 4),
+    "square_structured": (25, 4, 0, [], (0, 0, 4), 1.0),
+    "square_unstructured": (187, 112, 0, [3, 5], (0, 24, 178), 1.0),
+}
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def facts_of(path, capsys) -> dict:
+    assert main(["mesh", str(path), "--json", "--out", "picture.vtu"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("name", REAL)
+def test_facts_of_real_files(name, capsys):
+    points, elements, junctions, valences, edges, area = FACTS[name]
+    report = facts_of(real(name), capsys)
+    assert report["type"] == "plane" and report["unsound"] == []
+    assert (report["control_points"], report["elements"]) == (points, elements)
+    assert sum(kind["elements"] for kind in report["kinds"]) == elements
+    assert report["rank"] == points
+    assert report["area"] == pytest.approx(area, rel=1e-12)
+    assert len(report["t_junctions"]) == junctions
+    assert sorted(point["valence"] for point in report["extraordinary_points"]) == valences
+    assert report["continuity"] == {"broken": 0, **dict(zip(("C0", "C1", "C2"), edges, strict=True))}
+    assert report["boundary_loops"] == 1
+    assert report["smallest_jacobian"] > 0
+    if name != "square_unstructured":
+        assert report["sum_of_functions_misses_one_by"] < 1e-14
+
+
+def test_extraordinary_points_are_where_they_are_seen(capsys):
+    points = facts_of(real("square_unstructured"), capsys)["extraordinary_points"]
+    places = {point["valence"]: point["at"] for point in points}
+    assert places[3] == pytest.approx([0.28027, 0.73564], abs=1e-5)
+    assert places[5] == pytest.approx([0.61298, 0.38119], abs=1e-5)
+
+
+@pytest.mark.parametrize("name", REAL)
+def test_every_real_file_is_drawn(name, capsys, tmp_path):
+    """Without options: the facts in words, the picture in a folder of its own, and where it is."""
+    assert main(["mesh", str(real(name))]) == 0
+    said = capsys.readouterr()
+    points, _, junctions, valences, _, _ = FACTS[name]
+    assert f"written: debond-mesh/{name}.svg" in said.out and said.err == ""
+    assert f"independent functions: {points} of {points}, all" in said.out
+    assert f"T-junctions: {junctions or 'none'} (" in said.out
+    assert all(f"valence {valence} at" in said.out for valence in valences)
+    texts = [text.text for text in ElementTree.parse(tmp_path / "debond-mesh" / f"{name}.svg").iter() if text.text]
+    assert any(name in text for text in texts)
+    assert any(f"{junctions} T-junctions" in text for text in texts) == bool(junctions)
+    assert all(str(valence) in map(str.strip, texts) for valence in valences)
+
+
+def test_t_junction_of_the_small_file(tmp_path, capsys):
+    assert main(["mesh", str(small(tmp_path)), "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["t_junctions"] == [[1.0, 0.5]] and report["extraordinary_points"] == []
+    assert report["continuity"] == {"broken": 0, "C0": 3, "C1": 0, "C2": 0}
+    assert report["chains"] == {"Right_side": 2} and report["written"] == "debond-mesh/small.svg"
+
+
+@pytest.mark.parametrize("corners", [3, 5, 6])
+def test_valence_of_a_polygon(corners):
+    """A polygon cut from its middle into as many quadrilaterals as it has corners."""
+    facts = MeshFacts(polygon_mesh(corners, 2))
+    ((valence, x),) = facts.extraordinary
+    assert valence == corners and np.abs(x).max() < 1e-12
+    assert len(facts.junctions) == 0 and facts.loops == 1 and facts.unsound == []
+
+
+def test_t_junctions_of_four_lines():
+    """Lines that end on a line: the hanging nodes are where their extensions end, two elements further."""
+    breaks = np.linspace(0.0, 1.0, 9)
+    mids = 0.5 * (breaks[2:6] + breaks[3:7])
+    lines = np.stack([mids, np.full(4, 0.375), np.full(4, 0.625)], -1)
+    facts = MeshFacts(tspline_rectangle(with_lines(tensor_grid(breaks, breaks), lines, np.empty((0, 3)))))
+    expected = sorted((s, t) for s in mids for t in (0.125, 0.875))
+    assert np.array(sorted(facts.junctions.round(12).tolist())) == pytest.approx(np.array(expected))
+    assert facts.extraordinary == [] and facts.unsound == [] and facts.loops == 1
+    assert facts.mesh.elements == 8 * 8 + 4 * 6
+    assert facts.area == pytest.approx(1.0, rel=1e-13)
+
+
+def test_other_formats(tmp_path, capsys):
+    source = small(tmp_path)
+    for name in ("again.iga", "mesh.vtu", "mesh.png", "mesh.pdf", "mesh.SVG"):
+        assert main(["mesh", str(source), "--out", name, "--control"]) == 0
+        assert f"written: {name}" in capsys.readouterr().out
+    assert_same(read_iga(source), read_iga("again.iga"))
+    assert (tmp_path / "mesh.png").read_bytes().startswith(b"\x89PNG")
+    assert 'HigherOrderDegrees="HigherOrderDegrees"' in (tmp_path / "mesh.vtu").read_text()
+    assert not (tmp_path / "debond-mesh").exists()
+
+
+@pytest.mark.parametrize(
+    "what", ["empty", "NaN", "short block", "node out of range", "truncated", "binary", "huge count"]
+)
+def test_malformed_files_are_bad_input(what, tmp_path, capsys):
+    text, line, _ = MALFORMED[what]
+    path = tmp_path / "wrong.iga"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    assert main(["mesh", str(path)]) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.startswith(f"debond: {path}: line {line}: expected ")
+    assert said.err.count("\n") == 1
+    assert not (tmp_path / "debond-mesh").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["none.iga"], "FILE: must be a file that can be read, got 'none.iga': No such file"),
+        (["."], "FILE: must be a file that can be read, got '.': Is a directory"),
+        (["volume.iga"], "volume.iga: type: must be plane for a body in the plane, got volume"),
+        (["small.iga", "--out", "x.obj"], "--out: must end in .vtu, .iga, .svg, .png or .pdf, got 'x.obj'"),
+        (["small.iga", "--out", "no/x.svg"], "--out: must be a place that can be written to, got 'no/x.svg'"),
+        (["small.iga", "--out", "no/x.vtu"], "--out: must be a place that can be written to, got 'no/x.vtu'"),
+    ],
+)
+def test_bad_input(arguments, reason, tmp_path, capsys):
+    small(tmp_path)
+    volume = "type volume\nnodeN 1\nelemN 1\nnode 0 0 0 1\nbelem 1 1 1 1\n0\n1 1 1 1 1 1 1 1\n"
+    (tmp_path / "volume.iga").write_text(volume)
+    assert main(["mesh", *arguments]) == 2
+    assert capsys.readouterr().err.startswith(f"debond: {reason}")
+
+
+def test_a_folded_element_is_no_mesh_to_solve_on(tmp_path, capsys):
+    path = small(tmp_path, SMALL.replace("node 0 1 0 1", "node 0.9 0.1 0 1"))
+    assert main(["mesh", str(path)]) == 1
+    said = capsys.readouterr()
+    assert "Jacobians are not positive on 1 of 3 elements" in said.err
+    assert "continuity: not looked at" in said.out and (tmp_path / "debond-mesh" / "small.svg").exists()
+
+
+@pytest.mark.parametrize("kind", SMOOTH)
+def test_what_is_wrong_is_named(kind, tmp_path, capsys):
+    doctor, words = SMOOTH[kind]
+    write_iga(from_mesh(doctor(replace(arch(), chains={}))), tmp_path / "wrong.iga")
+    assert main(["mesh", "wrong.iga", "--out", "wrong.vtu"]) == 1
+    said = capsys.readouterr()
+    assert words in said.err and "debond: wrong.iga: " in said.err and "elements" in said.out
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("conn_swap", "functions go on beyond 6 sides of the boundary"),
+        ("dupelem", "elements lie on each other: 10 sides with more than one neighbour"),
+        ("extr_row102", "the sum of the functions misses 1 by 0.00125"),
+    ],
+)
+@pytest.mark.parametrize(("command", "code"), [("mesh", 1), ("verify", 2)])
+def test_real_files_that_were_doctored(name, words, command, code, tmp_path, capsys):
+    path = real("arch_nurbs").parents[2] / "iga-broken" / f"{name}.iga"
+    if not path.exists():
+        pytest.skip(f"the file {path.name} is not at hand")
+    assert main([command, str(path), "--out", str(tmp_path / "out.vtu")]) == code
+    assert words in capsys.readouterr().err
+
+
+def test_a_third_coordinate_is_bad_input(tmp_path, capsys):
+    path = small(tmp_path, SMALL.replace("node 2 0.5 0 1", "node 2 0.5 0.25 1"))
+    for command in ("mesh", "verify"):
+        assert main([command, str(path), "--out", "out.vtu"]) == 2
+        assert "node 5: z must be 0 in a plane, got 0.25 (nodes count from 0)" in capsys.readouterr().err
+
+
+def doubled(body: Mesh) -> Mesh:
+    """One function twice, each half of it: the sum is the same, but they are dependent."""
+    (block,) = body.blocks
+    half = (block.conn_ea == 0)[..., None]
+    C_eab = np.concatenate([np.where(half, 0.5, 1.0) * block.C_eab, np.where(half, 0.5, 0.0) * block.C_eab], axis=1)
+    keep = np.r_[: block.conn_ea.shape[1], block.conn_ea.shape[1] + np.argmax(block.conn_ea[0] == 0)]
+    conn_ea = np.concatenate([block.conn_ea, np.full_like(block.conn_ea, len(body.P_AI))], axis=1)[:, keep]
+    P_AI = np.concatenate([body.P_AI, body.P_AI[:1]])
+    return Mesh(P_AI, np.ones(len(P_AI)), (ElementBlock(block.degrees, C_eab[:, keep], conn_ea),))
+
+
+@pytest.mark.parametrize("many", [0, 2000])
+def test_dependent_functions_are_found(many, monkeypatch):
+    """By singular values and, as for large meshes, by the smallest eigenvalue."""
+    monkeypatch.setattr(rank, "MANY", many)
+    kv = open_knots(np.linspace(0.0, 1.0, 4), 3)
+    body = nurbs_rectangle(kv, kv)
+    assert independent(body) == 36
+    assert independent(doubled(body)) == 36
+    assert MeshFacts(doubled(body)).unsound == ["the functions are dependent: rank 36 of 37"]
+
+
+def test_a_function_without_elements_is_dependent():
+    body = nurbs_rectangle(*[open_knots(np.linspace(0.0, 1.0, 4), 3)] * 2)
+    lost = replace(body, P_AI=np.concatenate([body.P_AI, [[0.0, 0.0]]]), w_A=np.ones(37))
+    assert independent(lost) == 36
+
+
+def test_semi_standard_functions(tmp_path, capsys):
+    """Functions that add up to one only with their weights: said so, and the same body."""
+    body = nurbs_rectangle(*[open_knots(np.linspace(0.0, 1.0, 4), 3)] * 2)
+    (block,) = body.blocks
+    w_A = 0.5 + np.random.default_rng(1).random(36)
+    scaled = replace(block, C_eab=block.C_eab / w_A[block.conn_ea][..., None])
+    write_iga(from_mesh(replace(body, blocks=(scaled,), w_A=w_A)), tmp_path / "semi.iga")
+    assert main(["mesh", "semi.iga"]) == 0
+    said = capsys.readouterr().out
+    assert "with the weights (semi-standard)" in said and "area: 1\n" in said
+
+
+def test_without_matplotlib(tmp_path, monkeypatch, capsys):
+    """The facts all the same; a picture that was asked for is refused."""
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.delitem(sys.modules, "verify.command_line.mesh_drawing", raising=False)
+    path = str(small(tmp_path))
+    assert main(["mesh", path]) == 0
+    said = capsys.readouterr()
+    assert "3 elements" in said.out and "no picture without matplotlib" in said.err and "written" not in said.out
+    assert main(["mesh", path, "--out", "x.vtu"]) == 0
+    assert main(["mesh", path, "--out", "x.svg"]) == 2
+
+
+def test_the_picture_is_the_same_every_time(tmp_path):
+    path = str(small(tmp_path))
+    for name in ("one.svg", "two.svg"):
+        assert main(["mesh", path, "--out", name]) == 0
+    assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "two.svg").read_bytes()
+
+
+@settings(max_examples=30)
+@given(data=mutated())
+def test_any_file_is_refused_or_examined(data, tmp_path_factory):
+    path = tmp_path_factory.getbasetemp() / "mutated.iga"
+    path.write_bytes(data)
+    try:
+        sound = examine(path, path.with_suffix(".vtu"), False, False)
+    except Refusal as refusal:
+        assert str(path) in str(refusal) and "\n" not in str(refusal)
+        return
+    assert sound in (True, False) and mesh(read_iga(path)).elements >= 1
+
+
+def test_a_file_that_takes_long_says_that_it_is_at_work(tmp_path, capsys, monkeypatch):
+    def slow(*given):
+        time.sleep(1.3)
+        return whole(*given)
+
+    whole = mesh_command._report
+    monkeypatch.setattr(mesh_command, "_report", slow)
+    monkeypatch.setattr(progress, "LINES_EVERY_SECONDS", 0.5)
+    assert main(["mesh", str(small(tmp_path)), "--out", "small.vtu"]) == 0
+    said = capsys.readouterr()
+    assert said.err.startswith("mesh small.iga: at work") and "at work" not in said.out
+
+
+@pytest.mark.parametrize(
+    ("plain", "weighted", "words"),
+    [
+        (0.9e-10, 5.0, "1 to 9.0e-11"),
+        (1.1e-10, 0.9e-10, "1 to 9.0e-11 with the weights (semi-standard), 1.1e-10 without"),
+        (0.25, 1.1e-10, "misses 1 by up to 2.50e-01 (the rational functions, divided by it, add up to 1)"),
+    ],
+)
+def test_what_functions_add_up_to_is_one_but_for_rounding(plain: float, weighted: float, words: str) -> None:
+    report = {"sum_of_functions_misses_one_by": plain, "weighted_sum_misses_one_by": weighted}
+    assert _unity(report) == words
+
+
+def test_continuity_is_told_from_the_smoothest_on() -> None:
+    assert _continuity({"C0": 2, "C1": 0, "C2": 5}) == "C2 across 5, C0 across 2 inner edges"
+    assert _continuity({"C0": 0}) == "one element" and "vanish or are negative" in _continuity(None)
+    kinds = (("side", "a", 3), ("side", "b", 2), ("node", "c", 1))
+    sets = [{"kind": kind, "name": name, "entries": entries} for kind, name, entries in kinds]
+    report = {"sets": sets, "chains": {"a": 3, "b-1": 1, "b-2": 1}}
+    assert _sets(report) == "; side sets a (3 sides), b (2 sides)"
+    assert _sets({**report, "chains": {}}) == "; side sets a (3 sides, no chain), b (2 sides, no chain)"
+    assert _sets({"sets": [], "chains": {}}) == ""
+
+
+def test_a_picture_that_fails_for_want_of_something_else_is_an_error(tmp_path, monkeypatch):
+    """Only what is optional may be missing."""
+    monkeypatch.setitem(sys.modules, "verify.command_line.mesh_drawing", None)
+    with pytest.raises(ModuleNotFoundError, match="verify.command_line.mesh_drawing"):
+        main(["mesh", str(small(tmp_path)), "--out", str(tmp_path / "a.svg")])
+
+
+def test_of_a_mesh_that_is_flat_somewhere_continuity_is_not_told(monkeypatch):
+    def flat(*given):
+        raise np.linalg.LinAlgError("singular")
+
+    facts = MeshFacts(nurbs_rectangle(*[open_knots(np.array([0.0, 1.0]), 2)] * 2))
+    assert facts.continuity == {"broken": 0, "C0": 0, "C1": 0, "C2": 0}
+    monkeypatch.setattr(mesh_facts, "jumps", flat)
+    assert MeshFacts(facts.mesh).continuity is None

@@ -1,0 +1,370 @@
+"""Figures of every page can be read: nothing is cut off, on top of something else, too small or out of view."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("matplotlib")
+pytest.importorskip("jinja2")
+
+import matplotlib  # noqa: E402
+from figures import Drawn, legend, unreadable  # noqa: E402
+from made_up_costs import a_row  # noqa: E402
+from made_up_runs import made_up as a_run  # noqa: E402
+from made_up_runs import scene_report  # noqa: E402
+from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.cm import ScalarMappable  # noqa: E402
+
+from iga.bases.bspline import open_knots  # noqa: E402
+from iga.bases.nurbs import nurbs_rectangle  # noqa: E402
+from iga.tsplines.bisection import initial  # noqa: E402
+from iga.tsplines.tspline import greville, tspline_mesh  # noqa: E402
+from tests.verify.pages.test_charts import a_study  # noqa: E402
+from tests.verify.report.figures.test_undeformed import entry, snapshot  # noqa: E402
+from tests.verify.studies.effects.test_effects_study import made_up, of_pair  # noqa: E402
+from tests.verify.studies.hard.test_hard import FAKE, stub  # noqa: E402
+from verify.command_line import mesh_drawing  # noqa: E402
+from verify.command_line.mesh_facts import MeshFacts  # noqa: E402
+from verify.methods.solve import solve  # noqa: E402
+from verify.pages import parts  # noqa: E402
+from verify.pages.style import HALF, PALETTE, colour, panel  # noqa: E402
+from verify.pages.style import drawing as settings  # noqa: E402
+from verify.report import cost
+from verify.report.figures import curves, drawing, fields, meshes, opening, peel_drawing, undeformed
+from verify.report.figures.entry import entries  # noqa: E402
+from verify.report.section import section  # noqa: E402
+from verify.scene.load import load_scene  # noqa: E402
+from verify.scene.schema import Scene
+from verify.studies.cost import figures as cost_figures  # noqa: E402
+from verify.studies.effects import page as effects_page  # noqa: E402
+from verify.studies.effects.row import Row  # noqa: E402
+from verify.studies.hard import page as hard_page  # noqa: E402
+from verify.studies.hard import suite  # noqa: E402
+from verify.studies.hard.case import Case, variant  # noqa: E402
+from verify.studies.hard.one import run_case  # noqa: E402
+from verify.studies.hard.suite import Cell  # noqa: E402
+from verify.studies.scaling import page as scaling  # noqa: E402
+from verify.verdict import Run, SceneReport  # noqa: E402
+
+PAGE = (cost, curves, drawing, fields, meshes, opening, peel_drawing, undeformed)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (lambda axes: axes.set_xlabel("a label that is far longer than the figure is wide " * 3), "cut off"),
+        (lambda axes: axes.text(0.5, 0.5, "small", fontsize=4), "'small' in 4"),
+        (lambda axes: [axes.text(0.5, 0.5, text) for text in ("one", "other")], "'one' on 'other'"),
+        (lambda axes: axes.figure.add_axes((0.5, 0.5, 0.2, 0.2)), "axes 0 on axes 1"),
+        (lambda axes: axes.plot([0, 1], [0, 1], linewidth=9, label="thick"), "thick 9"),
+        (lambda axes: axes.plot([0, 1], [0, 1], "o", markersize=0.5, label="dots"), "dots of 0.5"),
+        (lambda axes: axes.plot([0, 1], [7, 7], label="high") and axes.set_ylim(0, 1), "high out of view"),
+        (lambda axes: axes.barh([0.0, 0.2], [1.0, 1.0], 0.8), "a bar on a bar"),
+        (lambda axes: axes.figure.colorbar(ScalarMappable(), ax=axes), "a frame around the scale"),
+    ],
+)
+def test_what_cannot_be_read_is_told(spoil: Callable[[Axes], object], words: str) -> None:
+    with settings():
+        figure, axes = panel(HALF, 3.0)
+        axes.plot([0.0, 1.0], [0.0, 1.0], "o-", markersize=3.0)
+        axes.set(xlabel="opening", ylabel="load")
+        assert unreadable(figure) == []
+        spoil(axes)
+        assert any(words in told for told in unreadable(figure))
+
+
+def test_figures_of_a_beam_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = Drawn(monkeypatch, *PAGE)
+    section(scene_report(), "beam")
+    assert len(drawn) > 12
+    for words in ("Meshes of all runs", "Deformed meshes", "The crack of dcb-czm1: opening 3"):
+        axes = drawn.axes(words)
+        assert axes.get_xlim() == pytest.approx((-0.14, 14.14)), "a hundredth of it is left beside it"
+        low, high = axes.get_ylim()
+        box, to_scale = axes.get_window_extent(), pytest.approx(14.28 / (high - low))
+        assert high == pytest.approx(-low) and (words.startswith("Mesh") or box.width / box.height == to_scale)
+
+
+def test_figures_of_a_peel_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = load_scene("peel-80", ("discretization.dofs=1100", "load.opening=2.0", "discretization.steps=10"))
+    drawn = Drawn(monkeypatch, *PAGE, filled=0.35)  # ten steps do not go far beyond the peak
+    runs = tuple(Run(method, method, solve(scene, method)) for method in ("nurbs", "beam"))
+    section(SceneReport(scene, runs, ()), "peel")
+    assert len(drawn) > 8
+
+
+def test_meshes_that_move_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, scene = Drawn(monkeypatch, undeformed), load_scene("dcb-czm1")
+    at = [snapshot((x, x + 1), junctions=(x + 0.5,), opening=x) for x in (4.0, 5.0, 7.0, 9.0)]
+    undeformed.undeformed(scene, [entry(snapshot()), entry(snapshot(junctions=(9.5,)), method="tspline")], "all")
+    undeformed.followed(scene, [entry(*at, method="tspline", label="moving")], "key")
+    assert [len(figure.axes) for _, figure in drawn] == [4, 6], "a whole and a part of each"
+    of_tmesh = ["(Bézier) elements, in the colour of the method", "line of the T-mesh", "T-junction", "process zone"]
+    assert [legend(figure) for _, figure in drawn] == [of_tmesh] * 2
+    undeformed.undeformed(scene, [entry(snapshot())], "plain")
+    assert legend(drawn[-1][1]) == ["elements", "process zone"]
+    assert drawn[0][1].axes[0].get_xlim() == pytest.approx((-0.14, 14.14)), "a hundredth of it is left beside it"
+
+
+# --- parts of several figures
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.3, 70.0), (2e-4, 9.0), (15.0, 4000.0)])
+def test_logarithmic_axes_have_plain_numbers_at_1_2_and_5(low: float, high: float) -> None:
+    with settings():
+        figure, axes = panel(HALF, 3.0)
+        axes.plot([low, high], [low, high])
+        axes.set(xscale="log", yscale="log", xlabel="x", ylabel="y")
+        parts.plain(axes.xaxis)
+        parts.plain(axes.yaxis)
+        figure.canvas.draw()
+    for axis, (left, right) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        shown = [(tick.get_loc(), tick.label1.get_text()) for tick in axis._update_ticks() if tick.label1.get_text()]
+        wanted = [m * 10.0**e for e in range(-6, 6) for m in (1, 2, 5) if left <= m * 10.0**e <= right]
+        assert np.allclose([at for at, _ in shown], wanted) and len(wanted) >= 5
+        assert [float(text) for _, text in shown] == pytest.approx(wanted) and "e" not in "".join(t for _, t in shown)
+
+
+def test_names_of_points_stay_in_the_figure(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With two runs of a method names are long, and those of slow runs stand at the edge."""
+    whole = scene_report()
+    slow = Run("NURBS p=3, 9999 unknowns", "nurbs", a_run("nurbs", 2e-3, 90.0, 9999, 112))
+    drawn, scene = Drawn(monkeypatch, cost), whole.scene
+    runs = [one for one in entries(replace(whole, runs=(*whole.runs, slow))) if one.agreement is not None]
+    cost.error_and_time(scene, runs, next(one for one in runs if one.is_reference), "key")
+    names = [text.get_text() for text in drawn.axes("Curve error against time").texts]
+    assert names.count("cohesive beam") == 1 and sum("unknowns" in name for name in names) == 2
+
+
+# --- studies
+
+
+def effect_rows() -> list[Row]:
+    fast, slow, none = made_up(seconds=1.0), made_up(1.02, seconds=3.0), made_up(dissipated=0.0, seconds=2.0)
+    stopped = replace(fast, status="stopped: here")
+    keys = ("kinematics", "contact", "irreversible", "symmetry")
+    pairs = ((slow, fast), (made_up(1.0 + 1e-7), fast), (fast, none), (stopped, fast))
+    return [of_pair(key, [a, a], [b, b]) for key, (a, b) in zip(keys, pairs, strict=True)]
+
+
+def test_bars_of_effects_are_their_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, rows = Drawn(monkeypatch, effects_page), effect_rows()[:3]
+    effects_page.changed(rows, "key")
+    axes = drawn.axes("What each effect changes")
+    for container, (column, (name, _)) in zip(axes.containers, effects_page.BARS.items(), strict=True):
+        assert container.get_label() == name
+        for bar, one, tick in zip(container, rows, axes.get_yticks(), strict=True):
+            value = abs(getattr(one, column))
+            size = value if value > effects_page.LEAST else effects_page.LEAST  # NaN is drawn as none
+            assert bar.get_width() == pytest.approx(100.0 * size)
+            assert abs(bar.get_y() + bar.get_height() / 2 - tick) < 0.4, "it stands with its effect"
+    inks = [container[0].get_facecolor()[:3] for container in axes.containers]
+    assert len(set(inks)) == len(effects_page.BARS)
+    assert axes.get_xscale() == "log" and axes.get_xlim()[0] == pytest.approx(100 * effects_page.LEAST)
+    assert [t.get_text() for t in axes.get_yticklabels()] == [one.effect for one in rows]
+    said = {t.get_text() for t in axes.texts}
+    assert {"2 %", "+2 %", "0 %"} <= said and "nan" not in " ".join(said)
+    assert legend(axes.figure) == [name for name, _ in effects_page.BARS.values()]
+
+
+def test_bars_of_times_begin_at_equal_times(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn, rows = Drawn(monkeypatch, effects_page), effect_rows()[:3]
+    effects_page.times(rows, "key")
+    axes = drawn.axes("What each effect costs in time")
+    (bars,) = axes.containers
+    assert [bar.get_x() for bar in bars] == [1.0] * 3
+    assert [bar.get_x() + bar.get_width() for bar in bars] == pytest.approx([one.time_ratio for one in rows])
+    assert [t.get_text() for t in axes.texts] == ["3 ×", "2 ×", "0.5 ×"]
+    (line,) = axes.lines
+    assert set(line.get_xdata()) == {1.0} and axes.get_xlim()[0] == 0.0
+    assert [t.get_text() for t in axes.get_yticklabels()] == [one.effect for one in rows]
+    assert not any(line.get_visible() for line in axes.get_ygridlines())
+    heights = [bar.get_y() + bar.get_height() / 2 for bar in bars]
+    assert heights == pytest.approx(list(axes.get_yticks())) and heights == sorted(heights, reverse=True)
+
+
+def test_the_page_of_effects_draws_what_was_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Study:
+        scene, method, reasons = load_scene("dcb-czm1"), "nurbs", ("search: left out: no",)
+        rows = tuple(effect_rows())
+
+    drawn = Drawn(monkeypatch, effects_page)
+    effects_page.write(Study(), tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text()
+    assert len(drawn) == 2 and all(len(f.axes[0].get_yticks()) == 3 for _, f in drawn), "one of the four stopped"
+    assert text.count("<svg") == 2 and all(one.effect in text for one in Study.rows) and "left out: no" in text
+    Study.rows = Study.rows[3:]
+    effects_page.write(Study(), tmp_path / "none.html")
+    assert "<svg" not in (tmp_path / "none.html").read_text()
+
+
+def test_cells_have_signs_where_a_change_has() -> None:
+    cell = effects_page.in_cell
+    assert [cell(0.0068, key) for key in ("curve_change", "peak_change")] == ["0.68 %", "+0.68 %"]
+    assert cell(-0.25, "end_change") == "−25 %" and cell(float("nan"), "end_change") == "–"
+
+
+# --- hard cases
+
+
+def hard_cell(tmp_path: Path, many: int = 1, stops: str = "") -> tuple[Cell, Path]:
+    def solver(scene: Scene, method: str, on_step):
+        found = stub(scene, method, on_step)
+        if scene.load.opening[-1] == 2.0 and stops:
+            found = replace(found, status=stops, steps={k: c[:20] for k, c in found.steps.items()})
+        return found
+
+    names = [variant(f"v{i}", "dcb-czm1-linear", f"load.opening={2.0 + i}") for i in range(many)]
+    case = Case("fake", FAKE.hard, lambda: names)
+    return Cell(case, "nurbs", run_case(case, "nurbs", tmp_path / "fake" / "nurbs", solver)), tmp_path
+
+
+@pytest.mark.parametrize("many", [1, 2, 8, 9])
+def test_every_run_of_a_hard_case_is_drawn(many: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In its own line and named, where they are few; one alone with what displacement control would show."""
+    drawn = Drawn(monkeypatch, hard_page)
+    cell, out = hard_cell(tmp_path, many)
+    said = hard_page._figure(cell, out)
+    axes = drawn.axes("Load against opening, fake")
+    paths = [one for one in axes.lines if one.get_label() != "displacement control"]
+    assert sorted(round(max(one.get_xdata()), 9) for one in paths) == [2.0 + i for i in range(many)]
+    assert len(axes.lines) - len(paths) == (many == 1) and (axes.get_legend() is not None) == (many <= 8)
+    looks = {(one.get_color(), str(one._dash_pattern)) for one in paths}
+    assert len(looks) == (many if many <= 8 else 1), "each can be told from the others, or none"
+    assert {look[0] for look in looks} <= {colour(name) for name in PALETTE}
+    words = "the path, and dashed" if many == 1 else f"{many} runs. A cross marks the end"
+    assert said.caption.startswith("NURBS: ") and words in said.caption
+
+
+def test_a_cross_marks_where_a_run_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = Drawn(monkeypatch, hard_page)
+    cell, out = hard_cell(tmp_path, 2, "stopped: here")
+    hard_page._figure(cell, out)
+    axes = drawn.axes("Load against opening, fake")
+    (cross,) = [one for one in axes.lines if one.get_marker() == "x"]
+    path = max((o for o in axes.lines if o is not cross and o.get_color() == cross.get_color()), key=len_of)
+    assert [*cross.get_data()] == [path.get_xdata()[-1:], path.get_ydata()[-1:]]
+    hard_page._figure(hard_cell(tmp_path / "whole", 2)[0], tmp_path / "whole")
+    assert not [one for one in drawn[-1][1].axes[0].lines if one.get_marker() == "x"]
+
+
+def len_of(line) -> int:
+    return len(line.get_xdata())
+
+
+def test_runs_in_other_units_or_without_a_step_are_counted_and_not_drawn(tmp_path: Path, monkeypatch) -> None:
+    names = [variant("a", "dcb-czm1-linear"), variant("b", "dcb-czm1-linear"), variant("c", "dcb-czm1-linear")]
+    names[1] = replace(names[1], scene=names[1].scene.model_copy(update={"units": "kN, m, kPa"}))
+
+    def solver(scene: Scene, method: str, on_step):
+        if solver.calls == 2:
+            raise RuntimeError("no luck")
+        solver.calls += 1
+        return stub(scene, method, on_step)
+
+    solver.calls = 0
+    drawn, case = Drawn(monkeypatch, hard_page), Case("fake", FAKE.hard, lambda: names)
+    cell = Cell(case, "nurbs", run_case(case, "nurbs", tmp_path / "fake" / "nurbs", solver))
+    said = hard_page._figure(cell, tmp_path)
+    assert "1 runs; 2 more in other units or without a step." in said.caption and len(drawn) == 1
+    assert hard_page._figure(Cell(case, "nurbs", None, "signal 9"), tmp_path) is None
+
+
+@pytest.mark.parametrize("chart", ["changes", "times", "phases", "ranks"])
+def test_every_row_of_bars_adds_as_much_height(chart: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many there are, and enough for a line of words."""
+    draw, rows = {
+        "changes": (lambda rows: effects_page.changed(rows, "key"), effect_rows()[:1] * 4),
+        "times": (lambda rows: effects_page.times(rows, "key"), effect_rows()[:1] * 4),
+        "phases": (lambda rows: cost_figures.phases(rows, "key"), [a_row("nurbs", 0.01, 1.0)] * 4),
+        "ranks": (lambda rows: scaling.strong(rows, "key"), a_study(1.0).ladder("dolfinx")),
+    }[chart]
+    drawn = Drawn(monkeypatch, effects_page, cost_figures, scaling)
+    for number in (1, 2, 3, 4):
+        draw(rows[:number])
+    heights = [figure.get_size_inches()[1] for _, figure in drawn]
+    assert np.ptp(np.diff(heights)) < 1e-9 and np.diff(heights)[0] > 0.25 and heights[0] < 2.5
+
+
+@pytest.mark.parametrize("control", [False, True])
+@pytest.mark.parametrize("marked", [False, True])
+@pytest.mark.parametrize("stretch", [0.7, 0.1])
+def test_pictures_of_meshes_can_be_read(control: bool, marked: bool, stretch: float) -> None:
+    """Marks are named where there are any, whatever the shape of the body; the title is above, and all is to scale."""
+    tmesh = initial(np.arange(4.0), np.arange(4.0)).tmesh
+    mesh = tspline_mesh(tmesh, greville(tmesh) * [1.0, stretch])
+    facts = MeshFacts(mesh)
+    facts.__dict__["junctions"] = np.array([[1.0, 0.5 * stretch], [2.0, 1.0 * stretch]] if marked else []).reshape(
+        -1, 2
+    )
+    facts.__dict__["extraordinary"] = [(5, np.array([1.5, 1.5 * stretch]))] if marked else []
+    with matplotlib.rc_context(mesh_drawing._RC):
+        figure = mesh_drawing.mesh_figure(facts, "a mesh of nine elements", control)
+        assert unreadable(figure) == []
+    marks = ["2 T-junctions", "extraordinary points, with their valence"]
+    assert legend(figure) == [*["control points"] * control, *marks * marked]
+    (axes,) = figure.axes
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    assert np.all(mesh.P_AI > low) and np.all(mesh.P_AI < high)
+    assert [text.get_text() for text in axes.texts] == ["5"] * marked
+    box = axes.get_window_extent()
+    assert box.width / box.height == pytest.approx(np.divide(*(high - low)), rel=0.02), "to scale"
+    assert figure.get_size_inches()[0] == 7.0 and 1.2 <= figure.get_size_inches()[1] <= 8.1
+
+
+def test_all_marks_of_a_mesh_are_named_below_it() -> None:
+    """Four names are more than fit into a line; what is not of the least degrees is filled."""
+    tmesh = initial(np.arange(4.0), np.arange(4.0)).tmesh
+    facts = MeshFacts(tspline_mesh(tmesh, greville(tmesh)))
+    facts.__dict__["kinds"] = [((2, 2), 9, 1), *facts.kinds]
+    facts.__dict__["junctions"] = np.array([[1.0, 0.5]])
+    facts.__dict__["extraordinary"] = [(3, np.array([1.0, 1.0])), (5, np.array([2.0, 2.0]))]
+    with matplotlib.rc_context(mesh_drawing._RC):
+        figure = mesh_drawing.mesh_figure(facts, "a mesh with everything", True)
+        assert unreadable(figure) == []
+    names = ["control points", "1 T-junctions", "extraordinary points, with their valence"]
+    assert sorted(legend(figure)) == sorted([*names, "degrees other than 2 and 2"])
+    (axes,), (one,) = figure.axes, figure.legends
+    place = one.get_window_extent()
+    assert figure.bbox.x0 <= place.x0 and place.x1 <= figure.bbox.x1
+    assert figure.bbox.y0 <= place.y0 and place.y1 <= axes.get_window_extent().y0
+    (filled,) = [c for c in axes.collections if c.get_label().startswith("degrees")]
+    assert 0.1 < filled.get_alpha() < 0.4 and set(filled.get_linewidths()) == {0}, "the lines are seen through it"
+    boxes = sorted(tuple(path.get_extents().extents.round(9)) for path in filled.get_paths())
+    assert boxes == [(i, j, i + 1.0, j + 1.0) for i in range(3) for j in range(3)]
+
+
+def test_sides_are_curves_where_they_bend_by_a_millionth() -> None:
+    """Of their length; otherwise their ends are enough. The outline of an element goes once around it."""
+    kv, scale = open_knots([0.0, 1.0], 3), 20.0
+    body = nurbs_rectangle(kv, kv)
+    for bend, points in ((0.0, 2), (0.97e-6, 2), (1.03e-6, 17)):
+        P_AI = scale * body.P_AI
+        inner = (body.P_AI[:, 1] == 0.0) & (body.P_AI[:, 0] % 1.0 > 0.0)
+        P_AI[inner, 1] = scale * bend / 0.75
+        facts = MeshFacts(replace(body, P_AI=P_AI))
+        curves = mesh_drawing._curves(facts)
+        assert [len(curve) for curve in curves] == [2, 2, points, 2]
+        assert max(curves[2][:, 1]) == pytest.approx(scale * bend * (points > 2), rel=1e-6, abs=1e-12)
+        x, y = mesh_drawing._outline(curves, 0).T
+        area = 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
+        assert area == pytest.approx(scale**2, rel=1e-5), "walked with the element on the left"
+
+
+def test_failures_name_criteria_and_runs_that_stopped(tmp_path: Path) -> None:
+    cell, _ = hard_cell(tmp_path, 2, "stopped: here")
+    lines = suite.failures([cell, Cell(cell.case, "tspline", None, "signal 9")])
+    assert "fake nurbs: v0: stopped: here" in lines and not any("v1" in line for line in lines)
+    assert any(line.startswith("fake nurbs: ") and "completed" in line for line in lines)
+    assert not any("tspline" in line for line in lines), "of one without a verdict the matrix tells"
+    assert suite.failures([hard_cell(tmp_path / "whole", 2)[0]]) == []
+    told = [
+        suite._in_short(one) for one in (cell, hard_cell(tmp_path / "again", 2)[0], Cell(cell.case, "x", None, "why"))
+    ]
+    assert told[0].endswith(" criteria fail, 2 runs, 1.0 s") and told[0].startswith("1 of ")
+    assert told[1:] == ["holds, 2 runs, 1.0 s", "no verdict, why"]

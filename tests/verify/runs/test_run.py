@@ -1,0 +1,383 @@
+"""The folder of a run: its contract with other people's scripts, and what survives when a run does not."""
+
+from __future__ import annotations
+
+import csv
+import errno
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+
+import numpy as np
+import pytest
+
+from verify.methods import dolfinx
+from verify.methods import solve as methods
+from verify.result import CURVE_COLUMNS, Result, Snapshot, steps_from_rows
+from verify.runs import environment
+from verify.runs import run as run_of
+from verify.runs.folder import read_columns, read_result, write_json
+from verify.runs.run import run
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
+from verify.support.timing import Stopwatch
+
+HEADER = "opening,load,crack_length,stored_energy,dissipated_energy,external_work,newton_iterations"
+RESULT_KEYS = {
+    "scene", "method", "dofs", "elements", "steps", "newton_iterations", "rejected_steps", "peak_load", "peak_opening",
+    "seconds", "peak_memory_mb", "effects", "checks", "versions", "machine", "threads", "status", "ending", "condition",
+    "process_zone", "matched_interface", "decided", "neglected", "nonzeros", "jit_seconds",
+}  # fmt: skip
+SECONDS_KEYS = ["mesh", "basis", "assembly", "factor", "solve", "other", "total"]
+PROJECT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture
+def scene() -> Scene:
+    return load_scene("dcb-czm1-linear")
+
+
+def rows_to(opening: float, n: int = 5) -> list[dict[str, float]]:
+    """An elastic run of stiffness 2: load = 2 opening."""
+    return [
+        {
+            **dict.fromkeys(CURVE_COLUMNS, 0.0),
+            "opening": d, "load": 2 * d, "crack_length": 4.0, "stored_energy": d * d, "external_work": d * d,
+            "newton_iterations": 2.0 if d else 0.0, "tip_opening": 0.1 * d,
+        }
+        for d in np.linspace(0.0, opening, n + 1)
+    ]  # fmt: skip
+
+
+def stub(scene: Scene, method: str, on_step) -> Result:
+    """A solver that needs no time."""
+    rows = rows_to(scene.load.opening[-1])
+    for row in rows:
+        on_step(row)
+    fields = {"s_q": np.arange(3.0), "gap_q": np.ones(3), "traction_q": np.ones(3), "damage_q": np.zeros(3)}
+    grids = {"X_euvi": np.zeros((2, 3, 3, 2)), "u_euvi": np.ones((2, 3, 3, 2)), "stress_euv": np.ones((2, 3, 3))}
+    snapshots = (Snapshot(1.0, 2.0, **fields, **grids), Snapshot(3.0, 6.0, **fields, **grids))
+    seconds = Stopwatch().seconds()
+    return Result(method, steps_from_rows(rows), dofs=1956, elements=222, snapshots=snapshots, seconds=seconds)
+
+
+def failing(error: BaseException):
+    """A solver that comes to opening 1 and then raises."""
+
+    def solve(scene: Scene, method: str, on_step) -> Result:
+        for row in rows_to(1.0):
+            on_step(row)
+        raise error
+
+    return solve
+
+
+def test_curve_csv_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
+    run(scene, "nurbs", tmp_path, solver=stub)
+    lines = (tmp_path / "curve.csv").read_text().splitlines()
+    assert lines[0] == HEADER
+    assert [float(cell) for cell in lines[1].split(",")] == [0.0] * 7
+    assert len(lines) == 2 + 5
+    assert float(lines[2].split(",")[0]) == float(np.linspace(0.0, 3.0, 6)[1])  # 17 digits: nothing is lost
+
+
+def test_result_json_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
+    run(scene, "nurbs", tmp_path, solver=stub)
+    about = json.loads((tmp_path / "result.json").read_text())
+    assert set(about) == RESULT_KEYS
+    assert list(about["seconds"]) == SECONDS_KEYS
+    assert all(set(check) == {"value", "tolerance", "kind", "passed", "state"} for check in about["checks"].values())
+    assert about["steps"] == 5 and about["newton_iterations"] == 10
+    assert about["peak_load"] == 6.0 and about["peak_opening"] == 3.0
+    assert about["status"] == "complete" and about["ending"] == "" and about["condition"] == 0.0
+    assert about["scene"]["interface"]["strength"] == 4.0
+
+
+def test_a_run_is_read_back_as_it_was(scene: Scene, tmp_path: Path) -> None:
+    written, _ = run(scene, "nurbs", tmp_path, keep_fields=True, solver=stub)
+    read = read_result(tmp_path)
+    assert set(read.steps) == set(written.steps)
+    assert all(np.array_equal(read.steps[name], written.steps[name]) for name in read.steps)
+    assert [s.opening for s in read.snapshots] == [1.0, 3.0]
+    assert np.array_equal(read.snapshots[1].u_euvi, written.snapshots[1].u_euvi)
+    assert (read.method, read.dofs, read.elements, read.status) == ("nurbs", 1956, 222, "complete")
+
+
+def test_ending_and_condition_are_read_back(scene: Scene, tmp_path: Path) -> None:
+    def solver(scene: Scene, method: str, on_step) -> Result:
+        return replace(stub(scene, method, on_step), ending="separated at opening 2.5", condition=3e7)
+
+    _, checks = run(scene, "nurbs", tmp_path, solver=solver)
+    read = read_result(tmp_path)
+    assert (read.ending, read.condition) == ("separated at opening 2.5", 3e7)
+    assert next(check for check in checks if check.name == "completed").passed
+
+
+def test_a_path_that_stops_on_an_unresolved_zone_says_so(scene: Scene, tmp_path: Path) -> None:
+    def solver(scene: Scene, method: str, on_step) -> Result:
+        return replace(stub(scene, method, on_step), status="stopped: Newton did not converge")
+
+    assert run(scene, "nurbs", tmp_path, solver=solver)[0].status == "stopped: Newton did not converge"
+    coarse = load_scene("dcb-czm1-linear", ["interface.strength=40.0", "discretization.dofs=280"])
+    status = run(coarse, "nurbs", tmp_path, solver=solver)[0].status
+    assert status.startswith("stopped: process zone 0.2") and status.endswith("; Newton did not converge")
+
+
+def test_fields_are_kept_only_when_asked_for(scene: Scene, tmp_path: Path) -> None:
+    run(scene, "nurbs", tmp_path, solver=stub)
+    assert not (tmp_path / "fields.npz").exists()
+
+
+def test_an_error_in_a_solver_leaves_a_valid_partial_run(scene: Scene, tmp_path: Path) -> None:
+    result, checks = run(scene, "nurbs", tmp_path, solver=failing(RuntimeError("no luck")))
+    assert result.status.startswith("stopped: RuntimeError: no luck")
+    assert read_columns(tmp_path / "curve.csv")["opening"][-1] == 1.0
+    assert "Traceback" in (tmp_path / "error.log").read_text()
+    assert not next(check for check in checks if check.name == "completed").passed
+
+
+def test_an_interrupt_is_recorded_and_passed_on(scene: Scene, tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        run(scene, "nurbs", tmp_path, solver=failing(KeyboardInterrupt()))
+    assert json.loads((tmp_path / "result.json").read_text())["status"] == "stopped: interrupted"
+    assert len(read_columns(tmp_path / "curve.csv")["load"]) == 6
+
+
+def test_a_killed_run_leaves_a_valid_shorter_curve_and_no_old_result(scene: Scene, tmp_path: Path) -> None:
+    run(scene, "nurbs", tmp_path, solver=stub)
+    endless = (
+        "import sys, time; from pathlib import Path; from verify.runs.run import run; "
+        "from verify.scene.load import load_scene\n"
+        "def solve(scene, method, on_step):\n"
+        "    for i in range(50):\n"
+        "        on_step(dict(opening=i / 7, load=i / 3, crack_length=4.0, stored_energy=0.0, dissipated_energy=0.0,\n"
+        "                     external_work=0.0, newton_iterations=3.0))\n"
+        "    print('written', flush=True)\n"
+        "    time.sleep(600)\n"
+        "run(load_scene('dcb-czm1-linear'), 'nurbs', Path(sys.argv[1]), solver=solve)"
+    )
+    environment = os.environ | {"PYTHONPATH": str(PROJECT)}
+    command = [sys.executable, "-c", endless, str(tmp_path)]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE) as process:
+        assert process.stdout.readline() == b"written\n"  # however long that takes; nothing where the process has died
+        process.send_signal(signal.SIGKILL)
+    assert process.returncode == -signal.SIGKILL
+    curve = tmp_path / "curve.csv"
+    with curve.open() as stream:
+        header, *rows = csv.reader(stream)
+    assert ",".join(header) == HEADER
+    assert len(rows) == 50 and all(len(row) == 7 for row in rows)
+    assert np.all(np.diff(read_columns(curve)["opening"]) > 0)
+    assert not (tmp_path / "result.json").exists()
+    assert read_result(tmp_path).status == "stopped: the run was killed"
+
+
+def test_json_has_no_nan_and_is_whole_or_absent(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    write_json(path, {"a": float("nan"), "b": [np.float64(2.5), float("inf")], "c": np.bool_(True)})
+    assert json.loads(path.read_text()) == {"a": None, "b": [2.5, None], "c": True}
+    with pytest.raises(TypeError):
+        write_json(path, {"a": object()})
+    assert json.loads(path.read_text())["c"] is True
+    assert [p.name for p in tmp_path.iterdir()] == ["a.json"]
+
+
+def test_nested_phases_count_once() -> None:
+    watch = Stopwatch()
+    with watch.phase("basis"), watch.phase("compile"):
+        time.sleep(0.01)
+    with watch.phase("assembly"):
+        time.sleep(0.02)
+        with watch.phase("factor"):
+            time.sleep(0.03)
+    with watch.phase("strange"):
+        time.sleep(0.01)
+    seconds = watch.seconds()
+    assert list(seconds) == SECONDS_KEYS
+    assert 0.015 < seconds["assembly"] < seconds["total"] - seconds["factor"]
+    assert seconds["factor"] >= 0.03 and seconds["other"] >= 0.01
+    assert 0.01 <= watch.compile <= seconds["basis"] < seconds["total"]
+    assert sum(seconds.values()) - seconds["total"] == pytest.approx(seconds["total"])
+
+
+def test_phases_add_up_to_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a clock that goes on by one between any two looks at it."""
+    monkeypatch.setattr("verify.support.timing.perf_counter", iter(range(100)).__next__)
+    watch = Stopwatch()
+    with watch.phase("mesh"):
+        pass
+    assert watch.seconds() == {"mesh": 1, "basis": 0, "assembly": 0, "factor": 0, "solve": 0, "other": 2, "total": 3}
+    with watch.phase("basis"), watch.phase("compile"):
+        pass
+    with watch.phase("strange"):
+        pass
+    found = watch.seconds()
+    assert watch.compile == 1 and (found["basis"], found["other"], found["total"]) == (3, 6, 10)
+    whole = Stopwatch()
+    with whole.phase("solve"):
+        assert whole.seconds()["other"] == 1
+    with whole.phase("solve"):
+        pass
+    assert whole.seconds()["solve"] == 3
+
+
+def test_the_time_of_a_run_is_not_that_of_importing_its_solver(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A module that is slow to come, and a solver that has nothing to do."""
+    solution = SimpleNamespace(rows=({"opening": 0.0, "load": 0.0},), status="complete", rejected_steps=0, snapshots=())
+
+    class Slow(ModuleType):
+        def __getattr__(self, name: str) -> Callable[..., SimpleNamespace]:
+            if name != "solve_debonding":
+                raise AttributeError(name)
+            time.sleep(0.5)
+            return lambda problem, **keys: solution
+
+    monkeypatch.setitem(sys.modules, "fem_reference.solve", Slow("fem_reference.solve"))
+    monkeypatch.setattr(dolfinx, "dolfinx_installed", lambda: True)
+    assert methods.solve(load_scene("dcb-czm1"), "dolfinx").seconds["total"] < 0.4
+
+
+# --- ranks
+
+
+class Down(BaseException):
+    """What stands in for the end of all ranks."""
+
+
+@pytest.fixture
+def taken_down(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Reasons for which all ranks were ended."""
+    reasons: list[str] = []
+
+    def down(why: str) -> None:
+        reasons.append(why)
+        raise Down
+
+    monkeypatch.setattr(run_of, "_take_down_all_ranks", down)
+    return reasons
+
+
+def unlucky(scene: Scene, method: str, on_step: Callable | None) -> Result:
+    if on_step is not None:
+        on_step({name: 1.0 for name in CURVE_COLUMNS})
+    raise unlucky.error
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3])
+def test_an_error_is_told_before_other_ranks_are_taken_down(
+    ranks: int, scene: Scene, tmp_path: Path, taken_down: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They would wait for this one; a run that is alone just ends."""
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", str(ranks))
+    unlucky.error = RuntimeError("no luck")
+    if ranks == 1:
+        run(scene, "nurbs", tmp_path, solver=unlucky)
+    else:
+        with pytest.raises(Down):
+            run(scene, "nurbs", tmp_path, solver=unlucky)
+    status = json.loads((tmp_path / "result.json").read_text())["status"]
+    assert status.startswith("stopped: RuntimeError: no luck (an error in the program")
+    assert taken_down == ([] if ranks == 1 else [status.removeprefix("stopped: ")])
+    assert "no luck" in (tmp_path / "error.log").read_text() and len(read_columns(tmp_path / "curve.csv")["load"]) == 1
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_full_disk_ends_the_other_ranks_and_says_so_itself(
+    ranks: int, scene: Scene, tmp_path: Path, taken_down: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", str(ranks))
+    unlucky.error = OSError(errno.ENOSPC, "no room")
+    with pytest.raises(OSError if ranks == 1 else Down):
+        run(scene, "nurbs", tmp_path, solver=unlucky)
+    assert len(taken_down) == ranks - 1 and not (tmp_path / "error.log").exists()
+
+
+def test_other_ranks_compute_and_write_nothing(
+    scene: Scene, tmp_path: Path, taken_down: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "1")
+    whole = Result("nurbs", steps_from_rows([{name: 1.0 for name in CURVE_COLUMNS}]))
+    assert run(scene, "nurbs", tmp_path / "out", solver=lambda *given: whole) == (whole, ())
+    unlucky.error = RuntimeError("no luck")
+    with pytest.raises(Down):
+        run(scene, "nurbs", tmp_path / "out", solver=unlucky)
+    assert taken_down == ["RuntimeError: no luck"] and not (tmp_path / "out").exists()
+
+
+def test_taken_down_is_at_once_and_with_a_reason() -> None:
+    """Without what a program does at its end, where MPI would wait for the others."""
+    code = (
+        "import atexit; from verify.runs.run import _take_down_all_ranks\n"
+        "atexit.register(print, 'late'); print('early'); _take_down_all_ranks('no luck'); print('on')"
+    )
+    environment = os.environ | {"PYTHONPATH": str(PROJECT), "OMPI_COMM_WORLD_RANK": "3"}
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, timeout=60)
+    assert (ended.returncode, ended.stdout) == (1, "early\n") and "rank 3: no luck" in ended.stderr
+
+
+@pytest.mark.parametrize(
+    ("variables", "found"),
+    [
+        ({}, (0, 1)),
+        ({"OMPI_COMM_WORLD_RANK": "2", "OMPI_COMM_WORLD_SIZE": "4"}, (2, 4)),
+        ({"PMI_RANK": "1", "PMI_SIZE": "8"}, (1, 8)),
+        ({"PMIX_RANK": "3"}, (3, 1)),
+        ({"PMI_RANK": "none", "PMI_SIZE": ""}, (0, 1)),
+    ],
+)
+def test_ranks_are_those_that_mpirun_tells(variables: dict, found: tuple, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "OMPI_COMM_WORLD_SIZE", "PMI_SIZE"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    assert (environment.mpi_rank(), environment.mpi_size()) == found
+
+
+def test_threads_are_those_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "3")
+    assert environment.threads() == 3 and environment.environment()["threads a run"] == "3"
+    monkeypatch.delenv("OMP_NUM_THREADS")
+    assert environment.threads() == os.cpu_count() and environment.environment()["threads a run"] == "as many as cores"
+
+
+def test_a_package_that_is_not_installed_has_no_version() -> None:
+    assert environment._version("no-such-package-at-all") == ""
+    assert "numpy" in environment.versions() and "no-such-package-at-all" not in environment.versions()
+
+
+def test_a_rank_that_fails_says_which_it_is_and_ends_at_once(monkeypatch, capsys: pytest.CaptureFixture) -> None:
+    """Without waiting for the others, which wait for it."""
+    ended: list[int] = []
+    monkeypatch.setattr(run_of.os, "_exit", ended.append)
+    monkeypatch.setattr(environment, "mpi_rank", lambda: 3)
+
+    def broken(scene: Scene, method: str, on_step: Callable | None) -> Result:
+        raise ArithmeticError("no luck")
+
+    run_of._silent(load_scene("dcb-czm1"), "dolfinx", broken)
+    assert ended == [1] and capsys.readouterr().err.strip().endswith("rank 3: ArithmeticError: no luck")
+
+
+def test_what_was_done_before_an_error_is_the_result(scene: Scene, tmp_path: Path) -> None:
+    """Of a solver that tells all its steps in one and the same row."""
+
+    def solver(scene: Scene, method: str, on_step: Callable) -> Result:
+        row = dict.fromkeys(CURVE_COLUMNS, 0.0)
+        for i in range(4):
+            on_step(row)
+            row["opening"], row["load"] = i + 1.0, [2.0, 3.0, 1.0, 9.0][i]
+        raise ArithmeticError("no luck")
+
+    result, _ = run(scene, "nurbs", tmp_path, solver=solver)
+    assert result.opening.tolist() == [0.0, 1.0, 2.0, 3.0] and result.load.tolist() == [0.0, 2.0, 3.0, 1.0]
+    written = json.loads((tmp_path / "result.json").read_text())
+    assert (written["steps"], written["peak_load"], written["peak_opening"]) == (3, 3.0, 2.0)
+    assert "ArithmeticError: no luck" in written["status"]

@@ -1,0 +1,30 @@
+"""Pages where the packages for them are missing."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from verify.support.say import write_page
+
+
+def test_a_page_that_cannot_be_drawn_is_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    (tmp_path / "a_page.py").write_text("import not_installed\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    write_page("a_page")
+    assert capsys.readouterr().err == "debond: no report: not_installed is missing; pip install 'debond[report]'\n"
+
+
+@pytest.mark.parametrize("module", ["report", "cost.page", "hard.page", "scaling.page", "switches.page"])
+def test_a_page_can_be_imported_first(module: str) -> None:
+    """As the command whose page it is does, with nothing else there: no circle of imports."""
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("jinja2")
+    program = f"import verify.{module}; assert callable(verify.{module}.write)"
+    command = [sys.executable, "-c", program]
+    assert subprocess.run(command, cwd=Path(__file__).parents[3], capture_output=True, text=True).stderr == ""
