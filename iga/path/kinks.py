@@ -122,7 +122,7 @@ def slope_over_arcs(first: Place, middle: Place, last: Place) -> float | None:
 
 
 #: How far beyond a kink a step that ends at one goes, in parts of the shortest branch of the law.
-BEYOND = 1e-3
+HAIR = 1e-3
 
 
 @dataclass(frozen=True)
@@ -145,5 +145,5 @@ def next_event(law: TractionLaw, g_q: np.ndarray, k_q: np.ndarray, rate_q: np.nd
         return None
     away_q = np.where(coming_q, (kink_q - g_q) / np.where(coming_q, rate_q, 1.0), np.inf)
     q = int(np.argmin(away_q))
-    hair = BEYOND * float(np.min(np.diff(kinks, prepend=0.0)))
+    hair = HAIR * float(np.min(np.diff(kinks, prepend=0.0)))
     return Event(q, float(away_q[q]), float(away_q[q] + hair / rate_q[q]))
