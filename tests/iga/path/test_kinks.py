@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from iga.interface.laws import BilinearLaw
-from iga.path.kinks import BEYOND, next_event
+from iga.path.kinks import HAIR, next_event
 
 LAW = BilinearLaw(strength=4.0, toughness=0.1, ductility=12.5, penalty=1e5)  # g_u 0.05, g_max 0.004
-HAIR = BEYOND * LAW.g_max
+AWAY = HAIR * LAW.g_max
 
 
 def event(*points):
@@ -31,7 +31,7 @@ def test_the_next_kink_of_one_point(gap, history, kink):
     found = event((gap, history, 2.0))
     assert found.q == 0
     assert found.away == pytest.approx((kink - gap) / 2.0, rel=1e-12)
-    assert found.beyond == pytest.approx((kink - gap + HAIR) / 2.0, rel=1e-12)
+    assert found.beyond == pytest.approx((kink - gap + AWAY) / 2.0, rel=1e-12)
     assert gap + 2.0 * found.beyond > kink, "a step that ends there must have passed the kink"
 
 

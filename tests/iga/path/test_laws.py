@@ -11,7 +11,7 @@ from iga.dcb.dcb import build, solve
 from iga.interface.laws import LAWS
 from iga.path.control import dissipation_control
 from iga.path.follow import follow
-from iga.path.kinks import BEYOND, landing, next_event
+from iga.path.kinks import HAIR, landing, next_event
 from iga.system.system import respond
 
 #: Unknowns by basis with which the J-integral is met within its tolerance.
@@ -99,7 +99,7 @@ def test_every_kink_on_the_way_is_an_event(gap, history, kink):
     found = next_event(law, np.array([gap]), np.array([history]), np.array([2.0]))
     next_kink = history if kink is None else law.kinks[kink]
     assert found.away == pytest.approx((next_kink - gap) / 2.0)
-    assert found.beyond - found.away == pytest.approx(BEYOND * law.g_max / 2.0)
+    assert found.beyond - found.away == pytest.approx(HAIR * law.g_max / 2.0)
 
 
 @pytest.mark.parametrize("name", MADE_UP)
