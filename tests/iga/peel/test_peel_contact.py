@@ -71,7 +71,7 @@ def test_points_that_only_touch_have_no_history():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("basis", "dofs"), [("tspline", 2600), ("nurbs", 2600), ("lagrange", 3700)])
+@pytest.mark.parametrize(("basis", "dofs"), [("tspline", 2600), ("nurbs", 2600), ("lagrange", 7000)])
 def test_slave_and_master_exchanged(basis, dofs):
     """Opening, unloading, indentation on meshes 1 : 1.37; Lagrange elements resolve the zone with more unknowns."""
     loads = []
@@ -110,7 +110,8 @@ def test_penalties_from_soft_to_hard(slave):
         pressed[penalty] = end.state.load
     loads = np.array(list(pressed.values()))
     print(f"{slave}: pressed {loads}")
-    assert np.all(loads < 0.0) and np.abs(np.diff(loads)[1:] / loads[-1]).max() < 0.005
+    steps = np.abs(np.diff(loads) / loads[-1])
+    assert np.all(loads < 0.0) and np.all(steps[1:] < 0.25 * steps[:-1]) and steps[-1] < 0.001
 
 
 @pytest.mark.slow

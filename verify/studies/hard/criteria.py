@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from verify.checks.identities import J_TOLERANCE, end_cannot_judge, j_deviation
+from verify.checks.unresolved import too_coarse
 from verify.curves.curve import Curve, curve_error, dense
 from verify.methods.zone_resolution import ENOUGH, expected, measured
 from verify.result import Result
@@ -39,12 +40,17 @@ def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
     if elements >= ENOUGH and bends:
         meaning = "The J-integral is the area under the law, at every step."
         check = Check("j-integral", name, deviation, J_TOLERANCE, "exact", meaning)
-        why = "" if check.passed else end_cannot_judge(trial.scene, trial.result, check)
+        why = "" if check.passed else _cannot_judge(trial, check)
         yield Number("j-deviation", name, deviation, f"Deviation of the J-integral; {why}.") if why else check
     else:
         why = f"{elements:.2g} elements in the process zone" if bends else "of linear elements, which lock in bending"
         meaning = f"Deviation of the J-integral; it measures the mesh, {why}."
         yield Number("j-deviation", name, deviation, meaning)
+
+
+def _cannot_judge(trial: Trial, check: Check) -> str:
+    """Why the J-integral cannot judge the run: the far end or the mesh explains the deviation; empty where neither does."""
+    return end_cannot_judge(trial.scene, trial.result, check) or too_coarse(trial.scene, trial.result, check)
 
 
 def missing(trial: Trial) -> float:
