@@ -49,7 +49,7 @@ def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
 
 
 def _cannot_judge(trial: Trial, check: Check) -> str:
-    """Why the J-integral cannot judge the run: the far end or the mesh explains the deviation; empty where neither does."""
+    """Why the J-integral cannot judge the run: the far end or the mesh explains its deviation; else empty."""
     return end_cannot_judge(trial.scene, trial.result, check) or too_coarse(trial.scene, trial.result, check)
 
 
