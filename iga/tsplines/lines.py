@@ -1,4 +1,4 @@
-"""T-meshes made of lines: grids, inserted lines, refined rectangles, and tilings by rectangles.
+"""T-meshes made of lines: the full grid, and lines inserted into it.
 
 All lengths here are parameters (knot values); indices stay inside. A line that reaches the boundary of the domain
 runs on through the frame.
@@ -11,7 +11,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from iga.tsplines.tmesh import DEGREE, TMesh, painted
-from iga.tsplines.tspline import faces
 
 #: Names of the directions in which a line may run.
 DIRECTIONS = ("vertical", "horizontal")
@@ -91,54 +90,6 @@ def with_lines(mesh: TMesh, vertical_nk: np.ndarray, horizontal_nk: np.ndarray, 
     return TMesh(knots_i, knots_j, across, up)
 
 
-def band(mesh: TMesh, rectangle: tuple[float, float, float, float], levels: int = 1) -> TMesh:
-    """The T-mesh whose faces that touch a rectangle (s0, s1, t0, t1) are cut in four, ``levels`` times over.
-
-    Nothing makes it analysis-suitable; see `iga.tsplines.bisection`.
-
-    Raises
-    ------
-    ValueError : a rectangle that lies outside the domain.
-    """
-    s0, s1, t0, t1 = rectangle
-    if not (s0 <= s1 and t0 <= t1):
-        raise ValueError(f"a rectangle is s0 <= s1, t0 <= t1, got ({s0:.6g}, {s1:.6g}, {t0:.6g}, {t1:.6g})")
-    for _ in range(levels):
-        i0, i1, j0, j1 = faces(mesh).T
-        a0, a1, b0, b1 = mesh.knots_i[i0], mesh.knots_i[i1], mesh.knots_j[j0], mesh.knots_j[j1]
-        hit = (a0 <= s1) & (a1 >= s0) & (b0 <= t1) & (b1 >= t0)
-        if not np.any(hit):
-            raise ValueError(f"the rectangle ({s0:.6g}, {s1:.6g}) x ({t0:.6g}, {t1:.6g}) touches no face")
-        a0, a1, b0, b1 = a0[hit], a1[hit], b0[hit], b1[hit]
-        upright, level = np.stack([(a0 + a1) / 2, b0, b1], -1), np.stack([(b0 + b1) / 2, a0, a1], -1)
-        mesh = with_lines(mesh, upright, level)
-    return mesh
-
-
-def from_rectangles(box_ek: np.ndarray) -> TMesh:
-    """The T-mesh of a rectangle that is tiled by rectangles.
-
-    Parameters
-    ----------
-    box_ek : (n_e, 4) rows s0, s1, t0, t1; sides that lie on one line have the very same float.
-
-    Raises
-    ------
-    ValueError : an empty box, a gap or an overlap; the message has the coordinates.
-    """
-    box_ek = np.asarray(box_ek, dtype=float)
-    if box_ek.ndim != 2 or box_ek.shape[1] != 4 or len(box_ek) == 0 or not np.all(np.isfinite(box_ek)):
-        raise ValueError(f"rectangles are rows of four finite numbers s0, s1, t0, t1, got shape {box_ek.shape}")
-    s0, s1, t0, t1 = box_ek.T
-    flat = np.flatnonzero((s1 <= s0) | (t1 <= t0))
-    if flat.size:
-        raise ValueError(f"the rectangle ({_pair(box_ek[flat[0], :2])}) x ({_pair(box_ek[flat[0], 2:])}) has no area")
-    _check_tiling(box_ek)
-    outline = tensor_grid(np.array([s0.min(), s1.max()]), np.array([t0.min(), t1.max()]))
-    inner_s, inner_t = s0 > s0.min(), t0 > t0.min()
-    return with_lines(outline, np.stack([s0, t0, t1], -1)[inner_s], np.stack([t0, s0, s1], -1)[inner_t])
-
-
 def _open(breaks: np.ndarray, multiplicity: int | Sequence[int], name: str) -> np.ndarray:
     """Knots with fourfold ends and the inner ones as often as asked for."""
     breaks = np.asarray(breaks, dtype=float)
@@ -209,29 +160,6 @@ def _ended(spans: np.ndarray, crossing: np.ndarray, along: np.ndarray) -> np.nda
         start += ~through[line - 1, start] & (along[start + 1] == along[start]) & (start > 0)
         end -= ~through[line - 1, end] & (along[end - 1] == along[end]) & (end < len(along) - 1)
     return np.stack([start, end, line], -1)
-
-
-def _check_tiling(box_ek: np.ndarray) -> None:
-    """Every place lies in one rectangle and no more.
-
-    How many rectangles hold a place is the sum of signs over the corners to its lower left; so it is one everywhere
-    if the signs of all corners cancel but for those of the outline.
-    """
-    s, t = np.unique(box_ek[:, :2]), np.unique(box_ek[:, 2:])
-    i_ek, j_ek = np.searchsorted(s, box_ek[:, :2]), np.searchsorted(t, box_ek[:, 2:])
-    corner = (i_ek[:, :, None] * len(t) + j_ek[:, None, :]).reshape(-1, 4)
-    place, number = np.unique(corner, return_inverse=True)
-    sign = np.bincount(number.ravel(), np.tile([1.0, -1.0, -1.0, 1.0], len(box_ek)))
-    outline = {0: 1.0, len(t) - 1: -1.0, (len(s) - 1) * len(t): -1.0, len(s) * len(t) - 1: 1.0}
-    left = sign != 0.0
-    if dict(zip(place[left].tolist(), sign[left].tolist(), strict=True)) == outline:
-        return
-    change = np.zeros(len(s) * len(t), dtype=int)
-    change[place] = sign
-    times = change.reshape(len(s), len(t)).cumsum(0).cumsum(1)[:-1, :-1]
-    i, j = np.argwhere(times != 1)[0]
-    what = "no rectangle covers" if times[i, j] == 0 else f"{times[i, j]} rectangles cover"
-    raise ValueError(f"{what} ({_pair(s[i : i + 2])}) x ({_pair(t[j : j + 2])})")
 
 
 def _pair(values: np.ndarray) -> str:

@@ -52,11 +52,6 @@ class TMesh:
             _check_frame(along, name)
         _check_ends(self)
 
-    @property
-    def transposed(self) -> TMesh:
-        """The same mesh with its directions exchanged."""
-        return TMesh(self.knots_j, self.knots_i, self.up_ij.T, self.across_ij.T)
-
     @cached_property
     def crossed_ij(self) -> np.ndarray:
         """Points (m_s, m_t) of a vertical line: where a horizontal ray is stopped."""

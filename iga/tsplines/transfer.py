@@ -14,9 +14,8 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from iga.mesh.bernstein import bernstein, tensor
-from iga.mesh.extraction import Mesh
 from iga.tsplines.tmesh import DEGREE, TMesh
-from iga.tsplines.tspline import Extraction, extracted, tspline_mesh
+from iga.tsplines.tspline import Extraction, extracted
 
 #: Sample points of a cubic in each direction, the zeros of the Chebyshev polynomial of degree 4.
 SAMPLES = 0.5 - 0.5 * np.cos((2 * np.arange(DEGREE + 1) + 1) * np.pi / (2 * DEGREE + 2))
@@ -44,19 +43,6 @@ def transfer(old: TMesh, new: TMesh) -> csr_array:
     rows = np.repeat(np.arange(n_A), n_q), np.arange(n_A * n_q)
     functional = csr_array((weight_Aq.ravel(), rows), shape=(n_A, n_A * n_q))
     return functional @ collocation(old, x_Aqi.reshape(-1, 2))
-
-
-def transferred(old: TMesh, mesh: Mesh, new: TMesh) -> Mesh:
-    """A T-spline on another T-mesh: the same body where that refines the first one."""
-    matrix = transfer(old, new)
-    w_A = matrix @ mesh.w_A
-    return tspline_mesh(new, (matrix @ (mesh.w_A[:, None] * mesh.P_AI)) / w_A[:, None], w_A)
-
-
-def nesting_error(old: TMesh, new: TMesh) -> float:
-    """Largest difference between an old function and its copy in the new space: rounding where they are nested."""
-    x_qi = _sample_points(new, extracted(new).box_ek).reshape(-1, 2)
-    return float(abs(collocation(old, x_qi) - collocation(new, x_qi) @ transfer(old, new)).max())
 
 
 def collocation(mesh: TMesh, x_qi: np.ndarray) -> csr_array:

@@ -42,11 +42,6 @@ def tspline_mesh(mesh: TMesh, P_AI: np.ndarray, w_A: np.ndarray | None = None) -
     ValueError : a number of control points other than that of the anchors, or a weight that is not positive.
     """
     require_suitable(mesh)
-    return unchecked_mesh(mesh, P_AI, w_A)
-
-
-def unchecked_mesh(mesh: TMesh, P_AI: np.ndarray, w_A: np.ndarray | None = None) -> Mesh:
-    """The same for any T-mesh; the functions of one that is not analysis-suitable need not add up to one."""
     n_A = len(mesh.anchors)
     w_A = np.ones(n_A) if w_A is None else np.asarray(w_A, dtype=float)
     if P_AI.shape != (n_A, 2) or w_A.shape != (n_A,):
@@ -92,12 +87,7 @@ def bezier_elements(mesh: TMesh) -> np.ndarray:
 
     A T-mesh whose lines end on other lines has no faces but rectangles.
     """
-    return _faces(mesh, *mesh.extended())
-
-
-def faces(mesh: TMesh) -> np.ndarray:
-    """The same for the T-mesh as it is, without extensions."""
-    return _faces(mesh, mesh.across_ij, mesh.up_ij)
+    return faces(mesh, *mesh.extended())
 
 
 def blossoms(knots_n5: np.ndarray, start_n: np.ndarray, end_n: np.ndarray) -> np.ndarray:
@@ -123,9 +113,9 @@ def blossoms(knots_n5: np.ndarray, start_n: np.ndarray, end_n: np.ndarray) -> np
     return out_bn.T
 
 
-def _faces(mesh: TMesh, across: np.ndarray, up: np.ndarray) -> np.ndarray:
-    """Index boxes (n, 4) of the faces with area between unit edges."""
-    across, up = across[FRAME:-FRAME, FRAME:-FRAME], up[FRAME:-FRAME, FRAME:-FRAME]
+def faces(mesh: TMesh, across_ij: np.ndarray, up_ij: np.ndarray) -> np.ndarray:
+    """Index boxes (n, 4) of the faces with area between the unit edges ``across_ij`` and ``up_ij`` of the mesh."""
+    across, up = across_ij[FRAME:-FRAME, FRAME:-FRAME], up_ij[FRAME:-FRAME, FRAME:-FRAME]
     corner = np.argwhere((up[:-1] & across[:, :-1]).T)[:, ::-1]
     i, j = corner.T
     end_i, end_j = neighbours(up, i, j, 1)[:, 2], neighbours(across.T, j, i, 1)[:, 2]
