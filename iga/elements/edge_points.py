@@ -11,9 +11,6 @@ from iga.mesh.bernstein import bernstein, bernstein_derivative
 from iga.mesh.extraction import HANDS, SIDES, Chain, Mesh, on_side
 from iga.mesh.quadrature import gauss
 
-#: A function smaller than this on all points of a side does not live on it.
-ALIVE = 1e-10
-
 
 @dataclass(frozen=True)
 class SidePoints:
@@ -40,11 +37,6 @@ def side_points(mesh: Mesh, chains: Sequence[Chain], more: int) -> tuple[SidePoi
         for chain in chains
         for here, number, side in chain.parts()
     )
-
-
-def living(sides: Sequence[SidePoints]) -> np.ndarray:
-    """Control points (n,) whose functions do not vanish on the sides."""
-    return np.unique(np.concatenate([s.conn_ea[np.max(np.abs(s.N_eqa), axis=1) > ALIVE] for s in sides]))
 
 
 def _on_side(mesh: Mesh, number: int, e: np.ndarray, side: str, more: int) -> SidePoints:

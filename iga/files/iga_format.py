@@ -107,18 +107,6 @@ def _refuse_lifted(P_AI: np.ndarray) -> None:
         raise ValueError(f"node {A}: z must be 0 in a plane, got {P_AI[A, 2]:.6g} (nodes count from 0)")
 
 
-def from_mesh(body: Mesh) -> IgaFile:
-    """The file of a body in the plane: elements block by block, every chain a side set."""
-    first = body.first_b
-    block_e = np.repeat(np.arange(len(body.blocks)), np.diff(first))
-    sets = tuple(
-        NamedSet("side", "_".join(name.split()), first[chain.block_c] + chain.element_c, tuple(map(str, chain.side_c)))
-        for name, chain in body.chains.items()
-    )
-    P_AI = np.column_stack([body.P_AI, np.zeros(len(body.P_AI))])
-    return IgaFile("plane", P_AI, body.w_A, body.blocks, block_e, np.arange(first[-1]) - first[block_e], sets)
-
-
 def write_iga(file: IgaFile, path: Path | str) -> None:
     """Write a file with 17 significant digits, which keep every bit of a number.
 
