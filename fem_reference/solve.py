@@ -1,4 +1,4 @@
-"""Solve a specimen: build the model, follow its path, write down what is found."""
+"""Solve a problem: build the model, follow its path, collect rows and snapshots."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from fem_reference.problem.problem import Debonding
 
 OnStep = Callable[[Mapping[str, float]], None]
 
-#: Called with the opening of every converged step, and with what makes its frame (see `fem_reference.output.frames`).
+#: Called with the opening of every converged step and a function that makes its frame (`fem_reference.output.frames`).
 OnFrame = Callable[[float, Callable[[], dict[str, Any] | None]], None]
 
 
 @dataclass(frozen=True)
 class Solution:
-    """A run, as far as it came; the same on every rank, but for the snapshots, which the first one has."""
+    """A run up to its end; the same on every rank, except that only the first one has the snapshots."""
 
     rows: tuple[dict[str, float], ...]
-    dofs: int  # two a node of both bodies, supported ones included
+    dofs: int  # unknowns, two per node of both bodies, supported ones included
     elements: int
     rejected_steps: int
     status: str  # "complete", or "stopped: <cause and what to do>"
-    ending: str  # "separated at opening ...", or nothing to say
-    condition: float  # of the tangents; 0 where it was not looked at
+    ending: str  # "separated at opening ...", or empty
+    condition: float  # of the tangents; 0, since it is not computed
     snapshots: tuple[dict, ...]
-    nonzeros: int = 0  # entries of the tangent that are stored
+    nonzeros: int = 0  # stored entries of the tangent
 
 
 def solve_debonding(
@@ -52,9 +52,13 @@ def solve_debonding(
     Parameters
     ----------
     on_step : called on the first rank with the row of every converged step; the first row is the unloaded specimen.
-    phase : context manager that times a part of the work: "mesh", "basis", "compile" (the forms, or reading what has
-        been compiled before), "assembly", "factor", "solve".
-    on_frame : called on all ranks; a frame that is wanted must be made on all of them, and the first one gets it.
+    phase : context manager that times a part of the work: "mesh", "basis", "compile" (compiling the forms or reading
+        them from the cache), "assembly", "factor", "solve".
+    on_frame : called on all ranks; a frame must be made on all of them or on none, and the first rank gets it.
+
+    Raises
+    ------
+    ValueError : an unknown traction law, or a point load without a node.
     """
     model = build_model(problem, phase, comm)
     with phase("compile"):

@@ -15,9 +15,6 @@ from verify.support.refusal import Refusal
 #: Upper body first.
 BODIES: Mapping[str, tuple[str, str]] = {"dcb": ("upper", "lower"), "peel": ("strip", "substrate")}
 
-#: What the layers of a specimen are called by the problem of `fem_reference`.
-LAYERS: Mapping[str, str] = {"dcb": "elements_across", "peel": "strip_layers"}
-
 #: Part of a height by which a node may lie beside the middle of a face, by rounding.
 MIDDLE = 1e-9
 
@@ -107,7 +104,7 @@ def scene_mesh(scene: Scene, layers: int | None = None) -> SceneMesh:
         raise Refusal(f"dolfinx.degree: must be 1 or 2 for export, got {degree}")
     try:
         problem = dolfinx_problem(_of_degree(scene, degree))
-        specimen = (replace(problem, **{LAYERS[kind]: layers}) if layers else problem).specimen()
+        specimen = (replace(problem, layers=layers) if layers else problem).specimen()
     except ValueError as error:
         raise Refusal(f"dolfinx.{error}") from None
     mesh = _meshed(specimen, degree, BODIES[kind])

@@ -101,5 +101,5 @@ class Bilinear(Law):
         return self.area(k) - 0.5 * self.secant(k) * k * k
 
 
-#: Name in a scene -> law; any other name stands for a plain `Law`.
-LAWS: dict[str, type[Law]] = {"bilinear": Bilinear}
+#: Name in a scene -> law; the checks take a plain `Law` for any other name.
+KNOWN_LAWS: dict[str, type[Law]] = {"bilinear": Bilinear}
