@@ -30,10 +30,9 @@ Phase = Callable[[str], AbstractContextManager]
 class Model:
     """A problem ready to be solved.
 
-    Unknowns ``u_n`` are the displacements owned by this rank: x and y alternate, upper body first. The external force is
-    ``load * load_n``, and the opening is ``load_n @ u_n``, summed over the ranks. Points ``q`` of the interface are
-    those that this rank owns; where ``bonded_q`` is False the surfaces are not bonded: they can touch and have no
-    history.
+    Unknowns ``u_n`` are the displacements owned by this rank: x and y alternate, upper body first. The external force
+    is ``load * load_n``, and the opening is ``load_n @ u_n``, summed over the ranks. Points ``q`` of the interface are
+    those that this rank owns; where ``bonded_q`` is False the surfaces can only touch, and points have no history.
     """
 
     problem: Debonding
@@ -96,7 +95,7 @@ class Model:
         return self.internal.assemble()
 
     def traction(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Traction and slope (n_q,) each: those of `Law.traction` where the bodies are bonded, elsewhere contact alone."""
+        """Traction and slope (n_q,) each: those of `Law.traction` where bonded, elsewhere contact alone."""
         carries_q = self.bonded_q | ((g_q < 0.0) & self.law.contact)
         p_q, dp_q = self.law.traction(g_q, k_q)
         return np.where(carries_q, p_q, 0.0), np.where(carries_q, dp_q, 0.0)

@@ -29,7 +29,7 @@ class FrontSettings:
     lookahead: float = 2.0
 
 
-FRONT = FrontSettings()
+REFERENCE_FRONT = FrontSettings()
 
 #: A point of the bond: the rank that owns it, and its index there.
 PointOfBond = tuple[int, int]
@@ -62,12 +62,12 @@ class Front:
 
     def change(self, model: Model, reach: float, part: float) -> float:
         """Change of the gap in a step of ``reach`` in the opening; at most ``part`` of the front's largest step."""
-        most = self.missing + part * FRONT.step * model.law.g_open
+        most = self.missing + part * REFERENCE_FRONT.step * model.law.g_open
         return float(np.copysign(min(abs(self.rate) * reach, most), self.rate))
 
     def calm(self, model: Model, reach: float, part: float) -> bool:
         """Whether damage grows so slowly that the opening can be prescribed instead."""
-        return self.missing == 0.0 and abs(self.rate) * reach < part * FRONT.step * model.law.g_open
+        return self.missing == 0.0 and abs(self.rate) * reach < part * REFERENCE_FRONT.step * model.law.g_open
 
     def control(self, model: Model, reach: float, part: float) -> Control:
         """Control by the gap of the front, which grows steadily even where the opening has to decrease (snap-back)."""
@@ -82,7 +82,7 @@ def front_of(model: Model, state: State, reach: float) -> Front | None:
     law, g_q, k_q = model.law, state.g_q, state.k_q
     rate_q = state.heading * model.bond.gap(state.rate_n)
     missing_q = np.maximum(k_q, law.g_peak) - g_q
-    grows_q = (k_q < law.g_open) & (rate_q * FRONT.lookahead * reach >= missing_q) & (rate_q > 0)
+    grows_q = (k_q < law.g_open) & (rate_q * REFERENCE_FRONT.lookahead * reach >= missing_q) & (rate_q > 0)
     heals_q = (g_q < law.g_open) & (g_q > law.g_peak) & (not law.irreversible)
     place = most_open(model, np.where((grows_q | heals_q) & model.bonded_q, g_q, -np.inf))
     return None if place is None else Front(place, *(at(model, place, a_q) for a_q in (g_q, missing_q, rate_q)))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem_reference.model.model import Model
-from fem_reference.path.control import FRONT, Control, Front, at, front_of, opening_control
+from fem_reference.path.control import REFERENCE_FRONT, Control, Front, at, front_of, opening_control
 from fem_reference.path.newton import Step, bordered_step, find_equilibrium
 from fem_reference.path.state import State
 from fem_reference.path.work import work_along
@@ -144,7 +144,7 @@ def next_line(opening: float, lines: np.ndarray, reach: float) -> float:
 
 def skipped(model: Model, front: Front, reached: State, part: float) -> bool:
     """Whether the gap of the front has changed by more than twice its largest step."""
-    return abs(at(model, front.place, reached.g_q) - front.gap) > 2 * part * FRONT.step * model.law.g_open
+    return abs(at(model, front.place, reached.g_q) - front.gap) > 2 * part * REFERENCE_FRONT.step * model.law.g_open
 
 
 def lead(model: Model, state: State, control: Control, lines: np.ndarray) -> State | Failure:
