@@ -12,6 +12,10 @@ class KnotVector:
     """An open knot vector of one degree.
 
     ``knots`` (n + p + 1,) is non-decreasing with end multiplicity p + 1 and inner multiplicity at most p.
+
+    Raises
+    ------
+    ValueError : knots that violate this or are not finite, or a degree below 1.
     """
 
     degree: int
@@ -33,11 +37,12 @@ class KnotVector:
 
     @property
     def functions(self) -> int:
+        """Number of functions n."""
         return self.knots.size - self.degree - 1
 
     @property
     def spans(self) -> np.ndarray:
-        """(n_e,) index of the knot that opens each non-empty span."""
+        """(n_e,) index of the first knot of each non-empty span."""
         return np.flatnonzero(np.diff(self.knots) > 0)
 
     @property
@@ -53,10 +58,10 @@ def open_knots(breaks: np.ndarray, degree: int) -> KnotVector:
 
 
 def bezier_extraction(kv: KnotVector) -> np.ndarray:
-    """Extraction operators of all spans at once: N_a = sum_b C_eab B_b on span e.
+    """Extraction operators of all spans: N_a = sum_b C_eab B_b on span e.
 
-    The Bernstein coefficient b of a spline on [x0, x1] is its polar form at x0 (p - b times) and x1 (b times), which
-    is what inserting both knots up to multiplicity p gives (Ramshaw 1989; Borden, Scott, Evans, Hughes 2011).
+    The Bernstein coefficient b of a spline on [x0, x1] is its polar form at x0 (p - b times) and x1 (b times)
+    (Ramshaw 1989). Inserting both knots up to multiplicity p gives the same (Borden, Scott, Evans, Hughes 2011).
 
     Returns
     -------

@@ -14,10 +14,10 @@ from iga.mesh.quadrature import gauss
 
 @dataclass(frozen=True)
 class SidePoints:
-    """Points on sides of one kind.
+    """Gauss points on sides of one name of the elements of one block.
 
     ``conn_ea`` (n_e, n_a) control points, ``N_eqa`` (n_e, n_q, n_a) functions, ``X_eqI`` (n_e, n_q, 2) positions,
-    ``ndL_eqI`` (n_e, n_q, 2) outward normal times the length that each point stands for.
+    ``ndL_eqI`` (n_e, n_q, 2) outward normal times the length of each point.
     """
 
     conn_ea: np.ndarray
@@ -27,11 +27,12 @@ class SidePoints:
 
     @property
     def dL_eq(self) -> np.ndarray:
+        """Length (n_e, n_q) of each point."""
         return np.linalg.norm(self.ndL_eqI, axis=-1)
 
 
 def side_points(mesh: Mesh, chains: Sequence[Chain], more: int) -> tuple[SidePoints, ...]:
-    """Gauss points of all sides of some chains, p + 1 + ``more`` each, one entry for sides of one kind."""
+    """p + 1 + ``more`` Gauss points on every side of some chains, one entry per block and name of the side."""
     return tuple(
         _on_side(mesh, number, chain.element_c[here], side, more)
         for chain in chains

@@ -1,4 +1,4 @@
-"""Linear plane elasticity on any mesh: loads and supports on chains of sides, one sparse solve.
+"""Linear plane elasticity on any mesh: tractions on chains of sides, supports, one sparse solve.
 
 K = stiffness(mesh, D)
 f_Ai = traction_forces(mesh, chains, lambda X, n: ...)
@@ -32,10 +32,10 @@ class Fixed:
 
 
 def bulk_bases(mesh: Mesh, more: int = 0) -> tuple[BlockBasis, ...]:
-    """Basis of every block at p + 1 + ``more`` Gauss points a direction, and 4 more where the elements are rational.
+    """Basis of every block at p + 1 + ``more`` Gauss points per direction, 4 more in rational elements.
 
-    Polynomial elements are integrated exactly by p + 1. Rational ones are not: on a ring of three elements a quadrant
-    the patch test misses by 1e-6 with p + 1, 1e-9 with p + 3 and rounding with p + 5.
+    p + 1 integrate polynomial elements exactly, but not rational ones: on a ring of three elements per quadrant the
+    error of the patch test is 1e-6 with p + 1, 1e-9 with p + 3 and rounding with p + 5.
     """
     bases = []
     for block in mesh.blocks:
@@ -46,7 +46,7 @@ def bulk_bases(mesh: Mesh, more: int = 0) -> tuple[BlockBasis, ...]:
 
 
 def stiffness(mesh: Mesh, D: np.ndarray) -> csc_array:
-    """Stiffness matrix (2 n_A, 2 n_A) for an elasticity matrix D (3, 3) [stress], per unit of width."""
+    """Stiffness matrix (2 n_A, 2 n_A) for an elasticity matrix D (3, 3) [stress], per unit width."""
     bases, A_IpJ = bulk_bases(mesh), of_pairs(elasticity_tensor(D))
     parts = [element_stiffness(b, np.broadcast_to(A_IpJ, (*b.dV_eq.shape, *A_IpJ.shape))) for b in bases]
     entries = [stiffness_entries(b.conn_ea) for b in bases]
@@ -58,7 +58,7 @@ def stiffness(mesh: Mesh, D: np.ndarray) -> csc_array:
 def traction_forces(
     mesh: Mesh, chains: Sequence[Chain], traction: Callable[[np.ndarray, np.ndarray], np.ndarray]
 ) -> np.ndarray:
-    """Control point forces (n_A, 2) of a traction given by position and unit outward normal (..., 2)."""
+    """Control point forces (n_A, 2) of a traction, a function of position and unit outward normal (..., 2)."""
     parts = []
     for side in side_points(mesh, chains, 4):
         dL = side.dL_eq
@@ -68,7 +68,7 @@ def traction_forces(
 
 
 def no_rigid_motion(mesh: Mesh) -> Fixed:
-    """Three degrees of freedom of two far points: loads in equilibrium cause no reaction there."""
+    """Three degrees of freedom of two distant control points; loads in equilibrium cause no reactions there."""
     A = int(np.argmin(mesh.P_AI.sum(1)))
     arm = mesh.P_AI - mesh.P_AI[A]
     B = int(np.argmax(np.linalg.norm(arm, axis=1)))
@@ -77,7 +77,7 @@ def no_rigid_motion(mesh: Mesh) -> Fixed:
 
 
 def solve(K: csc_array, f_Ai: np.ndarray, fixed: Fixed) -> np.ndarray:
-    """Displacements (n_A, 2) of the control points."""
+    """Displacements (n_A, 2) of the control points for control point forces (n_A, 2)."""
     u = np.zeros(f_Ai.size)
     u[fixed.dof_d] = fixed.value_d
     free = np.setdiff1d(np.arange(f_Ai.size), fixed.dof_d)

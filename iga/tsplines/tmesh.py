@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 #: Degree of the functions, knots on either side of an anchor, and index lines outside of the domain on every side.
-DEGREE, HALF, FRAME = 3, 2, 2
+DEGREE, BESIDE, FRAME = 3, 2, 2
 
 
 class NotSuitable(ValueError):
@@ -195,7 +195,7 @@ def _touched(along: np.ndarray) -> np.ndarray:
     return points
 
 
-def neighbours(hit: np.ndarray, i: np.ndarray, j: np.ndarray, reach: int = HALF) -> np.ndarray:
+def neighbours(hit: np.ndarray, i: np.ndarray, j: np.ndarray, reach: int = BESIDE) -> np.ndarray:
     """Indices (n, 2 reach + 1) of hit points (i, j) and of the next hits on either side along the first axis."""
     length = hit.shape[0]
     place = np.flatnonzero(hit.T)

@@ -18,10 +18,10 @@ from iga.tsplines.tmesh import DEGREE, TMesh
 from iga.tsplines.tspline import Extraction, extracted
 
 #: Sample points of a cubic in each direction, the zeros of the Chebyshev polynomial of degree 4.
-SAMPLES = 0.5 - 0.5 * np.cos((2 * np.arange(DEGREE + 1) + 1) * np.pi / (2 * DEGREE + 2))
+SAMPLES_OF_CUBIC = 0.5 - 0.5 * np.cos((2 * np.arange(DEGREE + 1) + 1) * np.pi / (2 * DEGREE + 2))
 
 #: Points whose extraction operators are laid side by side at a time, for the sake of memory.
-POINTS = 16_384
+POINTS_AT_ONCE = 16_384
 
 
 def transfer(old: TMesh, new: TMesh) -> csr_array:
@@ -53,7 +53,7 @@ def collocation(mesh: TMesh, x_qi: np.ndarray) -> csr_array:
     value, row, column = [], [], []
     for number, block in enumerate(elements.blocks):
         q_n = np.flatnonzero(elements.block_e[e_q] == number)
-        for q in np.array_split(q_n, len(q_n) // POINTS + 1):
+        for q in np.array_split(q_n, len(q_n) // POINTS_AT_ONCE + 1):
             e = elements.place_e[e_q[q]]
             N_qa = (block.C_eab[e] @ B_qb[q, :, None])[..., 0]
             value.append(N_qa.ravel())
@@ -94,7 +94,7 @@ def _functionals(mesh: TMesh, elements: Extraction) -> tuple[np.ndarray, np.ndar
     order = np.lexsort((size_n, A_n))
     _, first = np.unique(A_n[order], return_index=True)
     best = order[first]
-    from_values = np.linalg.inv(bernstein(DEGREE, SAMPLES))
+    from_values = np.linalg.inv(bernstein(DEGREE, SAMPLES_OF_CUBIC))
     return e_n[best], tensor(s_nb[best] @ from_values, t_nb[best] @ from_values)
 
 
@@ -117,7 +117,7 @@ def _pairs(elements: Extraction) -> Iterator[tuple[np.ndarray, np.ndarray]]:
 
 def _sample_points(mesh: TMesh, box_nk: np.ndarray) -> np.ndarray:
     """Points (n, 16, 2) in index boxes, in knot values."""
-    xi_qs = np.stack([np.tile(SAMPLES, DEGREE + 1), np.repeat(SAMPLES, DEGREE + 1)], -1)
+    xi_qs = np.stack([np.tile(SAMPLES_OF_CUBIC, DEGREE + 1), np.repeat(SAMPLES_OF_CUBIC, DEGREE + 1)], -1)
     low, high = _corners(mesh, box_nk)
     return low[:, None] + xi_qs * (high - low)[:, None]
 
