@@ -1,7 +1,7 @@
 """T-meshes made of lines: the full grid, and lines inserted into it.
 
-All lengths here are parameters (knot values); indices stay inside. A line that reaches the boundary of the domain
-runs on through the frame.
+Arguments are parameters (knot values), not indices. A line that reaches the boundary of the domain continues through
+the frame.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from iga.tsplines.tmesh import DEGREE, TMesh, painted
 
-#: Names of the directions in which a line may run.
+#: Directions of a line.
 DIRECTIONS = ("vertical", "horizontal")
 
 
@@ -26,12 +26,12 @@ def tensor_grid(
 
     Parameters
     ----------
-    breaks_s, breaks_t : rising knot values; the ends are repeated four times.
-    multiplicity_s, multiplicity_t : how often each inner value is there, one number or one for each of them.
+    breaks_s, breaks_t : increasing knot values; the ends get multiplicity 4.
+    multiplicity_s, multiplicity_t : multiplicity of the inner values, one number or one for each of them.
 
     Raises
     ------
-    ValueError : breaks that do not rise, or a multiplicity above 3.
+    ValueError : breaks that do not increase, or a multiplicity above 3.
     """
     knots_i, knots_j = _open(breaks_s, multiplicity_s, "s"), _open(breaks_t, multiplicity_t, "t")
     m_s, m_t = len(knots_i), len(knots_j)
@@ -41,18 +41,18 @@ def tensor_grid(
 def with_line(
     mesh: TMesh, direction: str, at: float, between: tuple[float, float] | None = None, times: int = 1
 ) -> TMesh:
-    """The T-mesh in which at least ``times`` lines run at ``at`` over the whole range ``between``.
+    """The T-mesh with at least ``times`` lines at ``at`` over the range ``between``.
 
     Parameters
     ----------
     direction : "vertical" (``at`` is a value of s, the range one of t) or "horizontal".
-    at : a new knot value inside the domain or one that is there.
-    between : where the line starts and ends, each on a line of the other direction; all through if left out.
+    at : a knot value inside the domain, new or existing.
+    between : ends of the line, each on a line of the other direction; default: the whole domain.
     times : multiplicity, 1 to 3.
 
     Raises
     ------
-    ValueError : a line outside the domain, or one whose ends lie on no line.
+    ValueError : a line outside the domain, or one that does not end on other lines.
     """
     if direction not in DIRECTIONS:
         raise ValueError(f"a line runs {' or '.join(DIRECTIONS)}, got {direction!r}")
@@ -67,11 +67,11 @@ def with_line(
 
 
 def with_lines(mesh: TMesh, vertical_nk: np.ndarray, horizontal_nk: np.ndarray, times: int = 1) -> TMesh:
-    """The same for many lines at once, each row (at, from, to); they may end on one another.
+    """The T-mesh with many more lines, rows (at, from, to) of both arrays (n, 3); they may end on one another.
 
     Raises
     ------
-    ValueError : a line outside the domain, or one whose ends lie on no line.
+    ValueError : a line outside the domain, or one that does not end on other lines.
     """
     _check_inside(vertical_nk, mesh.knots_i, mesh.knots_j, "vertical")
     _check_inside(horizontal_nk, mesh.knots_j, mesh.knots_i, "horizontal")
@@ -91,7 +91,7 @@ def with_lines(mesh: TMesh, vertical_nk: np.ndarray, horizontal_nk: np.ndarray, 
 
 
 def _open(breaks: np.ndarray, multiplicity: int | Sequence[int], name: str) -> np.ndarray:
-    """Knots with fourfold ends and the inner ones as often as asked for."""
+    """Knots with end multiplicity 4 and the given inner multiplicities."""
     breaks = np.asarray(breaks, dtype=float)
     if breaks.ndim != 1 or breaks.size < 2 or not np.all(np.diff(breaks) > 0.0):
         raise ValueError(f"breaks in {name} must be two numbers or more that rise, got {breaks}")
@@ -118,9 +118,9 @@ def _check_inside(line_nk: np.ndarray, knots: np.ndarray, along: np.ndarray, nam
 def _with_knots(
     knots: np.ndarray, along: np.ndarray, across: np.ndarray, at: np.ndarray, times: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Knots in which every value ``at`` is there ``times`` times at least, with the edges that were drawn.
+    """Knots in which the values ``at`` have at least the multiplicity ``times``, with the existing edges.
 
-    Both arrays of edges have their first axis along the knots: ``along`` from knot to knot, ``across`` at knots.
+    The first axis of both arrays of edges runs along the knots: ``along`` from knot to knot, ``across`` at knots.
     """
     wanted = np.unique(at)
     there = np.searchsorted(knots, wanted, side="right") - np.searchsorted(knots, wanted)
@@ -136,7 +136,7 @@ def _with_knots(
 
 
 def _index_spans(line_nk: np.ndarray, knots: np.ndarray, along: np.ndarray, times: int, name: str) -> np.ndarray:
-    """Lines as index spans (from, to, line), over all copies of the knots at which they end."""
+    """Lines as index spans (from, to, line), up to the last copy of the knots at which they end."""
     at, low, high = line_nk.T
     start, end = np.searchsorted(along, low), np.searchsorted(along, high, side="right") - 1
     for values, index in ((low, start), (high, end)):
@@ -150,9 +150,9 @@ def _index_spans(line_nk: np.ndarray, knots: np.ndarray, along: np.ndarray, time
 
 
 def _ended(spans: np.ndarray, crossing: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Spans drawn back from copies of the end knots that are not drawn through there.
+    """Spans shortened to the outermost copy of their end knots at which a line of the other direction exists.
 
-    ``crossing`` (m - 1, n) are the edges of the other direction, its first axis across the spans.
+    ``crossing`` (m - 1, n) are the edges of the other direction; its first axis runs across the spans.
     """
     start, end, line = spans.T.copy()
     through = crossing[:-1] & crossing[1:]

@@ -140,7 +140,7 @@ def _analytical_keys(scene: Scene, method: str) -> dict[str, Any]:
         from verify.theory.beam.substrate import Layer
 
         base = elastic_constants(other)
-        layer = Layer.of(specimen.substrate_length, specimen.substrate_thickness, plane=specimen.plane, **base)
+        layer = Layer.of((specimen.substrate_length, specimen.substrate_thickness), plane=specimen.plane, **base)
         own = {"substrate": layer, "arms": 1}
     constants = elastic_constants(material)
     return {
