@@ -19,11 +19,6 @@ from fem_reference.path.path import Failure, Separation, path
 from fem_reference.path.state import row_of
 from fem_reference.problem.problem import Debonding
 
-OnStep = Callable[[Mapping[str, float]], None]
-
-#: Called with the opening of every converged step and a function that makes its frame (`fem_reference.output.frames`).
-OnFrame = Callable[[float, Callable[[], dict[str, Any] | None]], None]
-
 
 @dataclass(frozen=True)
 class Solution:
@@ -35,17 +30,16 @@ class Solution:
     rejected_steps: int
     status: str  # "complete", or "stopped: <cause and what to do>"
     ending: str  # "separated at opening ...", or empty
-    condition: float  # of the tangents; 0, since it is not computed
     snapshots: tuple[dict, ...]
     nonzeros: int = 0  # stored entries of the tangent
 
 
 def solve_debonding(
     problem: Debonding,
-    on_step: OnStep = lambda row: None,
+    on_step: Callable[[Mapping[str, float]], None] = lambda row: None,
     phase: Callable[[str], AbstractContextManager] = lambda name: nullcontext(),
     comm: MPI.Intracomm = MPI.COMM_WORLD,
-    on_frame: OnFrame | None = None,
+    on_frame: Callable[[float, Callable[[], dict[str, Any] | None]], None] | None = None,
 ) -> Solution:
     """Solve a `fem_reference.problem.dcb.Problem` or a `fem_reference.problem.peel.Problem`.
 
@@ -54,7 +48,8 @@ def solve_debonding(
     on_step : called on the first rank with the row of every converged step; the first row is the unloaded specimen.
     phase : context manager that times a part of the work: "mesh", "basis", "compile" (compiling the forms or reading
         them from the cache), "assembly", "factor", "solve".
-    on_frame : called on all ranks; a frame must be made on all of them or on none, and the first rank gets it.
+    on_frame : called on all ranks with the opening of every converged step and a function that makes its frame
+        (`fem_reference.output.frames`), which must be called on all ranks or on none; the first rank gets the frame.
 
     Raises
     ------
@@ -91,7 +86,6 @@ def solve_debonding(
         rejected_steps=rejected,
         status=status,
         ending=ending,
-        condition=0.0,
         snapshots=tuple(s for s in snapshots if s is not None),
         nonzeros=int(model.tangent_matrix.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"]),
     )

@@ -9,7 +9,7 @@ from dolfinx import mesh
 from mpi4py import MPI
 
 from fem_reference.dolfinx_api import Submesh, create_submesh
-from fem_reference.problem.specimen import Body, Face, Place, Specimen
+from fem_reference.problem.specimen import Body, Face, Region, Specimen
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def two_bodies(specimen: Specimen, comm: MPI.Intracomm) -> TwoBodies:
     )
 
 
-def entities_on(domain: mesh.Mesh, dim: int, place: Place, near: float) -> np.ndarray:
+def entities_on(domain: mesh.Mesh, dim: int, place: Region, near: float) -> np.ndarray:
     """Local entities (owned and ghosts) of a dimension that lie in a place."""
     domain.topology.create_connectivity(dim, 2)
     (left, right), (low, high) = place
@@ -79,11 +79,11 @@ def _parent(specimen: Specimen, comm: MPI.Intracomm) -> mesh.Mesh:
     return parent
 
 
-def _extent(body: Body) -> Place:
+def _extent(body: Body) -> Region:
     return (0.0, body.length), (float(body.Y[0]), float(body.Y[-1]))
 
 
-def _side(specimen: Specimen, face: Face) -> Place:
+def _side(specimen: Specimen, face: Face) -> Region:
     return (face.X, face.X), _extent(specimen.bodies[face.body])[1]
 
 

@@ -9,7 +9,7 @@ from petsc4py import PETSc
 
 from fem_reference.model.assembled import owned
 from fem_reference.model.mesh import entities_on
-from fem_reference.problem.specimen import UPPER, Place, Specimen, point
+from fem_reference.problem.specimen import UPPER, Region, Specimen, point
 
 Displacement = tuple[fem.Function, fem.Function]
 
@@ -61,7 +61,7 @@ def point_load(
     return load_n
 
 
-def dofs_on(u: fem.Function, place: Place, near: float, component: int) -> np.ndarray:
+def dofs_on(u: fem.Function, place: Region, near: float, component: int) -> np.ndarray:
     """Local unknowns (owned or ghost) of one component at a vertex or on a side of a body; may be empty on a rank."""
     dim = sum(low < high for low, high in place)
     entities = entities_on(u.function_space.mesh, dim, place, near)

@@ -9,7 +9,7 @@ import numpy as np
 UPPER, LOWER = 0, 1
 
 #: A point or a straight line along an axis: its range in X and its range in Y.
-Place = tuple[tuple[float, float], tuple[float, float]]
+Region = tuple[tuple[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Held:
     """A point or a side of a body where these displacement components (0: x, 1: y) are zero."""
 
     body: int
-    place: Place
+    place: Region
     components: tuple[int, ...]
 
 
@@ -120,7 +120,7 @@ class Specimen:
         return np.abs(X - self.loaded_at)
 
 
-def point(X: float, Y: float) -> Place:
+def point(X: float, Y: float) -> Region:
     """A single point as a place."""
     return (X, X), (Y, Y)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem_reference.problem.specimen import Body, Place, Specimen
+from fem_reference.problem.specimen import Body, Region, Specimen
 from verify.methods.problems import dolfinx_problem
 from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
@@ -197,7 +197,7 @@ class _Grid:
         conn = np.stack([part.ravel() for part in (*corners, *middles)], axis=1)
         return _Grid(np.stack([x[~inside], y[~inside]], axis=1), conn, first, specimen.near)
 
-    def on(self, place: Place) -> np.ndarray:
+    def on(self, place: Region) -> np.ndarray:
         """Nodes in a place."""
         (left, right), (low, high) = place
         x, y = self.X_nI.T
