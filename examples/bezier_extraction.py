@@ -16,8 +16,9 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from scipy.interpolate import BSpline
 
-from iga.bases.bspline import KnotVector, bezier_extraction, cox_de_boor
+from iga.bases.bspline import KnotVector, bezier_extraction
 from iga.bases.lagrange import lagrange_extraction
 
 p = 3
@@ -81,13 +82,12 @@ C = T.T[element : element + p + 1, element * p : element * p + p + 1]
 print("C of the second element:")
 print(np.array_str(C, precision=4, suppress_small=True))
 
+
 # %% [markdown]
 # Read by columns: each adds up to one, because splines and Bernstein polynomials both do. Read by rows: the first one
 # is the function that dies out on this element, the last one the function that is only just born there. In the picture
-# the lines are combinations of Bernstein polynomials; the circles are Cox and de Boor's recursion, which knows nothing
-# of extraction.
-
-
+# the lines are combinations of Bernstein polynomials; the circles are SciPy's values by the recursion of Cox and de
+# Boor, which knows nothing of extraction.
 # %%
 def bernstein(s):
     return np.stack([comb(p, b) * s**b * (1 - s) ** (p - b) for b in range(p + 1)], -1)
@@ -96,13 +96,12 @@ def bernstein(s):
 x0, x1 = np.unique(knots)[element : element + 2]
 s = np.linspace(0.0, 1.0, 41)
 combined = bernstein(s) @ C.T
-kv = KnotVector(p, knots)
-direct = cox_de_boor(kv, x0 + s * (x1 - x0))[:, element : element + p + 1]
+direct = BSpline.design_matrix(x0 + s * (x1 - x0), knots, p).toarray()[:, element : element + p + 1]
 print(f"largest difference on the element: {np.abs(combined - direct).max():.1e}")
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.2), width_ratios=(1.6, 1), constrained_layout=True)
 x = np.linspace(knots[0], knots[-1], 401)
-left.plot(x, cox_de_boor(kv, x), color="#9aa4b2", linewidth=1)
+left.plot(x, BSpline.design_matrix(x, knots, p).toarray(), color="#9aa4b2", linewidth=1)
 left.axvspan(x0, x1, color="#0072b2", alpha=0.08, linewidth=0)
 left.set_prop_cycle(None)
 left.plot(x0 + s * (x1 - x0), combined, linewidth=2.2)
@@ -126,7 +125,7 @@ elements = len(np.unique(knots)) - 1
 by_hand = np.stack([T.T[e : e + p + 1, e * p : e * p + p + 1] for e in range(elements)])
 nodes = np.linspace(0.0, 1.0, p + 1)
 nodal = lagrange_extraction(p) @ bernstein(nodes).T
-difference = np.abs(by_hand - bezier_extraction(kv)).max()
+difference = np.abs(by_hand - bezier_extraction(KnotVector(p, knots))).max()
 print(f"by hand against iga: {difference:.1e}; Lagrange functions at their nodes:\n{nodal.round(12)}")
 assert np.abs(nodal - np.eye(p + 1)).max() < 1e-12
 assert difference < 1e-14

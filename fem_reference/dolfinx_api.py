@@ -1,4 +1,4 @@
-"""The calls of DOLFINx that changed between 0.9, 0.10 and 0.11; nothing outside this file asks for the version."""
+"""The calls of DOLFINx that changed between 0.9, 0.10 and 0.11; no other file depends on the version."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Submesh:
 
     mesh: mesh.Mesh
     parent_of_cell: np.ndarray  # (n_cells,) owned and ghosts
-    entity_map: Any  # what ``mesh.create_submesh`` returned as such
+    entity_map: Any  # as ``mesh.create_submesh`` returns it
 
 
 def create_submesh(parent: mesh.Mesh, dim: int, entities: np.ndarray) -> Submesh:
@@ -39,11 +39,11 @@ def create_submesh(parent: mesh.Mesh, dim: int, entities: np.ndarray) -> Submesh
 
 
 def entity_maps(parent: mesh.Mesh, submeshes: Sequence[Submesh], interface_quads: np.ndarray) -> Any:
-    """What ``fem.form`` wants to know for forms on ``parent`` with functions on the submeshes.
+    """Entity maps that ``fem.form`` needs for forms on ``parent`` with functions on the submeshes.
 
     ``interface_quads`` (n, 4): cell and local facet on the "+" side, cell and local facet on the "-" side. DOLFINx 0.9
-    asks a body for its cell on both sides of an interface facet, though it is on one only; the cell that it has is
-    named twice, and the part of the element matrix for the other side is zero. Later versions handle the absence.
+    needs a cell of a body on both sides of an interface facet, although the body is on one side only: its cell is
+    given for both sides, and the part of the element matrix for the other side is zero. Later versions need no cell.
     """
     if _HAS_ENTITY_MAP:
         return [part.entity_map for part in submeshes]
@@ -69,12 +69,12 @@ def compile_forms(forms: Any, maps: Any) -> Any:
 
 
 def create_block_matrix(blocks: Sequence[Sequence[fem.Form]]) -> PETSc.Mat:
-    """Empty matrix with the pattern of the blocks, rows in the order: all owned of block 0, all owned of block 1."""
+    """Matrix with the pattern of the blocks, all zero; rows: all owned of block 0, then all owned of block 1."""
     return petsc.create_matrix_block(blocks) if _HAS_BLOCK_FUNCTIONS else petsc.create_matrix(blocks)
 
 
 def add_block_matrix(A: PETSc.Mat, blocks: Sequence[Sequence[fem.Form]], bcs: Sequence[fem.DirichletBC]) -> None:
-    """Add the blocks to ``A`` and assemble it; constrained rows and columns are left out, with 1 on their diagonal."""
+    """Add the blocks to ``A`` and assemble it; constrained rows and columns are zero, with 1 on their diagonal."""
     assemble = petsc.assemble_matrix_block if _HAS_BLOCK_FUNCTIONS else petsc.assemble_matrix
     assemble(A, blocks, bcs=bcs)
     A.assemble()

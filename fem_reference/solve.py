@@ -1,4 +1,4 @@
-"""Solve a specimen: build the model, follow its path, write down what is found."""
+"""Solve a problem: build the model, follow its path, collect rows and snapshots."""
 
 from __future__ import annotations
 
@@ -19,42 +19,41 @@ from fem_reference.path.path import Failure, Separation, path
 from fem_reference.path.state import row_of
 from fem_reference.problem.problem import Debonding
 
-OnStep = Callable[[Mapping[str, float]], None]
-
-#: Called with the opening of every converged step, and with what makes its frame (see `fem_reference.output.frames`).
-OnFrame = Callable[[float, Callable[[], dict[str, Any] | None]], None]
-
 
 @dataclass(frozen=True)
 class Solution:
-    """A run, as far as it came; the same on every rank, but for the snapshots, which the first one has."""
+    """A run up to its end; the same on every rank, except that only the first one has the snapshots."""
 
     rows: tuple[dict[str, float], ...]
-    dofs: int  # two a node of both bodies, supported ones included
+    dofs: int  # unknowns, two per node of both bodies, supported ones included
     elements: int
     rejected_steps: int
     status: str  # "complete", or "stopped: <cause and what to do>"
-    ending: str  # "separated at opening ...", or nothing to say
-    condition: float  # of the tangents; 0 where it was not looked at
+    ending: str  # "separated at opening ...", or empty
     snapshots: tuple[dict, ...]
-    nonzeros: int = 0  # entries of the tangent that are stored
+    nonzeros: int = 0  # stored entries of the tangent
 
 
 def solve_debonding(
     problem: Debonding,
-    on_step: OnStep = lambda row: None,
+    on_step: Callable[[Mapping[str, float]], None] = lambda row: None,
     phase: Callable[[str], AbstractContextManager] = lambda name: nullcontext(),
     comm: MPI.Intracomm = MPI.COMM_WORLD,
-    on_frame: OnFrame | None = None,
+    on_frame: Callable[[float, Callable[[], dict[str, Any] | None]], None] | None = None,
 ) -> Solution:
     """Solve a `fem_reference.problem.dcb.Problem` or a `fem_reference.problem.peel.Problem`.
 
     Parameters
     ----------
     on_step : called on the first rank with the row of every converged step; the first row is the unloaded specimen.
-    phase : context manager that times a part of the work: "mesh", "basis", "compile" (the forms, or reading what has
-        been compiled before), "assembly", "factor", "solve".
-    on_frame : called on all ranks; a frame that is wanted must be made on all of them, and the first one gets it.
+    phase : context manager that times a part of the work: "mesh", "basis", "compile" (compiling the forms or reading
+        them from the cache), "assembly", "factor", "solve".
+    on_frame : called on all ranks with the opening of every converged step and a function that makes its frame
+        (`fem_reference.output.frames`), which must be called on all ranks or on none; the first rank gets the frame.
+
+    Raises
+    ------
+    ValueError : an unknown traction law, or a point load without a node.
     """
     model = build_model(problem, phase, comm)
     with phase("compile"):
@@ -87,7 +86,6 @@ def solve_debonding(
         rejected_steps=rejected,
         status=status,
         ending=ending,
-        condition=0.0,
         snapshots=tuple(s for s in snapshots if s is not None),
         nonzeros=int(model.tangent_matrix.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"]),
     )

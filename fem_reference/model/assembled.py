@@ -1,4 +1,4 @@
-"""Compiled linear forms with the storage that they are assembled into, and what this rank owns of a function."""
+"""Vectors of compiled linear forms, and the number of unknowns that a rank owns."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from dolfinx import fem, la
 
 @dataclass(frozen=True)
 class BlockVector:
-    """Compiled linear forms, one a block, with the storage that they are assembled into."""
+    """Compiled linear forms, one per block, with the vectors that they are assembled into."""
 
     forms: Sequence[fem.Form]
     vectors: Sequence[la.Vector] = field(init=False)
@@ -20,7 +20,7 @@ class BlockVector:
         object.__setattr__(self, "vectors", [fem.assemble_vector(form) for form in self.forms])
 
     def assemble(self) -> np.ndarray:
-        """Owned entries of all blocks, one after the other."""
+        """Owned entries (n,) of all blocks, one after the other."""
         owned_parts = []
         for form, b in zip(self.forms, self.vectors, strict=True):
             b.array[:] = 0.0

@@ -1,4 +1,4 @@
-"""The bond between the bodies as matrices: the gap at every point is a fixed linear function of the displacements."""
+"""The interface between the bodies as matrices: the gap at a point is a fixed linear function of the displacements."""
 
 from __future__ import annotations
 
@@ -16,13 +16,12 @@ class Bond:
 
         internal force  f = G^T (w p)          tangent  K = G^T diag(w dp/dg) G
 
-    with w the weight of a point times the width (Schellekens and de Borst
-    1993, Int. J. Numer. Methods Eng. 36, 43-66).
+    with w the weight of a point times the width (Schellekens and de Borst 1993, Int. J. Numer. Methods Eng. 36, 43-66).
 
     Parameters
     ----------
-    G : (n_q, n_n) of the gap, all unknowns.
-    weight_q : length that belongs to each point, times the width.
+    G : (n_q, n_n), gap at the points by the displacements, supported unknowns included.
+    weight_q : quadrature weight of each point times the width [area].
     free_n : 1 for a free unknown, 0 for a supported one.
     """
 
@@ -58,17 +57,17 @@ class Bond:
         return self.vec_q.array_r.copy()
 
     def force(self, p_q: np.ndarray) -> np.ndarray:
-        """Internal force (n_n,) of tractions; supported unknowns have theirs too."""
+        """Internal forces (n_n,) of tractions p_q (n_q,), at supported unknowns too."""
         return self.spread(self.weight_q * p_q)
 
     def spread(self, force_q: np.ndarray) -> np.ndarray:
-        """Nodal forces G^T f (n_n,) of a force at every point; of a unit force, the gap there as a functional."""
+        """Nodal forces G^T f (n_n,) of forces f (n_q,) at the points."""
         self.vec_q.array[:] = force_q
         self.G.multTranspose(self.vec_q, self.vec_n)
         return self.vec_n.array_r.copy()
 
     def tangent(self, dp_q: np.ndarray) -> PETSc.Mat:
-        """Matrix (n_n, n_n) of slopes of the law, without supported rows and columns; valid until the next call."""
+        """Tangent (n_n, n_n) for slopes dp/dg (n_q,), zero in supported rows and columns; valid until the next call."""
         self.vec_q.array[:] = self.weight_q * dp_q
         self.G_free.copy(self.scaled, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
         self.scaled.diagonalScale(L=self.vec_q)

@@ -23,11 +23,11 @@ BOND = 1
 class WeakForm:
     """UFL forms on the parent mesh; lists are blocks (upper, lower).
 
-    ``internal`` and ``bulk`` are the internal forces of the bodies and their tangent; ``load`` the face forces of a
+    ``internal`` and ``bulk`` are the internal forces of the bodies and their tangent; ``load`` the nodal forces of a
     unit load; ``slope`` the mean du_y/dX of each loaded face as a functional; ``face_energy`` the strain energy on the
-    end faces as the J-integral counts it, per unit width. ``gap`` (one row of blocks), ``weight`` and
-    ``position`` are integrals over the bond against functions that are 1 at one of its quadrature points: of the gap as
-    a bilinear form, of 1 and of X.
+    end faces per unit width, signed as in the J-integral. ``gap`` (one row of blocks, bilinear), ``weight`` and
+    ``position`` are integrals over the interface of the gap, of 1 and of X, against test functions that are 1 at one of
+    its quadrature points and 0 at the others.
     """
 
     internal: list
@@ -43,15 +43,15 @@ class WeakForm:
 
 
 def bulk_points(degree: int) -> int:
-    """Gauss points a direction in an element: exact for the linear part on rectangles.
+    """Gauss points per direction in an element, exact for the quadratic part of the energy on rectangles.
 
-    The quartic part of the energy is integrated less than exactly; a point more moves no load by 1e-6 of itself.
+    The quartic part of the energy is underintegrated; one more point changes no load by more than 1e-6 of it.
     """
     return degree + 1
 
 
 def bond_points(degree: int) -> int:
-    """Gauss points on an element of the bond: more than smooth tractions need, since the law has kinks inside."""
+    """Gauss points on an element of the bond: more than smooth tractions need, since the law has kinks in elements."""
     return degree + 3
 
 
@@ -66,8 +66,8 @@ def weak_form(
 ) -> WeakForm:
     """All forms of the problem.
 
-    Materials and sizes enter as constants: one compiled form serves every specimen of a kind, at the same degree and
-    kinematics.
+    Materials and sizes enter as constants, so that the compiled forms are shared by all specimens of the same degree
+    and kinematics.
     """
     domain, finite, (u, w) = bodies.parent, problem.kinematics == "finite", displacement
     V = ufl.MixedFunctionSpace(u.function_space, w.function_space)
@@ -80,7 +80,7 @@ def weak_form(
     dx, ds, dS = _measures(bodies, problem.degree)
 
     def over_faces(density: Callable, part: Callable[[Face], float]) -> ufl.Form:
-        """Sum over the faces of integrals of a density (of the body), each times a part of its own."""
+        """Sum over the end faces of the integral of a density, a function of the body, times a factor of the face."""
         return sum(constant(domain, part(face)) * density(face.body) * ds(i) for i, face in enumerate(specimen.faces))
 
     def per_length(face: Face) -> float:
@@ -107,7 +107,7 @@ def weak_form(
 
 
 def constant(domain: mesh.Mesh, value: float | np.ndarray) -> fem.Constant:
-    """A number or an array that a compiled form reads at run time."""
+    """A number or an array that a compiled form reads when it is assembled."""
     return fem.Constant(domain, np.asarray(value, dtype=PETSc.ScalarType))
 
 
@@ -130,7 +130,7 @@ def energy_density(u: fem.Function, D: ufl.core.expr.Expr, finite: bool) -> ufl.
 
 
 def cauchy_stress(u: fem.Function, D: ufl.core.expr.Expr, finite: bool) -> ufl.core.expr.Expr:
-    """sigma = F S F^T / det F with the in-plane F (the sheet's change of thickness left out); S where linear."""
+    """sigma = F S F^T / det F with the in-plane F (change of thickness neglected); S in linear kinematics."""
     if not finite:
         return second_stress(u, D, finite)
     F = ufl.Identity(2) + ufl.grad(u)

@@ -7,15 +7,15 @@ from dataclasses import dataclass, field
 import numpy as np
 from petsc4py import PETSc
 
-#: PETSc refuses pivots below 2.2e-14 whatever the units; only zero itself is to be refused.
+#: Smallest pivot that is accepted. PETSc's default, 2.2e-14, does not scale with the units; zero alone is refused here.
 ZERO_PIVOT = 1e-300
 
 
 @dataclass(frozen=True)
 class Factorisation:
-    """LU of a matrix that keeps its pattern: PETSc's own in serial, MUMPS over several ranks.
+    """LU of a matrix whose pattern does not change: PETSc's own in serial, MUMPS over several ranks.
 
-    The specimen is long and thin, so its nodes in the order of reverse Cuthill-McKee make a narrow band.
+    A specimen is long and thin: reverse Cuthill-McKee ordering makes the band narrow.
     """
 
     matrix: PETSc.Mat
@@ -40,7 +40,7 @@ class Factorisation:
             object.__setattr__(self, name, value)
 
     def factorise(self, A: PETSc.Mat) -> None:
-        """Factorise ``A``, which has the pattern of ``matrix``."""
+        """Factorise ``A``, a matrix with the pattern of ``matrix``."""
         self.ksp.setOperators(A)
         self.ksp.setUp()
 
@@ -63,7 +63,7 @@ def without_zeros(A: PETSc.Mat) -> PETSc.Mat:
 
 
 def outer(row_n: np.ndarray, A: PETSc.Mat) -> PETSc.Mat:
-    """Sparse matrix of the products of a functional's few entries, laid out like ``A``."""
+    """Outer product r r^T of a functional (n,) with few entries, as a sparse matrix with the layout of ``A``."""
     first, _ = A.getOwnershipRange()
     own = np.flatnonzero(row_n)
     everywhere = A.comm.tompi4py().allgather((first + own, row_n[own]))
@@ -74,7 +74,7 @@ def outer(row_n: np.ndarray, A: PETSc.Mat) -> PETSc.Mat:
 
 
 def widened(A: PETSc.Mat, other: PETSc.Mat) -> PETSc.Mat:
-    """A matrix of zeros with the entries of both patterns and the local numbering of ``A``."""
+    """A matrix of zeros with the union of both patterns and the local numbering of ``A``."""
     both = A.copy()
     both.axpy(1.0, other, structure=PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     both.setLGMap(*A.getLGMap())

@@ -9,16 +9,16 @@ from dolfinx import mesh
 from mpi4py import MPI
 
 from fem_reference.dolfinx_api import Submesh, create_submesh
-from fem_reference.problem.specimen import Body, Face, Place, Specimen
+from fem_reference.problem.specimen import Body, Face, Region, Specimen
 
 
 @dataclass(frozen=True)
 class TwoBodies:
     """The mesh of a specimen.
 
-    Pairs are those of its two bodies, upper first: submeshes, and ``cells`` of the parent that this rank owns.
-    ``faces`` has the owned facets (n, 2) of every face of the specimen as (cell, local facet); ``interface_quads``
-    (n, 4) are owned facets of the interface as (upper cell, local facet, lower cell, local facet).
+    ``pair`` are the submeshes of the bodies, upper first, ``bond`` is that of the interface. ``cells`` are the parent's
+    cells of each body that this rank owns, ``faces`` the owned facets (n, 2) of every end face as (cell, local facet),
+    ``interface_quads`` (n, 4) the owned facets of the interface as (upper cell, local facet, lower cell, local facet).
     """
 
     parent: mesh.Mesh
@@ -30,7 +30,7 @@ class TwoBodies:
 
 
 def two_bodies(specimen: Specimen, comm: MPI.Intracomm) -> TwoBodies:
-    """Mesh of a specimen, spread over the ranks of ``comm``."""
+    """Mesh of a specimen, distributed over the ranks of ``comm``."""
     parent = _parent(specimen, comm)
     tdim, near = 2, specimen.near
     for pair in ((1, tdim), (tdim, 1)):
@@ -52,8 +52,8 @@ def two_bodies(specimen: Specimen, comm: MPI.Intracomm) -> TwoBodies:
     )
 
 
-def entities_on(domain: mesh.Mesh, dim: int, place: Place, near: float) -> np.ndarray:
-    """Local entities (owned and ghosts) that lie in a place."""
+def entities_on(domain: mesh.Mesh, dim: int, place: Region, near: float) -> np.ndarray:
+    """Local entities (owned and ghosts) of a dimension that lie in a place."""
     domain.topology.create_connectivity(dim, 2)
     (left, right), (low, high) = place
     return mesh.locate_entities(
@@ -64,10 +64,10 @@ def entities_on(domain: mesh.Mesh, dim: int, place: Place, near: float) -> np.nd
 
 
 def _parent(specimen: Specimen, comm: MPI.Intracomm) -> mesh.Mesh:
-    """A grid of unit steps, moved to its place: every line is where it should be to the last digit.
+    """A grid of unit steps whose lines are moved to the specimen's: their coordinates are exact to the last digit.
 
-    Beyond the end of the shorter body it has cells that belong to none. Facets between ranks need a ghost cell on their
-    other side, which ``create_rectangle`` gives them by default.
+    Beyond the end of the shorter body it has cells of no body. Facets between ranks need a ghost cell on their other
+    side, which ``create_rectangle`` provides by default.
     """
     upper, lower = (body.Y for body in specimen.bodies)
     X, Y, below = specimen.X, np.concatenate([lower, upper[1:]]), lower.size - 1
@@ -79,11 +79,11 @@ def _parent(specimen: Specimen, comm: MPI.Intracomm) -> mesh.Mesh:
     return parent
 
 
-def _extent(body: Body) -> Place:
+def _extent(body: Body) -> Region:
     return (0.0, body.length), (float(body.Y[0]), float(body.Y[-1]))
 
 
-def _side(specimen: Specimen, face: Face) -> Place:
+def _side(specimen: Specimen, face: Face) -> Region:
     return (face.X, face.X), _extent(specimen.bodies[face.body])[1]
 
 
@@ -99,7 +99,7 @@ def _owned(parent: mesh.Mesh, dim: int, entities: np.ndarray) -> np.ndarray:
 
 
 def _seen_from(parent: mesh.Mesh, facets: np.ndarray, inside_c: np.ndarray) -> np.ndarray:
-    """Facets (n, 2) as (cell, local facet) of the cell on their one or two sides that is inside."""
+    """Facets as (cell, local facet) (n, 2), seen from their adjacent cell that is marked in ``inside_c``."""
     to_cells, to_facets = parent.topology.connectivity(1, 2), parent.topology.connectivity(2, 1)
     facets_cf = to_facets.array.reshape(-1, 4)  # a quadrilateral has four
     one_f, other_f = to_cells.array[to_cells.offsets[facets]], to_cells.array[to_cells.offsets[facets + 1] - 1]

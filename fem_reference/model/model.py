@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from dolfinx import fem
@@ -18,7 +19,7 @@ from fem_reference.model.forms import WeakForm, displacements, weak_form
 from fem_reference.model.linear import Factorisation, outer, widened, without_zeros
 from fem_reference.model.mesh import TwoBodies, two_bodies
 from fem_reference.model.supports import point_load, supports, tie
-from fem_reference.problem.law import LAWS, Law
+from fem_reference.problem.law import MODELLED_LAWS, Law
 from fem_reference.problem.problem import Debonding
 from fem_reference.problem.specimen import Specimen
 
@@ -29,31 +30,30 @@ Phase = Callable[[str], AbstractContextManager]
 class Model:
     """A problem ready to be solved.
 
-    Unknowns ``u_n`` are the displacements owned by this rank: x and y in turn, upper body first. The load enters as
-    ``load * load_n``, and ``load_n @ u_n``, summed over the ranks, is the opening: one vector is force and constraint.
-    Points ``q`` of the interface are those that this rank owns; where ``bonded_q`` is False the faces only touch:
-    nothing holds them there, and they have no history.
+    Unknowns ``u_n`` are the displacements owned by this rank: x and y alternate, upper body first. The external force
+    is ``load * load_n``, and the opening is ``load_n @ u_n``, summed over the ranks. Points ``q`` of the interface are
+    those that this rank owns; where ``bonded_q`` is False the surfaces can only touch, and points have no history.
     """
 
     problem: Debonding
     specimen: Specimen
     bodies: TwoBodies
-    displacement: tuple[fem.Function, fem.Function]  # upper, lower: what the forms read
+    displacement: tuple[fem.Function, fem.Function]  # upper, lower; the forms read them
     law: Law
     bond: Bond
     internal: BlockVector
-    bulk: list  # compiled blocks of the bodies' tangent
+    bulk: Any  # compiled blocks of the bodies' tangent
     energy: fem.Form
     face_energy: fem.Form
     bcs: tuple[fem.DirichletBC, ...]
     free_n: np.ndarray  # 1 where free, 0 where supported
-    tie_n: np.ndarray  # elongation of the tie times the root of its stiffness; zero without one
+    tie_n: np.ndarray  # elongation of the tie times the square root of its stiffness; zero without a tie
     load_n: np.ndarray
     slope_n: np.ndarray  # mean du_y/dX of the loaded faces, upper and lower, as functionals
     X_nI: np.ndarray  # (n, 2) reference position of the node of each unknown
     X_q: np.ndarray
     bonded_q: np.ndarray
-    tie_matrix: PETSc.Mat  # the spring's
+    tie_matrix: PETSc.Mat
     bulk_matrix: PETSc.Mat
     tangent_matrix: PETSc.Mat
     factorisation: Factorisation
@@ -78,30 +78,30 @@ class Model:
         return float(np.sqrt(self.dot(a_n, a_n)))
 
     def rounding(self, u_n: np.ndarray) -> float:
-        """Size of the forces that come from the last digit of the displacements alone."""
+        """Size of the forces that rounding of the displacements causes."""
         largest = self.comm.allreduce(float(np.max(np.abs(u_n), initial=0.0)), MPI.MAX)
         return np.finfo(float).eps * largest * self.largest_stiffness
 
     def displace(self, u_n: np.ndarray) -> None:
-        """Put displacements into the functions that the forms read."""
+        """Copy displacements into the functions that the forms read."""
         size = owned(self.displacement[0])
         for u, part_n in zip(self.displacement, (u_n[:size], u_n[size:]), strict=True):
             u.x.array[: part_n.size] = part_n
             u.x.scatter_forward()
 
     def bulk_force(self, u_n: np.ndarray) -> np.ndarray:
-        """Internal forces of the bodies, at the supports too."""
+        """Internal forces (n,) of the bodies, at the supports too."""
         self.displace(u_n)
         return self.internal.assemble()
 
     def traction(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Traction and slope (n_q,) each, as `Law.traction` where the bodies are bonded; elsewhere contact alone."""
+        """Traction and slope (n_q,) each: those of `Law.traction` where bonded, elsewhere contact alone."""
         carries_q = self.bonded_q | ((g_q < 0.0) & self.law.contact)
         p_q, dp_q = self.law.traction(g_q, k_q)
         return np.where(carries_q, p_q, 0.0), np.where(carries_q, dp_q, 0.0)
 
     def history(self, g_q: np.ndarray, k_q: np.ndarray) -> np.ndarray:
-        """Largest gap (n_q,) once the present one is counted; none is kept where nothing is bonded."""
+        """Largest gap (n_q,) so far, the present gap included; 0 where nothing is bonded."""
         return np.where(self.bonded_q, self.law.history(g_q, k_q), 0.0)
 
     def damage(self, k_q: np.ndarray) -> np.ndarray:
@@ -109,26 +109,26 @@ class Model:
         return np.where(self.bonded_q, self.law.damage(k_q), 1.0)
 
     def bond_energies(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[float, float, float]:
-        """Recoverable from cohesion, stored in contact, dissipated; over all ranks."""
+        """Energies recoverable from cohesion, stored in contact, dissipated; over all ranks."""
         recoverable_q, contact_q, lost_q = self.law.energies(g_q, k_q)
         parts = np.where(self.bonded_q, recoverable_q, 0.0), contact_q, np.where(self.bonded_q, lost_q, 0.0)
         recoverable, contact, lost = (self.dot(self.bond.weight_q, part_q) for part_q in parts)
         return recoverable, contact, lost
 
     def bond_force(self, u_n: np.ndarray, k_q: np.ndarray) -> np.ndarray:
-        """Internal forces of the bond, at the supports too; ``k_q`` is the committed history."""
+        """Internal forces (n,) of the bond, at the supports too; ``k_q`` is the committed history."""
         p_q, _ = self.traction(self.bond.gap(u_n), k_q)
         return self.bond.force(p_q)
 
     def residual(self, u_n: np.ndarray, load: float, k_q: np.ndarray) -> np.ndarray:
-        """Internal minus external forces; zero where supported."""
+        """Internal minus external forces (n,); zero at supported unknowns."""
         with self.phase("assembly"):
             tie_force_n = self.dot(self.tie_n, u_n) * self.tie_n
             inside_n = self.bond_force(u_n, k_q) + self.bulk_force(u_n) + tie_force_n
             return self.free_n * (inside_n - load * self.load_n)
 
     def tangent(self, u_n: np.ndarray, k_q: np.ndarray) -> PETSc.Mat:
-        """Derivative of the residual by the displacements, 1 on the diagonal where held; valid until the next call."""
+        """Derivative of the residual by the displacements, 1 on the diagonal at supports; valid until the next call."""
         if self.problem.kinematics == "finite":
             self.assemble_bulk(u_n)
         _, dp_q = self.traction(self.bond.gap(u_n), k_q)
@@ -137,19 +137,19 @@ class Model:
         return self.tangent_matrix
 
     def factorise(self, u_n: np.ndarray, k_q: np.ndarray) -> None:
-        """Assemble and factorise the tangent; ``solve`` then answers for it."""
+        """Assemble and factorise the tangent, for `solve`."""
         with self.phase("assembly"):
             A = self.tangent(u_n, k_q)
         with self.phase("factor"):
             self.factorisation.factorise(A)
 
     def solve(self, force_n: np.ndarray) -> np.ndarray:
-        """Displacement for a force, with the tangent last factorised."""
+        """Displacements (n,) for forces (n,), by the tangent factorised last."""
         with self.phase("solve"):
             return self.factorisation.solve(force_n)
 
     def assemble_bulk(self, u_n: np.ndarray) -> None:
-        """The part of the bodies and of their tie in the tangent; with linear kinematics it never changes."""
+        """Assemble the part of the bodies and their tie in the tangent; it is constant in linear kinematics."""
         self.displace(u_n)
         self.bulk_matrix.zeroEntries()
         add_block_matrix(self.bulk_matrix, self.bulk, self.bcs)
@@ -157,7 +157,12 @@ class Model:
 
 
 def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
-    """Mesh, spaces, compiled forms and matrices of a problem."""
+    """Mesh, spaces, compiled forms and matrices of a problem.
+
+    Raises
+    ------
+    ValueError : an unknown traction law, or a point load without a node.
+    """
     specimen = problem.specimen()
     with phase("mesh"):
         bodies = two_bodies(specimen, comm)
@@ -170,16 +175,11 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
         energy, face_energy = compile_forms([weak.energy, weak.face_energy], weak.maps)
     bcs, free_n = supports(specimen, displacement)
     X_nI = np.concatenate([_node_positions(u) for u in displacement])
-    upper_n = np.arange(len(X_nI)) < owned(displacement[0])
+    at_nodes = problem.load_at != "face"
     tie_n = tie(specimen, displacement)
     with phase("assembly"):
         bond, X_q = _bond(problem, weak, free_n, phase)
-        narrow = create_block_matrix(bulk)
-        add_block_matrix(narrow, bulk, bcs)
-        tie_matrix = outer(tie_n, narrow)
-        bulk_matrix = widened(widened(narrow, bond.product), tie_matrix)
-        add_block_matrix(bulk_matrix, bulk, bcs)
-        bulk_matrix.axpy(1.0, tie_matrix, PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
+        bulk_matrix, tie_matrix = _bulk_and_tie(bulk, bcs, bond, tie_n)
         tangent_matrix = bulk_matrix.copy()
     return Model(
         problem=problem,
@@ -195,9 +195,7 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
         bcs=bcs,
         free_n=free_n,
         tie_n=tie_n,
-        load_n=load.assemble()
-        if problem.load_at == "face"
-        else point_load(specimen, problem.load_at, X_nI, upper_n, comm),
+        load_n=point_load(specimen, problem.load_at, displacement, X_nI, comm) if at_nodes else load.assemble(),
         slope_n=slope.assemble(),
         X_nI=X_nI,
         X_q=X_q,
@@ -211,18 +209,29 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
     )
 
 
+def _bulk_and_tie(bulk: Any, bcs: Sequence[fem.DirichletBC], bond: Bond, tie_n: np.ndarray) -> tuple[PETSc.Mat, ...]:
+    """Stiffness of the unloaded bodies with the tie, in the pattern of the whole tangent, and that of the tie alone."""
+    narrow = create_block_matrix(bulk)
+    add_block_matrix(narrow, bulk, bcs)
+    tie_matrix = outer(tie_n, narrow)
+    bulk_matrix = widened(widened(narrow, bond.product), tie_matrix)
+    add_block_matrix(bulk_matrix, bulk, bcs)
+    bulk_matrix.axpy(1.0, tie_matrix, PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
+    return bulk_matrix, tie_matrix
+
+
 def _largest(matrix: PETSc.Mat, free_n: np.ndarray, comm: MPI.Intracomm) -> float:
-    """Largest entry on the diagonal of the free unknowns; that of a held one is 1 and no stiffness."""
+    """Largest diagonal entry of the free unknowns; that of a supported unknown is 1 and no stiffness."""
     diagonal_n = matrix.getDiagonal().array_r * free_n
     return comm.allreduce(float(np.max(diagonal_n, initial=0.0)), MPI.MAX)
 
 
 def law_of(problem: Debonding) -> Law:
-    """The traction law of a problem. Raises ValueError where there is none of that name."""
+    """The traction law of a problem; raises ValueError for an unknown name."""
     p = problem
-    if p.law_name not in LAWS:
-        raise ValueError(f"law_name: must be one of {', '.join(LAWS)}, got {p.law_name}")
-    return LAWS[p.law_name](p.strength, p.toughness, p.ductility, p.penalty, p.contact, p.irreversible)
+    if p.law_name not in MODELLED_LAWS:
+        raise ValueError(f"law_name: must be one of {', '.join(MODELLED_LAWS)}, got {p.law_name}")
+    return MODELLED_LAWS[p.law_name](p.strength, p.toughness, p.ductility, p.penalty, p.contact, p.irreversible)
 
 
 def _vector(blocks: list, weak: WeakForm) -> BlockVector:
@@ -230,7 +239,7 @@ def _vector(blocks: list, weak: WeakForm) -> BlockVector:
 
 
 def _bond(problem: Debonding, weak: WeakForm, free_n: np.ndarray, phase: Phase) -> tuple[Bond, np.ndarray]:
-    """The bond's matrices, and the positions of its points: integrals over a point's share, divided by the share."""
+    """Matrices of the interface, and the X of its points; G and X are integrals divided by the weight of the point."""
     with phase("compile"):
         gap = [compile_forms(weak.gap, weak.maps)]
         weight, position = (_vector([form], weak) for form in (weak.weight, weak.position))

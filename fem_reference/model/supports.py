@@ -1,4 +1,4 @@
-"""What holds the specimen, and where it is among the unknowns."""
+"""Supports, tie and point loads of a specimen as conditions, functionals and forces on its unknowns."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from petsc4py import PETSc
 
 from fem_reference.model.assembled import owned
 from fem_reference.model.mesh import entities_on
-from fem_reference.problem.specimen import UPPER, Place, Specimen, point
+from fem_reference.problem.specimen import UPPER, Region, Specimen, point
 
 Displacement = tuple[fem.Function, fem.Function]
 
 
 def supports(specimen: Specimen, displacement: Displacement) -> tuple[tuple[fem.DirichletBC, ...], np.ndarray]:
-    """Conditions of the supports, and for every owned unknown 1 where it is free and 0 where it is held."""
+    """Boundary conditions of the supports, and a mask (n,) of the owned unknowns: 1 free, 0 supported."""
     bcs, free = [], [np.ones(owned(u)) for u in displacement]
     for held in specimen.held:
         u = displacement[held.body]
@@ -27,7 +27,7 @@ def supports(specimen: Specimen, displacement: Displacement) -> tuple[tuple[fem.
 
 
 def tie(specimen: Specimen, displacement: Displacement) -> np.ndarray:
-    """Elongation of the tie times the root of its stiffness, as a functional (n,) of the owned unknowns."""
+    """Elongation of the tie times the square root of its stiffness, as a functional (n,) of the owned unknowns."""
     parts = [np.zeros(owned(u)) for u in displacement]
     for hook in specimen.hooks:
         u = displacement[hook.body]
@@ -36,14 +36,16 @@ def tie(specimen: Specimen, displacement: Displacement) -> np.ndarray:
     return np.concatenate(parts)
 
 
-def point_load(specimen: Specimen, at: str, X_nI: np.ndarray, upper_n: np.ndarray, comm: MPI.Intracomm) -> np.ndarray:
+def point_load(
+    specimen: Specimen, at: str, displacement: Displacement, X_nI: np.ndarray, comm: MPI.Intracomm
+) -> np.ndarray:
     """Forces (n,) of a unit load at one node of each loaded face: its corner away from the interface, or its middle.
 
     Raises
     ------
     ValueError : there is no node in the middle.
     """
-    load_n = np.zeros(len(X_nI))
+    load_n, upper_n = np.zeros(len(X_nI)), np.arange(len(X_nI)) < owned(displacement[0])
     for face in (face for face in specimen.faces if face.load != 0.0):
         Y = specimen.bodies[face.body].Y
         outer = Y[np.argmax(np.abs(Y))]
@@ -59,8 +61,8 @@ def point_load(specimen: Specimen, at: str, X_nI: np.ndarray, upper_n: np.ndarra
     return load_n
 
 
-def dofs_on(u: fem.Function, place: Place, near: float, component: int) -> np.ndarray:
-    """Unknowns (owned or ghost) of one component at a vertex or on a side of a body; empty where this rank has none."""
+def dofs_on(u: fem.Function, place: Region, near: float, component: int) -> np.ndarray:
+    """Local unknowns (owned or ghost) of one component at a vertex or on a side of a body; may be empty on a rank."""
     dim = sum(low < high for low, high in place)
     entities = entities_on(u.function_space.mesh, dim, place, near)
     return fem.locate_dofs_topological(u.function_space.sub(component), dim, entities)

@@ -1,4 +1,4 @@
-"""Everything at a converged point, as drawing programs take it: Lagrange elements by their nodes, and the interface."""
+"""All fields at a converged point as drawing programs read them: elements by their nodes, and the interface."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ def frame(model: Model, sample: Sampler, state: State) -> dict[str, Any] | None:
     spaced nodes b of every element, those along X fastest, X_ebI, u_ebi (n_e, n_b, 2), the Cauchy stress stress_eqv
     (n_e, n_b, 3) in Voigt order and the second Piola-Kirchhoff stress over det F along_eqk (n_e, n_b, 2); w_eb None.
 
-    DOLFINx puts the nodes of degree 3 and 4 elsewhere, and numbers them in its own way: what is told here is read off
-    the displacement itself, at the places and in the order that drawing programs know.
+    DOLFINx places the nodes of degree 3 and 4 differently and numbers them in its own order: all values are evaluated
+    from the displacement, at the places and in the order that drawing programs use.
     """
     values_euvc = sample(state)
     p_q, _ = model.traction(state.g_q, state.k_q)

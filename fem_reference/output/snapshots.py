@@ -1,4 +1,4 @@
-"""Fields at a converged point, brought together on the first rank."""
+"""Fields at a converged point, gathered on the first rank."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ Sampler = Callable[[State], np.ndarray | None]
 
 
 def field_sampler(model: Model) -> Sampler:
-    """A function that takes the fields of a state; it returns None on all ranks but the first.
+    """A function that evaluates the fields of a state; it returns None on all ranks but the first.
 
-    Every element is sampled on its own grid of (degree + 1)^2 evenly spaced points, which are enough to tell the
-    displacement between them, and jumps between elements are kept: (n_e, k, k, 10) with X, Y, u_x, u_y, the Cauchy
-    stress xx, yy, xy, the second Piola-Kirchhoff stress 11, 22 over det F, and the number of the body.
+    Every element has its own grid of (degree + 1)^2 evenly spaced points, which determine its displacement; jumps
+    between elements are kept. Shape (n_e, k, k, 10): X, Y, u_x, u_y, the Cauchy stress xx, yy, xy, the second
+    Piola-Kirchhoff stress 11, 22 over det F, and the number of the body.
     """
     k = model.problem.degree + 1
     line_u = np.linspace(0.0, 1.0, k)
@@ -65,7 +65,7 @@ def snapshot(model: Model, sample: Sampler, state: State) -> Snapshot | None:
 
 
 def along_first(values_euvc: np.ndarray) -> np.ndarray:
-    """Elements sorted by their place, upper body first, with X rising along u and Y along v."""
+    """Elements sorted by position, upper body first, with X rising along u and Y along v."""
     X_euv, Y_euv = values_euvc[..., 0], values_euvc[..., 1]
     turned = np.abs(X_euv[:, -1, 0] - X_euv[:, 0, 0]) < np.abs(X_euv[:, 0, -1] - X_euv[:, 0, 0])
     straight = np.where(turned[:, None, None, None], values_euvc.swapaxes(1, 2), values_euvc)

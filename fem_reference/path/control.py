@@ -1,9 +1,9 @@
-"""What is prescribed of a step: one linear functional of the displacements, and which one is the best to prescribe.
+"""The control equation of a step: one linear functional of the displacements is prescribed; its choice.
 
-The loop around it is this project's own. PETSc's arc-length type (SNESNEWTONAL) measures a step by the norm of all
-displacements, which a crack hardly moves: with 28 quadratic elements, p_max = 10 and a reversible bond it had come to
-opening 0.97 of 3 after 4000 iterations, where the front leads to the end in about 400; and it takes all increments in
-one call, so that no history can be committed between them.
+The path is not followed by PETSc's arc-length solver (SNESNEWTONAL). That measures a step by the norm of all
+displacements, which a growing crack hardly changes: with 28 quadratic elements, p_max = 10 and a reversible bond it
+reached opening 0.97 of 3 after 4000 iterations, while control by the front reaches 3 in about 400. It also takes all
+increments in one call, so that no history can be committed between them.
 """
 
 from __future__ import annotations
@@ -15,13 +15,24 @@ import numpy as np
 from fem_reference.model.model import Model
 from fem_reference.path.state import State
 
-#: A point of the front opens by this part of g_u in one step, at most.
-FRONT_STEP = 0.125
-#: Damage is expected to grow where it would within this many steps.
-LOOKAHEAD = 2.0
+
+@dataclass(frozen=True)
+class FrontSettings:
+    """Steps that are controlled by the gap of one point.
+
+    step : largest change of that gap in one step, in units of g_u: smaller steps take longer, larger ones pass kinks of
+        more points at once.
+    lookahead : damage counts as growing at a point that would reach it within this many steps.
+    """
+
+    step: float = 0.125
+    lookahead: float = 2.0
+
+
+REFERENCE_FRONT = FrontSettings()
 
 #: A point of the bond: the rank that owns it, and its index there.
-Place = tuple[int, int]
+PointOfBond = tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -33,7 +44,7 @@ class Control:
 
 
 def opening_control(model: Model, opening: float) -> Control:
-    """The mean opening of the loaded faces is prescribed."""
+    """Control by the mean opening of the loaded faces."""
     return Control(model.load_n, opening)
 
 
@@ -41,57 +52,57 @@ def opening_control(model: Model, opening: float) -> Control:
 class Front:
     """The most open point of the bond whose damage grows, or soon will.
 
-    ``gap`` is what it has, ``missing`` what it needs before damage grows, ``rate`` its change over that of the opening.
+    ``gap`` is its gap, ``missing`` the increase of it before damage grows, ``rate`` d gap / d opening.
     """
 
-    place: Place
+    place: PointOfBond
     gap: float
     missing: float
     rate: float
 
     def change(self, model: Model, reach: float, part: float) -> float:
-        """Change of the gap for a step of ``reach`` in the opening, cut to ``part`` of the largest one of the front."""
-        most = self.missing + part * FRONT_STEP * model.law.g_open
+        """Change of the gap in a step of ``reach`` in the opening; at most ``part`` of the front's largest step."""
+        most = self.missing + part * REFERENCE_FRONT.step * model.law.g_open
         return float(np.copysign(min(abs(self.rate) * reach, most), self.rate))
 
     def calm(self, model: Model, reach: float, part: float) -> bool:
-        """Whether damage grows so slowly that the opening may be prescribed as well."""
-        return self.missing == 0.0 and abs(self.rate) * reach < part * FRONT_STEP * model.law.g_open
+        """Whether damage grows so slowly that the opening can be prescribed instead."""
+        return self.missing == 0.0 and abs(self.rate) * reach < part * REFERENCE_FRONT.step * model.law.g_open
 
     def control(self, model: Model, reach: float, part: float) -> Control:
-        """The gap of the front is prescribed: it grows steadily even where the specimen has to close for it."""
+        """Control by the gap of the front, which grows steadily even where the opening has to decrease (snap-back)."""
         return Control(gap_row(model, self.place), self.gap + self.change(model, reach, part))
 
 
 def front_of(model: Model, state: State, reach: float) -> Front | None:
-    """The front when a step of ``reach`` in the opening is to follow; None where no damage is about to change.
+    """The front for a step of ``reach`` in the opening; None if no damage is about to change.
 
-    Where the bond is reversible, damage may also shrink.
+    In a reversible bond, damage may also decrease.
     """
     law, g_q, k_q = model.law, state.g_q, state.k_q
     rate_q = state.heading * model.bond.gap(state.rate_n)
     missing_q = np.maximum(k_q, law.g_peak) - g_q
-    grows_q = (k_q < law.g_open) & (rate_q * LOOKAHEAD * reach >= missing_q) & (rate_q > 0)
+    grows_q = (k_q < law.g_open) & (rate_q * REFERENCE_FRONT.lookahead * reach >= missing_q) & (rate_q > 0)
     heals_q = (g_q < law.g_open) & (g_q > law.g_peak) & (not law.irreversible)
     place = most_open(model, np.where((grows_q | heals_q) & model.bonded_q, g_q, -np.inf))
     return None if place is None else Front(place, *(at(model, place, a_q) for a_q in (g_q, missing_q, rate_q)))
 
 
-def most_open(model: Model, g_q: np.ndarray) -> Place | None:
-    """Where the largest value over all ranks is; None where there is none but -inf."""
+def most_open(model: Model, g_q: np.ndarray) -> PointOfBond | None:
+    """The point of the largest value over all ranks; None if all values are -inf."""
     q = int(np.argmax(g_q)) if g_q.size else -1
     tops = model.comm.allgather((float(g_q[q]) if g_q.size else -np.inf, q))
     rank = int(np.argmax([value for value, _ in tops]))
     return (rank, tops[rank][1]) if tops[rank][0] > -np.inf else None
 
 
-def at(model: Model, place: Place, a_q: np.ndarray) -> float:
-    """Value at a point, on all ranks."""
+def at(model: Model, place: PointOfBond, a_q: np.ndarray) -> float:
+    """Value at a point, known on all ranks."""
     rank, q = place
     return model.comm.bcast(float(a_q[q]) if model.comm.rank == rank else None, root=rank)
 
 
-def gap_row(model: Model, place: Place) -> np.ndarray:
+def gap_row(model: Model, place: PointOfBond) -> np.ndarray:
     """The gap at a point as a functional (n,) of the displacements that this rank owns."""
     unit_q = np.zeros_like(model.X_q)
     if model.comm.rank == place[0]:

@@ -8,32 +8,42 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem_reference.model.model import Model
-from fem_reference.path.control import FRONT_STEP, Control, Front, at, front_of, opening_control
-from fem_reference.path.newton import bordered_step, find_equilibrium
+from fem_reference.path.control import REFERENCE_FRONT, Control, Front, at, front_of, opening_control
+from fem_reference.path.newton import Step, bordered_step, find_equilibrium
 from fem_reference.path.state import State
 from fem_reference.path.work import work_along
 from fem_reference.problem.problem import Debonding
 
-#: A step is halved this often before the run stops.
-MAX_HALVINGS = 12
-#: Steps towards one goal after which a path that does not arrive is given up.
-MAX_STEPS = 20_000
-#: A specimen has separated when its load has fallen to this part of the peak while damage grew.
-SEPARATED = 1e-3
-#: A step that ends within this part of an increment before the goal is drawn out to the goal.
-NEAR = 0.01
-#: How far ahead the direction of a path that sets out is read off, as a part of the way to the goal.
-TRIFLE = 1e-6
+
+@dataclass(frozen=True)
+class PathSettings:
+    """When a path ends, and when two openings count as the same.
+
+    halvings : how often a step is halved before the run stops.
+    steps : steps towards one goal after which the run stops.
+    separated : load, as a part of the peak, below which a specimen whose damage grew has separated.
+    near : a step that ends within this part of an increment of its goal is extended to the goal.
+    ahead : distance, as a part of the way to the goal, at which the open and closed points of a path that sets out are
+        determined: small enough to change no force, large enough for gaps beyond rounding.
+    """
+
+    halvings: int = 12
+    steps: int = 20_000
+    separated: float = 1e-3
+    near: float = 0.01
+    ahead: float = 1e-6
 
 
-#: What to do where a path cannot go on, and where the bodies are pressed together.
+REFERENCE_PATH = PathSettings()
+
+#: Advice for a path that cannot go on, and for bodies that are pressed together.
 FINER = "use more elements along the specimen or a higher degree"
 LESS = "close by less (load.opening), as bodies that are crushed have no equilibrium,"
 
 
 @dataclass(frozen=True)
 class Failure:
-    """A step that did not converge; ``final`` when the run stops for it."""
+    """A step that did not converge; ``final`` if the run stops because of it."""
 
     reason: str
     final: bool = False
@@ -41,15 +51,15 @@ class Failure:
 
 @dataclass(frozen=True)
 class Separation:
-    """The end of a path on which nothing is left that carries."""
+    """The end of a path: the bond no longer carries load."""
 
     opening: float
 
 
 def branches(problem: Debonding) -> list[np.ndarray]:
-    """Equal increments of the opening, about ``steps`` over the whole programme: their ends, one array a branch.
+    """Ends of equal increments of the opening, about ``steps`` over the whole programme, one array per branch.
 
-    A branch ends where the programme passes through zero, at which all gaps of an unloaded bond open or close.
+    A branch also ends where the programme passes through zero: there all gaps of an unloaded bond open or close.
     """
     goals = np.concatenate([[0.0], problem.opening])
     crossed = np.flatnonzero(goals[1:] * goals[:-1] < 0.0)
@@ -61,7 +71,7 @@ def branches(problem: Debonding) -> list[np.ndarray]:
 
 
 def path(model: Model) -> Iterator[State | Failure | Separation]:
-    """Converged states along the programme, and the failures between them; ends after a final one or a separation."""
+    """Converged states along the programme and the failures in between, up to a final failure or a separation."""
     state = unloaded(model)
     for lines in branches(model.problem):
         first = state.heading == 0.0
@@ -75,16 +85,16 @@ def path(model: Model) -> Iterator[State | Failure | Separation]:
 
 
 def reach(model: Model, state: State, lines: np.ndarray) -> Generator[State | Failure | Separation, None, State | None]:
-    """Converged states along a branch; returns the last one, or None where the path ends before its goal.
+    """Converged states along a branch; returns the last one, or None if the path ends before its goal.
 
-    Steps that fail are halved and grow again afterwards.
+    Steps that fail are halved; steps after them grow again.
     """
     goal, part = float(lines[-1]), 1.0
-    for _ in range(MAX_STEPS):
+    for _ in range(REFERENCE_PATH.steps):
         point = advance(model, state, lines, part)
         if isinstance(point, Failure):
             part *= 0.5
-            final = part < 0.5**MAX_HALVINGS
+            final = part < 0.5**REFERENCE_PATH.halvings
             yield replace(point, final=final)
             if final:
                 return None
@@ -97,18 +107,18 @@ def reach(model: Model, state: State, lines: np.ndarray) -> Generator[State | Fa
             return None
         state, part = point, min(1.0, 2 * part)
     yield Failure(
-        f"the path did not come from opening {state.opening:.6g} to {goal:.6g} in {MAX_STEPS} steps; "
-        "use more elements along the specimen or a higher degree",
+        f"the path did not come from opening {state.opening:.6g} to {goal:.6g} in {REFERENCE_PATH.steps} steps; "
+        f"{FINER}",
         final=True,
     )
     return None
 
 
 def advance(model: Model, state: State, lines: np.ndarray, part: float) -> State | Failure:
-    """One step: to the next line of the branch, or as far as the front is to be led where damage grows fast.
+    """One step: to the next end of an increment, or controlled by the front where damage grows fast.
 
-    An opening can be met by two states, before and after a snap-back. A step over which the front has gone much
-    further than it may has missed the path between them, and is taken again by the front.
+    Two states before and after a snap-back can have the same opening. If the front has moved much further than its
+    largest step, the step has missed the path between them and is repeated with control by the front.
     """
     goal, reach = float(lines[-1]), part * abs(lines[1] - lines[0])
     front, ahead = front_of(model, state, reach), goal > state.opening
@@ -125,26 +135,26 @@ def advance(model: Model, state: State, lines: np.ndarray, part: float) -> State
 
 
 def next_line(opening: float, lines: np.ndarray, reach: float) -> float:
-    """The first line of a branch that is clearly ahead, or as far towards it as a step may reach."""
+    """Opening at the end of the next increment, or as far towards it as a step may reach."""
     way = (lines - opening) / (lines[1] - lines[0])
-    line = float(lines[np.argmax(way > NEAR)]) if way[-1] > NEAR else float(lines[-1])
+    line = float(lines[np.argmax(way > REFERENCE_PATH.near)]) if way[-1] > REFERENCE_PATH.near else float(lines[-1])
     left = line - opening
-    return line if abs(left) <= reach * (1 + NEAR) else opening + float(np.copysign(reach, left))
+    return line if abs(left) <= reach * (1 + REFERENCE_PATH.near) else opening + float(np.copysign(reach, left))
 
 
 def skipped(model: Model, front: Front, reached: State, part: float) -> bool:
-    """Whether the front has opened by far more than its largest step."""
-    return abs(at(model, front.place, reached.g_q) - front.gap) > 2 * part * FRONT_STEP * model.law.g_open
+    """Whether the gap of the front has changed by more than twice its largest step."""
+    return abs(at(model, front.place, reached.g_q) - front.gap) > 2 * part * REFERENCE_FRONT.step * model.law.g_open
 
 
 def lead(model: Model, state: State, control: Control, lines: np.ndarray) -> State | Failure:
-    """A step of the front; one that passes the goal, or all but reaches it, is taken again so that it ends there."""
+    """A step controlled by the front; if it passes or nearly reaches the goal it is repeated to end there."""
     reached = step(model, state, control)
     goal, increment = float(lines[-1]), lines[1] - lines[0]
     if isinstance(reached, State) and reached.opening * goal < 0.0 <= state.opening * goal:
-        # a front opens on both sides of zero: by pulling and by pressing
+        # the gap of the front can be met on both sides of zero, by pulling and by pressing
         return Failure(f"the path leaps from opening {state.opening:.6g} to {reached.opening:.6g}; {LESS} or {FINER}")
-    if isinstance(reached, Failure) or (goal - reached.opening) / increment > NEAR:
+    if isinstance(reached, Failure) or (goal - reached.opening) / increment > REFERENCE_PATH.near:
         return reached
     share = (goal - state.opening) / (reached.opening - state.opening)
     between = state.u_n + share * (reached.u_n - state.u_n), state.load + share * (reached.load - state.load)
@@ -158,20 +168,20 @@ def step(
     guess: tuple[np.ndarray, float] | None = None,
     along_n: np.ndarray | None = None,
 ) -> State | Failure:
-    """The next converged state, its history committed, or why there is none.
+    """The next converged state with its history committed, or the reason why there is none.
 
-    The tangent that gives the direction of the path also gives one more correction, which leaves rounding alone.
+    The tangent that gives the direction of the path also gives one more correction, after which only rounding remains.
 
     Parameters
     ----------
-    guess : displacements and load to begin with; those that the tangent of the path predicts unless given.
-    along_n : the functional that grows or falls steadily along the step; the prescribed one unless given.
+    guess : displacements and load to start from; default: extrapolated along the tangent of the path.
+    along_n : a functional that changes monotonically along the step; default: the prescribed one.
     """
     if guess is None:
         move = (control.value - model.dot(control.row_n, state.u_n)) / model.dot(control.row_n, state.rate_n)
         guess = state.u_n + move * state.rate_n, state.load + move * state.slope
     u_n, load = guess
-    attempt = find_equilibrium(model, control, u_n, load, state.k_q, state.peak * model.norm(model.load_n))
+    attempt = find_equilibrium(model, equations(model, state, control), u_n, load)
     if not attempt.converged:
         less = f"{LESS} or " if state.opening <= 0.0 and state.heading < 0.0 else ""
         return Failure(
@@ -203,25 +213,30 @@ def step(
     )
 
 
-def on_arrival(model: Model, state: State, u_n: np.ndarray) -> np.ndarray:
-    """Displacements at which the tangent of a converged step is taken: those found, unless they are nothing at all.
+def equations(model: Model, state: State, control: Control) -> Step:
+    """The equations of a step that starts from a converged state."""
+    return Step(control, state.k_q, state.peak * model.norm(model.load_n))
 
-    At no opening the signs of the gaps are rounding. What is open and what is closed is as it was a trifle before.
+
+def on_arrival(model: Model, state: State, u_n: np.ndarray) -> np.ndarray:
+    """Displacements at which the tangent of a converged step is taken: those found, unless the opening is zero.
+
+    At zero opening the signs of the gaps are rounding; the open and the closed points are then those just before.
     """
-    if abs(model.dot(model.load_n, u_n)) > TRIFLE * abs(state.opening):
+    if abs(model.dot(model.load_n, u_n)) > REFERENCE_PATH.ahead * abs(state.opening):
         return u_n
-    return u_n + TRIFLE * (state.u_n - u_n)
+    return u_n + REFERENCE_PATH.ahead * (state.u_n - u_n)
 
 
 def tangent_of_path(model: Model) -> tuple[np.ndarray, float]:
-    """du/d(opening) and d load/d(opening), with the tangent last factorised."""
+    """du/d(opening) (n,) and d load/d(opening), by the tangent factorised last."""
     by_load_n = model.solve(model.free_n * model.load_n)
     compliance = model.dot(model.load_n, by_load_n)
     return by_load_n / compliance, 1.0 / compliance
 
 
 def unloaded(model: Model) -> State:
-    """The specimen before anything happens; it has no heading yet."""
+    """The unloaded specimen; its ``heading`` is 0."""
     u_n, k_q = np.zeros_like(model.load_n), np.zeros_like(model.X_q)
     model.factorise(u_n, k_q)
     rate_n, slope = tangent_of_path(model)
@@ -229,27 +244,27 @@ def unloaded(model: Model) -> State:
 
 
 def departing(model: Model, state: State, goal: float) -> State:
-    """The same state with the direction in which the path leaves it for a goal.
+    """The same state with the tangent of the path that leaves it for a goal.
 
-    Where the path turns round, and where all gaps are zero, it is not that of the arrival: points whose damage grew
-    unload along their secants, gaps open or close. Which ones is read off a state a trifle ahead.
+    Where the programme turns round, and where all gaps are zero, this is not the tangent of the arrival: points whose
+    damage grew unload along their secants, gaps open or close. A state slightly ahead tells which.
     """
     heading = float(np.sign(goal - state.opening))
     if heading == state.heading and state.opening != 0.0:
         return state
-    trifle = TRIFLE * (goal - state.opening)
-    guess = state.u_n + trifle * state.rate_n, state.load + trifle * state.slope
-    control = opening_control(model, state.opening + trifle)
-    ahead = find_equilibrium(model, control, *guess, state.k_q, state.peak * model.norm(model.load_n))
+    small = REFERENCE_PATH.ahead * (goal - state.opening)
+    guess = state.u_n + small * state.rate_n, state.load + small * state.slope
+    control = opening_control(model, state.opening + small)
+    ahead = find_equilibrium(model, equations(model, state, control), *guess)
     model.factorise(ahead.u_n if ahead.converged else state.u_n, state.k_q)
     rate_n, slope = tangent_of_path(model)
     return replace(state, rate_n=rate_n, slope=slope, heading=heading)
 
 
 def separated(model: Model, before: State, state: State, goal: float) -> bool:
-    """Whether a step on which damage grew has left nothing that carries, nor will by the end of the branch.
+    """Whether, after a step on which damage grew, the load is nearly zero and will stay so up to the goal.
 
-    Unloading to zero is none: no damage grows there, and the secants bring the load back.
+    Unloading to zero is no separation: no damage grows, and the load returns along the secants.
     """
     grew_q = state.k_q > np.maximum(before.k_q, model.law.g_peak)
     way = float(np.sign(goal))
@@ -257,6 +272,6 @@ def separated(model: Model, before: State, state: State, goal: float) -> bool:
     carried = abs(state.load) + gain
     return (
         way * (goal - state.opening) > 0.0
-        and carried < SEPARATED * state.peak
+        and carried < REFERENCE_PATH.separated * state.peak
         and bool(model.norm(grew_q.astype(float)) > 0)
     )

@@ -16,10 +16,11 @@ from fem_reference.problem.specimen import point
 
 @dataclass(frozen=True)
 class State:
-    """Converged displacements and load, with the history that they leave behind.
+    """A converged point of the path, its history committed.
 
-    ``rate_n`` = du/d(opening) and ``slope`` = d load/d(opening) of the path on arriving here, ``heading`` the sign in
-    which the opening changes; ``peak`` is the largest load so far, ``work`` is external.
+    ``k_q`` and ``g_q`` are history and gap at the points of the interface; ``rate_n`` = du/d(opening) and ``slope`` =
+    d load/d(opening) of the path that arrives here, ``heading`` the sign of the change of the opening on it; ``peak``
+    is the largest load so far, ``work`` the external work.
     """
 
     u_n: np.ndarray
@@ -36,10 +37,9 @@ class State:
 
 
 def row_of(model: Model, state: State) -> dict[str, float]:
-    """Numbers of a converged point by name, forces and energies for the whole width; the same on every rank.
+    """Row of the curve for a converged point; forces and energies for the whole width; the same on every rank.
 
-    ``reaction_x`` and ``reaction_y`` are what the supports carry besides the resultant of the loads, which is zero
-    where two faces are pulled apart.
+    ``reaction_x`` and ``reaction_y`` are the resultants of support forces and loads.
     """
     p_q, _ = model.traction(state.g_q, state.k_q)
     bond_force_n = model.bond.force(p_q)
@@ -77,7 +77,7 @@ def row_of(model: Model, state: State) -> dict[str, float]:
 
 
 def _of_contact(model: Model, state: State, p_q: np.ndarray) -> dict[str, float]:
-    """How deep the faces are in each other anywhere, at nodes too, what pushes them apart, and the gap at the mouth."""
+    """Largest penetration at the nodes of the surfaces, largest contact pressure, and the gap at the loaded end."""
     pressure = model.comm.allreduce(float(np.max(-p_q, initial=0.0)), MPI.MAX)
     depth = float(np.max(-face_gaps(model, state), initial=0.0))
     mouth = {"mouth_opening": opening_at(model, model.specimen.facing[0])} if model.problem.presses else {}
@@ -85,7 +85,7 @@ def _of_contact(model: Model, state: State, p_q: np.ndarray) -> dict[str, float]
 
 
 def face_gaps(model: Model, state: State) -> np.ndarray:
-    """Gaps (n,) at all nodes of the faces that are opposite to each other, bonded or not, along the specimen."""
+    """Gaps (n,) at all nodes of the surfaces that are opposite each other, bonded or not, in the order of X."""
     sides, first = [], 0
     place = (min(model.specimen.facing), max(model.specimen.facing)), (0.0, 0.0)
     for u in model.displacement:
@@ -105,7 +105,7 @@ def resultant(model: Model, force_n: np.ndarray, component: int) -> float:
 def moment(model: Model, state: State, force_n: np.ndarray) -> float:
     """Moment of nodal forces about the origin, anticlockwise.
 
-    The levers are those in which the model balances: positions are current with finite kinematics, reference if linear.
+    Equilibrium holds with current positions in finite kinematics and with reference positions in linear kinematics.
     """
     x_nI = model.X_nI.copy()
     if model.problem.kinematics == "finite":
@@ -114,7 +114,7 @@ def moment(model: Model, state: State, force_n: np.ndarray) -> float:
 
 
 def opening_at(model: Model, X: float) -> float:
-    """Normal gap at a vertex of the interface, of the displacements last put into the forms."""
+    """Normal gap at a vertex of the interface, for the displacements that the forms read at present."""
     jump = 0.0
     for u, sign in zip(model.displacement, (1.0, -1.0), strict=True):
         dofs = dofs_on(u, point(X, 0.0), model.specimen.near, 1)
@@ -123,7 +123,7 @@ def opening_at(model: Model, X: float) -> float:
 
 
 def foremost(model: Model, state: State, gap: float) -> float:
-    """Distance from the loaded end to the foremost point that was ever open by ``gap``, linear between the points."""
+    """Distance from the loaded end to the foremost place whose history has reached ``gap``, linear between points."""
     s_q, k_q = ordered_along(model, state.k_q)
     tip, end = (float(model.specimen.distance(X)) for X in model.specimen.bond)
     open_q = np.flatnonzero(k_q >= gap)
@@ -137,7 +137,7 @@ def foremost(model: Model, state: State, gap: float) -> float:
 
 
 def ordered_along(model: Model, *values_q: np.ndarray) -> list[np.ndarray]:
-    """Distances of all points of the bond from the loaded end, over all ranks, rising, and values in the same order."""
+    """Distances (n,) of all points of the bond, over all ranks, from the loaded end, rising; values in that order."""
     s_q = model.specimen.distance(model.X_q)
     gathered = [np.concatenate(model.comm.allgather(v_q)) for v_q in (s_q, *values_q)]
     order = np.argsort(gathered[0])

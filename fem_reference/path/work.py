@@ -1,4 +1,4 @@
-"""The work of the load along one step, to fourth order, whichever way the opening goes."""
+"""External work along one step, to fourth order, also where the opening turns back."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ HERMITE = np.array([[-30, 30, 6, -6], [-30, 30, -6, 6], [-6, 6, 0, -1], [6, -6, 
 def work_along(
     openings: tuple[float, float], loads: tuple[float, float], slopes: tuple[float, float], rates: tuple[float, float]
 ) -> float:
-    """Integral of the load over the opening, both cubic in the quantity that was prescribed.
+    """Integral of the load over the opening, both taken as cubics in the prescribed quantity s.
 
-    Where the path turns back the load is no function of the opening, but still one of that quantity.
+    Where the path turns back, the load is no function of the opening, but it still is one of s.
 
     Parameters
     ----------
-    slopes : d load / d opening at both ends.
-    rates : d opening / ds at both ends, s = 0 to 1 the part of the step.
+    openings, loads, slopes : opening, load and d load / d opening at both ends.
+    rates : d opening / ds at both ends; s goes from 0 to 1 over the step.
     """
     opening_slopes = np.array(rates)
     load_slopes = opening_slopes * slopes

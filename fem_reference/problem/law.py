@@ -12,14 +12,14 @@ class Law:
     """Traction against opening with damage on opening and a penalty on closing.
 
     p = (1 - d) K0 g with K0 = p_max / g_max, d = g_u (k - g_max) / (k (g_u - g_max)) between g_max and g_u, and k the
-    largest gap so far; g < 0: p = penalty g (Alfano and Crisfield 2001, Int. J. Numer. Methods
-    Eng. 50, 1701-1736).
+    largest gap so far; g < 0: p = penalty g (Alfano and Crisfield 2001, Int. J. Numer. Methods Eng. 50, 1701-1736).
 
     Parameters
     ----------
-    strength, toughness, ductility, penalty : p_max, G_Ic, g_u / g_max, stress per length.
-    contact : where false, (1 - d) K0 continues into closing.
-    irreversible : where false, k is the present gap: nonlinear elastic.
+    strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], g_u / g_max, stiffness against
+        closing [stress per length].
+    contact : if False, (1 - d) K0 continues into closing.
+    irreversible : if False, k is the present gap: nonlinear elastic.
     """
 
     strength: float
@@ -31,7 +31,7 @@ class Law:
 
     @property
     def g_open(self) -> float:
-        """Opening g_u at which the traction is gone."""
+        """Opening g_u from which the traction is zero."""
         return 2.0 * self.toughness / self.strength
 
     @property
@@ -41,10 +41,11 @@ class Law:
 
     @property
     def K0(self) -> float:
+        """Initial stiffness [stress per length]."""
         return self.strength / self.g_peak
 
     def history(self, g_q: np.ndarray, k_q: np.ndarray) -> np.ndarray:
-        """Largest gap (n_q,) once the present one is counted."""
+        """Largest gap (n_q,) so far, the present gap included."""
         return np.maximum(g_q, k_q if self.irreversible else 0.0)
 
     def damage(self, k_q: np.ndarray) -> np.ndarray:
@@ -62,7 +63,10 @@ class Law:
         return np.where(closed_q, self.penalty, secant_q) * g_q, np.where(closed_q, self.penalty, slope_q)
 
     def energies(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Per area, (n_q,) each: recoverable from cohesion, stored in contact, dissipated; ``k_q`` counts ``g_q``."""
+        """Energies per area, (n_q,) each: recoverable from cohesion, stored in contact, dissipated.
+
+        The history ``k_q`` includes the present gap ``g_q``.
+        """
         secant_q = (1.0 - self.damage(k_q)) * self.K0
         recoverable_q = 0.5 * secant_q * g_q**2
         lost_q = self.area(k_q) - 0.5 * secant_q * k_q**2
@@ -82,5 +86,5 @@ class Law:
         return (g_q < 0.0) & self.contact
 
 
-#: Name in a scene -> law; another one has all that `Law` has.
-LAWS: dict[str, type[Law]] = {"bilinear": Law}
+#: Name in a scene -> law, a class with the fields, properties and methods of `Law`.
+MODELLED_LAWS: dict[str, type[Law]] = {"bilinear": Law}

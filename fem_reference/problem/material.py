@@ -1,4 +1,4 @@
-"""The sheet that the bodies are made of."""
+"""Orthotropic elasticity in the plane."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Moduli:
-    """Elastic constants, axis 1 along the specimen; isotropic is E1 = E2, G12 = E / (2 (1 + nu))."""
+    """Elastic constants [stress; nu12 without unit], axis 1 along the specimen.
+
+    Isotropic is E1 = E2, G12 = E / (2 (1 + nu)).
+    """
 
     E1: float
     E2: float
@@ -17,7 +20,7 @@ class Moduli:
     nu12: float
 
     def stiffness_IJ(self, plane: str) -> np.ndarray:
-        """In-plane stiffness D (3, 3), stress = D (E11, E22, 2 E12); refusals as those of `in_plane_stiffness`."""
+        """In-plane stiffness D (3, 3), stress = D (E11, E22, 2 E12); raises as `in_plane_stiffness` does."""
         return in_plane_stiffness(self.E1, self.E2, self.G12, self.nu12, plane)
 
 
@@ -26,8 +29,11 @@ def in_plane_stiffness(E1: float, E2: float, G12: float, nu12: float, plane: str
 
     Plane stress inverts the in-plane compliance. Plane strain inverts the compliance of the solid and takes its
     in-plane block; the solid's third direction is a second transverse one: E3 = E2, nu13 = nu12, nu23 = nu12. Both
-    reduce to the usual isotropic matrices where E1 = E2 (Jones 1999, Mechanics of Composite Materials, ch. 2).
-    Raises ValueError where the compliance is not positive definite.
+    reduce to the usual isotropic matrices for E1 = E2 (Jones 1999, Mechanics of Composite Materials, ch. 2).
+
+    Raises
+    ------
+    ValueError : the compliance is not positive definite.
     """
     compliance_33 = np.array(
         [

@@ -1,30 +1,40 @@
-"""What every problem states whatever its specimen: interface, kinematics, load programme, fineness of the mesh."""
+"""The part of a problem that all specimens share: interface, kinematics, load programme, fineness of the mesh."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
 
+from fem_reference.problem.specimen import Specimen
+
 
 @dataclass(frozen=True, kw_only=True)
-class Debonding:
+class Debonding(ABC):
     """Common part of a problem in plain numbers, in any consistent set of units.
 
     Parameters
     ----------
-    width, plane : of the specimen; "stress" or "strain".
-    strength, toughness, ductility, penalty : p_max, G_Ic, g_u / g_max, and the stiffness against closing.
-    law_name : one of `fem_reference.problem.law.LAWS`, looked up by who solves: a mesh is one of any law.
-    contact : where false, the secant of the opening side continues into closing.
-    irreversible : where false, damage follows the present gap and nothing is dissipated.
-    opening : the displacement programme, for instance ``(3.0,)`` or ``(1.5, 0.0, 3.0)``; it starts at zero.
+    width, plane : width of the specimen [length]; "stress" or "strain".
+    strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], g_u / g_max, and the stiffness
+        against closing [stress per length].
+    law_name : key of `fem_reference.problem.law.MODELLED_LAWS`; not checked here, since a mesh serves every law.
+    contact : if False, the secant of the opening side continues into closing.
+    irreversible : if False, damage follows the present gap and nothing is dissipated.
+    opening : the prescribed openings in turn, for instance ``(3.0,)`` or ``(1.5, 0.0, 3.0)``; it starts at zero.
     load_at : where the load acts and the opening is measured: "face" (uniform dead traction, mean displacement), "node"
-        (the corner of the loaded face away from the interface) or "hinge" (its middle, where a node must be).
+        (the corner of the loaded face away from the interface) or "hinge" (the node in the middle of the loaded face).
     kinematics : "linear" or "finite".
-    degree, elements : Lagrange degree 1 to 4, elements along the specimen.
-    steps : equal opening increments over the whole programme, ends of its branches added.
+    degree : Lagrange degree, 1 to 4.
+    elements : elements along the longer body.
+    layers : elements through the thickness of each loaded body.
+    steps : equal opening increments over the whole programme; the ends of its branches come on top.
     snapshot_openings : fields are kept at the first converged step that reaches each of these openings.
+
+    Raises
+    ------
+    ValueError : a parameter outside its range, or a mesh without a node at the load; the message names the parameter.
     """
 
     strength: float
@@ -41,6 +51,7 @@ class Debonding:
     kinematics: str = "finite"
     degree: int = 2
     elements: int = 112
+    layers: int = 1
     steps: int = 150
     snapshot_openings: tuple[float, ...] = ()
 
@@ -49,32 +60,31 @@ class Debonding:
         _one_of("kinematics", self.kinematics, ("linear", "finite"))
         _one_of("load_at", self.load_at, ("face", "node", "hinge"))
         _one_of("degree", self.degree, (1, 2, 3, 4))
-        self.require_positive("strength", "toughness", "penalty", "width", "steps")
+        self.require_positive("strength", "toughness", "penalty", "width", "steps", "layers")
         if not self.ductility > 1:
             raise ValueError(f"ductility: must be > 1, got {self.ductility}")
         if not np.any(self.opening):
             raise ValueError(f"opening: must have an opening other than 0, got {self.opening}")
+        if self.load_at == "hinge" and self.degree * self.layers % 2:
+            face = f"a face of {self.layers} element{'s' * (self.layers > 1)}"
+            raise ValueError(f"degree: must be even for a load in the middle of {face}, got {self.degree}")
 
-    def require_place(self, layers: int) -> None:
-        """Raise ValueError where the load is in the middle of a face of so many elements, and no node is."""
-        if self.load_at == "hinge" and self.degree * layers % 2:
-            raise ValueError(
-                f"degree: must be even for a load in the middle of a face of {layers} element{'s' * (layers > 1)}, "
-                f"got {self.degree}"
-            )
+    @abstractmethod
+    def specimen(self) -> Specimen:
+        """Bodies, mesh lines, bond, supports and loads."""
 
     @property
     def presses(self) -> bool:
-        """Whether faces beyond the bond meet: the programme goes below zero; to zero all gaps go together."""
+        """Whether the faces beyond the bond can touch: the programme goes below zero."""
         return self.contact and min(self.opening) < 0.0
 
     @property
     def unloads(self) -> bool:
-        """Whether the programme goes down anywhere."""
+        """Whether the opening decreases anywhere in the programme."""
         return any(after < before for before, after in zip((0.0, *self.opening), self.opening, strict=False))
 
     def require_positive(self, *names: str) -> None:
-        """Raise ValueError where one of these is not."""
+        """Raise ValueError if one of these parameters is not > 0."""
         for name in names:
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name}: must be > 0, got {getattr(self, name)}")

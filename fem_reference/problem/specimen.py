@@ -1,4 +1,4 @@
-"""Two bodies that meet on Y = 0, with what holds and what loads them: all that the model knows of a specimen."""
+"""Two bodies that meet on Y = 0, their supports and loads: all that the model knows of a specimen."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 
 UPPER, LOWER = 0, 1
 
-#: Where something is: the ends in X and the ends in Y of a point or of a straight side along an axis.
-Place = tuple[tuple[float, float], tuple[float, float]]
+#: A point or a straight line along an axis: its range in X and its range in Y.
+Region = tuple[tuple[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,10 @@ class Body:
 
 @dataclass(frozen=True)
 class Face:
-    """An end face at X of a body; ``load``: part of the load that it carries upwards, as a uniform dead traction.
+    """An end face of a body, at X.
 
-    ``energy``: the sign with which its strain energy enters the J-integral.
+    ``load`` is its part of the load, upwards, as a uniform dead traction; ``energy`` the sign with which its strain
+    energy enters the J-integral.
     """
 
     body: int
@@ -44,19 +45,18 @@ class Face:
 
 @dataclass(frozen=True)
 class Held:
-    """A point or a side of a body whose displacements in these components are zero."""
+    """A point or a side of a body where these displacement components (0: x, 1: y) are zero."""
 
     body: int
-    place: Place
+    place: Region
     components: tuple[int, ...]
 
 
 @dataclass(frozen=True)
 class Hook:
-    """A corner of a body that the tie holds lengthwise.
+    """A corner of a body to which the tie, a spring along X, is fixed.
 
-    The tie is a spring whose elongation, times the root of its stiffness, is the sum of ``factor`` times u_x over its
-    hooks.
+    The elongation of the tie times the square root of its stiffness is the sum of ``factor`` times u_x over its hooks.
     """
 
     body: int
@@ -71,12 +71,12 @@ class Specimen:
     Parameters
     ----------
     bodies : upper (Y > 0) and lower (Y < 0).
-    X : element boundaries along the specimen, rising; those of a body are the ones up to its length.
+    X : element boundaries along the specimen, rising; a body has those up to its length.
     bond : ends in X of the bond, the one nearer to the load first.
-    facing : ends in X of the faces that are opposite to each other, in the same order: the bond and what is beyond it.
-    touching : whether these faces carry contact beyond the bond.
-    faces : all end faces that carry load or count in the J-integral, one of each body at least.
-    loaded_at : X of the loaded faces.
+    facing : ends in X of the surfaces opposite each other, bonded or not, in the same order.
+    touching : whether these surfaces can carry contact beyond the bond.
+    loads : part of the load, upwards, on the end faces of the upper and the lower body at the loaded end.
+    loaded_at : X of the loaded faces: 0 or the length of the upper body.
     """
 
     bodies: tuple[Body, Body]
@@ -84,19 +84,29 @@ class Specimen:
     bond: tuple[float, float]
     facing: tuple[float, float]
     touching: bool
-    faces: tuple[Face, ...]
+    loads: tuple[float, float]
     held: tuple[Held, ...]
     hooks: tuple[Hook, ...]
     loaded_at: float
 
     @property
+    def faces(self) -> tuple[Face, ...]:
+        """The end faces of both bodies, upper first: those at the loaded end, then those at the other end."""
+        loaded = [0.0 if self.loaded_at == 0.0 else body.length for body in self.bodies]
+        other = [body.length - X for body, X in zip(self.bodies, loaded, strict=True)]
+        return (
+            *(Face(body, loaded[body], self.loads[body], energy=1.0) for body in (UPPER, LOWER)),
+            *(Face(body, other[body], load=0.0, energy=-1.0) for body in (UPPER, LOWER)),
+        )
+
+    @property
     def near(self) -> float:
-        """A distance within which two places are one."""
+        """Distance below which two places are the same, 1e-6 of the smallest element."""
         return 1e-6 * min(float(np.min(np.diff(lines))) for lines in (self.X, *(body.Y for body in self.bodies)))
 
     @property
     def interface(self) -> tuple[float, float]:
-        """Ends in X of what carries tractions: the bond, or all that can touch."""
+        """Ends in X of the surfaces that carry tractions: the bond, or all surfaces that can touch."""
         return self.facing if self.touching else self.bond
 
     @property
@@ -106,35 +116,36 @@ class Specimen:
         return np.diff(X[(X > low - self.near) & (X < high + self.near)])
 
     def distance(self, X: np.ndarray | float) -> np.ndarray | float:
-        """From the loaded end."""
+        """Distance of X from the loaded end."""
         return np.abs(X - self.loaded_at)
 
 
-def point(X: float, Y: float) -> Place:
+def point(X: float, Y: float) -> Region:
+    """A single point as a place."""
     return (X, X), (Y, Y)
 
 
 def lines_by_way_of(corners: tuple[float, ...], elements: int) -> np.ndarray:
-    """Element boundaries (elements + 1,) from 0 to the last of the corners: one at each, evenly spaced between them.
+    """Element boundaries (elements + 1,) from 0 to the last corner: one at each corner, evenly spaced in between.
 
     Raises
     ------
-    ValueError : there are fewer elements than ways between corners.
+    ValueError : fewer elements than parts between corners.
     """
     ends = np.array(sorted({0.0, *corners}))
-    ways = ends.size - 1
-    if elements < ways:
-        raise ValueError(f"elements: must be >= {ways}, one on each part of the specimen, got {elements}")
+    parts = ends.size - 1
+    if elements < parts:
+        raise ValueError(f"elements: must be >= {parts}, one on each part of the specimen, got {elements}")
     counts_before = [0]
-    for k in range(1, ways):
+    for k in range(1, parts):
         even = round(elements * ends[k] / ends[-1])
-        counts_before.append(min(max(even, counts_before[-1] + 1), elements - ways + k))
+        counts_before.append(min(max(even, counts_before[-1] + 1), elements - parts + k))
     numbers = np.diff([*counts_before, elements])
-    parts = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], numbers, strict=True)]
-    return np.concatenate([*parts, ends[-1:]])
+    lines = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], numbers, strict=True)]
+    return np.concatenate([*lines, ends[-1:]])
 
 
 def finer_at_first(X: np.ndarray, most: float) -> np.ndarray:
-    """Element boundaries with the first element halved, again and again, until it is no longer than ``most``."""
+    """Element boundaries with the first element halved repeatedly until it is no longer than ``most``."""
     halvings = max(0, int(np.ceil(np.log2((X[1] - X[0]) / most) - 1e-9)))
     return np.concatenate([X[:1], X[0] + (X[1] - X[0]) * 0.5 ** np.arange(halvings, 0, -1), X[1:]])

@@ -1,1 +1,1 @@
-"""One file a basis, each of which makes a mesh."""
+"""Bases, one file each; every basis makes a `Mesh`."""

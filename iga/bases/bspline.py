@@ -1,4 +1,4 @@
-"""B-splines: knot vectors, Cox-de Boor, knot insertion, and their Bezier extraction in one direction."""
+"""B-splines: knot vectors and their Bezier extraction in one direction."""
 
 from __future__ import annotations
 
@@ -12,6 +12,10 @@ class KnotVector:
     """An open knot vector of one degree.
 
     ``knots`` (n + p + 1,) is non-decreasing with end multiplicity p + 1 and inner multiplicity at most p.
+
+    Raises
+    ------
+    ValueError : knots that violate this or are not finite, or a degree below 1.
     """
 
     degree: int
@@ -33,16 +37,12 @@ class KnotVector:
 
     @property
     def functions(self) -> int:
+        """Number of functions n."""
         return self.knots.size - self.degree - 1
 
     @property
-    def breaks(self) -> np.ndarray:
-        """(n_e + 1,) distinct knots: the element boundaries."""
-        return np.unique(self.knots)
-
-    @property
     def spans(self) -> np.ndarray:
-        """(n_e,) index of the knot that opens each non-empty span."""
+        """(n_e,) index of the first knot of each non-empty span."""
         return np.flatnonzero(np.diff(self.knots) > 0)
 
     @property
@@ -57,58 +57,11 @@ def open_knots(breaks: np.ndarray, degree: int) -> KnotVector:
     return KnotVector(degree, np.concatenate([np.repeat(breaks[0], degree), breaks, np.repeat(breaks[-1], degree)]))
 
 
-def cox_de_boor(kv: KnotVector, x: np.ndarray) -> np.ndarray:
-    """All B-spline functions at some points, by the recursion of Cox and de Boor (Piegl and Tiller 1997, eq. 2.5).
-
-    Parameters
-    ----------
-    kv : knot vector with n functions.
-    x : (n_x,) points inside the knot range; the last knot belongs to the last span.
-
-    Returns
-    -------
-    (n_x, n) values.
-    """
-    t, p = kv.knots, kv.degree
-    x = np.asarray(x, dtype=float)[:, None]
-    last = kv.spans[-1]
-    N = ((t[:-1] <= x) & (x < t[1:])).astype(float)
-    N[x[:, 0] == t[-1], last] = 1.0
-    for r in range(1, p + 1):
-        left, right = t[r:-1] - t[: -r - 1], t[r + 1 :] - t[1:-r]
-        rise = np.divide(x - t[: -r - 1], left, out=np.zeros(x.shape[:1] + left.shape), where=left > 0)
-        fall = np.divide(t[r + 1 :] - x, right, out=np.zeros(x.shape[:1] + right.shape), where=right > 0)
-        N = rise * N[:, :-1] + fall * N[:, 1:]
-    return N
-
-
-def insert_knot(kv: KnotVector, x: float) -> tuple[KnotVector, np.ndarray]:
-    """Insert one knot (Boehm 1980; Piegl and Tiller 1997, eq. 5.15).
-
-    Returns
-    -------
-    kv : the finer knot vector, n + 1 functions.
-    T : (n + 1, n), new control points = T @ old control points.
-    """
-    t, p, n = kv.knots, kv.degree, kv.functions
-    if not t[0] < x < t[-1]:
-        raise ValueError(f"a knot can be inserted inside ({t[0]}, {t[-1]}) only, got {x}")
-    k = int(np.searchsorted(t, x, side="right")) - 1
-    i = np.arange(n + 1)
-    alpha = np.where(i <= k - p, 1.0, 0.0)
-    inside = i[k - p + 1 : k + 1]
-    alpha[inside] = (x - t[inside]) / (t[inside + p] - t[inside])
-    T = np.zeros((n + 1, n))
-    T[i[:-1], i[:-1]] = alpha[:-1]
-    T[i[1:], i[1:] - 1] = 1.0 - alpha[1:]
-    return KnotVector(p, np.insert(t, k + 1, x)), T
-
-
 def bezier_extraction(kv: KnotVector) -> np.ndarray:
-    """Extraction operators of all spans at once: N_a = sum_b C_eab B_b on span e.
+    """Extraction operators of all spans: N_a = sum_b C_eab B_b on span e.
 
-    The Bernstein coefficient b of a spline on [x0, x1] is its polar form at x0 (p - b times) and x1 (b times), which
-    is what inserting both knots up to multiplicity p gives (Ramshaw 1989; Borden, Scott, Evans, Hughes 2011).
+    The Bernstein coefficient b of a spline on [x0, x1] is its polar form at x0 (p - b times) and x1 (b times)
+    (Ramshaw 1989). Inserting both knots up to multiplicity p gives the same (Borden, Scott, Evans, Hughes 2011).
 
     Returns
     -------

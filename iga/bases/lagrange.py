@@ -1,39 +1,41 @@
-"""Lagrange elements through the seam: the nodal basis written in Bernstein polynomials."""
+"""Lagrange elements by extraction: the nodal basis in terms of Bernstein polynomials."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from iga.mesh.bernstein import bernstein
-from iga.mesh.extraction import Mesh, tensor_mesh
+from iga.mesh.extraction import Mesh, Spans, tensor_mesh
 
 
 def lagrange_extraction(degree: int) -> np.ndarray:
     """Extraction operator (p + 1, p + 1) of the equidistant Lagrange basis: L_a = sum_b C_ab B_b.
 
-    From ``L_a(x_c) = delta_ac`` at the nodes x_c follows ``C = V^{-T}`` with ``V_cb = B_b(x_c)``.
+    ``L_a(x_c) = delta_ac`` at the nodes x_c gives ``C = V^{-T}`` with ``V_cb = B_b(x_c)``.
     """
     return np.linalg.inv(bernstein(degree, np.linspace(0.0, 1.0, degree + 1))).T
 
 
 def lagrange_rectangle(breaks_s: np.ndarray, breaks_t: np.ndarray, degree: int, degree_t: int | None = None) -> Mesh:
-    """Rectangle of Lagrange elements with boundaries at ``breaks_s`` x ``breaks_t``, ``degree`` in both directions.
+    """Rectangle of Lagrange elements with boundaries at ``breaks_s`` (n_s + 1,) and ``breaks_t`` (n_t + 1,).
 
-    ``degree_t`` is the degree of the second direction where it is another.
+    ``degree`` is that of both directions unless ``degree_t`` gives another one for the second.
     """
-    degrees = (degree, degree_t or degree)
-    (x_s, conn_s, C_s), (x_t, conn_t, C_t) = (
-        (x, conn, np.broadcast_to(lagrange_extraction(p), (len(conn), p + 1, p + 1)))
-        for p, breaks in zip(degrees, (breaks_s, breaks_t), strict=True)
-        for x, conn in [_nodes(np.asarray(breaks, dtype=float), p)]
-    )
-    y, x = np.meshgrid(x_t, x_s, indexing="ij")
+    degree_t = degree_t or degree
+    y, x = np.meshgrid(_nodes(breaks_t, degree_t), _nodes(breaks_s, degree), indexing="ij")
     P_AI = np.stack([x.ravel(), y.ravel()], -1)
-    return tensor_mesh(degrees, C_s, conn_s, C_t, conn_t, P_AI, np.ones(len(P_AI)))
+    spans = _spans(len(breaks_s) - 1, degree), _spans(len(breaks_t) - 1, degree_t)
+    return tensor_mesh(*spans, P_AI, np.ones(len(P_AI)))
 
 
-def _nodes(breaks: np.ndarray, degree: int) -> tuple[np.ndarray, np.ndarray]:
+def _nodes(breaks: np.ndarray, degree: int) -> np.ndarray:
+    """Equidistant nodes (n_e p + 1,) of all elements."""
+    breaks = np.asarray(breaks, dtype=float)
     within = np.linspace(0.0, 1.0, degree + 1)[:-1]
     inner = breaks[:-1, None] + np.diff(breaks)[:, None] * within
-    conn = np.arange(len(breaks) - 1)[:, None] * degree + np.arange(degree + 1)
-    return np.append(inner.ravel(), breaks[-1]), conn
+    return np.append(inner.ravel(), breaks[-1])
+
+
+def _spans(n_e: int, degree: int) -> Spans:
+    C_eab = np.broadcast_to(lagrange_extraction(degree), (n_e, degree + 1, degree + 1))
+    return Spans(C_eab, np.arange(n_e)[:, None] * degree + np.arange(degree + 1))

@@ -1,11 +1,11 @@
-"""NURBS patches through the seam."""
+"""NURBS patches by extraction."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from iga.bases.bspline import KnotVector, bezier_extraction
-from iga.mesh.extraction import Mesh, tensor_mesh
+from iga.mesh.extraction import Mesh, Spans, tensor_mesh
 
 
 def nurbs_mesh(kv_s: KnotVector, kv_t: KnotVector, P_AI: np.ndarray, w_A: np.ndarray | None = None) -> Mesh:
@@ -15,11 +15,11 @@ def nurbs_mesh(kv_s: KnotVector, kv_t: KnotVector, P_AI: np.ndarray, w_A: np.nda
     ----------
     kv_s, kv_t : knot vectors with n_s and n_t functions.
     P_AI : (n_s n_t, 2) control points, not homogeneous, index along s running fastest.
-    w_A : (n_s n_t,) positive weights; all one if left out.
+    w_A : (n_s n_t,) positive weights; default: all 1.
 
     Raises
     ------
-    ValueError : a control net of the wrong size, or a weight that is not positive.
+    ValueError : a wrong number of control points or weights, or a weight that is not positive.
     """
     n_A = kv_s.functions * kv_t.functions
     w_A = np.ones(n_A) if w_A is None else np.asarray(w_A, dtype=float)
@@ -27,16 +27,14 @@ def nurbs_mesh(kv_s: KnotVector, kv_t: KnotVector, P_AI: np.ndarray, w_A: np.nda
         raise ValueError(f"the knot vectors ask for {n_A} control points and weights, got {len(P_AI)} and {w_A.size}")
     if not np.all(w_A > 0):
         raise ValueError(f"weights must be > 0, the smallest is {w_A.min()}")
-    one_dimensional = [(bezier_extraction(kv), _connectivity(kv)) for kv in (kv_s, kv_t)]
-    (C_s, conn_s), (C_t, conn_t) = one_dimensional
-    return tensor_mesh((kv_s.degree, kv_t.degree), C_s, conn_s, C_t, conn_t, P_AI, w_A)
+    return tensor_mesh(_spans(kv_s), _spans(kv_t), P_AI, w_A)
 
 
 def nurbs_rectangle(kv_s: KnotVector, kv_t: KnotVector) -> Mesh:
-    """The rectangle that the two knot vectors span, mapped by the identity."""
+    """The rectangle of the two knot ranges; parameters are positions."""
     y, x = np.meshgrid(kv_t.greville, kv_s.greville, indexing="ij")
     return nurbs_mesh(kv_s, kv_t, np.stack([x.ravel(), y.ravel()], -1))
 
 
-def _connectivity(kv: KnotVector) -> np.ndarray:
-    return kv.spans[:, None] - kv.degree + np.arange(kv.degree + 1)
+def _spans(kv: KnotVector) -> Spans:
+    return Spans(bezier_extraction(kv), kv.spans[:, None] - kv.degree + np.arange(kv.degree + 1))

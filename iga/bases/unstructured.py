@@ -1,8 +1,8 @@
 """Bicubic splines on unstructured quadrilateral control meshes: extraction, extraordinary points included.
 
-Every face with positive knot intervals is one Bezier element. Its inner Bezier points come from its own four control
-points, those on edges and corners are means of the inner ones around (Scott, Simpson, Evans, Lipton, Bordas, Hughes,
-Sederberg 2013, sec. 3). Around an extraordinary point the result is C0 across the spokes and C1 elsewhere.
+Every face with positive knot intervals is one Bezier element. Its inner Bezier points are means of its own four control
+points, those on edges and corners are means of the adjacent inner ones (Scott, Simpson, Evans, Lipton, Bordas, Hughes,
+Sederberg 2013, sec. 3). Around an extraordinary point the functions are C0 across the spokes and C1 elsewhere.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ EDGE_START, EDGE_END = (1, 7, 14, 8), (2, 11, 13, 4)
 def unstructured_mesh(
     V_AI: np.ndarray, faces_fa: np.ndarray, intervals_fs: np.ndarray | None = None, w_A: np.ndarray | None = None
 ) -> Mesh:
-    """Mesh of all faces with positive knot intervals, with its outlines as the chains ``boundary``, ``boundary-1`` ...
+    """Mesh of all faces with positive knot intervals; its outlines are the chains ``boundary``, ``boundary-1`` ...
 
     Parameters
     ----------
     V_AI : (n_A, 2) control points, not homogeneous.
     faces_fa : (n_f, 4) their numbers around each face, counterclockwise; s runs along the first edge.
     intervals_fs : (n_f, 2) knot intervals along s and t, equal on both sides of an edge. An open boundary is a ring of
-        faces whose interval across the boundary is zero. Left out: one everywhere, zero across the outermost ring.
-    w_A : (n_A,) positive weights; all one if left out.
+        faces whose interval across the boundary is zero. Default: 1, but 0 across the outermost ring.
+    w_A : (n_A,) positive weights; default: all 1.
 
     Raises
     ------
-    ValueError : faces that are no oriented mesh, intervals that differ across an edge or are negative, no element or
-        one without a neighbour on some side, or an extraordinary point on the boundary.
+    ValueError : faces of different orientation, intervals that differ across an edge or are negative, no face with
+        positive intervals or one without a neighbour on some side, or an extraordinary point on the boundary.
     """
     grid = _topology(np.asarray(faces_fa))
     h_fs = _open_intervals(grid) if intervals_fs is None else np.asarray(intervals_fs, dtype=float)
@@ -58,7 +58,7 @@ class _Topology:
     twin_h: np.ndarray
 
     def across(self, v_h: np.ndarray, outside: float) -> np.ndarray:
-        """Values of the opposite half-edges, ``outside`` where there is none."""
+        """Values of the opposite half-edges; ``outside`` on the boundary."""
         return np.where(self.twin_h >= 0, v_h[self.twin_h], outside)
 
 
@@ -78,7 +78,7 @@ def _topology(faces_fa: np.ndarray) -> _Topology:
 
 
 def _open_intervals(grid: _Topology) -> np.ndarray:
-    """One, but zero across the faces on the boundary."""
+    """Knot intervals (n_f, 2): 1, but 0 across the faces on the boundary."""
     edge_fk = grid.twin_h.reshape(-1, 4) < 0
     return 1.0 - np.stack([edge_fk[:, 1] | edge_fk[:, 3], edge_fk[:, 0] | edge_fk[:, 2]], -1)
 
@@ -108,7 +108,7 @@ def _refuse_wrong_intervals(grid: _Topology, h_fs: np.ndarray, element_f: np.nda
 
 
 def _bezier_rows(grid: _Topology, h_fs: np.ndarray, elements: np.ndarray, n_A: int) -> csr_array:
-    """Bezier points (16 n_e, n_A) of the elements as sums of control points, index 16 e + j 4 + i."""
+    """Bezier points (16 n_e, n_A) of the elements as linear combinations of control points, index 16 e + 4 j + i."""
     n_h = grid.twin_h.size
     across_h = np.roll(np.tile(h_fs, 2), -1, axis=1).ravel()  # interval of the own face across the half-edge
     beyond_h = grid.across(across_h, 0.0)
@@ -116,7 +116,9 @@ def _bezier_rows(grid: _Topology, h_fs: np.ndarray, elements: np.ndarray, n_A: i
     half_edge = 4 * elements[:, None] + np.arange(4)
     following = np.arange(n_h).reshape(-1, 4)[:, [1, 2, 3, 0]].ravel()
     own, other = half_edge.ravel(), grid.twin_h[half_edge.ravel()]
-    share = beyond_h[own] / (beyond_h[own] + across_h[own])  # each inner point weighs with the interval of the other
+    share = beyond_h[own] / (
+        beyond_h[own] + across_h[own]
+    )  # each inner point has the interval of the other face as weight
     edge_start = _rows(own, share, n_h) @ inner + _rows(following[other], 1.0 - share, n_h) @ inner
     edge_end = _rows(following[own], share, n_h) @ inner + _rows(other, 1.0 - share, n_h) @ inner
     corner = _corner_means(grid, h_fs)[grid.faces_fa[elements].ravel()] @ inner
@@ -143,7 +145,7 @@ def _inner_points(grid: _Topology, h_fs: np.ndarray, beyond_fk: np.ndarray, n_A:
 
 
 def _corner_means(grid: _Topology, h_fs: np.ndarray) -> csr_array:
-    """Vertices as means (n_A, 4 n_f) of the inner points around: with the opposite areas as weights where four meet."""
+    """Vertices as means (n_A, 4 n_f) of the adjacent inner points; weights of four: the areas of opposite faces."""
     n_h = grid.twin_h.size
     preceding = np.arange(n_h).reshape(-1, 4)[:, [3, 0, 1, 2]].ravel()
     turned = grid.twin_h[preceding]  # the half-edge of the next face around the same vertex
@@ -160,7 +162,7 @@ def _rows(columns: np.ndarray, values: np.ndarray, n: int) -> csr_array:
 
 
 def _moved(rows: csr_array, to: np.ndarray, n: int) -> csr_array:
-    """The rows at other places among n."""
+    """A matrix of n rows with these rows at the places ``to``."""
     return csr_array((np.ones(to.size), (to, np.arange(to.size))), shape=(n, to.size)) @ rows
 
 
@@ -195,9 +197,9 @@ def polygon_mesh(corners: int, n: int, radius: float = 1.0) -> Mesh:
 def polygon_control(corners: int, n: int, radius: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     """Control points (n_A, 2) and faces (n_f, 4) of a polygon, faces in the order sector, t, s.
 
-    A sector is the quadrilateral of centre, middle of one edge, corner, middle of the next edge. Its control points are
-    those that make the bilinear map in the knots, with a ring of zero intervals along the outline, which is exact. The
-    centre is an ordinary point for four corners.
+    A sector is the quadrilateral of centre, middle of one edge, corner, middle of the next edge. Its control points
+    reproduce the bilinear map exactly, with a ring of zero intervals along the outline. With four corners the centre is
+    an ordinary point.
 
     Raises
     ------
@@ -226,7 +228,7 @@ def _numbers(corners: int, m: int) -> np.ndarray:
 
 
 def _edges(outline: Chain, corners: int) -> dict[str, Chain]:
-    """The outline cut at its corners, which are where one element has two sides in it."""
+    """The outline cut at its corners, where two successive sides belong to one element."""
     same = (np.roll(outline.block_c, 1) == outline.block_c) & (np.roll(outline.element_c, 1) == outline.element_c)
     first = np.flatnonzero(same)[0]
     order = np.roll(np.arange(same.size), -first).reshape(corners, -1)

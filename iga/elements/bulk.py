@@ -11,23 +11,23 @@ import numpy as np
 from iga.elements.kinematics import PAIRS
 from iga.elements.shape_functions import BlockBasis
 
-#: Elements whose products are made together: what they need on the way stays in the cache, and small.
+#: Elements whose stiffness is computed together; intermediate arrays of so many stay in the cache.
 BATCH = 64
 
 
 def gradient(basis: BlockBasis, u_Ai: np.ndarray) -> np.ndarray:
-    """Displacement gradient H_iIeq (2, 2, n_e, n_q), components first: work on one runs straight through memory."""
+    """Displacement gradient H_iIeq (2, 2, n_e, n_q); components come first so that each is contiguous in memory."""
     H_eqIi = basis.dN_e_qI_a @ relative(basis.conn_ea, u_Ai)
     n_e, n_q = basis.dV_eq.shape
     return np.ascontiguousarray(H_eqIi.reshape(n_e, n_q, 2, 2).transpose(3, 2, 0, 1))
 
 
 def relative(conn_ea: np.ndarray, u_Ai: np.ndarray) -> np.ndarray:
-    """Displacements (n_e, n_a, 2) of an element's control points relative to its first one.
+    """Displacements (n_e, n_a, 2) of an element's control points relative to those of its first one.
 
-    The rest of the motion is rigid; left in, its rounding would be multiplied by the stiffness of the element.
+    The translation has no gradient; if it stayed, its rounding would be multiplied by the stiffness of the element.
     """
-    u_eai = u_Ai.take(conn_ea, axis=0)  # several times faster than indexing
+    u_eai = u_Ai.take(conn_ea, axis=0)  # several times faster than u_Ai[conn_ea]
     return u_eai - u_eai[:, :1]
 
 
@@ -41,7 +41,7 @@ def element_forces(basis: BlockBasis, P_iIeq: np.ndarray) -> np.ndarray:
 def element_stiffness(basis: BlockBasis, A_eqIpJ: np.ndarray) -> np.ndarray:
     """Stiffness ``K_e(p)ab = int dN_a/dX_I A_IpJ dN_b/dX_J dV`` (n_e, n_a, 3, n_a) for the three `PAIRS` p.
 
-    One matrix product an element; the block (1, 0) is the transpose of (0, 1).
+    One matrix product per element; the block (1, 0) is the transpose of (0, 1).
     """
     n_e, n_q, _, n_a = basis.dN_eqIa.shape
     K_eapb = np.empty((n_e, n_a, 3, n_a))
@@ -71,7 +71,7 @@ def all_values(parts: Sequence[np.ndarray]) -> np.ndarray:
 
 @cache
 def half_places(n_a: int) -> np.ndarray:
-    """Places in an element's (n_a, 3, n_a) entries of those that tell all of a symmetric matrix, each once."""
+    """Indices in the (n_a, 3, n_a) entries of an element of one triangle of its symmetric matrix."""
     a, p, b = np.indices((n_a, len(PAIRS), n_a))
     return np.flatnonzero((p == 1) | (a >= b))
 
@@ -79,7 +79,8 @@ def half_places(n_a: int) -> np.ndarray:
 def half_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Rows and columns (n_e, n_h) of the entries of `half_places`, on either side of the diagonal."""
     n_e, n_a = conn_ea.shape
-    return tuple(np.reshape(v[:, :, :3], (n_e, -1))[:, half_places(n_a)] for v in stiffness_entries(conn_ea))
+    rows, columns = (v[:, :, :3].reshape(n_e, -1)[:, half_places(n_a)] for v in stiffness_entries(conn_ea))
+    return rows, columns
 
 
 def full_matrices(K_eapb: np.ndarray) -> np.ndarray:

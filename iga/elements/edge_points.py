@@ -11,16 +11,13 @@ from iga.mesh.bernstein import bernstein, bernstein_derivative
 from iga.mesh.extraction import HANDS, SIDES, Chain, Mesh, on_side
 from iga.mesh.quadrature import gauss
 
-#: A function smaller than this on all points of a side does not live on it.
-ALIVE = 1e-10
-
 
 @dataclass(frozen=True)
 class SidePoints:
-    """Points on sides of one kind.
+    """Gauss points on sides of one name of the elements of one block.
 
     ``conn_ea`` (n_e, n_a) control points, ``N_eqa`` (n_e, n_q, n_a) functions, ``X_eqI`` (n_e, n_q, 2) positions,
-    ``ndL_eqI`` (n_e, n_q, 2) outward normal times the length that each point stands for.
+    ``ndL_eqI`` (n_e, n_q, 2) outward normal times the length of each point.
     """
 
     conn_ea: np.ndarray
@@ -30,21 +27,17 @@ class SidePoints:
 
     @property
     def dL_eq(self) -> np.ndarray:
+        """Length (n_e, n_q) of each point."""
         return np.linalg.norm(self.ndL_eqI, axis=-1)
 
 
 def side_points(mesh: Mesh, chains: Sequence[Chain], more: int) -> tuple[SidePoints, ...]:
-    """Gauss points of all sides of some chains, p + 1 + ``more`` each, one entry for sides of one kind."""
+    """p + 1 + ``more`` Gauss points on every side of some chains, one entry per block and name of the side."""
     return tuple(
         _on_side(mesh, number, chain.element_c[here], side, more)
         for chain in chains
         for here, number, side in chain.parts()
     )
-
-
-def living(sides: Sequence[SidePoints]) -> np.ndarray:
-    """Control points (n,) whose functions do not vanish on the sides."""
-    return np.unique(np.concatenate([s.conn_ea[np.max(np.abs(s.N_eqa), axis=1) > ALIVE] for s in sides]))
 
 
 def _on_side(mesh: Mesh, number: int, e: np.ndarray, side: str, more: int) -> SidePoints:

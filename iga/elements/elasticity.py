@@ -11,9 +11,9 @@ import numpy as np
 def orthotropic(E1: float, E2: float, G12: float, nu12: float, plane: str) -> np.ndarray:
     """Elasticity matrix D (3, 3), axis 1 along X.
 
-    Plane stress inverts the in-plane compliance. Plane strain needs the third direction, taken as transversely like
-    the second (E3 = E2, nu13 = nu23 = nu12), and takes the in-plane block of the inverted 3-D compliance; with E1 = E2
-    and G12 = E / (2 (1 + nu)) both are the isotropic matrices (Jones 1999, eqs. 2.15 and 2.60).
+    Plane stress inverts the in-plane compliance. Plane strain takes the in-plane block of the inverted 3-D compliance,
+    whose third direction is like the second (E3 = E2, nu13 = nu23 = nu12). With E1 = E2 and G12 = E / (2 (1 + nu)) both
+    are the isotropic matrices (Jones 1999, eqs. 2.15 and 2.60).
 
     Raises
     ------
@@ -33,10 +33,10 @@ def orthotropic(E1: float, E2: float, G12: float, nu12: float, plane: str) -> np
     if not np.all(np.linalg.eigvalsh(D) > 0):
         raise ValueError(f"the elastic constants E1={E1}, E2={E2}, G12={G12}, nu12={nu12} store negative energy")
     D = 0.5 * (D + D.T)
-    D.flags.writeable = False  # whoever asks again is given this very one
+    D.flags.writeable = False  # cached: all callers share this array
     return D
 
 
 def isotropic(young: float, poisson: float, plane: str) -> np.ndarray:
-    """Elasticity matrix D (3, 3) of an isotropic solid."""
+    """Elasticity matrix D (3, 3) of an isotropic solid; raises as `orthotropic` does."""
     return orthotropic(young, young, young / (2.0 * (1.0 + poisson)), poisson, plane)

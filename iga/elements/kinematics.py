@@ -1,8 +1,8 @@
-"""From displacement gradient to first Piola-Kirchhoff stress, its tangent, and stored energy, for every point at once.
+"""First Piola-Kirchhoff stress, its tangent and the stored energy by the displacement gradient, at all points at once.
 
-Both kinematics speak the same language, so that one assembler serves them: ``P_iI = dW/dH_iI`` and ``A_iIjJ =
-dP_iI/dH_jJ``. Components come first in all arrays: each of the few operations then runs over all points in a row. The
-moduli alone have them last, as the factors of many small products: ``A_IpJ`` for the `PAIRS` p = (i, j).
+Both kinematics have the same interface, so that one assembler serves them: ``P_iI = dW/dH_iI`` and ``A_iIjJ =
+dP_iI/dH_jJ``. Components are the first axes of all arrays, so that each operation runs through memory in order. In the
+moduli alone they are the last axes, since these are factors of many small products: ``A_IpJ`` for the `PAIRS` p.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from itertools import product
 
 import numpy as np
 
-#: Pairs (i, j) of displacement components whose moduli tell all: those of (1, 0) are the transpose of (0, 1).
+#: Pairs (i, j) of displacement components whose moduli are stored; those of (1, 0) are the transpose of (0, 1).
 PAIRS = ((0, 0), (0, 1), (1, 1))
 #: Voigt number of the components (I, J) of a symmetric tensor, order 11, 22, 12.
 VOIGT = ((0, 2), (2, 1))
@@ -27,9 +27,9 @@ def elasticity_tensor(D: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Kinematics:
-    """Of a displacement gradient H_iI (2, 2, ...) and an elasticity matrix D (3, 3) [stress]:
+    """Functions of an elasticity matrix D (3, 3) [stress] and a displacement gradient H_iI (2, 2, ...).
 
-    ``stress`` answers P (2, 2, ...) and the stored energy per reference volume W (...,), ``moduli`` A (..., 2, 3, 2)
+    ``stress`` returns P (2, 2, ...) and the stored energy per reference volume W (...,), ``moduli`` A (..., 2, 3, 2).
     """
 
     stress: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -60,7 +60,7 @@ def finite_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
 
 
 def small_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Linear kinematics: the same with E replaced by the symmetric gradient and no geometric stiffness."""
+    """Linear kinematics: E is the symmetric gradient, ``P = D:E``."""
     E_v = np.empty((3, *H.shape[2:]))
     E_v[0], E_v[1], E_v[2] = H[0, 0], H[1, 1], H[0, 1] + H[1, 0]
     S_v = (D @ E_v.reshape(3, -1)).reshape(E_v.shape)
@@ -68,7 +68,7 @@ def small_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def small_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
-    """The elasticity tensor everywhere."""
+    """The elasticity tensor at every point."""
     return np.broadcast_to(of_pairs(elasticity_tensor(D)), (*H.shape[2:], 2, 3, 2))
 
 
@@ -103,7 +103,7 @@ def _deformation(H: np.ndarray) -> np.ndarray:
 
 
 def _svk(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Second Piola-Kirchhoff stress (3, ...) and energy; E is formed from H to keep its digits near F = 1."""
+    """Second Piola-Kirchhoff stress (3, ...) and energy; E from H directly, since F'F - 1 cancels near F = 1."""
     E_v = np.empty((3, *H.shape[2:]))
     E_v[0] = H[0, 0] + 0.5 * (H[0, 0] ** 2 + H[1, 0] ** 2)
     E_v[1] = H[1, 1] + 0.5 * (H[0, 1] ** 2 + H[1, 1] ** 2)
@@ -113,7 +113,7 @@ def _svk(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _moduli_of_parts(D: np.ndarray) -> np.ndarray:
-    """What the products ``F_iK F_jL`` of the `PAIRS` (3, K, L), and S_v after them, are worth in ``A_IpJ`` (15, 12)."""
+    """Coefficients (15, 12) of ``A_IpJ`` in the products ``F_iK F_jL`` of the `PAIRS` (3, K, L), and in S_v."""
     C_IKJL, pairs = elasticity_tensor(D), np.eye(3)
     of_products = np.einsum("IKJL,po->pKLIoJ", C_IKJL, pairs).reshape(12, 12)
     same = np.array([i == j for i, j in PAIRS], dtype=float)

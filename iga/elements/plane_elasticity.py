@@ -1,8 +1,8 @@
-"""Linear plane elasticity on any mesh: loads and supports on chains of sides, one sparse solve.
+"""Linear plane elasticity on any mesh: tractions on chains of sides, supports, one sparse solve.
 
 K = stiffness(mesh, D)
-f = traction_forces(mesh, chains, lambda X, n: ...)
-u_Ai = solve(K, f, prescribed(mesh, chains, lambda X: ...))
+f_Ai = traction_forces(mesh, chains, lambda X, n: ...)
+u_Ai = solve(K, f_Ai, no_rigid_motion(mesh))
 """
 
 from __future__ import annotations
@@ -15,15 +15,12 @@ from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import splu
 
 from iga.elements.bulk import all_values, element_stiffness, stiffness_entries
-from iga.elements.edge_points import living, side_points
+from iga.elements.edge_points import side_points
 from iga.elements.kinematics import elasticity_tensor, of_pairs
 from iga.elements.shape_functions import BlockBasis, block_basis
 from iga.mesh.bezier import homogeneous
 from iga.mesh.extraction import Chain, Mesh
 from iga.mesh.quadrature import gauss, square
-
-#: A vector field: positions (..., 2) to values (..., 2).
-Field = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -33,17 +30,12 @@ class Fixed:
     dof_d: np.ndarray
     value_d: np.ndarray
 
-    def __add__(self, other: Fixed) -> Fixed:
-        """Both; where they speak of the same degree of freedom, the first is heard."""
-        dof_d, first = np.unique(np.concatenate([self.dof_d, other.dof_d]), return_index=True)
-        return Fixed(dof_d, np.concatenate([self.value_d, other.value_d])[first])
-
 
 def bulk_bases(mesh: Mesh, more: int = 0) -> tuple[BlockBasis, ...]:
-    """Basis of every block at p + 1 + ``more`` Gauss points a direction, and 4 more where the elements are rational.
+    """Basis of every block at p + 1 + ``more`` Gauss points per direction, 4 more in rational elements.
 
-    Polynomial elements are integrated exactly by p + 1. Rational ones are not: on a ring of three elements a quadrant
-    the patch test misses by 1e-6 with p + 1, 1e-9 with p + 3 and rounding with p + 5.
+    p + 1 integrate polynomial elements exactly, but not rational ones: on a ring of three elements per quadrant the
+    error of the patch test is 1e-6 with p + 1, 1e-9 with p + 3 and rounding with p + 5.
     """
     bases = []
     for block in mesh.blocks:
@@ -54,7 +46,7 @@ def bulk_bases(mesh: Mesh, more: int = 0) -> tuple[BlockBasis, ...]:
 
 
 def stiffness(mesh: Mesh, D: np.ndarray) -> csc_array:
-    """Stiffness matrix (2 n_A, 2 n_A) for an elasticity matrix D (3, 3) [stress], per unit of width."""
+    """Stiffness matrix (2 n_A, 2 n_A) for an elasticity matrix D (3, 3) [stress], per unit width."""
     bases, A_IpJ = bulk_bases(mesh), of_pairs(elasticity_tensor(D))
     parts = [element_stiffness(b, np.broadcast_to(A_IpJ, (*b.dV_eq.shape, *A_IpJ.shape))) for b in bases]
     entries = [stiffness_entries(b.conn_ea) for b in bases]
@@ -63,16 +55,10 @@ def stiffness(mesh: Mesh, D: np.ndarray) -> csc_array:
     return coo_array((all_values(parts), (row, column)), shape=(n, n)).tocsc()
 
 
-def body_forces(mesh: Mesh, force: Field) -> np.ndarray:
-    """Control point forces (n_A, 2) of a force per volume."""
-    parts = [(b.conn_ea, np.einsum("eqa,eqi,eq->eai", b.N_eqa, force(b.X_eqI), b.dV_eq)) for b in bulk_bases(mesh, 2)]
-    return _gathered(len(mesh.P_AI), parts)
-
-
 def traction_forces(
     mesh: Mesh, chains: Sequence[Chain], traction: Callable[[np.ndarray, np.ndarray], np.ndarray]
 ) -> np.ndarray:
-    """Control point forces (n_A, 2) of a traction given by position and unit outward normal (..., 2)."""
+    """Control point forces (n_A, 2) of a traction, a function of position and unit outward normal (..., 2)."""
     parts = []
     for side in side_points(mesh, chains, 4):
         dL = side.dL_eq
@@ -81,44 +67,8 @@ def traction_forces(
     return _gathered(len(mesh.P_AI), parts)
 
 
-def prescribed(mesh: Mesh, chains: Sequence[Chain], displacement: Field) -> Fixed:
-    """Displacements on chains by projection in L2 onto the functions that live there."""
-    sides = side_points(mesh, chains, 2)
-    rows, columns, values = [], [], []
-    for side in sides:
-        row, column = np.broadcast_arrays(side.conn_ea[:, :, None], side.conn_ea[:, None, :])
-        rows.append(row.ravel())
-        columns.append(column.ravel())
-        values.append(np.einsum("eqa,eqb,eq->eab", side.N_eqa, side.N_eqa, side.dL_eq).ravel())
-    n_A = len(mesh.P_AI)
-    entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-    mass = coo_array(entries, shape=(n_A, n_A)).tocsc()
-    parts = [(s.conn_ea, np.einsum("eqa,eqi,eq->eai", s.N_eqa, displacement(s.X_eqI), s.dL_eq)) for s in sides]
-    A = living(sides)
-    u_Ai = splu(mass[A][:, A]).solve(_gathered(n_A, parts)[A])
-    return Fixed((2 * A[:, None] + np.arange(2)).ravel(), u_Ai.ravel())
-
-
-def symmetry(mesh: Mesh, chain: Chain) -> Fixed:
-    """No displacement normal to a straight chain along an axis.
-
-    Raises
-    ------
-    ValueError : a chain that is not straight or not along an axis.
-    """
-    sides = side_points(mesh, (chain,), 1)
-    n = np.concatenate([np.abs(s.ndL_eqI / s.dL_eq[..., None]).reshape(-1, 2) for s in sides])
-    component = int(np.argmax(n.sum(0)))
-    if np.max(n[:, 1 - component]) > 1e-8:
-        raise ValueError(
-            f"a symmetry line must run along an axis, its normal turns by {np.max(n[:, 1 - component]):.3g}"
-        )
-    dof = 2 * living(sides) + component
-    return Fixed(dof, np.zeros(dof.size))
-
-
 def no_rigid_motion(mesh: Mesh) -> Fixed:
-    """Three degrees of freedom of two far points: loads in equilibrium cause no reaction there."""
+    """Three degrees of freedom of two distant control points; loads in equilibrium cause no reactions there."""
     A = int(np.argmin(mesh.P_AI.sum(1)))
     arm = mesh.P_AI - mesh.P_AI[A]
     B = int(np.argmax(np.linalg.norm(arm, axis=1)))
@@ -127,7 +77,7 @@ def no_rigid_motion(mesh: Mesh) -> Fixed:
 
 
 def solve(K: csc_array, f_Ai: np.ndarray, fixed: Fixed) -> np.ndarray:
-    """Displacements (n_A, 2) of the control points."""
+    """Displacements (n_A, 2) of the control points for control point forces (n_A, 2)."""
     u = np.zeros(f_Ai.size)
     u[fixed.dof_d] = fixed.value_d
     free = np.setdiff1d(np.arange(f_Ai.size), fixed.dof_d)

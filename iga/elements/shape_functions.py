@@ -9,7 +9,7 @@ import numpy as np
 from iga.mesh.bernstein import bernstein, bernstein_derivative, tensor
 from iga.mesh.extraction import SIDES, Chain, ElementBlock, Mesh
 
-#: Where all Bezier weights of an element are one but for so much, there is nothing to divide by.
+#: Deviation of all Bezier weights from 1 below which an element is polynomial, and not divided by the weight.
 POLYNOMIAL = 1e-13
 
 
@@ -17,8 +17,8 @@ POLYNOMIAL = 1e-13
 class BlockBasis:
     """Basis of one block of elements at the same parametric points of each.
 
-    ``N_eqa`` (n_e, n_q, n_a), ``dN_eqIa`` (n_e, n_q, 2, n_a) reference gradients, ``dV_eq`` (n_e, n_q) volume (or, on
-    a side, length) that each point stands for, ``X_eqI`` (n_e, n_q, 2) reference positions, ``conn_ea`` (n_e, n_a)
+    ``N_eqa`` (n_e, n_q, n_a), ``dN_eqIa`` (n_e, n_q, 2, n_a) reference gradients, ``dV_eq`` (n_e, n_q) volume (on a
+    side: length) of each point, ``X_eqI`` (n_e, n_q, 2) reference positions, ``conn_ea`` (n_e, n_a)
     control points.
     """
 
@@ -49,9 +49,9 @@ def block_basis(
 
 
 def chain_basis(mesh: Mesh, chain: Chain, points_q: np.ndarray, weights_q: np.ndarray) -> tuple[BlockBasis, ...]:
-    """Basis on the sides of a chain at the points (n_q,) of a rule on [0, 1], each with its length for ``dV``.
+    """Basis on the sides of a chain at the points (n_q,) of a rule on [0, 1], with lengths as ``dV``.
 
-    One entry for every block and side that the chain has, points along the side's own parameter.
+    One entry for every block and name of a side in the chain; points run along the side's own parameter.
     """
     bases = []
     for here, number, side in chain.parts():
@@ -64,7 +64,7 @@ def chain_basis(mesh: Mesh, chain: Chain, points_q: np.ndarray, weights_q: np.nd
 
 
 def _mapped(mesh: Mesh, block: ElementBlock, points_q: np.ndarray) -> tuple[BlockBasis, np.ndarray]:
-    """Basis at the points, with Jacobian determinants for ``dV``, and the Jacobians (n_e, n_q, 2, 2) dX_I/ds_s."""
+    """Basis at the points, with Jacobian determinants as ``dV``, and the Jacobians dX_I/ds_s (n_e, n_q, 2, 2)."""
     N_eqa, dN_seqa = _rational(mesh, block, points_q)
     P_eaI = mesh.P_AI[block.conn_ea]
     (J00, J10), (J01, J11) = (np.moveaxis(dN @ P_eaI, -1, 0) for dN in dN_seqa)

@@ -1,4 +1,4 @@
-"""The body of a CAD file, with its four sides found by name or by place."""
+"""The body of a CAD file, its four sides found by the names of side sets or by their place."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ import numpy as np
 from iga.files.iga_format import IgaFile, mesh
 from iga.files.iga_reader import read_iga
 from iga.mesh.bezier import homogeneous, jacobian
-from iga.mesh.edges import NEAR, Sides, chains_of, element_sides
+from iga.mesh.edges import SAME_POINT, Sides, chains_of, element_sides
 from iga.mesh.extraction import Chain, Mesh
 from iga.mesh.quadrature import gauss, square
 from iga.mesh.soundness import dependence, faults, unity_fault
 
-#: Sides of a rectangle: (coordinate that they share, whether it is the largest, hand of the body). The chains run with
-#: the axes, as those of a mesh made from knots do.
+#: Sides of a rectangle: (coordinate that is constant, whether it is the largest, `Chain.outward`). The chains run along
+#: the axes, like those of a tensor-product mesh.
 RECTANGLE = {"left": (0, False, -1.0), "right": (0, True, 1.0), "bottom": (1, False, 1.0), "top": (1, True, -1.0)}
 
-#: Words that may stand beside a side's name in the name of a set: `Left_side`, `edges_left`.
+#: Words that the name of a set may have beside that of the side: `Left_side`, `edges_left`.
 _FILLERS = {"side", "sides", "edge", "edges", "boundary", "face", "set"}
 
 
 def body_mesh(path: Path | str) -> Mesh:
-    """The body of an `.iga` file with the chains ``left``, ``right``, ``bottom`` and ``top``, beside those of its sets.
+    """The body of an `.iga` file with the chains ``left``, ``right``, ``bottom`` and ``top`` in addition to its sets.
 
-    A side is the side set of its name (`left`, `Left_side`, `edges_left`), or else the sides of the boundary that lie
-    on that line of the body's bounding box. ``left`` and ``right`` run upwards, ``bottom`` and ``top`` to the right.
+    A side is the side set of its name (`left`, `Left_side`, `edges_left`); if there is none, the part of the boundary
+    on that line of the bounding box. ``left`` and ``right`` run upwards, ``bottom`` and ``top`` to the right.
 
     Raises
     ------
-    ValueError : the file is malformed (`IgaError`, with the line), is no plane, has a Jacobian that is not positive,
-        is torn or doubled (`iga.mesh.soundness`), or a side cannot be found or is not one chain.
+    ValueError : the file is malformed (`IgaError`, with the line) or not a plane, a Jacobian is not positive, the mesh
+        is torn or doubled (`iga.mesh.soundness`), or a side is missing or not one chain.
     OSError : the file cannot be read.
     """
     file = read_iga(path)
@@ -50,7 +50,7 @@ def body_mesh(path: Path | str) -> Mesh:
 
 
 def _side(file: IgaFile, body: Mesh, sides: Sides, side: str) -> Chain:
-    """One side by the name of a set or by where it lies."""
+    """One side, by the name of a set or by its place."""
     names = [part.name for part in file.sets if part.kind == "side" and _plain(part.name) == side]
     if len(names) > 1:
         raise ValueError(f"the {side} side must be one side set, got {' and '.join(names)}")
@@ -68,7 +68,7 @@ def _straight(sides: Sides, side: str, axis: int, largest: bool) -> Chain:
     boundary = np.flatnonzero(~sides.shared_k)
     x_kb = sides.H_kbI[boundary, :, axis] / sides.H_kbI[boundary, :, 3]
     edge = x_kb[:, [0, -1]].max() if largest else x_kb[:, [0, -1]].min()
-    on = np.all(np.abs(x_kb - edge) < NEAR * sides.size_k[boundary, None], axis=1)
+    on = np.all(np.abs(x_kb - edge) < SAME_POINT * sides.size_k[boundary, None], axis=1)
     chains = chains_of(sides, boundary[on])
     if len(chains) != 1:
         found = f"{len(chains)} pieces of the boundary lie" if chains else "no side of the boundary lies"
@@ -78,7 +78,7 @@ def _straight(sides: Sides, side: str, axis: int, largest: bool) -> Chain:
 
 
 def _plain(name: str) -> str:
-    """The name of a set without the words that only say what it is."""
+    """The name of a set in lower case without the filler words."""
     words = re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|[^\W_a-zA-Z]+", name)
     return " ".join(word.lower() for word in words if word.lower() not in _FILLERS)
 

@@ -1,7 +1,7 @@
-"""Bezier extraction files (`.iga`) of the Rhino T-spline plug-in: what one says, how it is written, and its mesh.
+"""Bezier extraction files (`.iga`) of the Rhino T-spline plug-in: their content, their mesh, and writing them.
 
-A file keeps its elements in its own order and its functions in the order of each element, so that what is read and
-written again is the same to the last bit.
+`IgaFile` keeps the order of the elements and of the functions of each element, so that a file that is read and written
+again is the same to the last bit.
 """
 
 from __future__ import annotations
@@ -18,18 +18,19 @@ from iga.mesh.extraction import Chain, ElementBlock, Mesh
 from iga.mesh.mirror import SEEN_FROM_BEHIND, block_from_behind
 from iga.mesh.quadrature import gauss, square
 
-#: What a file may describe; only the first is a body in the plane.
-KINDS = ("plane", "surface", "thickened_surface", "volume")
+#: Types of files; only the first is a body in the plane.
+FILE_KINDS = ("plane", "surface", "thickened_surface", "volume")
 
-#: A third coordinate below this part of the body's extent is rounding.
-FLAT = 1e-12
+#: Third coordinates below this part of the body's extent are rounding.
+IN_PLANE = 1e-12
 
 
 @dataclass(frozen=True)
 class NamedSet:
     """A named set of nodes, element sides or elements.
 
-    ``kind`` is ``node``, ``side`` or ``elem``; ``ids`` (k,) counts from 0, ``sides`` (k,) names in `SIDES`, for sides.
+    ``kind`` is ``node``, ``side`` or ``elem``; ``ids`` (k,) count from 0; ``sides`` (k,), of element sides alone, are
+    names in `SIDES`.
     """
 
     kind: str
@@ -40,9 +41,9 @@ class NamedSet:
 
 @dataclass(frozen=True)
 class Domain:
-    """A part of the elements with its own numbers for their functions.
+    """A part of the elements with its own numbering of their functions.
 
-    ``elements`` (n,), ``functions`` (m,); ``places[i]`` are the numbers in ``functions`` of those of element i.
+    ``elements`` (n,), ``functions`` (m,); ``places[i]`` are the indices in ``functions`` of the functions of element i.
     """
 
     elements: np.ndarray
@@ -52,10 +53,10 @@ class Domain:
 
 @dataclass(frozen=True)
 class IgaFile:
-    """What an `.iga` file says.
+    """The content of an `.iga` file.
 
     ``P_AI`` (n_A, 3) control points, not homogeneous, ``w_A`` (n_A,) weights > 0. Element e of the file is number
-    ``place_e[e]`` of block ``block_e[e]``; the degrees of a block are three where the file describes volumes.
+    ``place_e[e]`` of block ``block_e[e]``; in a file of volumes a block has three degrees.
     """
 
     kind: str
@@ -69,15 +70,15 @@ class IgaFile:
 
 
 def mesh(file: IgaFile) -> Mesh:
-    """The body in the plane that a file describes, with a chain of every side set that is a piece of its boundary.
+    """The body in the plane that a file describes, with a chain for every side set that is a part of its boundary.
 
-    Elements whose s and t turn clockwise are seen from behind (s reversed, LEFT for RIGHT), so that Jacobians are
-    positive. Chains are walked with the body on the left. A side set of several pieces becomes the chains ``NAME-1``,
-    ``NAME-2``, ...; one with sides inside the body, such as a diagonal, stays a set of the file and is no chain.
+    In elements whose s and t turn clockwise, s is reversed (LEFT becomes RIGHT), so that Jacobians are positive. Chains
+    are walked with the body on the left. A side set of several pieces becomes the chains ``NAME-1``, ``NAME-2``, ...; a
+    side set with sides inside the body, such as a diagonal, becomes no chain.
 
     Raises
     ------
-    ValueError : the file does not describe a plane, or has control points beside the plane z = 0.
+    ValueError : the file does not describe a plane, or has control points outside the plane z = 0.
     """
     if file.kind != "plane":
         raise ValueError(f"type: must be plane for a body in the plane, got {file.kind}")
@@ -101,26 +102,14 @@ def mesh(file: IgaFile) -> Mesh:
 
 
 def _refuse_lifted(P_AI: np.ndarray) -> None:
-    lifted_A = np.abs(P_AI[:, 2]) > FLAT * np.ptp(P_AI[:, :2], axis=0).max()
+    lifted_A = np.abs(P_AI[:, 2]) > IN_PLANE * np.ptp(P_AI[:, :2], axis=0).max()
     if np.any(lifted_A):
         A = int(np.argmax(lifted_A))
         raise ValueError(f"node {A}: z must be 0 in a plane, got {P_AI[A, 2]:.6g} (nodes count from 0)")
 
 
-def from_mesh(body: Mesh) -> IgaFile:
-    """The file of a body in the plane: elements block by block, every chain a side set."""
-    first = body.first_b
-    block_e = np.repeat(np.arange(len(body.blocks)), np.diff(first))
-    sets = tuple(
-        NamedSet("side", "_".join(name.split()), first[chain.block_c] + chain.element_c, tuple(map(str, chain.side_c)))
-        for name, chain in body.chains.items()
-    )
-    P_AI = np.column_stack([body.P_AI, np.zeros(len(body.P_AI))])
-    return IgaFile("plane", P_AI, body.w_A, body.blocks, block_e, np.arange(first[-1]) - first[block_e], sets)
-
-
 def write_iga(file: IgaFile, path: Path | str) -> None:
-    """Write a file with 17 significant digits, which keep every bit of a number.
+    """Write a file with 17 significant digits, which preserve every bit of a number.
 
     Raises
     ------

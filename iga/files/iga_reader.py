@@ -1,4 +1,4 @@
-"""Reading `.iga` files: every line is checked as it is read, and the first that does not fit is named."""
+"""Reading `.iga` files: every line is checked as it is read, and an error names the first wrong line."""
 
 from __future__ import annotations
 
@@ -7,21 +7,35 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 
-from iga.files.iga_format import KINDS, Domain, IgaFile, NamedSet
+from iga.files.iga_format import FILE_KINDS, Domain, IgaFile, NamedSet
 from iga.mesh.extraction import SIDES, ElementBlock
 
-#: Highest degree of an element, largest magnitude of a number (Jacobians stay finite), and least Bezier weight relative
-#: to the weights of the element.
-HIGHEST, LARGEST, LEAST = 20, 1e30, 1e-12
+
+@dataclass(frozen=True)
+class FileLimits:
+    """Values beyond which a file is refused.
+
+    degree : highest degree of an element.
+    magnitude : largest magnitude of a number, so that Jacobians stay finite.
+    weight : least Bezier weight of an element, relative to the largest weight of its control points.
+    """
+
+    degree: int = 20
+    magnitude: float = 1e30
+    weight: float = 1e-12
+
+
+FILE_LIMITS = FileLimits()
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII).fullmatch
 
 
 class IgaError(ValueError):
-    """A file that is not a whole `.iga` file; ``line`` counts from 1."""
+    """A file that is not a complete `.iga` file; ``line`` counts from 1."""
 
     def __init__(self, path: Path, line: int, text: str) -> None:
         super().__init__(f"{path}: line {line}: {text}")
@@ -32,7 +46,7 @@ class IgaError(ValueError):
 class _Line:
     """The words of one line without its comment; no words at the end of the file.
 
-    ``plain`` lines have ASCII letters and no underscore: what Python takes for a number there is one.
+    ``plain`` lines are ASCII without underscores: in them, every word that ``float`` accepts is a number of the format.
     """
 
     path: Path
@@ -68,19 +82,21 @@ class _Line:
             raise self.refusal(f"different {what}", f"{twice} twice")
 
     def numbers(self, words: Sequence[str], count: int, what: str) -> list[float]:
-        """Finite numbers, so many."""
-        if self.plain and len(words) == count:  # the usual case is quick: files have thousands of such lines
+        """``count`` finite numbers."""
+        if self.plain and len(words) == count:  # the usual case is fast: files have thousands of such lines
             try:
                 values = list(map(float, words))
             except ValueError:
                 values = [np.nan]
-            if max(values) <= LARGEST and min(values) >= -LARGEST and isfinite(sum(values)):  # a NaN may pass the first
+            if (
+                max(values) <= FILE_LIMITS.magnitude and min(values) >= -FILE_LIMITS.magnitude and isfinite(sum(values))
+            ):  # NaN can pass the comparisons
                 return values
         if wrong := [word for word in words if not _NUMBER(word)]:
             raise self.refusal(f"{count} {what}, all finite numbers", repr(_short(wrong[0])))
         values = list(map(float, self.counted(words, count, what)))
-        if max(values) > LARGEST or min(values) < -LARGEST:
-            raise self.refusal(f"numbers up to {LARGEST:g} in magnitude", f"{max(values, key=abs):g}")
+        if max(values) > FILE_LIMITS.magnitude or min(values) < -FILE_LIMITS.magnitude:
+            raise self.refusal(f"numbers up to {FILE_LIMITS.magnitude:g} in magnitude", f"{max(values, key=abs):g}")
         return values
 
 
@@ -89,27 +105,26 @@ def read_iga(path: Path | str) -> IgaFile:
 
     Raises
     ------
-    IgaError : the file is not whole or not of the format, with the line and what was expected there.
-    OSError : there is no such file, or it may not be read.
+    IgaError : the file is incomplete or not of the format; the message names the line and what was expected there.
+    OSError : the file does not exist or cannot be read.
     """
     lines = _lines(Path(path))
     kind, nodes, elements = _header(lines)
     xyzw = np.array([_node(next(lines), i, nodes) for i in range(nodes)])
-    records = [_element(lines, i, elements, nodes, kind) for i in range(elements)]
-    blocks, block_e, place_e = _grouped(records, xyzw[:, 3])
-    conn_e = [conn for _, _, conn, _ in records]
-    sets, domains = _rest(lines, nodes, conn_e)
+    read = [_element(lines, i, elements, nodes, kind) for i in range(elements)]
+    blocks, block_e, place_e = _grouped(read, xyzw[:, 3])
+    sets, domains = _rest(lines, nodes, [element.conn_a for element in read])
     return IgaFile(kind, xyzw[:, :3], xyzw[:, 3], blocks, block_e, place_e, sets, domains)
 
 
 def _lines(path: Path) -> Iterator[_Line]:
-    """Lines with words, then for ever the end of the file."""
+    """All lines with words, then the end of the file without end."""
     data = path.read_bytes()
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        line = len(_split(data[: error.start].decode("utf-8", "replace")))
-        raise IgaError(path, line, f"expected UTF-8 text, got the byte 0x{data[error.start]:02x}") from None
+        last = len(_split(data[: error.start].decode("utf-8", "replace")))
+        raise IgaError(path, last, f"expected UTF-8 text, got the byte 0x{data[error.start]:02x}") from None
     number = 0
     for number, line in enumerate(_split(text), 1):
         words = line.split()
@@ -122,32 +137,40 @@ def _lines(path: Path) -> Iterator[_Line]:
 
 def _header(lines: Iterator[_Line]) -> tuple[str, int, int]:
     """Type, number of nodes and number of elements, in any order."""
-    found: dict[str, object] = {}
+    found: dict[str, str] = {}
     while missing := [key for key in ("type", "nodeN", "elemN") if key not in found]:
         line = next(lines)
         if not line.words or line.words[0] not in missing:
             raise line.refusal(" or ".join(missing))
         key, (word,) = line.words[0], line.counted(line.words[1:], 1, f"word after {line.words[0]}")
         if key != "type":
-            found[key] = line.integer(word, 1, 999_999_999, "a number")
-        elif word in KINDS:
-            found[key] = word
-        else:
-            raise line.refusal(f"type {', '.join(KINDS[:-1])} or {KINDS[-1]}", repr(_short(word)))
-    return tuple(found[key] for key in ("type", "nodeN", "elemN"))
+            line.integer(word, 1, 999_999_999, "a number")
+        elif word not in FILE_KINDS:
+            raise line.refusal(f"type {', '.join(FILE_KINDS[:-1])} or {FILE_KINDS[-1]}", repr(_short(word)))
+        found[key] = word
+    return found["type"], int(found["nodeN"]), int(found["elemN"])
 
 
 def _node(line: _Line, i: int, nodes: int) -> list[float]:
     if line.words[:1] != ("node",):
         raise line.refusal(f"node {i + 1} of {nodes}")
     values = line.numbers(line.words[1:], 4, "numbers x y z w of a node")
-    if not values[3] >= 1 / LARGEST:
-        raise line.refusal(f"a weight > 0, {1 / LARGEST:g} or more", line.words[4])
+    if not values[3] >= 1 / FILE_LIMITS.magnitude:
+        raise line.refusal(f"a weight > 0, {1 / FILE_LIMITS.magnitude:g} or more", line.words[4])
     return values
 
 
-def _element(lines: Iterator[_Line], i: int, elements: int, nodes: int, kind: str) -> tuple:
-    """Line of an element, its degrees, its functions and its extraction operator."""
+@dataclass(frozen=True)
+class _Element:
+    """One element: its first line, its degrees, its control points (n_a,) and its extraction operator (n_a, n_b)."""
+
+    line: _Line
+    degrees: tuple[int, ...]
+    conn_a: np.ndarray
+    C_ab: np.ndarray
+
+
+def _element(lines: Iterator[_Line], i: int, elements: int, nodes: int, kind: str) -> _Element:
     head = next(lines)
     if head.words[:1] != ("belem",):
         raise head.refusal(f"belem {i + 1} of {elements}")
@@ -155,7 +178,7 @@ def _element(lines: Iterator[_Line], i: int, elements: int, nodes: int, kind: st
     if len(head.words) - 2 not in directions:
         raise head.refusal(f"a number of functions and {directions[0]} degrees", f"{len(head.words) - 1} numbers")
     count = head.integer(head.words[1], 1, nodes, "a number of functions")
-    degrees = tuple(head.integer(word, 1, HIGHEST, "a degree") for word in head.words[2:])
+    degrees = tuple(head.integer(word, 1, FILE_LIMITS.degree, "a degree") for word in head.words[2:])
     line = next(lines)
     conn = line.ids(line.words, count, nodes, "node")
     size = int(np.prod([p + 1 for p in degrees]))
@@ -163,24 +186,25 @@ def _element(lines: Iterator[_Line], i: int, elements: int, nodes: int, kind: st
     for a in range(count):
         line = next(lines)
         C_ab.append(line.numbers(line.words, size, f"coefficients of function {a + 1} of {count} on element {i}"))
-    return head, degrees, conn, np.array(C_ab)
+    return _Element(head, degrees, conn, np.array(C_ab))
 
 
-def _grouped(records: Sequence[tuple], w_A: np.ndarray) -> tuple[tuple[ElementBlock, ...], np.ndarray, np.ndarray]:
+def _grouped(read: Sequence[_Element], w_A: np.ndarray) -> tuple[tuple[ElementBlock, ...], np.ndarray, np.ndarray]:
     """Blocks of elements with the same degrees and number of functions; block of each element and place in it."""
     members: dict[tuple, list[int]] = {}
-    for e, (_, degrees, conn, _) in enumerate(records):
-        members.setdefault((degrees, len(conn)), []).append(e)
-    blocks, block_e, place_e = [], np.empty(len(records), dtype=int), np.empty(len(records), dtype=int)
-    for number, ((degrees, _), e) in enumerate(members.items()):
-        block = ElementBlock(degrees, np.array([records[i][3] for i in e]), np.array([records[i][2] for i in e]))
+    for i, element in enumerate(read):
+        members.setdefault((element.degrees, len(element.conn_a)), []).append(i)
+    blocks, block_e, place_e = [], np.empty(len(read), dtype=int), np.empty(len(read), dtype=int)
+    for number, e in enumerate(members.values()):
+        degrees = cast(tuple[int, int], read[e[0]].degrees)  # three of a volume, which never becomes a `Mesh`
+        block = ElementBlock(degrees, np.array([read[i].C_ab for i in e]), np.array([read[i].conn_a for i in e]))
         w_ea = w_A[block.conn_ea]
         w_eb = np.einsum("ea,eab->eb", w_ea, block.C_eab)
-        positive_e = np.all(w_eb > LEAST * w_ea.max(1, keepdims=True), axis=1)
+        positive_e = np.all(w_eb > FILE_LIMITS.weight * w_ea.max(1, keepdims=True), axis=1)
         if not np.all(positive_e):
             wrong = int(np.argmin(positive_e))
             text = f"coefficients that give element {e[wrong]} positive Bezier weights"
-            raise records[e[wrong]][0].refusal(text, f"{w_eb[wrong].min():.6g}")
+            raise read[e[wrong]].line.refusal(text, f"{w_eb[wrong].min():.6g}")
         blocks.append(block)
         block_e[e], place_e[e] = number, np.arange(len(e))
     return tuple(blocks), block_e, place_e
@@ -240,7 +264,7 @@ def _domain(line: _Line, lines: Iterator[_Line], nodes: int, conn_e: Sequence[np
 
 
 def _split(text: str) -> list[str]:
-    """Lines, whatever they end with."""
+    """Lines of a text with any line ends."""
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 

@@ -1,1 +1,1 @@
-"""Meshes by Bezier extraction: the only seam between the bases."""
+"""Meshes by Bezier extraction: the common form of all bases."""

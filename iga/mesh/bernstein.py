@@ -1,4 +1,4 @@
-"""Bernstein polynomials on [0, 1]: the one basis that every element ends in."""
+"""Bernstein polynomials on [0, 1], in which extraction expresses the functions of every basis."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def bernstein(degree: int, xi: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     degree : polynomial degree p >= 0.
-    xi : (...,) points; outside [0, 1] the polynomials are continued.
+    xi : (...,) points; outside [0, 1] the polynomials are extrapolated.
 
     Returns
     -------
@@ -35,7 +35,7 @@ def bernstein_derivative(degree: int, xi: np.ndarray, order: int = 1) -> np.ndar
     ----------
     degree : polynomial degree p >= 0.
     xi : (...,) points.
-    order : how often to differentiate, >= 0.
+    order : order of the derivative, >= 0.
 
     Returns
     -------
@@ -51,7 +51,7 @@ def bernstein_derivative(degree: int, xi: np.ndarray, order: int = 1) -> np.ndar
 
 
 def elevation(degree: int, higher: int) -> np.ndarray:
-    """Bernstein polynomials in those of a higher degree P (p + 1, P + 1), Farin 2002, section 6.1.
+    """Degree elevation E (p + 1, P + 1), ``B_b^p = sum_c E_bc B_c^P`` (Farin 2002, section 6.1).
 
     ``E_bc = binom(p, b) binom(P - p, c - b) / binom(P, c)``
     """
@@ -61,9 +61,9 @@ def elevation(degree: int, higher: int) -> np.ndarray:
 
 
 def bernstein_jet(degree: int, xi_q: np.ndarray, orders: int) -> np.ndarray:
-    """Values and derivatives up to ``orders`` at many points by one matrix product (orders + 1, n_q, p + 1).
+    """Values and derivatives up to ``orders`` (orders + 1, n_q, p + 1) at points (n_q,), by one matrix product.
 
-    Through monomials: faster than `bernstein_derivative` and good to some 10 units of rounding for p <= 5 on [0, 1].
+    By monomials: faster than `bernstein_derivative`, with an error of some 10 units of rounding for p <= 5 on [0, 1].
     """
     powers_q = np.ones((degree + 1, len(xi_q)))
     for b in range(degree):
@@ -84,7 +84,7 @@ def _monomials(degree: int, orders: int) -> np.ndarray:
 
 
 def tensor(B_s: np.ndarray, B_t: np.ndarray) -> np.ndarray:
-    """Products of two sets of 1-D values at the same points, index ``j (p + 1) + i`` with i along s.
+    """Products of 1-D values in two directions at the same points, index ``j (p + 1) + i`` with i along s.
 
     Parameters
     ----------

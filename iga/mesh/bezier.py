@@ -1,4 +1,4 @@
-"""Elements in Bezier form: the homogeneous control points that extraction gives each one of its own."""
+"""Elements in Bezier form: homogeneous control points of each element, by its extraction operator."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def homogeneous(P_AI: np.ndarray, w_A: np.ndarray, block: ElementBlock) -> np.nd
 
     Parameters
     ----------
-    P_AI : (n_A, d) control points or any field of the same functions.
+    P_AI : (n_A, d) control points, or control values of any field.
     w_A : (n_A,) weights.
 
     Returns
@@ -25,10 +25,10 @@ def homogeneous(P_AI: np.ndarray, w_A: np.ndarray, block: ElementBlock) -> np.nd
 
 
 def jacobian(H_ebI: np.ndarray, degrees: tuple[int, int], points_q: np.ndarray) -> np.ndarray:
-    """Jacobian determinants (n_e, n_q) at points (n_q, 2), whatever their sign.
+    """Jacobian determinants (n_e, n_q) at points (n_q, 2), of any sign.
 
-    With homogeneous positions h = (W X, W) it is ``det[h, h_s, h_t] / W^3``: columns that belong to the change of W
-    drop out of the determinant.
+    With homogeneous positions h = (W X, W) the determinant is ``det[h, h_s, h_t] / W^3``: the terms with derivatives of
+    W are multiples of h and drop out.
     """
     (p, q), (s, t) = degrees, points_q.T
     h_eqI = tensor(bernstein(p, s), bernstein(q, t)) @ H_ebI
@@ -38,12 +38,12 @@ def jacobian(H_ebI: np.ndarray, degrees: tuple[int, int], points_q: np.ndarray) 
 
 
 def cut(mesh: Mesh, at_ed: np.ndarray) -> Mesh:
-    """The same mesh with some elements cut; its chains run over the pieces.
+    """The same mesh with some elements cut in two or four; its chains run over the pieces.
 
     Parameters
     ----------
-    at_ed : (n_e, 2) parameters of the elements, counted through the blocks, at which to cut across s and across t;
-        NaN where an element stays whole.
+    at_ed : (n_e, 2) parameters in (0, 1) at which the elements, counted through the blocks, are cut across s and
+        across t; NaN for an element that is not cut.
     """
     for direction in (0, 1):
         parts = np.split(at_ed[:, direction], mesh.first_b[1:-1])
@@ -61,7 +61,7 @@ def halved(mesh: Mesh) -> Mesh:
 
 
 def _cut(block: ElementBlock, direction: int, at_e: np.ndarray) -> ElementBlock:
-    """Elements cut across one direction, ``B_b`` on a part by interpolation in p + 1 points, which is exact."""
+    """Elements cut across one direction; ``B_b`` on a piece by interpolation at p + 1 points, which is exact."""
     source = np.repeat(np.arange(len(at_e)), 2 - np.isnan(at_e))
     piece = np.flatnonzero(~np.isnan(at_e[source]))
     second, at = np.arange(len(piece)) % 2 == 1, at_e[source[piece]]
@@ -77,7 +77,7 @@ def _cut(block: ElementBlock, direction: int, at_e: np.ndarray) -> ElementBlock:
 
 
 def _carried(chain: Chain, direction: int, cut_e: np.ndarray, first_b: np.ndarray) -> Chain:
-    """The chain on the pieces of its elements, in the same order."""
+    """The chain over the pieces of its elements, in the same order."""
     piece_e = np.cumsum(np.concatenate([[0], 1 + cut_e]))
     start_c = first_b[chain.block_c]
     cut_c = cut_e[start_c + chain.element_c]

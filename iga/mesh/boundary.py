@@ -9,14 +9,14 @@ from iga.mesh.extraction import Chain, Mesh
 
 
 def boundary_chains(body: Mesh) -> tuple[Chain, ...]:
-    """The closed chains of all element sides with no element on the other hand, walked with the body on the left.
+    """The closed chains of all element sides without a neighbour, walked with the body on the left.
 
-    A side is shared where the same functions have the same values on both hands, whole or in parts; the faces of a
-    slit are boundary.
+    Two elements share a side, or a part of one, if the same functions have the same values on it; the faces of a slit
+    are boundary.
 
     Raises
     ------
-    ValueError : the boundary touches itself in a vertex, so that its chains cannot be told apart.
+    ValueError : the boundary touches itself in a vertex, so that its chains are not unique.
     """
     sides = element_sides(body)
     chains = chains_of(sides, np.flatnonzero(~sides.shared_k))

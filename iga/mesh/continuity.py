@@ -1,4 +1,4 @@
-"""How smooth the functions of a mesh are across the sides of its elements."""
+"""Continuity of the functions of a mesh across the sides of its elements."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
 
 
 def jumps(mesh: Mesh, sides: Sides) -> tuple[np.ndarray, np.ndarray]:
-    """Jumps of the functions across the middle of every inner side.
+    """Largest jumps of the functions and their derivatives across the middle of every inner side.
 
     Returns
     -------
     k_n : (n,) sides.
-    jump_no : (n, 3) largest jump of a value, of a gradient times the size of the element, and of a second derivative
-        in space times the size squared.
+    jump_no : (n, 3) jump of a value, of a gradient times the size of the element, and of a second derivative in space
+        times the size squared; the largest of all functions.
     """
     k, other, t = sides.opposite
     if not k.size:

@@ -1,7 +1,7 @@
-"""The seam: every discretisation ends here as control points, weights, and Bezier extraction operators.
+"""The common form of all discretisations: control points, weights and Bezier extraction operators.
 
-On element e the functions are ``N_a = sum_b C_eab B_b`` and, with weights, ``R_a = w_a N_a / sum_c w_c N_c``. Whatever
-lies beyond (basis, assembly, interface) knows nothing else of a mesh.
+On element e the functions are ``N_a = sum_b C_eab B_b`` and, with weights, ``R_a = w_a N_a / sum_c w_c N_c`` (Borden,
+Scott, Evans, Hughes 2011). Assembly and interface depend on nothing else of a mesh.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-#: Element sides, named as in the Rhino plug-in's files: (fixed direction, its value).
+#: Element sides by the names of the Rhino plug-in's files: (direction whose parameter is constant, its value).
 SIDES = {"LEFT": (0, 0.0), "RIGHT": (0, 1.0), "BOTTOM": (1, 0.0), "TOP": (1, 1.0)}
 
-#: On which hand the element lies, seen along the side's own parameter: +1 to the left, -1 to the right.
+#: Where the element lies, seen along the side's parameter: +1 to the left, -1 to the right.
 HANDS = {"LEFT": -1.0, "RIGHT": 1.0, "BOTTOM": 1.0, "TOP": -1.0}
 
 
@@ -32,10 +32,10 @@ class ElementBlock:
 
 @dataclass(frozen=True)
 class Chain:
-    """An ordered chain of element sides, walked with the body on one hand.
+    """An ordered chain of element sides.
 
-    ``block_c``, ``element_c`` (n_c,) say which element and ``side_c`` (n_c,) which of its sides, by name in `SIDES`.
-    ``outward`` is +1 where the body lies to the left of the walking direction, -1 where to the right.
+    ``block_c``, ``element_c`` (n_c,) are block and number of the elements, ``side_c`` (n_c,) their sides by name in
+    `SIDES`. ``outward`` is +1 if the body lies to the left of the walking direction, -1 if to the right.
     """
 
     block_c: np.ndarray
@@ -45,11 +45,11 @@ class Chain:
 
     @property
     def reversed_c(self) -> np.ndarray:
-        """Which sides (n_c,) are walked against their own parameter."""
+        """Mask (n_c,) of the sides that are walked against their own parameter."""
         return np.array([HANDS[side] != self.outward for side in self.side_c], dtype=bool)
 
     def parts(self) -> Iterator[tuple[np.ndarray, int, str]]:
-        """Places in the chain that share a block and a side, with that block and side."""
+        """For each block and side in the chain: the indices (n,) of these sides in the chain, the block, the side."""
         for number in np.unique(self.block_c):
             for side in SIDES:
                 here = np.flatnonzero((self.block_c == number) & (self.side_c == side))
@@ -59,10 +59,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A body: control points ``P_AI`` (n_A, 2), weights ``w_A`` (n_A,), element blocks, and named chains of sides.
-
-    ``order`` is the expected rate of convergence of the displacement in L2, p + 1.
-    """
+    """A body: control points ``P_AI`` (n_A, 2), weights ``w_A`` (n_A,), element blocks, and named chains of sides."""
 
     P_AI: np.ndarray
     w_A: np.ndarray
@@ -71,15 +68,17 @@ class Mesh:
 
     @property
     def order(self) -> int:
+        """Expected rate of convergence of the displacement in L2, p + 1."""
         return min(min(block.degrees) for block in self.blocks) + 1
 
     @property
     def first_b(self) -> np.ndarray:
-        """Numbers of the first element of each block and of the end (n_b + 1,), counted through the blocks."""
+        """Numbers (n_b + 1,) of the first element of each block, and of all elements, counted through the blocks."""
         return np.cumsum([0, *(len(block.conn_ea) for block in self.blocks)])
 
     @property
     def elements(self) -> int:
+        """Number of elements."""
         return int(self.first_b[-1])
 
 
@@ -95,28 +94,26 @@ def one_sided(side: str, block_c: np.ndarray, element_c: np.ndarray) -> Chain:
     return Chain(block_c, element_c, np.full(len(element_c), side), HANDS[side])
 
 
-def tensor_mesh(
-    degrees: tuple[int, int],
-    C_s: np.ndarray,
-    conn_s: np.ndarray,
-    C_t: np.ndarray,
-    conn_t: np.ndarray,
-    P_AI: np.ndarray,
-    w_A: np.ndarray,
-) -> Mesh:
-    """Mesh from 1-D extractions in two directions.
+@dataclass(frozen=True)
+class Spans:
+    """The elements of one direction: ``C_eab`` (n_e, p + 1, p + 1) extraction, ``conn_ea`` (n_e, p + 1) functions."""
+
+    C_eab: np.ndarray
+    conn_ea: np.ndarray
+
+
+def tensor_mesh(spans_s: Spans, spans_t: Spans, P_AI: np.ndarray, w_A: np.ndarray) -> Mesh:
+    """Tensor-product mesh of two directions, with the chains ``left``, ``right``, ``bottom`` and ``top``.
 
     Parameters
     ----------
-    C_s, C_t : (n_es, p + 1, p + 1), (n_et, q + 1, q + 1) extraction operators.
-    conn_s, conn_t : (n_es, p + 1), (n_et, q + 1) functions of each span.
-    P_AI, w_A : control net with the index along s running fastest.
+    P_AI, w_A : (n_A, 2) control points and (n_A,) weights, the index along s running fastest.
     """
-    p, q = degrees
-    n_s, (e_s, e_t) = conn_s.max() + 1, (len(C_s), len(C_t))
-    C = np.einsum("fcd,eab->fecadb", C_t, C_s).reshape(e_t * e_s, (q + 1) * (p + 1), (q + 1) * (p + 1))
-    conn = (conn_t[:, None, :, None] * n_s + conn_s[None, :, None, :]).reshape(e_t * e_s, -1)
+    (e_s, p_1), (e_t, q_1) = spans_s.conn_ea.shape, spans_t.conn_ea.shape
+    n_s, n_b = spans_s.conn_ea.max() + 1, p_1 * q_1
+    C_eab = np.einsum("fcd,eab->fecadb", spans_t.C_eab, spans_s.C_eab).reshape(e_t * e_s, n_b, n_b)
+    conn_ea = (spans_t.conn_ea[:, None, :, None] * n_s + spans_s.conn_ea[None, :, None, :]).reshape(e_t * e_s, n_b)
     number = np.arange(e_t * e_s).reshape(e_t, e_s)
     strips = {"LEFT": number[:, 0], "RIGHT": number[:, -1], "BOTTOM": number[0], "TOP": number[-1]}
     chains = {side.lower(): one_sided(side, np.zeros_like(e), e) for side, e in strips.items()}
-    return Mesh(P_AI, w_A, (ElementBlock((p, q), C, conn),), chains)
+    return Mesh(P_AI, w_A, (ElementBlock((p_1 - 1, q_1 - 1), C_eab, conn_ea),), chains)

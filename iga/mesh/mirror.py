@@ -1,4 +1,4 @@
-"""Meshes seen from behind and upside down, with positive Jacobians."""
+"""Meshes with reversed parameters, and mirror images, with positive Jacobians."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from iga.mesh.extraction import Chain, ElementBlock, Mesh
 
-#: Sides of an element seen from the other end.
+#: Names of the sides of an element after s is reversed.
 SEEN_FROM_BEHIND = {"LEFT": "RIGHT", "RIGHT": "LEFT"}
 
 
@@ -35,7 +35,7 @@ def block_from_behind(block: ElementBlock, turned_e: np.ndarray) -> ElementBlock
 
 
 def upside_down(mesh: Mesh) -> Mesh:
-    """The mirror image of a body in Y = 0; what was its bottom is its top."""
+    """The mirror image of a body in Y = 0; the chains ``bottom`` and ``top`` are exchanged."""
     back = from_behind(mesh)
     other = {"bottom": "top", "top": "bottom"}
     chains = {other.get(name, name): chain for name, chain in back.chains.items()}

@@ -12,15 +12,19 @@ def gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre points and weights (n,), exact for degree 2n - 1."""
     xi, weights = np.polynomial.legendre.leggauss(n)  # on [-1, 1]
     x, w = 0.5 * (xi + 1.0), 0.5 * weights
-    x.flags.writeable = w.flags.writeable = False  # all who ask share them
+    x.flags.writeable = w.flags.writeable = False  # cached: all callers share these arrays
     return x, w
 
 
 def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss-Lobatto points and weights (n,), n >= 2, end points included, exact for degree 2n - 3.
+    """Gauss-Lobatto points and weights (n,), end points included, exact for degree 2n - 3.
 
     Inner points are the roots of P'_{n-1}; ``w = 2 / (n (n - 1) P_{n-1}(x)^2)`` on [-1, 1] (Abramowitz and Stegun
     1964, 25.4.32).
+
+    Raises
+    ------
+    ValueError : n < 2.
     """
     if n < 2:
         raise ValueError(f"a Lobatto rule has at least 2 points, got {n}")
@@ -32,7 +36,7 @@ def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
 def square(
     rule_s: tuple[np.ndarray, np.ndarray], rule_t: tuple[np.ndarray, np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Product rule: points (n, 2) and weights (n,) on the unit square."""
+    """Product of two rules: points (n, 2) and weights (n,) on the unit square, s running fastest."""
     (s, w_s), (t, w_t) = rule_s, rule_t
     points = np.stack([np.tile(s, len(t)), np.repeat(t, len(s))], -1)
     return points, np.repeat(w_t, len(s)) * np.tile(w_s, len(t))

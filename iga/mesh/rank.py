@@ -1,6 +1,8 @@
-"""How many rows of a matrix of functions are independent."""
+"""Rank of a matrix of functions: how many of them are linearly independent."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
@@ -8,34 +10,46 @@ from scipy.sparse.linalg import eigsh
 
 from iga.mesh.extraction import Mesh
 
-#: Functions are dependent where a singular value is below this part of the largest one, and up to how many functions
-#: all singular values are computed.
-DEPENDENT, MANY = 1e-9, 2000
+
+@dataclass(frozen=True)
+class RankSettings:
+    """Numerical rank.
+
+    dependent : part of the largest singular value below which a singular value counts as zero.
+    dense : number of functions up to which all singular values are computed; beyond, a sparse eigenvalue solver finds
+        the smallest one alone.
+    """
+
+    dependent: float = 1e-9
+    dense: int = 2000
+
+
+RANK = RankSettings()
 
 
 def rank(M_Ab: csr_array) -> int:
-    """Rank of a matrix of functions, a row each.
+    """Rank of a matrix (n_A, n_b) with one function per row.
 
-    Rows are scaled to length one. Up to `MANY` functions by singular values; beyond, from the smallest eigenvalue of
-    the Gram matrix, so that a rank below the number of functions is then an upper bound.
+    Rows are scaled to length one. Up to ``RANK.dense`` functions the rank is found from the singular values; beyond,
+    from the smallest eigenvalue of the Gram matrix: a result below n_A is then an upper bound of the rank.
     """
     length_A = np.sqrt((M_Ab * M_Ab).sum(axis=1))
     used = length_A > 0
     M_Ab = csr_array(M_Ab[used]).multiply(1.0 / length_A[used][:, None]).tocsr()
     gram_AB = M_Ab @ M_Ab.T
-    if M_Ab.shape[0] > MANY:
+    if M_Ab.shape[0] > RANK.dense:
         largest = float(abs(gram_AB).sum(axis=1).max())
         smallest = eigsh(gram_AB, k=1, sigma=-1e-12 * largest, return_eigenvectors=False)[0]
-        return M_Ab.shape[0] - int(smallest < DEPENDENT * largest)
+        return M_Ab.shape[0] - int(smallest < RANK.dependent * largest)
     values = np.linalg.eigvalsh(gram_AB.toarray())
-    if values[0] > 1e-11 * values[-1]:  # the Gram matrix squares: below, only singular values can tell
+    if values[0] > 1e-11 * values[-1]:  # eigenvalues are squares of singular values: smaller ones are lost in rounding
         return M_Ab.shape[0]
     singular = np.linalg.svd(M_Ab.toarray(), compute_uv=False)
-    return int(np.count_nonzero(singular > DEPENDENT * singular[0]))
+    return int(np.count_nonzero(singular > RANK.dependent * singular[0]))
 
 
 def coefficients(mesh: Mesh) -> csr_array:
-    """Bernstein coefficients of all functions on all elements (n_A, sum n_e n_b)."""
+    """Bernstein coefficients (n_A, sum n_e n_b) of all functions on all elements."""
     rows, columns, values, first = [], [], [], 0
     for block in mesh.blocks:
         n_e, n_a, n_b = block.C_eab.shape

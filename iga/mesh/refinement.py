@@ -1,4 +1,4 @@
-"""Refinement of any extracted mesh, its history unknown: every element cut in four, the pieces joined C0."""
+"""Refinement of any mesh from its extraction alone: every element cut in four, the pieces joined with C0 continuity."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ import numpy as np
 
 from iga.mesh.bernstein import elevation
 from iga.mesh.bezier import cut, halved, homogeneous
-from iga.mesh.edges import NEAR, Sides, element_sides, walked
+from iga.mesh.edges import SAME_POINT, Sides, element_sides, walked
 from iga.mesh.extraction import SIDES, ElementBlock, Mesh
 
 
 def bezier_refined(mesh: Mesh, times: int = 1) -> Mesh:
-    """The same geometry in Bezier elements with shared control points, each element cut into ``4**times``.
+    """The same geometry in Bezier elements with shared control points, each element cut into ``4**times`` pieces.
 
-    All elements get the highest degree of the mesh, and hanging nodes are cut through first, so that the pieces
-    conform; the new space contains the old one. Chains are carried over.
+    All elements get the highest degree of the mesh. Elements with hanging nodes are cut first, so that the pieces
+    conform; the new space contains the old one, and chains run over the pieces.
 
     Raises
     ------
-    ValueError : hanging nodes that cannot be resolved, or neighbours with different traces on their common side.
+    ValueError : hanging nodes that cuts do not remove, or neighbours with different traces on their common side.
     """
     mesh = _joined(conforming(mesh))
     for _ in range(times):
@@ -29,14 +29,14 @@ def bezier_refined(mesh: Mesh, times: int = 1) -> Mesh:
 
 
 def _joined(mesh: Mesh) -> Mesh:
-    """Every element with Bernstein polynomials of the highest degree, control points shared on vertices and edges."""
+    """Elements with Bernstein polynomials of the highest degree, control points shared at vertices and on edges."""
     sides, p = element_sides(mesh), max(max(block.degrees) for block in mesh.blocks)
     Q_ebk = np.concatenate([_elevated(mesh, block, p) for block in mesh.blocks])
     conn_eb = _numbers(sides, p)
     Q_Ak = np.empty((conn_eb.max() + 1, 3))
     Q_Ak[conn_eb] = Q_ebk
     gap = np.max(np.abs(Q_Ak[conn_eb] - Q_ebk), axis=(1, 2)) / np.max(np.abs(Q_ebk - Q_ebk[:, :1]), axis=(1, 2))
-    if np.max(gap) > 10.0 * NEAR:
+    if np.max(gap) > 10.0 * SAME_POINT:
         worst = len(SIDES) * int(np.argmax(gap))
         where = f"element {sides.element_k[worst]} of block {sides.block_k[worst]}"
         raise ValueError(f"neighbours must agree on their common side, {where} misses by {gap.max():.1e} of its size")
@@ -55,7 +55,7 @@ def _elevated(mesh: Mesh, block: ElementBlock, p: int) -> np.ndarray:
 
 
 def _numbers(sides: Sides, p: int) -> np.ndarray:
-    """Control points (n_e, (p + 1)^2): one a vertex, p - 1 an edge, (p - 1)^2 within."""
+    """Numbers of control points (n_e, (p + 1)^2): one per vertex, p - 1 per edge, (p - 1)^2 inside an element."""
     start_ek, end_ek = np.moveaxis(sides.vertex_kv.reshape(-1, len(SIDES), 2), 2, 0)
     edge_ek = sides.edge_k.reshape(start_ek.shape)
     vertices, edges, n_e = start_ek.max() + 1, edge_ek.max() + 1, len(start_ek)
@@ -70,16 +70,16 @@ def _numbers(sides: Sides, p: int) -> np.ndarray:
     return conn_eb
 
 
-#: Rounds of cuts before giving up: a cut crosses one element a round.
+#: Largest number of rounds of cuts; in each round a cut crosses one element.
 ROUNDS = 200
 
 
 def conforming(mesh: Mesh) -> Mesh:
-    """The same functions on elements that meet side to side, cut along the lines that end on their sides.
+    """The same functions on elements without hanging nodes: elements are cut along the lines that end on their sides.
 
     Raises
     ------
-    ValueError : cuts that go on for ever, as they may where they wind around an extraordinary point.
+    ValueError : hanging nodes remain after `ROUNDS` rounds, as when cuts wind around an extraordinary point.
     """
     for _ in range(ROUNDS):
         sides = element_sides(mesh)
@@ -89,6 +89,6 @@ def conforming(mesh: Mesh) -> Mesh:
         at_ed = np.full((mesh.elements, 2), np.nan)
         along = np.array([1 - SIDES[side][0] for side in sides.side_k[k]])
         at = sides.parameters(k, t)[np.arange(len(k)), along]
-        at_ed[k // len(SIDES), along] = at  # of several cuts across one element one is made, the others in later rounds
+        at_ed[k // len(SIDES), along] = at  # one cut per element and direction in a round, further ones in later rounds
         mesh = cut(mesh, at_ed)
     raise ValueError(f"hanging nodes are left after {ROUNDS} rounds of cuts, at {mesh.elements} elements")

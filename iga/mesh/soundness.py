@@ -1,47 +1,58 @@
-"""Whether the elements of a mesh make one body: covered once, without tears, by functions that add up to one.
+"""Whether the elements of a mesh form one body: covered once, without tears, by functions that add up to one.
 
-Elements of a body share its inner sides, functions included. Sides that are not shared are the boundary, where the
-functions end. A tear is boundary inside the body, and shows in one of two ways. The functions of a smooth mesh go on
-beyond it, so that they are dependent on the boundary. Those of a C0 mesh may end there; two sides of the boundary then
-lie on each other, as the faces of a slit do. It is a slit where both faces belong to chains of the mesh.
+Neighbours share their common side and the functions on it. Sides that are not shared are the boundary. A tear is a part
+of the boundary inside the body, which is found in one of two ways. In a smooth mesh, functions continue beyond the
+tear: their traces on the boundary are linearly dependent. In a C0 mesh, functions can end there: two sides of the
+boundary then coincide. They are the faces of a slit, and no error, if both belong to chains of the mesh.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from iga.mesh.bezier import homogeneous, jacobian
-from iga.mesh.edges import NEAR, Sides, element_sides, nearest, walked
+from iga.mesh.edges import SAME_POINT, Sides, element_sides, nearest, walked
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss, square
 from iga.mesh.rank import coefficients, rank
 
-#: Files hold 16 or 17 digits: the coefficients of 25 functions add up to 1 within 1e-14.
+#: Largest error of the sum of the functions. Files hold 16 or 17 digits: 25 coefficients then add up within 1e-14.
 UNITY = 1e-10
 
-#: Functions are of size one; below this coefficient on a side they end there.
-ENDED = 1e-9
 
-#: Two sides of the boundary touch within this part of the element's length along the side, and of its height over it.
-TOUCHING = 1e-2
+@dataclass(frozen=True)
+class SoundnessSettings:
+    """How torn, doubled and overlapping elements are found.
 
-#: Parameters at which sides are compared; none is a simple fraction, at which hanging nodes lie.
-_SAMPLES = (0.137, 0.291, 0.413, 0.587, 0.709, 0.863)
+    ended : coefficient on a side below which a function, of size one, vanishes there.
+    touching : distance below which two boundary sides lie on each other, as a part of the length of the side and of the
+        height of its element.
+    samples : parameters at which sides are compared; none is a simple fraction, where hanging nodes lie.
+    pieces : straight pieces of a side in the search for overlaps; more pieces follow curved sides more closely.
+    chunk : pairs of a point and a side that are treated together, for the sake of memory.
+    """
 
-#: Straight pieces of a side in the search for overlaps, and numbers at a time there.
-_PIECES, _CHUNK = 8, 1_000_000
+    ended: float = 1e-9
+    touching: float = 1e-2
+    samples: tuple[float, ...] = (0.137, 0.291, 0.413, 0.587, 0.709, 0.863)
+    pieces: int = 8
+    chunk: int = 1_000_000
+
+
+SOUNDNESS = SoundnessSettings()
 
 
 def missed_unity(mesh: Mesh) -> float:
     """Largest ``|sum_a N_a - 1|`` or ``|sum_a w_a N_a - 1|`` in Bernstein coefficients, of the sum that comes closer.
 
-    The second sum is that of semi-standard T-splines. Bernstein polynomials whose value and gradient vanish on all
-    sides are left out: constructions at extraordinary points may leave a bubble of degree four, which the rational
-    functions divide out inside the element.
+    Semi-standard T-splines satisfy the second sum. Bernstein polynomials whose value and gradient vanish on all sides
+    are left out: constructions at extraordinary points can leave a bubble of degree four inside an element, which the
+    rational functions divide out.
     """
     plain, weighted = [], []
     for block in mesh.blocks:
@@ -55,22 +66,22 @@ def missed_unity(mesh: Mesh) -> float:
 
 
 def unity_fault(mesh: Mesh) -> tuple[str, ...]:
-    """A sentence where the functions do not add up to 1 within `UNITY`."""
+    """A sentence if the functions do not add up to 1 within `UNITY`, else empty."""
     missed = missed_unity(mesh)
     return (f"the sum of the functions misses 1 by {missed:.3g}",) if missed > UNITY else ()
 
 
 def dependence(mesh: Mesh) -> tuple[str, ...]:
-    """A sentence where the functions are not independent of each other: stiffness matrices are singular then."""
+    """A sentence if the functions are linearly dependent, so that stiffness matrices are singular, else empty."""
     found, count = rank(coefficients(mesh)), len(mesh.P_AI)
     return (f"the functions are dependent: rank {found} of {count}",) if found < count else ()
 
 
 def faults(mesh: Mesh, sides: Sides | None = None) -> tuple[str, ...]:
-    """What keeps a mesh with positive Jacobians from being one body, in sentences; empty for a sound mesh.
+    """Sentences that say why a mesh with positive Jacobians is not one body; empty for a sound mesh.
 
-    Overlaps are found from the boundary, at seven points of each of its sides. A side is torn where its neighbour has
-    another place or other functions by more than `NEAR`.
+    Overlaps are found from the boundary, at seven points of each of its sides. A side is torn where place or functions
+    of its neighbour differ by more than `SAME_POINT`.
     """
     sides = element_sides(mesh) if sides is None else sides
     found = list(_shared_badly(sides)) or list(_pieces(sides))
@@ -81,15 +92,15 @@ def faults(mesh: Mesh, sides: Sides | None = None) -> tuple[str, ...]:
 
 
 def _shared_badly(sides: Sides) -> Iterator[str]:
-    """Sides that do not have one neighbour all along, on their other hand."""
+    """Sides with a neighbour along a part of them only, with several, or with one that overlaps their element."""
     torn_k, doubled_k = np.zeros((2, len(sides.side_k)), dtype=bool)
-    whole_k = sides.length_k >= NEAR * sides.size_k  # a side that is a point may be that of many elements
+    whole_k = sides.length_k >= SAME_POINT * sides.size_k  # many elements may share a side of length zero
     count_k = np.bincount(sides.edge_k)[sides.edge_k]
     doubled_k |= whole_k & (count_k > 2)
     order = np.flatnonzero(whole_k & (count_k == 2))
     k, other = order[np.argsort(sides.edge_k[order], kind="stable")].reshape(-1, 2).T
-    covered_sk = np.zeros((len(_SAMPLES), len(torn_k)), dtype=bool)
-    for covered_k, t in zip(covered_sk, _SAMPLES, strict=True):
+    covered_sk = np.zeros((len(SOUNDNESS.samples), len(torn_k)), dtype=bool)
+    for covered_k, t in zip(covered_sk, SOUNDNESS.samples, strict=True):
         same, against = _same(sides, k, other, np.full(len(k), t))
         torn_k[k[~same]] = True
         doubled_k[k[same & ~against]] = True
@@ -109,15 +120,17 @@ def _shared_badly(sides: Sides) -> Iterator[str]:
 
 
 def _same(sides: Sides, k_n: np.ndarray, other_n: np.ndarray, t_n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Whether points of sides lie on other sides, functions included, and whether those run the other way."""
+    """Whether points of sides coincide with points of other sides, and whether those run the other way."""
     X_nI, H_nbI = sides.points(k_n, t_n), sides.H_kbI[other_n]
     there_n = 1.0 - t_n
     away_nI = np.abs(sides.points(other_n, there_n) - X_nI)
-    off = np.flatnonzero(np.any(away_nI[:, :2] >= NEAR * sides.size_k[k_n, None], axis=1) | (away_nI[:, 2] >= NEAR))
+    off = np.flatnonzero(
+        np.any(away_nI[:, :2] >= SAME_POINT * sides.size_k[k_n, None], axis=1) | (away_nI[:, 2] >= SAME_POINT)
+    )
     there_n[off] = nearest(H_nbI[off], X_nI[off, :2])
     away_nI = np.abs(sides.points(other_n, there_n) - X_nI)
     size_n = np.minimum(sides.size_k[k_n], sides.size_k[other_n])
-    same_n = (np.hypot(away_nI[:, 0], away_nI[:, 1]) < NEAR * size_n) & (away_nI[:, 2] < NEAR)
+    same_n = (np.hypot(away_nI[:, 0], away_nI[:, 1]) < SAME_POINT * size_n) & (away_nI[:, 2] < SAME_POINT)
     return same_n, np.sum(_tangent(sides, k_n, t_n) * _tangent(sides, other_n, there_n), axis=1) < 0.0
 
 
@@ -141,9 +154,10 @@ def _vertices(sides: Sides, k_n: np.ndarray) -> Iterator[str]:
 
 
 def _endless(mesh: Mesh, sides: Sides, k_n: np.ndarray) -> Iterator[str]:
-    """Sides of the boundary that functions cross: more of them than polynomials there, and dependent on the boundary.
+    """Sides of the boundary beyond which functions continue.
 
-    Functions of a hierarchical basis may be more, but are independent.
+    More functions live on such a side than there are polynomials, and their traces on the boundary are dependent. The
+    functions of a hierarchical basis can be more than the polynomials too, but their traces are independent.
     """
     rows, columns, values, at, first, alive_n = [], [], [], [], 0, np.zeros(len(k_n), dtype=int)
     highest_n = np.zeros(len(k_n), dtype=int)
@@ -152,7 +166,7 @@ def _endless(mesh: Mesh, sides: Sides, k_n: np.ndarray) -> Iterator[str]:
             n = np.flatnonzero((sides.block_k[k_n] == b) & (sides.side_k[k_n] == name))
             e, walk = sides.element_k[k_n[n]], walked(block.degrees, name)
             C_nab = block.C_eab[e][:, :, walk]
-            alive_na = np.abs(C_nab).max(2, initial=0.0) > ENDED
+            alive_na = np.abs(C_nab).max(2, initial=0.0) > SOUNDNESS.ended
             alive_n[n], highest_n[n] = alive_na.sum(1), len(walk)
             conn_nab = np.broadcast_to(block.conn_ea[e][..., None], C_nab.shape)
             column_nab = first + np.arange(len(n) * len(walk)).reshape(len(n), 1, len(walk))
@@ -174,7 +188,7 @@ def _endless(mesh: Mesh, sides: Sides, k_n: np.ndarray) -> Iterator[str]:
 
 
 def _in_the_body(mesh: Mesh, sides: Sides, k_n: np.ndarray) -> Iterator[str]:
-    """Sides of the boundary that lie on each other, and no slit, or inside an element."""
+    """Sides of the boundary that coincide without being a slit, or that lie inside an element."""
     touching_n, against_n = _touching(mesh, sides, k_n)
     torn_k = _marked(sides, k_n[touching_n & against_n])
     overlapping_k = _marked(sides, k_n[_covered(sides, k_n, ~touching_n) | (touching_n & ~against_n)])
@@ -187,13 +201,13 @@ def _in_the_body(mesh: Mesh, sides: Sides, k_n: np.ndarray) -> Iterator[str]:
 
 
 def _touching(mesh: Mesh, sides: Sides, k_n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Sides of the boundary that lie on others, chains on chains left out, and whether those run the other way."""
+    """Masks of boundary sides that coincide with others, pairs of chains excepted, and of those that run opposite."""
     chained_k = np.zeros(len(sides.side_k), dtype=bool)
     for chain in mesh.chains.values():
         chained_k[sides.find(chain.block_c, chain.element_c, chain.side_c)] = True
     X_nbI = sides.H_kbI[k_n, :, :2] / sides.H_kbI[k_n, :, 3:]
     low_nI, high_nI = X_nbI.min(1), X_nbI.max(1)
-    slack_n = TOUCHING * np.minimum(sides.length_k[k_n], _heights(mesh, sides)[k_n])
+    slack_n = SOUNDNESS.touching * np.minimum(sides.length_k[k_n], _heights(mesh, sides)[k_n])
     touching_n, against_n = np.ones(len(k_n), dtype=bool), np.ones(len(k_n), dtype=bool)
     for t in (0.25, 0.5, 0.75):
         x_nI = sides.points(k_n, np.full(len(k_n), t))
@@ -215,21 +229,21 @@ def _touching(mesh: Mesh, sides: Sides, k_n: np.ndarray) -> tuple[np.ndarray, np
 def _covered(sides: Sides, k_n: np.ndarray, asked_n: np.ndarray) -> np.ndarray:
     """Sides of the boundary inside an element, by the winding number of the boundary about their points.
 
-    The angle under which a point of the boundary sees it, walked with the body on the left, is pi, and 2 pi more for
-    every element that lies over the point. Sides whose hull holds the point are seen in pieces, the others as their
-    chords. Points as near to another side as its pieces are to the curve are left out.
+    The boundary, walked with the body on the left, turns by pi about a point on itself, and by 2 pi more for every
+    element over the point. A side whose bounding box contains the point is divided into straight pieces, the others are
+    replaced by their chords. Points that are closer to another side than its pieces are to the curve are left out.
     """
-    t_j = np.linspace(0.0, 1.0, 2 * _PIECES + 1)
+    t_j = np.linspace(0.0, 1.0, 2 * SOUNDNESS.pieces + 1)
     X_njI = sides.points(np.repeat(k_n, len(t_j)), np.tile(t_j, len(k_n)))[:, :2].reshape(len(k_n), len(t_j), 2)
     X_npI = X_njI[:, ::2]
     sag_np = np.linalg.norm(X_njI[:, 1::2] - 0.5 * (X_npI[:, :-1] + X_npI[:, 1:]), axis=2)
-    sag_n = 4.0 * sag_np.max(1) + NEAR * sides.length_k[k_n]
+    sag_n = 4.0 * sag_np.max(1) + SAME_POINT * sides.length_k[k_n]
     hull_nbI = sides.H_kbI[k_n, :, :2] / sides.H_kbI[k_n, :, 3:]
     low_nI, high_nI = hull_nbI.min(1) - sag_n[:, None], hull_nbI.max(1) + sag_n[:, None]
     asked = np.flatnonzero(asked_n)
-    x_sI, own_s = X_npI[asked, 1:-1].reshape(-1, 2), np.repeat(asked, _PIECES - 1)
+    x_sI, own_s = X_npI[asked, 1:-1].reshape(-1, 2), np.repeat(asked, SOUNDNESS.pieces - 1)
     covered_n = np.zeros(len(k_n), dtype=bool)
-    for part in np.array_split(np.arange(len(x_sI)), 1 + len(x_sI) * len(k_n) // _CHUNK):
+    for part in np.array_split(np.arange(len(x_sI)), 1 + len(x_sI) * len(k_n) // SOUNDNESS.chunk):
         x_snI = x_sI[part, None]
         angle_sn = _angle(X_npI[:, 0] - x_snI, X_npI[:, -1] - x_snI)
         s, n = np.nonzero(np.all((low_nI <= x_snI) & (x_snI <= high_nI), axis=2))
@@ -246,14 +260,14 @@ def _covered(sides: Sides, k_n: np.ndarray, asked_n: np.ndarray) -> np.ndarray:
 
 
 def _angle(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Angles from vectors a (..., 2) to b, counterclockwise; 0 where one has no length."""
+    """Angles from vectors a (..., 2) to b, counterclockwise; 0 if one of them has no length."""
     cross = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     dot = a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]
-    return np.arctan2(cross, dot + 0.0)  # of a dot product of -0.0 the angle would be pi
+    return np.arctan2(cross, dot + 0.0)  # + 0.0: a dot product of -0.0 would give the angle pi
 
 
 def _heights(mesh: Mesh, sides: Sides) -> np.ndarray:
-    """Area of the element of each side (n_k,) over the length of the side."""
+    """Height (n_k,) of the element over each side: its area over the length of the side."""
     area = []
     for block in mesh.blocks:
         points_q, weights_q = square(*(gauss(p + 1) for p in block.degrees))
@@ -262,7 +276,7 @@ def _heights(mesh: Mesh, sides: Sides) -> np.ndarray:
 
 
 def _tangent(sides: Sides, k_n: np.ndarray, t_n: np.ndarray) -> np.ndarray:
-    """Directions (n, 2) of sides, from points a little apart."""
+    """Tangents (n, 2) of sides by a difference quotient, not normalised."""
     ends = (np.clip(t_n + step, 0.0, 1.0) for step in (1e-3, -1e-3))
     ahead, behind = (sides.points(k_n, t)[:, :2] for t in ends)
     return ahead - behind

@@ -1,7 +1,7 @@
-"""T-meshes made of lines: grids, inserted lines, refined rectangles, and tilings by rectangles.
+"""T-meshes made of lines: the full grid, and lines inserted into it.
 
-All lengths here are parameters (knot values); indices stay inside. A line that reaches the boundary of the domain
-runs on through the frame.
+Arguments are parameters (knot values), not indices. A line that reaches the boundary of the domain continues through
+the frame.
 """
 
 from __future__ import annotations
@@ -11,9 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from iga.tsplines.tmesh import DEGREE, TMesh, painted
-from iga.tsplines.tspline import faces
 
-#: Names of the directions in which a line may run.
+#: Directions of a line.
 DIRECTIONS = ("vertical", "horizontal")
 
 
@@ -27,12 +26,12 @@ def tensor_grid(
 
     Parameters
     ----------
-    breaks_s, breaks_t : rising knot values; the ends are repeated four times.
-    multiplicity_s, multiplicity_t : how often each inner value is there, one number or one for each of them.
+    breaks_s, breaks_t : increasing knot values; the ends get multiplicity 4.
+    multiplicity_s, multiplicity_t : multiplicity of the inner values, one number or one for each of them.
 
     Raises
     ------
-    ValueError : breaks that do not rise, or a multiplicity above 3.
+    ValueError : breaks that do not increase, or a multiplicity above 3.
     """
     knots_i, knots_j = _open(breaks_s, multiplicity_s, "s"), _open(breaks_t, multiplicity_t, "t")
     m_s, m_t = len(knots_i), len(knots_j)
@@ -42,18 +41,18 @@ def tensor_grid(
 def with_line(
     mesh: TMesh, direction: str, at: float, between: tuple[float, float] | None = None, times: int = 1
 ) -> TMesh:
-    """The T-mesh in which at least ``times`` lines run at ``at`` over the whole range ``between``.
+    """The T-mesh with at least ``times`` lines at ``at`` over the range ``between``.
 
     Parameters
     ----------
     direction : "vertical" (``at`` is a value of s, the range one of t) or "horizontal".
-    at : a new knot value inside the domain or one that is there.
-    between : where the line starts and ends, each on a line of the other direction; all through if left out.
+    at : a knot value inside the domain, new or existing.
+    between : ends of the line, each on a line of the other direction; default: the whole domain.
     times : multiplicity, 1 to 3.
 
     Raises
     ------
-    ValueError : a line outside the domain, or one whose ends lie on no line.
+    ValueError : a line outside the domain, or one that does not end on other lines.
     """
     if direction not in DIRECTIONS:
         raise ValueError(f"a line runs {' or '.join(DIRECTIONS)}, got {direction!r}")
@@ -68,11 +67,11 @@ def with_line(
 
 
 def with_lines(mesh: TMesh, vertical_nk: np.ndarray, horizontal_nk: np.ndarray, times: int = 1) -> TMesh:
-    """The same for many lines at once, each row (at, from, to); they may end on one another.
+    """The T-mesh with many more lines, rows (at, from, to) of both arrays (n, 3); they may end on one another.
 
     Raises
     ------
-    ValueError : a line outside the domain, or one whose ends lie on no line.
+    ValueError : a line outside the domain, or one that does not end on other lines.
     """
     _check_inside(vertical_nk, mesh.knots_i, mesh.knots_j, "vertical")
     _check_inside(horizontal_nk, mesh.knots_j, mesh.knots_i, "horizontal")
@@ -91,56 +90,8 @@ def with_lines(mesh: TMesh, vertical_nk: np.ndarray, horizontal_nk: np.ndarray, 
     return TMesh(knots_i, knots_j, across, up)
 
 
-def band(mesh: TMesh, rectangle: tuple[float, float, float, float], levels: int = 1) -> TMesh:
-    """The T-mesh whose faces that touch a rectangle (s0, s1, t0, t1) are cut in four, ``levels`` times over.
-
-    Nothing makes it analysis-suitable; see `iga.tsplines.bisection`.
-
-    Raises
-    ------
-    ValueError : a rectangle that lies outside the domain.
-    """
-    s0, s1, t0, t1 = rectangle
-    if not (s0 <= s1 and t0 <= t1):
-        raise ValueError(f"a rectangle is s0 <= s1, t0 <= t1, got ({s0:.6g}, {s1:.6g}, {t0:.6g}, {t1:.6g})")
-    for _ in range(levels):
-        i0, i1, j0, j1 = faces(mesh).T
-        a0, a1, b0, b1 = mesh.knots_i[i0], mesh.knots_i[i1], mesh.knots_j[j0], mesh.knots_j[j1]
-        hit = (a0 <= s1) & (a1 >= s0) & (b0 <= t1) & (b1 >= t0)
-        if not np.any(hit):
-            raise ValueError(f"the rectangle ({s0:.6g}, {s1:.6g}) x ({t0:.6g}, {t1:.6g}) touches no face")
-        a0, a1, b0, b1 = a0[hit], a1[hit], b0[hit], b1[hit]
-        upright, level = np.stack([(a0 + a1) / 2, b0, b1], -1), np.stack([(b0 + b1) / 2, a0, a1], -1)
-        mesh = with_lines(mesh, upright, level)
-    return mesh
-
-
-def from_rectangles(box_ek: np.ndarray) -> TMesh:
-    """The T-mesh of a rectangle that is tiled by rectangles.
-
-    Parameters
-    ----------
-    box_ek : (n_e, 4) rows s0, s1, t0, t1; sides that lie on one line have the very same float.
-
-    Raises
-    ------
-    ValueError : an empty box, a gap or an overlap; the message has the coordinates.
-    """
-    box_ek = np.asarray(box_ek, dtype=float)
-    if box_ek.ndim != 2 or box_ek.shape[1] != 4 or len(box_ek) == 0 or not np.all(np.isfinite(box_ek)):
-        raise ValueError(f"rectangles are rows of four finite numbers s0, s1, t0, t1, got shape {box_ek.shape}")
-    s0, s1, t0, t1 = box_ek.T
-    flat = np.flatnonzero((s1 <= s0) | (t1 <= t0))
-    if flat.size:
-        raise ValueError(f"the rectangle ({_pair(box_ek[flat[0], :2])}) x ({_pair(box_ek[flat[0], 2:])}) has no area")
-    _check_tiling(box_ek)
-    outline = tensor_grid(np.array([s0.min(), s1.max()]), np.array([t0.min(), t1.max()]))
-    inner_s, inner_t = s0 > s0.min(), t0 > t0.min()
-    return with_lines(outline, np.stack([s0, t0, t1], -1)[inner_s], np.stack([t0, s0, s1], -1)[inner_t])
-
-
 def _open(breaks: np.ndarray, multiplicity: int | Sequence[int], name: str) -> np.ndarray:
-    """Knots with fourfold ends and the inner ones as often as asked for."""
+    """Knots with end multiplicity 4 and the given inner multiplicities."""
     breaks = np.asarray(breaks, dtype=float)
     if breaks.ndim != 1 or breaks.size < 2 or not np.all(np.diff(breaks) > 0.0):
         raise ValueError(f"breaks in {name} must be two numbers or more that rise, got {breaks}")
@@ -167,9 +118,9 @@ def _check_inside(line_nk: np.ndarray, knots: np.ndarray, along: np.ndarray, nam
 def _with_knots(
     knots: np.ndarray, along: np.ndarray, across: np.ndarray, at: np.ndarray, times: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Knots in which every value ``at`` is there ``times`` times at least, with the edges that were drawn.
+    """Knots in which the values ``at`` have at least the multiplicity ``times``, with the existing edges.
 
-    Both arrays of edges have their first axis along the knots: ``along`` from knot to knot, ``across`` at knots.
+    The first axis of both arrays of edges runs along the knots: ``along`` from knot to knot, ``across`` at knots.
     """
     wanted = np.unique(at)
     there = np.searchsorted(knots, wanted, side="right") - np.searchsorted(knots, wanted)
@@ -185,7 +136,7 @@ def _with_knots(
 
 
 def _index_spans(line_nk: np.ndarray, knots: np.ndarray, along: np.ndarray, times: int, name: str) -> np.ndarray:
-    """Lines as index spans (from, to, line), over all copies of the knots at which they end."""
+    """Lines as index spans (from, to, line), up to the last copy of the knots at which they end."""
     at, low, high = line_nk.T
     start, end = np.searchsorted(along, low), np.searchsorted(along, high, side="right") - 1
     for values, index in ((low, start), (high, end)):
@@ -199,9 +150,9 @@ def _index_spans(line_nk: np.ndarray, knots: np.ndarray, along: np.ndarray, time
 
 
 def _ended(spans: np.ndarray, crossing: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Spans drawn back from copies of the end knots that are not drawn through there.
+    """Spans shortened to the outermost copy of their end knots at which a line of the other direction exists.
 
-    ``crossing`` (m - 1, n) are the edges of the other direction, its first axis across the spans.
+    ``crossing`` (m - 1, n) are the edges of the other direction; its first axis runs across the spans.
     """
     start, end, line = spans.T.copy()
     through = crossing[:-1] & crossing[1:]
@@ -209,29 +160,6 @@ def _ended(spans: np.ndarray, crossing: np.ndarray, along: np.ndarray) -> np.nda
         start += ~through[line - 1, start] & (along[start + 1] == along[start]) & (start > 0)
         end -= ~through[line - 1, end] & (along[end - 1] == along[end]) & (end < len(along) - 1)
     return np.stack([start, end, line], -1)
-
-
-def _check_tiling(box_ek: np.ndarray) -> None:
-    """Every place lies in one rectangle and no more.
-
-    How many rectangles hold a place is the sum of signs over the corners to its lower left; so it is one everywhere
-    if the signs of all corners cancel but for those of the outline.
-    """
-    s, t = np.unique(box_ek[:, :2]), np.unique(box_ek[:, 2:])
-    i_ek, j_ek = np.searchsorted(s, box_ek[:, :2]), np.searchsorted(t, box_ek[:, 2:])
-    corner = (i_ek[:, :, None] * len(t) + j_ek[:, None, :]).reshape(-1, 4)
-    place, number = np.unique(corner, return_inverse=True)
-    sign = np.bincount(number.ravel(), np.tile([1.0, -1.0, -1.0, 1.0], len(box_ek)))
-    outline = {0: 1.0, len(t) - 1: -1.0, (len(s) - 1) * len(t): -1.0, len(s) * len(t) - 1: 1.0}
-    left = sign != 0.0
-    if dict(zip(place[left].tolist(), sign[left].tolist(), strict=True)) == outline:
-        return
-    change = np.zeros(len(s) * len(t), dtype=int)
-    change[place] = sign
-    times = change.reshape(len(s), len(t)).cumsum(0).cumsum(1)[:-1, :-1]
-    i, j = np.argwhere(times != 1)[0]
-    what = "no rectangle covers" if times[i, j] == 0 else f"{times[i, j]} rectangles cover"
-    raise ValueError(f"{what} ({_pair(s[i : i + 2])}) x ({_pair(t[j : j + 2])})")
 
 
 def _pair(values: np.ndarray) -> str:

@@ -1,7 +1,7 @@
-"""The index T-mesh of a bicubic T-spline: two knot lists and the unit edges that are drawn between them.
+"""The index T-mesh of a bicubic T-spline: two lists of knots and the unit edges between their indices.
 
-Everything that makes a T-spline is read off here: anchors, local knot vectors, T-junctions and their extensions
-(Sederberg, Zheng, Bakenov, Nasri 2003; Scott, Li, Sederberg, Hughes 2012).
+It determines anchors, local knot vectors, T-junctions and their extensions (Sederberg, Zheng, Bakenov, Nasri 2003;
+Scott, Li, Sederberg, Hughes 2012).
 """
 
 from __future__ import annotations
@@ -11,27 +11,27 @@ from functools import cached_property
 
 import numpy as np
 
-#: Degree of the functions, knots on either side of an anchor, and index lines outside of the domain on every side.
-DEGREE, HALF, FRAME = 3, 2, 2
+#: Degree of the functions, local knots on either side of an anchor, and index lines of the frame outside the domain.
+DEGREE, BESIDE, FRAME = 3, 2, 2
 
 
 class NotSuitable(ValueError):
-    """A T-mesh whose extensions cross: its functions need not add up to one, nor be independent."""
+    """A T-mesh that is not analysis-suitable: its functions may not add up to 1, or be linearly dependent."""
 
 
 @dataclass(frozen=True)
 class TMesh:
     """An index T-mesh.
 
-    ``knots_i`` (m_s,) and ``knots_j`` (m_t,) are the global knots, their ends four times. ``across_ij``
-    (m_s - 1, m_t) says where the unit edge from (i, j) to (i + 1, j) is drawn, ``up_ij`` (m_s, m_t - 1) where the one
-    from (i, j) to (i, j + 1) is. The domain lies within the third lines from each side; the two beyond them are the
-    frame, which continues every line that reaches it. The four lines of an end knot are drawn in full.
+    ``knots_i`` (m_s,) and ``knots_j`` (m_t,) are the global knots, with end multiplicity 4. ``across_ij``
+    (m_s - 1, m_t) is True if the mesh has the unit edge from (i, j) to (i + 1, j), ``up_ij`` (m_s, m_t - 1) if it has
+    that from (i, j) to (i, j + 1). The domain lies within the third lines from each side; the two lines outside are the
+    frame, in which every line that reaches it continues. The four lines of an end knot are complete.
 
     Raises
     ------
-    ValueError : arrays that do not fit, knots that fall or whose ends are not fourfold, a frame with gaps, or a line
-        that ends in a corner or in nothing.
+    ValueError : arrays of different sizes, decreasing knots, end knots of another multiplicity, gaps in the frame, or a
+        line that does not end on another line.
     """
 
     knots_i: np.ndarray
@@ -52,30 +52,25 @@ class TMesh:
             _check_frame(along, name)
         _check_ends(self)
 
-    @property
-    def transposed(self) -> TMesh:
-        """The same mesh with its directions exchanged."""
-        return TMesh(self.knots_j, self.knots_i, self.up_ij.T, self.across_ij.T)
-
     @cached_property
     def crossed_ij(self) -> np.ndarray:
-        """Points (m_s, m_t) of a vertical line: where a horizontal ray is stopped."""
+        """Mask (m_s, m_t) of the points on vertical lines, which a horizontal ray intersects."""
         return _touched(self.up_ij.T).T
 
     @cached_property
     def levelled_ij(self) -> np.ndarray:
-        """Points (m_s, m_t) of a horizontal line."""
+        """Mask (m_s, m_t) of the points on horizontal lines."""
         return _touched(self.across_ij)
 
     @cached_property
     def anchors(self) -> np.ndarray:
-        """Indices (n_A, 2) of the vertices in the domain, each the anchor of one function; i runs fastest."""
+        """Indices (n_A, 2) of the vertices in the domain, the anchors of the functions; i runs fastest."""
         inside = self.crossed_ij & self.levelled_ij
         return np.argwhere(inside[FRAME:-FRAME, FRAME:-FRAME].T)[:, ::-1] + FRAME
 
     @cached_property
     def local_indices(self) -> tuple[np.ndarray, np.ndarray]:
-        """Indices (n_A, 5) of every anchor's knots along s and along t: its own and two that its rays meet each way."""
+        """Knot indices (n_A, 5) of the anchors along s and along t: their own, and the next two lines on each side."""
         i, j = self.anchors.T
         across = neighbours(self.crossed_ij, i, j)
         up = neighbours(self.levelled_ij.T, j, i)
@@ -89,14 +84,14 @@ class TMesh:
 
     @cached_property
     def junctions(self) -> np.ndarray:
-        """T-junctions (n_T, 3): indices i, j and the missing edge, 0 right, 1 left, 2 up, 3 down."""
+        """T-junctions (n_T, 3): indices i, j and the missing edge (0 right, 1 left, 2 up, 3 down)."""
         i, j = self.anchors.T
         edges = self._edges(i, j)
         three = edges.sum(1) == 3
         return np.stack([i, j, np.argmin(edges, axis=1)], -1)[three]
 
     def edges(self) -> np.ndarray:
-        """Edges (n, 2, 2) with length, from one index line to the next, as their end points in knot values."""
+        """End points (n, 2, 2), in knot values, of all unit edges of positive length."""
         i, j = np.nonzero(self.across_ij[:, FRAME:-FRAME] & (np.diff(self.knots_i) > 0.0)[:, None])
         k, m = np.nonzero(self.up_ij[FRAME:-FRAME] & (np.diff(self.knots_j) > 0.0))
         j, k = j + FRAME, k + FRAME
@@ -108,7 +103,7 @@ class TMesh:
     def extensions(self) -> tuple[np.ndarray, np.ndarray]:
         """Extensions (n, 3) of the T-junctions, horizontal ones (i0, i1, j) and vertical ones (j0, j1, i).
 
-        Two lines on towards the missing edge and one back (degree 3; Li, Scott 2013).
+        They reach over two lines towards the missing edge and one line back (degree 3; Li, Scott 2013).
         """
         i, j, missing = self.junctions.T
         level, upright = missing < 2, missing >= 2
@@ -118,7 +113,7 @@ class TMesh:
         )
 
     def crossings(self) -> np.ndarray:
-        """Points (n, 2), in knot values, where a horizontal extension meets a vertical one, ends included."""
+        """Points (n, 2), in knot values, at which a horizontal and a vertical extension intersect, ends included."""
         level, upright = self.extensions
         m_t = len(self.knots_j)
         (i_h, j_h, _), (j_v, i_v, _) = span_points(level), span_points(upright)
@@ -127,11 +122,11 @@ class TMesh:
 
     @property
     def suitable(self) -> bool:
-        """Analysis-suitable: no two extensions meet (Scott, Li, Sederberg, Hughes 2012; Li, Scott 2013)."""
+        """Analysis-suitable: no two extensions intersect (Scott, Li, Sederberg, Hughes 2012; Li, Scott 2013)."""
         return len(self.crossings()) == 0
 
     def extended(self) -> tuple[np.ndarray, np.ndarray]:
-        """Unit edges with the extensions drawn in, ``across_ij`` and ``up_ij``."""
+        """Unit edges including the extensions, ``across_ij`` and ``up_ij``."""
         level, upright = self.extensions
         m_s, m_t = len(self.knots_i), len(self.knots_j)
         across = painted(level, (m_s, m_t)) | self.across_ij
@@ -139,7 +134,7 @@ class TMesh:
         return across, up
 
     def _edges(self, i: np.ndarray, j: np.ndarray) -> np.ndarray:
-        """Whether edges (n, 4) leave inner points to the right, left, up and down."""
+        """Whether edges (n, 4) start at inner points to the right, left, up and down."""
         return np.stack([self.across_ij[i, j], self.across_ij[i - 1, j], self.up_ij[i, j], self.up_ij[i, j - 1]], -1)
 
 
@@ -171,7 +166,7 @@ def _check_knots(knots: np.ndarray, name: str) -> None:
 
 
 def _check_frame(along: np.ndarray, name: str) -> None:
-    """Lines run in full along the frame, and through it; ``along`` has its first axis along them."""
+    """Check the frame: complete lines along it, and no gap across it; the first axis of ``along`` runs along lines."""
     if not np.all(along[:, : DEGREE + 1]) or not np.all(along[:, -DEGREE - 1 :]):
         raise ValueError(f"the {name} lines of the end knots must be drawn in full")
     for outer, inner, first in ((along[0], along[1], along[2]), (along[-1], along[-2], along[-3])):
@@ -180,7 +175,7 @@ def _check_frame(along: np.ndarray, name: str) -> None:
 
 
 def _check_ends(mesh: TMesh) -> None:
-    """Inside, lines end on other lines: no dangling ends, no corners."""
+    """Check that lines inside end on other lines: no dangling ends, no corners."""
     right, left = mesh.across_ij[1:, 1:-1], mesh.across_ij[:-1, 1:-1]
     up, down = mesh.up_ij[1:-1, 1:], mesh.up_ij[1:-1, :-1]
     for ends, other, direction in ((right ^ left, up & down, "horizontal"), (up ^ down, right & left, "vertical")):
@@ -193,15 +188,15 @@ def _check_ends(mesh: TMesh) -> None:
 
 
 def _touched(along: np.ndarray) -> np.ndarray:
-    """Points of lines whose unit edges run along the first axis."""
+    """Mask of the points on lines whose unit edges run along the first axis."""
     points = np.zeros((along.shape[0] + 1, along.shape[1]), dtype=bool)
     points[:-1] |= along
     points[1:] |= along
     return points
 
 
-def neighbours(hit: np.ndarray, i: np.ndarray, j: np.ndarray, reach: int = HALF) -> np.ndarray:
-    """Indices (n, 2 reach + 1) of hit points (i, j) and of the next hits on either side along the first axis."""
+def neighbours(hit: np.ndarray, i: np.ndarray, j: np.ndarray, reach: int = BESIDE) -> np.ndarray:
+    """Indices (n, 2 reach + 1), along the first axis, of the next ``reach`` True points on both sides of (i, j)."""
     length = hit.shape[0]
     place = np.flatnonzero(hit.T)
     rank = np.searchsorted(place, j * length + i)
@@ -209,7 +204,7 @@ def neighbours(hit: np.ndarray, i: np.ndarray, j: np.ndarray, reach: int = HALF)
 
 
 def _reach(hit: np.ndarray, i: np.ndarray, j: np.ndarray, forwards: np.ndarray) -> np.ndarray:
-    """Extensions (n, 3) from, to, line: two hits on in the one direction and one back."""
+    """Extensions (n, 3) from, to, line: over two True points forwards (or backwards) and one the other way."""
     left2, left, _, right, right2 = neighbours(hit, i, j).T
     return np.stack([np.where(forwards, left, left2), np.where(forwards, right2, right), j], -1)
 
@@ -223,12 +218,12 @@ def painted(spans: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
 
 def span_points(spans: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """All points of spans (from, to, line), ends included: place along, line, number of the span."""
+    """All points of spans (from, to, line), ends included: index along the line, line, number of the span."""
     start, end, line = spans.T
     number = np.repeat(np.arange(len(spans)), end - start + 1)
     return start[number] + counting(end - start + 1), line[number], number
 
 
 def counting(lengths: np.ndarray) -> np.ndarray:
-    """0 .. n-1 for each of some lengths, one after the other."""
+    """The integers 0 .. n - 1 for each n in ``lengths``, one after the other."""
     return np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths)

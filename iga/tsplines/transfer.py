@@ -1,9 +1,9 @@
-"""From one T-mesh of a domain to another: control values carried over, exactly where the new space holds the old one.
+"""Transfer of fields from one T-mesh to another, exact if the new space contains the old one.
 
-The control value of a function is the blossom of the field at the function's inner local knots, of the piece on any one
-Bezier element of its support (Ramshaw 1989; for T-splines Beirao da Veiga, Buffa, Sangalli, Vazquez 2013, the dual
-basis); sixteen values of the field give that piece. Where the field is no polynomial on that element (coarsening) the
-same functional is a quasi-interpolant that keeps cubics.
+The control value of a function is the blossom, at the function's inner local knots, of the polynomial piece of the
+field on any one Bezier element of the support (Ramshaw 1989; for T-splines the dual basis of Beirao da Veiga, Buffa,
+Sangalli, Vazquez 2013); sixteen values of the field determine that piece. If the field is not a polynomial on the
+element (coarsening), the same functional is a quasi-interpolant that reproduces cubics.
 """
 
 from __future__ import annotations
@@ -14,21 +14,20 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from iga.mesh.bernstein import bernstein, tensor
-from iga.mesh.extraction import Mesh
 from iga.tsplines.tmesh import DEGREE, TMesh
-from iga.tsplines.tspline import Extraction, extracted, tspline_mesh
+from iga.tsplines.tspline import Extraction, extracted
 
-#: Sample points of a cubic in each direction, the zeros of the Chebyshev polynomial of degree 4.
-SAMPLES = 0.5 - 0.5 * np.cos((2 * np.arange(DEGREE + 1) + 1) * np.pi / (2 * DEGREE + 2))
+#: Points in [0, 1] at which cubics are sampled, the zeros of the Chebyshev polynomial of degree 4.
+SAMPLES_OF_CUBIC = 0.5 - 0.5 * np.cos((2 * np.arange(DEGREE + 1) + 1) * np.pi / (2 * DEGREE + 2))
 
-#: Points whose extraction operators are laid side by side at a time, for the sake of memory.
-POINTS = 16_384
+#: Points whose extraction operators are gathered at a time, for the sake of memory.
+POINTS_AT_ONCE = 16_384
 
 
 def transfer(old: TMesh, new: TMesh) -> csr_array:
-    """Matrix (n_new, n_old) that takes control values, homogeneous where rational, from one T-mesh to another.
+    """Matrix (n_new, n_old) from the control values on one T-mesh to those on another, homogeneous ones if rational.
 
-    ``N_old = M N_new`` gives ``P_new = M^T P_old`` where the spaces are nested; this matrix is M^T.
+    If the spaces are nested, ``N_old = M N_new`` gives ``P_new = M^T P_old``; the result is M^T.
 
     Raises
     ------
@@ -46,19 +45,6 @@ def transfer(old: TMesh, new: TMesh) -> csr_array:
     return functional @ collocation(old, x_Aqi.reshape(-1, 2))
 
 
-def transferred(old: TMesh, mesh: Mesh, new: TMesh) -> Mesh:
-    """A T-spline on another T-mesh: the same body where that refines the first one."""
-    matrix = transfer(old, new)
-    w_A = matrix @ mesh.w_A
-    return tspline_mesh(new, (matrix @ (mesh.w_A[:, None] * mesh.P_AI)) / w_A[:, None], w_A)
-
-
-def nesting_error(old: TMesh, new: TMesh) -> float:
-    """Largest difference between an old function and its copy in the new space: rounding where they are nested."""
-    x_qi = _sample_points(new, extracted(new).box_ek).reshape(-1, 2)
-    return float(abs(collocation(old, x_qi) - collocation(new, x_qi) @ transfer(old, new)).max())
-
-
 def collocation(mesh: TMesh, x_qi: np.ndarray) -> csr_array:
     """Values (n_q, n_A) of all functions at points (n_q, 2) of the domain, in knot values."""
     elements = extracted(mesh)
@@ -67,7 +53,7 @@ def collocation(mesh: TMesh, x_qi: np.ndarray) -> csr_array:
     value, row, column = [], [], []
     for number, block in enumerate(elements.blocks):
         q_n = np.flatnonzero(elements.block_e[e_q] == number)
-        for q in np.array_split(q_n, len(q_n) // POINTS + 1):
+        for q in np.array_split(q_n, len(q_n) // POINTS_AT_ONCE + 1):
             e = elements.place_e[e_q[q]]
             N_qa = (block.C_eab[e] @ B_qb[q, :, None])[..., 0]
             value.append(N_qa.ravel())
@@ -78,12 +64,12 @@ def collocation(mesh: TMesh, x_qi: np.ndarray) -> csr_array:
 
 
 def locate(mesh: TMesh, box_ek: np.ndarray, x_qi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Bezier element (n_q,) of each point and its place (n_q, 2) in the element's unit square."""
+    """Bezier element (n_q,) of each point, and its parameters (n_q, 2) there."""
     cell_qk = [
         np.clip(np.searchsorted(knots, x, side="right") - 1, DEGREE, len(knots) - DEGREE - 2)
         for knots, x in zip((mesh.knots_i, mesh.knots_j), x_qi.T, strict=True)
     ]
-    # the number of its element on every index cell, as a sum of what changes from cell to cell
+    # number of the element on every index cell, as the cumulative sum of its changes from cell to cell
     i0, i1, j0, j1 = box_ek.T
     change = np.zeros((len(mesh.knots_i), len(mesh.knots_j)), dtype=int)
     for (i, j), sign in (((i0, j0), 1), ((i1, j0), -1), ((i0, j1), -1), ((i1, j1), 1)):
@@ -95,9 +81,9 @@ def locate(mesh: TMesh, box_ek: np.ndarray, x_qi: np.ndarray) -> tuple[np.ndarra
 
 
 def _functionals(mesh: TMesh, elements: Extraction) -> tuple[np.ndarray, np.ndarray]:
-    """Element (n_A,) on which each function is read, and the weights (n_A, 16) of the samples there.
+    """Element (n_A,) of each function's functional, and the weights (n_A, 16) of the samples there.
 
-    Of all elements in its support the one is taken that magnifies a field least.
+    Of the elements in the support of a function, that with the smallest norm of the functional is taken.
     """
     e_n, A_n = (np.concatenate(parts) for parts in zip(*_pairs(elements), strict=True))
     i0, i1, j0, j1 = elements.box_ek[e_n].T
@@ -108,12 +94,12 @@ def _functionals(mesh: TMesh, elements: Extraction) -> tuple[np.ndarray, np.ndar
     order = np.lexsort((size_n, A_n))
     _, first = np.unique(A_n[order], return_index=True)
     best = order[first]
-    from_values = np.linalg.inv(bernstein(DEGREE, SAMPLES))
+    from_values = np.linalg.inv(bernstein(DEGREE, SAMPLES_OF_CUBIC))
     return e_n[best], tensor(s_nb[best] @ from_values, t_nb[best] @ from_values)
 
 
 def blossom_weights(knots_nk: np.ndarray, start_n: np.ndarray, end_n: np.ndarray) -> np.ndarray:
-    """Weights (n, 4) of the Bernstein coefficients on spans [start, end] in the blossom at three knots (n, 3)."""
+    """Weights (n, 4) of the Bernstein coefficients on spans [start, end] in the blossom at knots (n, 3)."""
     xi_nk = (knots_nk - start_n[:, None]) / (end_n - start_n)[:, None]
     weight_njb = np.broadcast_to(np.eye(DEGREE + 1), (len(xi_nk), DEGREE + 1, DEGREE + 1))
     for xi_n in xi_nk.T[:, :, None, None]:
@@ -122,7 +108,7 @@ def blossom_weights(knots_nk: np.ndarray, start_n: np.ndarray, end_n: np.ndarray
 
 
 def _pairs(elements: Extraction) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """All pairs of an element and a function that lives on it, block by block."""
+    """All pairs of an element and a function with support on it, block by block."""
     for number, block in enumerate(elements.blocks):
         e = np.flatnonzero(elements.block_e == number)
         conn_ea = block.conn_ea[elements.place_e[e]]
@@ -131,7 +117,7 @@ def _pairs(elements: Extraction) -> Iterator[tuple[np.ndarray, np.ndarray]]:
 
 def _sample_points(mesh: TMesh, box_nk: np.ndarray) -> np.ndarray:
     """Points (n, 16, 2) in index boxes, in knot values."""
-    xi_qs = np.stack([np.tile(SAMPLES, DEGREE + 1), np.repeat(SAMPLES, DEGREE + 1)], -1)
+    xi_qs = np.stack([np.tile(SAMPLES_OF_CUBIC, DEGREE + 1), np.repeat(SAMPLES_OF_CUBIC, DEGREE + 1)], -1)
     low, high = _corners(mesh, box_nk)
     return low[:, None] + xi_qs * (high - low)[:, None]
 

@@ -1,7 +1,7 @@
-"""T-splines through the seam: Bezier elements and extraction operators of a T-mesh.
+"""T-splines by extraction: Bezier elements and extraction operators of a T-mesh.
 
-On every Bezier element a function is the product of two cubic pieces, whose Bernstein coefficients are their blossoms
-at the ends of the span (Scott, Borden, Verhoosel, Sederberg, Hughes 2011).
+On every Bezier element a function is the product of two cubics, whose Bernstein coefficients are their blossoms at the
+ends of the span (Scott, Borden, Verhoosel, Sederberg, Hughes 2011).
 """
 
 from __future__ import annotations
@@ -14,12 +14,15 @@ from iga.mesh.bernstein import tensor
 from iga.mesh.extraction import ElementBlock, Mesh, one_sided
 from iga.tsplines.tmesh import DEGREE, FRAME, TMesh, counting, neighbours, require_suitable
 
-_AT_ONCE = 2048  # elements whose pieces stay in the cache
+_AT_ONCE = 2048  # elements whose intermediate arrays stay in the cache
 
 
 @dataclass(frozen=True)
 class Extraction:
-    """Bezier elements of a T-mesh: index boxes ``box_ek`` (n_e, 4) i0, i1, j0, j1, and where each is in the blocks."""
+    """Bezier elements of a T-mesh, with index boxes ``box_ek`` (n_e, 4) i0, i1, j0, j1.
+
+    Element e is number ``place_e[e]`` of block ``block_e[e]``.
+    """
 
     box_ek: np.ndarray
     blocks: tuple[ElementBlock, ...]
@@ -28,25 +31,20 @@ class Extraction:
 
 
 def tspline_mesh(mesh: TMesh, P_AI: np.ndarray, w_A: np.ndarray | None = None) -> Mesh:
-    """The T-spline of a T-mesh, its functions in the order of ``mesh.anchors``.
+    """The T-spline of a T-mesh; its functions have the order of ``mesh.anchors``.
 
     Parameters
     ----------
     mesh : analysis-suitable T-mesh with n_A anchors.
     P_AI : (n_A, 2) control points, not homogeneous.
-    w_A : (n_A,) positive weights; all one if left out.
+    w_A : (n_A,) positive weights; default: all 1.
 
     Raises
     ------
-    NotSuitable : extensions cross; the message has the coordinates.
-    ValueError : a number of control points other than that of the anchors, or a weight that is not positive.
+    NotSuitable : extensions intersect; the message has the coordinates.
+    ValueError : a wrong number of control points or weights, or a weight that is not positive.
     """
     require_suitable(mesh)
-    return unchecked_mesh(mesh, P_AI, w_A)
-
-
-def unchecked_mesh(mesh: TMesh, P_AI: np.ndarray, w_A: np.ndarray | None = None) -> Mesh:
-    """The same for any T-mesh; the functions of one that is not analysis-suitable need not add up to one."""
     n_A = len(mesh.anchors)
     w_A = np.ones(n_A) if w_A is None else np.asarray(w_A, dtype=float)
     if P_AI.shape != (n_A, 2) or w_A.shape != (n_A,):
@@ -62,7 +60,7 @@ def unchecked_mesh(mesh: TMesh, P_AI: np.ndarray, w_A: np.ndarray | None = None)
 
 
 def extracted(mesh: TMesh) -> Extraction:
-    """Bezier elements, grouped by their number of functions."""
+    """Bezier elements in blocks with the same number of functions."""
     box_ek = bezier_elements(mesh)
     e_n, A_n = _supported(mesh, box_ek)
     count_e = np.bincount(e_n, minlength=len(box_ek))
@@ -78,7 +76,7 @@ def extracted(mesh: TMesh) -> Extraction:
 
 
 def tspline_rectangle(mesh: TMesh) -> Mesh:
-    """The rectangle that the knots span, mapped by the identity: control points at the local Greville abscissae."""
+    """The rectangle of the knot ranges; parameters are positions."""
     return tspline_mesh(mesh, greville(mesh))
 
 
@@ -88,23 +86,18 @@ def greville(mesh: TMesh) -> np.ndarray:
 
 
 def bezier_elements(mesh: TMesh) -> np.ndarray:
-    """Index boxes (n_e, 4) i0, i1, j0, j1 of the faces with area, extensions drawn in; i runs fastest.
+    """Index boxes (n_e, 4) i0, i1, j0, j1 of the faces with area of the mesh with its extensions; i runs fastest.
 
-    A T-mesh whose lines end on other lines has no faces but rectangles.
+    All faces are rectangles, since the lines of a T-mesh end on other lines.
     """
-    return _faces(mesh, *mesh.extended())
-
-
-def faces(mesh: TMesh) -> np.ndarray:
-    """The same for the T-mesh as it is, without extensions."""
-    return _faces(mesh, mesh.across_ij, mesh.up_ij)
+    return faces(mesh, *mesh.extended())
 
 
 def blossoms(knots_n5: np.ndarray, start_n: np.ndarray, end_n: np.ndarray) -> np.ndarray:
     """Bernstein coefficients (n, 4) of cubic B-splines with knots (n, 5) on spans [start, end] within one knot span.
 
-    The recursion of Cox and de Boor with another argument at each level is the blossom of a piece; coefficient b is
-    its value at the start 3 - b times and at the end b times (Ramshaw 1989).
+    The blossom is the recursion of Cox and de Boor with a different argument at each level; coefficient b is its value
+    for 3 - b arguments at the start and b at the end (Ramshaw 1989).
     """
     knots_kn, middle_n = np.ascontiguousarray(knots_n5.T), 0.5 * (start_n + end_n)
     inverse = {}
@@ -123,9 +116,9 @@ def blossoms(knots_n5: np.ndarray, start_n: np.ndarray, end_n: np.ndarray) -> np
     return out_bn.T
 
 
-def _faces(mesh: TMesh, across: np.ndarray, up: np.ndarray) -> np.ndarray:
-    """Index boxes (n, 4) of the faces with area between unit edges."""
-    across, up = across[FRAME:-FRAME, FRAME:-FRAME], up[FRAME:-FRAME, FRAME:-FRAME]
+def faces(mesh: TMesh, across_ij: np.ndarray, up_ij: np.ndarray) -> np.ndarray:
+    """Index boxes (n, 4) of the faces with area between the unit edges ``across_ij`` and ``up_ij`` of the mesh."""
+    across, up = across_ij[FRAME:-FRAME, FRAME:-FRAME], up_ij[FRAME:-FRAME, FRAME:-FRAME]
     corner = np.argwhere((up[:-1] & across[:, :-1]).T)[:, ::-1]
     i, j = corner.T
     end_i, end_j = neighbours(up, i, j, 1)[:, 2], neighbours(across.T, j, i, 1)[:, 2]
@@ -135,9 +128,9 @@ def _faces(mesh: TMesh, across: np.ndarray, up: np.ndarray) -> np.ndarray:
 
 
 def _supported(mesh: TMesh, box_ek: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """All pairs (n,) of an element and a function that lives on it, sorted by element and then by function.
+    """All pairs (n,) of an element and a function with support on it, sorted by element and then by function.
 
-    Elements are sorted by rows; in each row that a function spans those of its columns are one run.
+    With elements sorted by rows, those under a function are one run in each row.
     """
     across, up = mesh.local_indices
     m = len(mesh.knots_i)
@@ -155,7 +148,7 @@ def _supported(mesh: TMesh, box_ek: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 
 def _extraction(mesh: TMesh, box_ek: np.ndarray, conn_ea: np.ndarray) -> np.ndarray:
-    """Extraction operators (n_e, n_a, 16) of elements with the same number of functions."""
+    """Extraction operators (n_e, n_a, 16) of elements with the functions ``conn_ea``."""
     n_e, n_a = conn_ea.shape
     (s, t), C_eab = mesh.local_knots, np.empty((n_e, n_a, (DEGREE + 1) ** 2))
     for first in range(0, n_e, _AT_ONCE):
@@ -167,13 +160,13 @@ def _extraction(mesh: TMesh, box_ek: np.ndarray, conn_ea: np.ndarray) -> np.ndar
 
 
 def _pieces(local: np.ndarray, knots: np.ndarray, A_n: np.ndarray, i0: np.ndarray, i1: np.ndarray) -> np.ndarray:
-    """Bernstein coefficients (n, 4) in one direction, each computed once for all the elements that share it."""
+    """Bernstein coefficients (n, 4) in one direction, computed once for all elements that share them."""
     _, first, same = np.unique((A_n * len(knots) + i0) * len(knots) + i1, return_index=True, return_inverse=True)
     return blossoms(local[A_n[first]], knots[i0[first]], knots[i1[first]])[same]
 
 
 def _sides(mesh: TMesh, box_ek: np.ndarray) -> dict[str, np.ndarray]:
-    """Elements along each side of the domain, in the order of the side's own parameter."""
+    """Elements on each side of the domain, in the order of the side's own parameter."""
     s0, s1 = mesh.knots_i[box_ek[:, :2]].T
     t0, t1 = mesh.knots_j[box_ek[:, 2:]].T
     at = {

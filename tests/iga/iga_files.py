@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from iga.files.iga_format import IgaFile, NamedSet
-from iga.mesh.extraction import ElementBlock
+from iga.mesh.extraction import ElementBlock, Mesh
 
 REAL = ("arch_nurbs", "arch_tsplines", "plate_with_hole", "square_structured", "square_unstructured")
 
@@ -62,6 +62,18 @@ def small(folder: Path, text: str = SMALL) -> Path:
     path = folder / "small.iga"
     path.write_text(text)
     return path
+
+
+def from_mesh(body: Mesh) -> IgaFile:
+    """The file of a body in the plane: elements block by block, every chain a side set."""
+    first = body.first_b
+    block_e = np.repeat(np.arange(len(body.blocks)), np.diff(first))
+    sets = tuple(
+        NamedSet("side", "_".join(name.split()), first[chain.block_c] + chain.element_c, tuple(map(str, chain.side_c)))
+        for name, chain in body.chains.items()
+    )
+    P_AI = np.column_stack([body.P_AI, np.zeros(len(body.P_AI))])
+    return IgaFile("plane", P_AI, body.w_A, body.blocks, block_e, np.arange(first[-1]) - first[block_e], sets)
 
 
 def random_file(rng: np.random.Generator) -> IgaFile:

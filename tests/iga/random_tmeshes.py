@@ -2,11 +2,10 @@
 
 import numpy as np
 from hypothesis import strategies as st
+from tmeshes import Bisected, from_rectangles, initial, made_suitable, transposed
 
 from iga.specimen.tmesh_strip import Strip, strip_tmesh
-from iga.tsplines.bisection import Bisection, initial
-from iga.tsplines.lines import from_rectangles, tensor_grid, with_line
-from iga.tsplines.suitable import made_suitable
+from iga.tsplines.lines import tensor_grid, with_line
 from iga.tsplines.tmesh import TMesh
 
 SPANS = st.lists(st.floats(0.2, 5.0), min_size=1, max_size=4)
@@ -25,7 +24,7 @@ def markings(draw, steps=5):
     return initial(draw(breaks()), draw(breaks())), draw(st.lists(marks, max_size=steps))
 
 
-def marked(mesh: Bisection, places: list[float]) -> np.ndarray:
+def marked(mesh: Bisected, places: list[float]) -> np.ndarray:
     return np.unique([int(place * len(mesh.level_e)) for place in places])
 
 
@@ -48,7 +47,7 @@ def one_way(draw):
         at = s[0] + (s[-1] - s[0]) * draw(st.floats(0.01, 0.99))
         low, high = sorted(draw(st.sets(st.integers(0, len(t) - 1), min_size=2, max_size=2)))
         mesh = with_line(mesh, "vertical", at, (t[low], t[high]), times=draw(st.integers(1, 2)))
-    return mesh.transposed if draw(st.booleans()) else mesh
+    return transposed(mesh) if draw(st.booleans()) else mesh
 
 
 @st.composite

@@ -20,7 +20,7 @@ from verify.scene import process_zone
 from verify.scene.bodies import elastic_constants
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
-from verify.theory.law import LAWS, Law
+from verify.theory.law import KNOWN_LAWS, Law
 from verify.verdict import Check, Kind
 
 Steps = Mapping[str, np.ndarray]
@@ -72,7 +72,7 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
             PENETRATION_TOLERANCE,
             "Faces are in each other by no more than contact gives way.",
         ),
-        ("j-integral", j_deviation, j_tolerance, J_OF_LAW if scene.interface.law in LAWS else J_OF_ANY_LAW),
+        ("j-integral", j_deviation, j_tolerance, J_OF_LAW if scene.interface.law in KNOWN_LAWS else J_OF_ANY_LAW),
         (
             "j-pressed",
             j_pressed,
@@ -123,7 +123,7 @@ def end_cannot_judge(scene: Scene, result: Result, check: Check) -> str:
 def law_of(scene: Scene) -> Law:
     """The scene's traction law, in the copy that only checks and beam use; what all laws have where there is none."""
     i = scene.interface
-    return LAWS.get(i.law, Law)(i.strength, i.toughness, i.ductility, i.penalty, simulated(scene, "")["contact"])
+    return KNOWN_LAWS.get(i.law, Law)(i.strength, i.toughness, i.ductility, i.penalty, simulated(scene, "")["contact"])
 
 
 def j_deviation(scene: Scene, steps: Steps) -> float | None:
@@ -329,7 +329,7 @@ def _start_of_leg(scene: Scene, steps: Steps) -> np.ndarray:
 
 def _tip_is_open(scene: Scene, steps: Steps) -> np.ndarray:
     """Steps (n_steps,) at which nothing holds the tip of the bond any more; of a law that is not known, as is told."""
-    if scene.interface.law in LAWS:
+    if scene.interface.law in KNOWN_LAWS:
         return steps["tip_opening"] > law_of(scene).g_open
     return steps.get("crack_length", np.zeros(steps["opening"].size)) > scene.specimen.free_length
 

@@ -7,16 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem_reference.problem.specimen import Body, Place, Specimen
+from fem_reference.problem.specimen import Body, Region, Specimen
 from verify.methods.problems import dolfinx_problem
 from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
 
 #: Upper body first.
 BODIES: Mapping[str, tuple[str, str]] = {"dcb": ("upper", "lower"), "peel": ("strip", "substrate")}
-
-#: What the layers of a specimen are called by the problem of `fem_reference`.
-LAYERS: Mapping[str, str] = {"dcb": "elements_across", "peel": "strip_layers"}
 
 #: Part of a height by which a node may lie beside the middle of a face, by rounding.
 MIDDLE = 1e-9
@@ -107,7 +104,7 @@ def scene_mesh(scene: Scene, layers: int | None = None) -> SceneMesh:
         raise Refusal(f"dolfinx.degree: must be 1 or 2 for export, got {degree}")
     try:
         problem = dolfinx_problem(_of_degree(scene, degree))
-        specimen = (replace(problem, **{LAYERS[kind]: layers}) if layers else problem).specimen()
+        specimen = (replace(problem, layers=layers) if layers else problem).specimen()
     except ValueError as error:
         raise Refusal(f"dolfinx.{error}") from None
     mesh = _meshed(specimen, degree, BODIES[kind])
@@ -200,7 +197,7 @@ class _Grid:
         conn = np.stack([part.ravel() for part in (*corners, *middles)], axis=1)
         return _Grid(np.stack([x[~inside], y[~inside]], axis=1), conn, first, specimen.near)
 
-    def on(self, place: Place) -> np.ndarray:
+    def on(self, place: Region) -> np.ndarray:
         """Nodes in a place."""
         (left, right), (low, high) = place
         x, y = self.X_nI.T

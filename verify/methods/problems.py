@@ -39,11 +39,11 @@ def dolfinx_problem(scene: Scene) -> Any:
     from verify.methods.reference_mesh import reference_mesh
 
     mesh = reference_mesh(scene)
-    own: dict[str, Any] = {"degree": mesh.degree, "elements": mesh.elements}
+    own: dict[str, Any] = {"degree": mesh.degree, "elements": mesh.elements, "layers": mesh.layers}
     if scene.specimen.kind == "peel":
         keys = {**_peel_keys(scene, Moduli), **_common_keys(scene, "dolfinx"), "steps": counted_steps(scene)}
-        return peel.Problem(**keys, **own, strip_layers=mesh.layers)
-    return dcb.Problem(**problem_keys(scene, "dolfinx"), **own, elements_across=mesh.layers)
+        return peel.Problem(**keys, **own)
+    return dcb.Problem(**_known(dcb.Problem, problem_keys(scene, "dolfinx")), **own)
 
 
 def beam_problem(scene: Scene) -> BeamProblem:
@@ -140,7 +140,7 @@ def _analytical_keys(scene: Scene, method: str) -> dict[str, Any]:
         from verify.theory.beam.substrate import Layer
 
         base = elastic_constants(other)
-        layer = Layer.of(specimen.substrate_length, specimen.substrate_thickness, plane=specimen.plane, **base)
+        layer = Layer.of((specimen.substrate_length, specimen.substrate_thickness), plane=specimen.plane, **base)
         own = {"substrate": layer, "arms": 1}
     constants = elastic_constants(material)
     return {

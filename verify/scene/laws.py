@@ -41,6 +41,6 @@ def _iga() -> tuple[str, ...]:
 
 
 def _dolfinx() -> tuple[str, ...]:
-    from fem_reference.problem.law import LAWS
+    from fem_reference.problem.law import MODELLED_LAWS
 
-    return tuple(LAWS)
+    return tuple(MODELLED_LAWS)

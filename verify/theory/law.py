@@ -1,7 +1,7 @@
-"""The traction laws, written once more on purpose: checks and the cohesive beam share no code with a solver.
+"""The traction laws for checks and the cohesive beam, independent of those of the solvers on purpose.
 
-A law of a solver that is not written down here is a plain `Law` to the checks: they hold a run against what is true of
-every law, and leave the rest out.
+For a law of a solver that is missing here, the checks take a plain `Law`: they use the properties that all laws have,
+and leave the rest out.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 @dataclass(frozen=True)
 class Law:
-    """What every mode I law has: a line up to the strength, a toughness, and a penalty on closing.
+    """The common properties of all mode I laws: linear up to the strength, a toughness, a penalty on closing.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Law:
     toughness : area under the envelope, G_Ic (energy per area)
     ductility : 2 G_Ic / (p_max g_max), > 1
     penalty : stiffness against closing (stress per length)
-    contact : where false, the secant of the opening side continues into closing
+    contact : if False, the secant of the opening side continues into closing
     """
 
     strength: float
@@ -33,7 +33,7 @@ class Law:
 
     @property
     def g_open(self) -> float:
-        """The scale 2 G_Ic / p_max of openings; where a law is known, the opening from which no traction is left."""
+        """Scale of openings, 2 G_Ic / p_max; for a known law the opening g_u from which the traction is zero."""
         return 2.0 * self.toughness / self.strength
 
     @property
@@ -47,7 +47,7 @@ class Law:
         return self.strength / self.g_peak
 
     def area(self, gap: ArrayLike) -> np.ndarray:
-        """Integral of the envelope from 0 to ``gap``, NaN beyond g_max; for a closed gap the energy of the contact."""
+        """Integral of the envelope from 0 to ``gap``, NaN beyond g_max; for gaps < 0 the energy of contact."""
         gap = np.asarray(gap, dtype=float)
         below_zero = self.penalty if self.contact else self.stiffness
         elastic = 0.5 * np.where(gap < 0.0, below_zero, self.stiffness) * gap**2
@@ -67,23 +67,23 @@ class Bilinear(Law):
         return -self.strength / (self.g_open - self.g_peak)
 
     def damage(self, history: ArrayLike) -> np.ndarray:
-        """Damage d of a point whose largest opening so far is ``history``: 0 intact, 1 open."""
+        """Damage d at points with the largest opening ``history`` so far: 0 intact, 1 open."""
         k = np.clip(history, self.g_peak, self.g_open)
         return self.g_open * (k - self.g_peak) / (k * (self.g_open - self.g_peak))
 
     def secant(self, history: ArrayLike) -> np.ndarray:
-        """Stiffness (1 - d) K0 along which a point unloads and reloads."""
+        """Stiffness (1 - d) K0 of unloading and reloading."""
         return (1.0 - self.damage(history)) * self.stiffness
 
     def traction(self, gap: ArrayLike, history: ArrayLike | None = None) -> np.ndarray:
-        """Traction at ``gap``; without ``history`` the point is on the envelope (``gap`` the largest so far)."""
+        """Traction at ``gap``; without ``history`` on the envelope, where ``gap`` is the largest so far."""
         gap = np.asarray(gap, dtype=float)
         largest = np.maximum(gap, 0.0 if history is None else history)
         on_opening_side = self.secant(largest) * gap
         return np.where(gap < 0.0, self.penalty * gap, on_opening_side) if self.contact else on_opening_side
 
     def area(self, gap: ArrayLike) -> np.ndarray:
-        """Integral of the envelope from 0 to ``gap``; for a closed gap the energy of the contact (or of the secant)."""
+        """Integral of the envelope from 0 to ``gap``; for gaps < 0 the energy of contact (or of the secant)."""
         gap = np.asarray(gap, dtype=float)
         closed = np.minimum(gap, 0.0)
         rising = np.clip(gap, 0.0, self.g_peak)
@@ -96,10 +96,10 @@ class Bilinear(Law):
         )
 
     def dissipated(self, history: ArrayLike) -> np.ndarray:
-        """Energy per area that a point has lost: the area up to ``history`` minus what unloading gives back."""
+        """Dissipated energy per area: the area up to ``history`` minus the energy that unloading recovers."""
         k = np.maximum(history, 0.0)
         return self.area(k) - 0.5 * self.secant(k) * k * k
 
 
-#: Name in a scene -> law; any other name stands for a plain `Law`.
-LAWS: dict[str, type[Law]] = {"bilinear": Bilinear}
+#: Name in a scene -> law; the checks take a plain `Law` for any other name.
+KNOWN_LAWS: dict[str, type[Law]] = {"bilinear": Bilinear}

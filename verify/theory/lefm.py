@@ -1,14 +1,14 @@
-"""DCB and peel test by linear elastic fracture mechanics: no process zone, the crack runs as soon as G reaches G_Ic.
+"""DCB and peel test by linear elastic fracture mechanics: no process zone, the crack grows once G reaches G_Ic.
 
-Five theories, each a compliance and a condition of growth, of n arms: two of a DCB, or the strip of a peel test alone.
+Five theories, each a compliance and a condition of growth, for n arms: two of a DCB, one (the strip) of a peel test.
 
 simple     opening = n P a^3 / (3 E I), P_c = sqrt(2 w G E I / n) / a: the arms are clamped at the crack tip
 corrected  the same with a + chi h for a: the tip rotates, the arms shear (DCB)
 factors    corrected, with the factors F and N for moderately large openings (DCB)
 elastica   n P sin(theta) = G w: exact for inextensible clamped arms, however far they bend
-kendall    P + P^2 / (2 E A) = G w: a strip that stretches and does not resist bending, peeled upright (peel)
+kendall    P + P^2 / (2 E A) = G w: a strip with axial stiffness alone, peeled at 90 degrees (peel)
 
-The limit of the cohesive solutions for a strength without bounds, never their target.
+LEFM is the limit of cohesive solutions for infinite strength, not a reference for those of finite strength.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ import numpy as np
 
 from verify.theory import elastica
 
-#: Theories by the number of arms.
-THEORIES = {2: ("simple", "corrected", "factors", "elastica"), 1: ("simple", "elastica", "kendall")}
+#: Available theories by the number of arms.
+LEFM_THEORIES = {2: ("simple", "corrected", "factors", "elastica"), 1: ("simple", "elastica", "kendall")}
 
 #: Coefficients of the factors without load blocks: F = 1 - F2 (opening / a)^2, N = 1 - N2 (opening / a)^2.
 F2, N2 = 3.0 / 10.0, 9.0 / 35.0
@@ -32,13 +32,11 @@ F2, N2 = 3.0 / 10.0, 9.0 / 35.0
 class LefmProblem:
     """A double cantilever beam, or with one of ``arms`` a strip on a rigid base, under a monotone opening.
 
-    A strip has the length and the thickness of an arm, and the length that is not bonded is its precrack.
+    A strip has the length and the thickness of an arm; its precrack is the length that is not bonded.
 
     ``young``, ``transverse``, ``shear``: moduli along and across the arm (plane strain: E / (1 - nu^2)) and in shear.
-
-    ``theory`` is one of THEORIES or ``auto``: corrected for linear kinematics, factors for finite; for a strip simple
-    and elastica.
-    ``points`` is the number of rows after the first.
+    ``theory`` is one of `LEFM_THEORIES` or ``auto``: corrected for linear, factors for finite kinematics; for a strip
+    simple and elastica. ``points`` is the number of rows after the first.
     """
 
     length: float
@@ -57,21 +55,25 @@ class LefmProblem:
 
     @property
     def bending(self) -> float:
+        """Bending stiffness E I of an arm."""
         return self.young * self.width * self.arm_thickness**3 / 12.0
 
     @property
     def resistance(self) -> float:
-        """Energy of a unit length of crack, G_Ic w."""
+        """Energy per unit crack length, G_Ic w."""
         return self.toughness * self.width
 
     @property
     def named_theory(self) -> str:
+        """The theory, with ``auto`` resolved."""
         usual = {2: ("corrected", "factors"), 1: ("simple", "elastica")}[self.arms]
         return self.theory if self.theory != "auto" else usual[self.kinematics == "finite"]
 
 
 @dataclass(frozen=True)
 class Solution:
+    """Rows of the curve, and how the run ended."""
+
     rows: tuple[Mapping[str, float], ...]
     status: str = "complete"
     ending: str = ""
@@ -100,19 +102,19 @@ def chi(problem: LefmProblem) -> float:
 
 
 def solve(problem: LefmProblem, on_step: Callable[[Mapping[str, float]], None] | None = None) -> Solution:
-    """Load-opening curve: the arms bend with the crack at the precrack, then it runs to the end of the programme.
+    """Load curve: the arms bend with the crack at the precrack, then the crack grows to the end of the programme.
 
-    The columns are those of a run. The path has a kink where the crack starts, ``load_slope`` there is that before it.
-    The integral of the load equals stored plus dissipated energy exactly but for ``factors``, whose F and N agree with
-    one another to the order (opening / a)^2; there ``external_work`` is the integral by itself.
+    The columns are those of a run. At the onset of growth the path has a kink; ``load_slope`` there is that before it.
+    The integral of the load equals stored plus dissipated energy exactly, except for ``factors``, whose F and N are
+    consistent to the order (opening / a)^2 only; there ``external_work`` is the integral of the load.
 
     Raises
     ------
-    ValueError : the programme unloads, or the theory is none of this specimen
+    ValueError : the programme unloads, or the theory is not available for the specimen
     """
     end, theory = _end(problem), problem.named_theory
-    if theory not in THEORIES[problem.arms]:
-        raise ValueError(f"theory: must be one of {', '.join(THEORIES[problem.arms])}, got {theory}")
+    if theory not in LEFM_THEORIES[problem.arms]:
+        raise ValueError(f"theory: must be one of {', '.join(LEFM_THEORIES[problem.arms])}, got {theory}")
     solvers = {"elastica": _elastica, "factors": _factors, "kendall": _kendall}
     loading, growth = solvers.get(theory, _beam)(problem, end)
     beyond = growth.crack > problem.length
@@ -135,7 +137,7 @@ def _end(problem: LefmProblem) -> float:
 
 
 def _split(problem: LefmProblem, onset: float, end: float) -> tuple[np.ndarray, np.ndarray]:
-    """Openings of the loading branch, the first one 0, and of the growing crack (none where the end comes first)."""
+    """Openings of the loading branch, from 0, and of the growing crack (empty if the programme ends before)."""
     if end <= onset:
         return np.linspace(0.0, end, problem.points + 1), np.zeros(0)
     before = int(np.clip(problem.points * onset / end, 2, problem.points - 2))
@@ -218,7 +220,7 @@ def _slope_of_growth(P: Any, opening: Any, a: Any, more: float) -> Any:
 
 
 def _work(problem: LefmProblem, loading: Branch, growth: Branch) -> np.ndarray:
-    """Integral of the load: what is stored up to the onset, then the cubic Hermite rule with the slopes of growth."""
+    """Integral of the load: stored energy up to the onset, then the cubic Hermite rule with the slopes of growth."""
     onset = loading.opening[-1], loading.load[-1]
     more = chi(problem) * problem.arm_thickness
     opening, P = np.append(onset[0], growth.opening), np.append(onset[1], growth.load)
@@ -237,11 +239,11 @@ def _N(r: Any) -> Any:
 
 
 def _fixed_point(step: Callable[[Any], Any], value: Any) -> Any:
-    """Iterate to rounding; the factors change slowly, so that this contracts.
+    """Damped fixed-point iteration to rounding; it contracts, since the factors change slowly.
 
     Raises
     ------
-    ValueError : it does not, the opening is beyond the reach of the factors
+    ValueError : no convergence; the opening is beyond the range of the factors
     """
     for _ in range(200):
         with np.errstate(invalid="ignore"):
@@ -269,10 +271,10 @@ def _elastica(problem: LefmProblem, end: float) -> tuple[Branch, Branch]:
 
 
 def _kendall(problem: LefmProblem, end: float) -> tuple[Branch, Branch]:
-    """A strip that stretches and does not bend: loose until it stands upright, pulled, then peeled at a constant load.
+    """A strip without bending stiffness: slack until it is upright, then stretched, then peeled at a constant load.
 
     (P / w) (1 - cos(theta)) + (P / w)^2 / (2 E h) = G at an angle theta of 90 degrees (Kendall 1975, J. Phys. D 8,
-    1449-1452, eq. 2). Its face has no slope to tell.
+    1449-1452, eq. 2). The slope of its end face is not defined.
     """
     a0, Gw, EA = problem.precrack, problem.resistance, problem.young * problem.width * problem.arm_thickness
     load = 2.0 * Gw / (1.0 + np.sqrt(1.0 + 2.0 * Gw / EA))  # not EA (sqrt(1 + 2 Gw / EA) - 1), which cancels

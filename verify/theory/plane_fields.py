@@ -20,7 +20,7 @@ Analytic = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class PlaneField:
-    """One solution: ``phi`` with its first two derivatives, ``psi`` with its first, and the isotropic solid."""
+    """One exact solution: ``phi`` with its first two derivatives, ``psi`` with its first, and the isotropic solid."""
 
     phi: tuple[Analytic, Analytic, Analytic]
     psi: tuple[Analytic, Analytic]

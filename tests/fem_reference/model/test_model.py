@@ -29,7 +29,7 @@ SMALL = Problem(
     ductility=5.0,
     penalty=2.0,
     elements=9,
-    elements_across=2,
+    layers=2,
 )
 
 

@@ -21,7 +21,7 @@ from verify.fields.frames import solid_cells
 
 DCB = Problem(
     length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, E2=60e3, G12=30e3, nu12=0.2, plane="strain", strength=4.0,
-    toughness=0.1, ductility=12.5, opening=(0.5,), steps=3, elements=28, elements_across=2,
+    toughness=0.1, ductility=12.5, opening=(0.5,), steps=3, elements=28, layers=2,
 )  # fmt: skip
 PEEL = Peel(
     strip_length=150.0, strip_thickness=2.0, substrate_length=120.0, substrate_thickness=10.0, bond_length=90.0,

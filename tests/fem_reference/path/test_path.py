@@ -196,8 +196,8 @@ def test_the_front_is_the_most_open_point_that_softens():
 
 
 def test_a_path_that_cannot_go_on_says_why(monkeypatch):
-    monkeypatch.setattr(newton, "TOLERANCE", 0.0)
-    monkeypatch.setattr(newton, "ROUNDING", 0.0)
+    never = replace(newton.REFERENCE_NEWTON, tolerance=0.0, rounding=0.0)
+    monkeypatch.setattr(newton, "REFERENCE_NEWTON", never)
     model = build_model(replace(COARSE, opening=(0.1,), steps=2), lambda name: nullcontext(), MPI.COMM_SELF)
     points = list(path(model))
     assert isinstance(points[0], State)

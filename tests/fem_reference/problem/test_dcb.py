@@ -14,7 +14,7 @@ from mpi4py import MPI
 
 from fem_reference.model.model import build_model
 from fem_reference.path.control import opening_control
-from fem_reference.path.newton import find_equilibrium
+from fem_reference.path.newton import Step, find_equilibrium
 from fem_reference.path.path import path
 from fem_reference.problem.dcb import Problem
 from fem_reference.problem.law import Law
@@ -118,7 +118,7 @@ def test_newton_converges_quadratically_between_kinks():
         ductility=5.0,
         contact=False,
         elements=12,
-        elements_across=2,
+        layers=2,
         opening=(0.05,),
         steps=1,
     )
@@ -126,7 +126,7 @@ def test_newton_converges_quadratically_between_kinks():
     start = list(path(model))[-1]
     move = 0.8 - start.opening
     guess = start.u_n + move * start.rate_n, start.load + move * start.slope
-    attempt = find_equilibrium(model, opening_control(model, 0.8), *guess, start.k_q, 0.0)
+    attempt = find_equilibrium(model, Step(opening_control(model, 0.8), start.k_q, 0.0), *guess)
     residuals = np.array(attempt.residuals)
     print("residuals of one step over the load:", ", ".join(f"{r:.1e}" for r in residuals))
     assert attempt.converged

@@ -26,7 +26,6 @@ DCB = dict(
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"symmetry": True}, "symmetry"),
         ({"precrack": 15.0}, "precrack: must be < length = 14.0, got 15.0"),
         ({"strength": -4.0}, "strength: must be > 0, got -4.0"),
         ({"ductility": 1.0}, "ductility: must be > 1"),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from iga.bases.bspline import KnotVector, insert_knot, open_knots
+from iga.bases.bspline import KnotVector, open_knots
 from iga.bases.nurbs import nurbs_mesh
 from iga.elements.elasticity import orthotropic
 from iga.mesh.quadrature import gauss, lobatto
@@ -32,20 +32,7 @@ def test_knot_vectors(degree: int, knots: list[float], words: str) -> None:
 def test_knots_may_be_given_as_a_list_of_integers() -> None:
     kv = KnotVector(2, [0, 0, 0, 1, 3, 3, 3])
     assert kv.knots.dtype == float and kv.functions == 4 and kv.greville == pytest.approx([0.0, 0.5, 2.0, 3.0])
-    assert kv.breaks.tolist() == [0.0, 1.0, 3.0] and kv.spans.tolist() == [2, 3]
-
-
-@pytest.mark.parametrize("x", [-0.5, 0.0, 1.0, 1.5])
-def test_a_knot_goes_inside(x: float) -> None:
-    with pytest.raises(ValueError, match=r"a knot can be inserted inside \(0.0, 1.0\) only, got"):
-        insert_knot(LINE, x)
-
-
-def test_an_inner_knot_may_be_as_often_as_the_degree() -> None:
-    once, _ = insert_knot(LINE, 0.5)
-    assert np.count_nonzero(once.knots == 0.5) == 2
-    with pytest.raises(ValueError, match="inner knots may have multiplicity 2 at most, got 3"):
-        insert_knot(once, 0.5)
+    assert kv.spans.tolist() == [2, 3]
 
 
 def test_control_nets() -> None:

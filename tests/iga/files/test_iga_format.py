@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from iga_files import REAL, SMALL, assert_same, random_file, real, small
+from iga_files import REAL, SMALL, assert_same, from_mesh, random_file, real, small
 
 from iga.elements.shape_functions import block_basis
-from iga.files.iga_format import from_mesh, mesh, write_iga
+from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import IgaError, read_iga
 from iga.mesh.bezier import homogeneous, jacobian
 from iga.mesh.extraction import SIDES

@@ -2,14 +2,16 @@
 
 import numpy as np
 import pytest
+from knots import insert_knot
 from pressed import loose, press
+from supports import prescribed, symmetry, together
 
-from iga.bases.bspline import insert_knot, open_knots
+from iga.bases.bspline import open_knots
 from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
 from iga.elements.elasticity import orthotropic
 from iga.elements.kinematics import elasticity_tensor
-from iga.elements.plane_elasticity import Fixed, bulk_bases, prescribed, symmetry, traction_forces
+from iga.elements.plane_elasticity import Fixed, bulk_bases, traction_forces
 from iga.mesh.extraction import Mesh
 
 E, NU = 1000.0, 0.3
@@ -33,8 +35,8 @@ def patch(basis: str, degree: int, points: int, slave: int, lower: int = 8) -> t
     interface = loose(slave, meshes, ("bottom", "top"), 100.0 * E, points, stays=True)
     f_Ai = traction_forces(upper, (upper.chains["top"],), lambda X, n: -1.0 * n)
     f_d = np.concatenate([f_Ai.ravel(), np.zeros(below.P_AI.size)])
-    held = symmetry(below, below.chains["bottom"]) + symmetry(below, below.chains["left"])
-    fixed = shifted(held, len(upper.P_AI)) + symmetry(upper, upper.chains["left"])
+    held = together(symmetry(below, below.chains["bottom"]), symmetry(below, below.chains["left"]))
+    fixed = together(shifted(held, len(upper.P_AI)), symmetry(upper, upper.chains["left"]))
     found = press(interface, meshes, (STRESS, STRESS), f_d, fixed)
     exact = np.array([[0.0, 0.0], [0.0, -1.0]])
     worst, first, C = 0.0, 0, elasticity_tensor(STRESS)
@@ -112,7 +114,7 @@ def hertz(elements: int, points: int, slave: int, penalty: float = 100.0, approa
     down = prescribed(arc, (arc.chains["left"],), lambda X: np.stack([0.0 * X[..., 0], 0.0 * X[..., 1] - approach], -1))
     down = Fixed(down.dof_d[down.dof_d % 2 == 1], down.value_d[down.dof_d % 2 == 1])
     rigid = Fixed(2 * len(arc.P_AI) + np.arange(flat.P_AI.size), np.zeros(flat.P_AI.size))
-    fixed = down + symmetry(arc, arc.chains["right"]) + rigid
+    fixed = together(down, symmetry(arc, arc.chains["right"]), rigid)
     # from the whole cylinder moved down: too much touches then, and Newton lets it go
     start_d = np.concatenate([np.tile([0.0, -approach], len(arc.P_AI)), np.zeros(flat.P_AI.size)])
     found = press(interface, (arc, flat), (STRAIN, STRAIN), np.zeros(start_d.size), fixed, start_d)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from iga_files import real
+from iga_files import from_mesh, real
 
 from iga.bases.bspline import open_knots
 from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_rectangle
 from iga.files.cad_body import body_mesh
-from iga.files.iga_format import from_mesh, write_iga
+from iga.files.iga_format import write_iga
 from iga.interface.closest_point import FREE, HELD
 from iga.interface.interface import Interface, contact, forces, stiffness, traction
 from iga.interface.laws import BilinearLaw

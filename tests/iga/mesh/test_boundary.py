@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from iga_files import SMALL, real, small
+from iga_files import SMALL, from_mesh, real, small
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_rectangle
 from iga.elements.shape_functions import chain_basis
 from iga.files.cad_body import RECTANGLE, body_mesh
-from iga.files.iga_format import from_mesh, mesh, write_iga
+from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.interface.surface import normal, surface
 from iga.mesh.bernstein import bernstein

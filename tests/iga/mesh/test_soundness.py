@@ -16,14 +16,14 @@ from doctored_meshes import (
     with_elements,
 )
 from hypothesis import given, settings
-from iga_files import REAL, SMALL, real, small
+from iga_files import REAL, SMALL, from_mesh, real, small
 from random_tmeshes import suitable_tmeshes
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_rectangle
 from iga.bases.unstructured import polygon_mesh
 from iga.files.cad_body import body_mesh
-from iga.files.iga_format import from_mesh, mesh, write_iga
+from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.mesh.extraction import Chain, ElementBlock, Mesh
 from iga.mesh.refinement import bezier_refined

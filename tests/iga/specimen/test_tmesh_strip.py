@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from knots import values
 from random_tmeshes import strips, walked_values
+from tmeshes import faces
 
-from iga.bases.bspline import cox_de_boor, open_knots
+from iga.bases.bspline import open_knots
 from iga.specimen.tmesh_strip import STOCKY, Strip, functions_of_halves, strip_tmesh
 from iga.tsplines.tmesh import DEGREE
-from iga.tsplines.tspline import faces
 
 some = settings(max_examples=25, deadline=None)
 
@@ -41,7 +42,7 @@ def test_on_either_side_the_functions_are_plain_splines(strip, top, seed):
     x = np.random.default_rng(seed).uniform(strip.breaks_c[0], strip.breaks_c[-1], 30)
     interface, opposite = (HIGH, LOW) if top else (LOW, HIGH)
     for y, breaks in ((interface, fine_breaks(strip)), (opposite, strip.breaks_c)):
-        plain = cox_de_boor(open_knots(breaks, DEGREE), x)
+        plain = values(open_knots(breaks, DEGREE), x)
         found = on_side(mesh, x, y)
         assert found.shape == plain.shape and np.abs(found - plain).max() < 1e-11
 

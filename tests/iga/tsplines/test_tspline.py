@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from random_tmeshes import bisections, breaks, marked, markings, suitable_tmeshes, walked_values
 from scipy.sparse import csr_array, vstack
 from scipy.sparse.linalg import spsolve
+from tmeshes import initial, made_suitable, transferred
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_mesh
@@ -14,12 +15,10 @@ from iga.elements.shape_functions import block_basis, chain_basis
 from iga.mesh.bernstein import bernstein, bernstein_derivative, tensor
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss, square
-from iga.tsplines.bisection import initial
 from iga.tsplines.lines import tensor_grid, with_line
-from iga.tsplines.suitable import made_suitable
 from iga.tsplines.tmesh import NotSuitable, TMesh
-from iga.tsplines.transfer import nesting_error, transfer, transferred
-from iga.tsplines.tspline import extracted, greville, tspline_mesh, tspline_rectangle, unchecked_mesh
+from iga.tsplines.transfer import transfer
+from iga.tsplines.tspline import extracted, greville, tspline_mesh, tspline_rectangle
 
 some = settings(max_examples=40, deadline=None)
 few = settings(max_examples=20, deadline=None)
@@ -199,7 +198,7 @@ def test_two_lines_too_many_and_the_sum_is_no_longer_one(upright, level, crossin
         tspline_mesh(both, greville(both))
     sums = walked_values(both, points(both, 1, 2000)).sum(1)
     assert np.abs(sums - 1.0).max() == pytest.approx(missed, abs=0.006)
-    assert max(block.conn_ea.shape[1] for block in unchecked_mesh(both, greville(both)).blocks) == functions
+    assert max(block.conn_ea.shape[1] for block in extracted(both).blocks) == functions
     closed = made_suitable(both)
     assert np.abs(walked_values(closed, points(both, 1)).sum(1) - 1.0).max() < 1e-14
 
@@ -275,6 +274,12 @@ def distance(coarse: TMesh, fine: TMesh) -> float:
     """How far the functions of one mesh are from the space of the other, at points of all elements."""
     N_coarse, N_fine = values_at_shared_points(coarse, fine)
     return np.abs(N_fine @ np.linalg.lstsq(N_fine, N_coarse, rcond=None)[0] - N_coarse).max()
+
+
+def nesting_error(coarse: TMesh, fine: TMesh) -> float:
+    """Largest difference between a function and its image in the other space, at points of all elements."""
+    N_coarse, N_fine = values_at_shared_points(coarse, fine)
+    return np.abs(N_coarse - N_fine @ transfer(coarse, fine)).max()
 
 
 def global_matrix(mesh: TMesh) -> csr_array:

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from doctored_meshes import SMOOTH, arch
 from hypothesis import given, settings
-from iga_files import REAL, SMALL, assert_same, real, small
+from iga_files import REAL, SMALL, assert_same, from_mesh, real, small
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_rectangle
 from iga.bases.unstructured import polygon_mesh
-from iga.files.iga_format import from_mesh, mesh, write_iga
+from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.mesh import rank
 from iga.mesh.extraction import ElementBlock, Mesh
@@ -220,7 +220,7 @@ def doubled(body: Mesh) -> Mesh:
 @pytest.mark.parametrize("many", [0, 2000])
 def test_dependent_functions_are_found(many, monkeypatch):
     """By singular values and, as for large meshes, by the smallest eigenvalue."""
-    monkeypatch.setattr(rank, "MANY", many)
+    monkeypatch.setattr(rank, "RANK", replace(rank.RANK, dense=many))
     kv = open_knots(np.linspace(0.0, 1.0, 4), 3)
     body = nurbs_rectangle(kv, kv)
     assert independent(body) == 36

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from iga_files import from_mesh
 
 from iga.dcb.meshes import arm_meshes
-from iga.files.iga_format import from_mesh, write_iga
+from iga.files.iga_format import write_iga
 from iga.mesh.extraction import ElementBlock, Mesh
 from iga.peel.meshes import tmeshes as peel_tmeshes
 from iga.tsplines.tspline import tspline_rectangle

@@ -22,7 +22,7 @@ from matplotlib.cm import ScalarMappable  # noqa: E402
 
 from iga.bases.bspline import open_knots  # noqa: E402
 from iga.bases.nurbs import nurbs_rectangle  # noqa: E402
-from iga.tsplines.bisection import initial  # noqa: E402
+from iga.tsplines.lines import tensor_grid  # noqa: E402
 from iga.tsplines.tspline import greville, tspline_mesh  # noqa: E402
 from tests.verify.pages.test_charts import a_study  # noqa: E402
 from tests.verify.report.figures.test_undeformed import entry, snapshot  # noqa: E402
@@ -296,7 +296,7 @@ def test_every_row_of_bars_adds_as_much_height(chart: str, monkeypatch: pytest.M
 @pytest.mark.parametrize("stretch", [0.7, 0.1])
 def test_pictures_of_meshes_can_be_read(control: bool, marked: bool, stretch: float) -> None:
     """Marks are named where there are any, whatever the shape of the body; the title is above, and all is to scale."""
-    tmesh = initial(np.arange(4.0), np.arange(4.0)).tmesh
+    tmesh = tensor_grid(np.arange(4.0), np.arange(4.0))
     mesh = tspline_mesh(tmesh, greville(tmesh) * [1.0, stretch])
     facts = MeshFacts(mesh)
     facts.__dict__["junctions"] = np.array([[1.0, 0.5 * stretch], [2.0, 1.0 * stretch]] if marked else []).reshape(
@@ -319,7 +319,7 @@ def test_pictures_of_meshes_can_be_read(control: bool, marked: bool, stretch: fl
 
 def test_all_marks_of_a_mesh_are_named_below_it() -> None:
     """Four names are more than fit into a line; what is not of the least degrees is filled."""
-    tmesh = initial(np.arange(4.0), np.arange(4.0)).tmesh
+    tmesh = tensor_grid(np.arange(4.0), np.arange(4.0))
     facts = MeshFacts(tspline_mesh(tmesh, greville(tmesh)))
     facts.__dict__["kinds"] = [((2, 2), 9, 1), *facts.kinds]
     facts.__dict__["junctions"] = np.array([[1.0, 0.5]])

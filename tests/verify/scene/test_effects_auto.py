@@ -236,8 +236,10 @@ def test_what_is_said_of_the_turn_is_what_finite_kinematics_changes(opening: flo
 
 
 def test_two_meshes_that_differ_are_no_symmetry(tmp_path: Path) -> None:
+    from iga_files import from_mesh
+
     from iga.dcb.meshes import arm_meshes
-    from iga.files.iga_format import from_mesh, write_iga
+    from iga.files.iga_format import write_iga
     from verify.methods.problems import iga_problem
 
     _, problem = iga_problem(load_scene("dcb-czm1", ["discretization.dofs=400"]), "nurbs")

@@ -12,7 +12,7 @@ from scipy.special import ellipeinc, ellipkinc, logit
 from verify.curves.curve import curve_error
 from verify.result import CURVE_COLUMNS, steps_from_rows
 from verify.theory import elastica
-from verify.theory.lefm import THEORIES as ALL
+from verify.theory.lefm import LEFM_THEORIES as ALL
 from verify.theory.lefm import LefmProblem, chi, solve
 
 THEORIES = ALL[2]

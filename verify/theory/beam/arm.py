@@ -1,8 +1,8 @@
-"""One arm of the specimen as a shear-flexible beam: rates of its four states along the undeformed axis, and its energy.
+"""One arm as a shear-flexible beam: derivatives of its four states along the undeformed axis, and its energy.
 
 States, in units of the arm thickness h and of the bending stiffness EI (force EI / h^2, moment EI / h):
-deflection v, rotation of the section phi, vertical force V on the cut, moment M. No horizontal force acts on an arm,
-since its supports carry nothing and the tractions stay vertical; so these four are all.
+deflection v, rotation of the section phi, vertical section force V, moment M. There is no horizontal section force,
+since the supports carry no load and the tractions stay vertical.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ import numpy as np
 
 V, PHI, FORCE, MOMENT = range(4)
 
-#: Shear correction of a rectangle whose section stays free to warp, and the one that gives the exact shear energy of
-#: the parabolic stress (Reissner 1945). Cowper's 10 (1 + nu) / (12 + 11 nu) differs by 1.5 % in a term of 0.1 %.
+#: Shear correction factor of a rectangle that is free to warp; it gives the exact shear energy of the parabolic stress
+#: (Reissner 1945). Cowper's 10 (1 + nu) / (12 + 11 nu) differs by 1.5 % in a term of 0.1 %.
 SHEAR_CORRECTION = 5.0 / 6.0
 
 
 @dataclass(frozen=True)
 class Arm:
-    """Stiffness ratios: ``shear`` = EI / (kappa G A h^2), ``stretch`` = EI / (E A h^2), and the kinematics."""
+    """An arm: stiffness ratios ``shear`` = EI / (kappa G A h^2), ``stretch`` = EI / (E A h^2), and kinematics."""
 
     shear: float
     stretch: float
@@ -34,7 +34,7 @@ class Arm:
         return replace(self, finite=False)
 
     def gap(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Half the gap to the mirror image, which is the deflection, (...,), and its derivative (..., 4)."""
+        """The gap over the number of arms, here the deflection, (...,), and its derivative (..., 4)."""
         d = np.zeros_like(y)
         d[..., V] = 1.0
         return y[..., V], d
@@ -74,6 +74,6 @@ class Arm:
         return 0.5 * (y[..., MOMENT] ** 2 + self.stretch * axial**2 + self.shear * shear**2)
 
     def decay(self, on: np.ndarray, force: float) -> float:
-        """Fastest rate of the exponentials exp(r x) on the foundation ``on`` (3,) under the force ``force``."""
+        """Largest rate r of the solutions exp(r x) on the foundation ``on`` (3,) under the section force ``force``."""
         roots = np.roots([1.0, -on[0] * self.shear, on[0]])
         return float(np.sqrt(max(np.abs(roots).max(), abs(force) if self.finite else 0.0)))

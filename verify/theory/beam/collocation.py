@@ -1,7 +1,7 @@
-"""Gauss collocation for a boundary value problem y' = f(y) of a few states on elements that the caller places.
+"""Gauss collocation for a boundary value problem y' = f(y) of a few states on given elements.
 
 The stages of every element are eliminated first (all elements at once), which leaves one banded system for the states
-at the nodes. Nothing is shot across the domain: growing and decaying solutions are both harmless.
+at the nodes. Unlike shooting, this is stable for growing and for decaying solutions.
 Source: Ascher, Mattheij, Russell (1995), Numerical Solution of Boundary Value Problems for ODEs, sections 5.3 and 7.2.
 """
 
@@ -44,7 +44,7 @@ _LOCAL = np.concatenate(([0.0], ABSCISSAE, [1.0]))
 
 @dataclass(frozen=True)
 class Field:
-    """A piecewise polynomial of a states.
+    """A piecewise polynomial with values of ``a`` states.
 
     x : (n + 1,) nodes; node : (n + 1, a) states there; stage : (n, s, a) states at the Gauss points of the elements.
     """
@@ -72,7 +72,7 @@ class Field:
         return np.diff(self.x)[:, None] * WEIGHTS
 
     def samples(self) -> tuple[np.ndarray, np.ndarray]:
-        """Every node and Gauss point in order: positions (m,) and states (m, a)."""
+        """All nodes and Gauss points in order: positions (m,) and states (m, a)."""
         x = np.concatenate((self.x[:-1, None], self.stage_x), axis=1).ravel()
         y = np.concatenate((self.node[:-1, None], self.stage), axis=1).reshape(-1, self.states)
         return np.append(x, self.x[-1]), np.vstack((y, self.node[-1]))
@@ -95,7 +95,7 @@ class Field:
 
 @dataclass(frozen=True)
 class Linearised:
-    """One Newton linearisation: transfer of a change across each element, and of the stages by the left node."""
+    """One Newton linearisation: a change of the right node and of the stages of an element by that of its left node."""
 
     x: np.ndarray
     transfer: np.ndarray  # (n, a, a)
@@ -105,7 +105,7 @@ class Linearised:
 
 
 def linearise(field: Field, f: np.ndarray, df: np.ndarray) -> Linearised:
-    """Eliminate the stages, given the rates ``f`` (n, s, a) and their derivative ``df`` (n, s, a, a) at the stages."""
+    """Eliminate the stages; ``f`` (n, s, a) are the rates at the stages, ``df`` (n, s, a, a) their derivatives."""
     n, s, states = f.shape
     length = np.diff(field.x)
     system = -np.einsum("e,ij,ejab->eiajb", length, MATRIX, df).reshape(n, s * states, s * states)
@@ -127,11 +127,11 @@ def linearise(field: Field, f: np.ndarray, df: np.ndarray) -> Linearised:
 def change(
     linear: Linearised, left: Rows, right: Rows, control: tuple[int, np.ndarray, float], homogeneous: bool = False
 ) -> Field:
-    """Newton change of a field.
+    """Newton correction of a field.
 
-    ``left`` and ``right`` = conditions (b, a) on the states at the first and the last node and their values (b,);
-    ``control`` = (node, condition (a,), value). As many conditions as states; values are those of the change.
-    ``homogeneous`` drops the defects: the tangent of the path.
+    ``left`` and ``right`` are conditions (b, a) on the correction at the first and the last node with their values
+    (b,), ``control`` is (node, condition (a,), value); there are as many conditions as states. ``homogeneous`` drops
+    the defects, which gives the tangent of the path.
     """
     n, states = linear.defect.shape
     begins = len(left[1])

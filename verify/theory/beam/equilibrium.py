@@ -1,4 +1,4 @@
-"""Equilibrium of the arm on its zones: Newton on the states and on the ends of the zones together."""
+"""Equilibrium of the arm: Newton's method for the states and the ends of the zones together."""
 
 from __future__ import annotations
 
@@ -11,13 +11,26 @@ from verify.theory.beam.collocation import Field, Rows, change, linearise
 from verify.theory.beam.peeled_strip import LAYER_SHEAR, Strip
 from verify.theory.beam.zones import CONTACT, ELASTIC, Ends, Foundation, Zones, find, mesh, peak_force
 
-TOLERANCE = 1e-11
-ELSEWHERE = 1e-7
-MAX_ITERATIONS = 40
 
-#: The same where nothing shorter can be tried: contact much softer or stiffer than the bond has far waves that move on
-#: by a little each time (up to 75 iterations were seen).
-PATIENT = 200
+@dataclass(frozen=True)
+class BeamNewton:
+    """When Newton's iterations for the beam stop.
+
+    tolerance : change of the states at the loaded end, in units of their largest values.
+    elsewhere : the same at all other nodes. The far waves of opening and closing converge last, and act on the loaded
+        end by the square of their size only.
+    iterations : iterations before a step is given up and halved.
+    first_iterations : the same for the first state, which has no shorter step. If contact is much softer or stiffer
+        than the bond, far waves move by a little in each iteration (up to 75 iterations were seen).
+    """
+
+    tolerance: float = 1e-11
+    elsewhere: float = 1e-7
+    iterations: int = 40
+    first_iterations: int = 200
+
+
+BEAM_NEWTON = BeamNewton()
 
 
 @dataclass(frozen=True)
@@ -29,7 +42,7 @@ class Model:
     ends: Ends
 
     def nothing_at_ends(self, field: Field) -> tuple[Rows, Rows]:
-        """Conditions of the change at both ends: no moment, no shear of a layer, and no force at the far one."""
+        """Conditions on the correction at both ends: no moment, no shear of a layer, and no force at the far end."""
         layer = [LAYER_SHEAR] if self.arm.states > LAYER_SHEAR else []
         unit = np.eye(self.arm.states)
         first, last = [MOMENT, *layer], [FORCE, MOMENT, *layer]
@@ -38,8 +51,8 @@ class Model:
 
 @dataclass(frozen=True)
 class State:
-    """A converged point: the field, the kind (n,) of its elements, the tangent of the path with respect to the
-    controlled deflection, the place of the damage front, and Newton's iterations."""
+    """A converged point: field, kind (n,) of its elements, tangent of the path with respect to the controlled
+    deflection, position of the damage front, Newton iterations."""
 
     field: Field
     kind: np.ndarray
@@ -53,8 +66,10 @@ class State:
 
 @dataclass(frozen=True)
 class Control:
-    """The deflection of the loaded end, where ``at`` is 0, or the gap (of one arm) there: ``value``. ``front`` fixes
-    the place of the damage front; None lets it follow."""
+    """Prescribes ``value``: the deflection of the loaded end if ``at`` is 0, else the gap (of one arm) at ``at``.
+
+    ``front`` is the prescribed position of the damage front; None if it follows from the field.
+    """
 
     at: float
     value: float
@@ -62,19 +77,19 @@ class Control:
 
 
 def controlled(m: Model, y: np.ndarray, at: float) -> tuple[float, np.ndarray]:
-    """What a control at ``at`` prescribes, at states ``y`` (a,), and its derivative (a,)."""
+    """The quantity that a control at ``at`` prescribes, for states ``y`` (a,), and its derivative (a,)."""
     if at > 0.0:
         gap, by = m.arm.gap(y)
         return float(gap), by
     return float(y[V]), np.eye(m.arm.states)[V]
 
 
-def settle(m: Model, guess: Field, zones: Zones, control: Control, most: int = MAX_ITERATIONS) -> State | None:
-    """Newton on the states and on the ends of the zones, or None where it does not converge in ``most`` iterations."""
+def settle(m: Model, guess: Field, zones: Zones, control: Control, most: int = BEAM_NEWTON.iterations) -> State | None:
+    """Newton's method for states and ends of zones; None if it does not converge in ``most`` iterations."""
     with np.errstate(over="ignore", invalid="ignore"):
         try:
             return _newton(m, guess, zones, control, most)
-        except (np.linalg.LinAlgError, ValueError):  # singular, or beyond all numbers
+        except (np.linalg.LinAlgError, ValueError):  # singular matrix, or overflow
             return None
 
 
@@ -99,12 +114,9 @@ def _newton(m: Model, field: Field, zones: Zones, control: Control, most: int) -
 
 
 def _settled(field: Field, delta: Field) -> bool:
-    """Whether the loaded end no longer changes, nor anything else by much.
-
-    The far waves of opening and closing settle last, and act back on the load by the square of their size.
-    """
-    size = np.abs(field.node).max(axis=0)
-    return bool(np.all(np.abs(delta.node[0]) < TOLERANCE * size) and np.all(np.abs(delta.node) < ELSEWHERE * size))
+    """Whether the change is below the tolerances of `BEAM_NEWTON`."""
+    size, change_n = np.abs(field.node).max(axis=0), np.abs(delta.node)
+    return bool(np.all(change_n[0] < BEAM_NEWTON.tolerance * size) and np.all(change_n < BEAM_NEWTON.elsewhere * size))
 
 
 def _front(m: Model, field: Field, kind: np.ndarray, control: Control) -> float:
@@ -115,15 +127,15 @@ def _front(m: Model, field: Field, kind: np.ndarray, control: Control) -> float:
 
 
 def resettle(m: Model, state: State, guess: Field, control: Control) -> State | None:
-    """Newton from a guess on the mesh of ``state``, in the zones that the guess has."""
+    """Newton's method from a guess on the mesh of ``state``, with the zones of the guess."""
     return settle(m, guess, find(m.arm, m.base, guess, state.kind, m.ends, control.front), control)
 
 
 def intact(m: Model) -> State | None:
-    """The elastic state in which the end of the precrack is about to be damaged, for linear kinematics; or None.
+    """The elastic state at the onset of damage at the end of the precrack, in linear kinematics; None if not found.
 
-    The penalty goes tenfold a time from the stiffness of the open side to its own, so that the zones of contact are
-    found however stiff or soft it is.
+    The stiffness of contact goes in factors of ten from that of the open side to the penalty, so that the zones of
+    contact are found for any penalty.
     """
     elastic, penalty = m.base.k[[ELASTIC, CONTACT]]
     n = int(np.ceil(abs(np.log10(penalty / elastic)))) if penalty > 0.0 else 0
@@ -131,7 +143,7 @@ def intact(m: Model) -> State | None:
     precrack, zones = m.ends.precrack, m.ends.untouched()
     for stiffness in np.geomspace(elastic, penalty, n + 1) if n else [penalty]:
         part = replace(m, arm=m.arm.linear(), base=m.base.closing(stiffness))
-        found = settle(part, field, zones, Control(precrack, m.base.v_peak, precrack), PATIENT)
+        found = settle(part, field, zones, Control(precrack, m.base.v_peak, precrack), BEAM_NEWTON.first_iterations)
         if found is None:
             return None
         state = found

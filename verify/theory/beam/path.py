@@ -1,4 +1,4 @@
-"""The path of the cohesive beam: elastic, then behind the damage front, which only advances."""
+"""The path of the cohesive beam: elastic steps, then steps of the damage front, which only advances."""
 
 from __future__ import annotations
 
@@ -12,24 +12,36 @@ from verify.theory.beam.collocation import Field
 from verify.theory.beam.equilibrium import Control, Model, State, controlled, resettle, settle
 from verify.theory.beam.zones import OPEN, SOFTENING, find
 
-#: A front that must step less than this part of the length does not advance.
-SMALLEST_STEP = 1e-7
 
-#: The specimen has separated when it holds together over less than this part of the bond, or when its load has come
-#: down to this part of the largest and falls on as it opens: a strip goes on turning about its last bit for long.
-LITTLE = 1e-3
+@dataclass(frozen=True)
+class BeamPathSettings:
+    """When the path of the beam ends.
 
-#: What is amiss where the undamaged arm has no solution that can be found.
+    smallest_step : step of the damage front, as a part of the length, below which the path stops.
+    separated : part of the bond that holds, or of the largest load while the load falls, below which the specimen has
+        separated. The second condition ends a strip that rotates about its last bonded part over a long opening.
+    """
+
+    smallest_step: float = 1e-7
+    separated: float = 1e-3
+
+
+BEAM_PATH = BeamPathSettings()
+
+#: Reason why the undamaged arm has no solution that can be found.
 UNEQUAL = "the bond is far stiffer or softer than the arm (interface.strength, ductility, penalty)"
 
-#: How a path ends that has come there.
-SEPARATED = "separated"
+#: Last item of a path whose specimen has separated.
+HAS_SEPARATED = "separated"
 
 
 @dataclass(frozen=True)
 class Pace:
-    """How far a step goes: ``stride`` along the curve of opening / end over load / LEFM load, and ``turn`` radians
-    of it at most, since the work is integrated by cubics; steps shorter than stride / 64 may turn more."""
+    """Length of a step: ``stride`` along the curve of opening / end and load / LEFM load.
+
+    The curve turns by at most ``turn`` [rad] in a step, since the work is integrated by cubics; steps shorter than
+    stride / 64 may turn more.
+    """
 
     end: float  # deflection at the end of the programme
     load: float
@@ -37,11 +49,11 @@ class Pace:
     turn: float = 0.15
 
     def rate(self, tangent: Field) -> tuple[float, float]:
-        """Of opening / end and load / LEFM load along a tangent."""
+        """Rates of opening / end and load / LEFM load along a tangent."""
         return tangent.node[0, V] / self.end, -tangent.node[0, FORCE] / self.load
 
     def turned(self, old: State, new: State) -> float:
-        """Angle between the directions of the path at two states, both taken as the damage front advances."""
+        """Angle [rad] between the directions of the path at two states, in the sense of an advancing damage front."""
         a, b = np.array(self.rate(old.tangent)), np.array(self.rate(new.tangent))
         return float(np.abs(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)))
 
@@ -52,7 +64,7 @@ class Pace:
 
 
 def follow(m: Model, elastic: State, pace: Pace) -> Iterator[State | str | None]:
-    """The converged states in order, None for a step that was halved, and at last how it ended."""
+    """The converged states in order, None for every step that was halved, and last a sentence on the end."""
     state = elastic
     for found in _undamaged(m, elastic, pace):
         yield found
@@ -63,15 +75,17 @@ def follow(m: Model, elastic: State, pace: Pace) -> Iterator[State | str | None]
     while not _reached(state, pace):
         load, bond = -state.field.node[0, FORCE], m.ends.length - m.ends.precrack
         peak = max(peak, load)
-        if m.ends.length - state.front < LITTLE * bond or (load <= LITTLE * peak and pace.fading(state)):
-            yield SEPARATED
+        if m.ends.length - state.front < BEAM_PATH.separated * bond or (
+            load <= BEAM_PATH.separated * peak and pace.fading(state)
+        ):
+            yield HAS_SEPARATED
             return
         stride = pace.stride / np.hypot(*pace.rate(state.tangent)) / _per_front(m, state)
         ds = min(stride, largest, 0.2 * (m.ends.length - state.front))
         new = _step(m, state, ds)
         if new is None or (ds > stride / 64.0 and pace.turned(state, new) > pace.turn):
             largest = 0.5 * ds
-            if largest < SMALLEST_STEP * m.ends.length:
+            if largest < BEAM_PATH.smallest_step * m.ends.length:
                 place = state.front / m.ends.length
                 yield f"stopped: the damage front did not advance beyond {place:.4g} of the length"
                 return
@@ -90,7 +104,7 @@ def _reached(state: State, pace: Pace) -> bool:
 
 
 def _undamaged(m: Model, elastic: State, pace: Pace) -> Iterator[State | str]:
-    """Elastic states up to the onset of damage, or to the end of the programme, or to where one is not found."""
+    """Elastic states up to the onset of damage or the end of the programme; a sentence if one is not found."""
     n = int(np.ceil(np.hypot(*pace.rate(elastic.field)) / pace.stride)) + 3
     state = elastic
     for share in np.linspace(0.0, 1.0, n + 1)[1:]:
@@ -109,17 +123,17 @@ def _undamaged(m: Model, elastic: State, pace: Pace) -> Iterator[State | str]:
 
 
 def _per_front(m: Model, state: State) -> float:
-    """How far the tangent's unit goes for a unit advance of the front: the fall of the gap there over its change."""
+    """Factor of the tangent for a unit advance of the front: -(slope of the gap) / (its change by the tangent)."""
     y = state.field.at(np.array(state.front))
     by = m.arm.gap(y)[1]
     return float(-by @ m.arm.rates(y, np.zeros(3))[0] / (by @ state.tangent.at(np.array(state.front))))
 
 
 def _step(m: Model, state: State, ds: float) -> State | None:
-    """The state whose damage front is ``ds`` further.
+    """The state with the damage front advanced by ``ds``; None if not found.
 
-    A step that is short beside the process zone is guessed along the tangent, a long one by moving everything along
-    with the front, as a zone that is fully there moves.
+    The first guess of a step that is short compared with the process zone follows the tangent; that of a longer step
+    moves the whole field with the front, as a fully developed zone moves.
     """
     front = state.front + ds
     control = Control(front, m.base.v_peak, front)
@@ -136,7 +150,7 @@ def _step(m: Model, state: State, ds: float) -> State | None:
 
 
 def _moved(m: Model, state: State, ds: float) -> tuple[Field, np.ndarray]:
-    """The field further along by ``ds``, the arm in front of it going straight on, and the kind of its elements."""
+    """The field moved by ``ds``, the arm before it extended straight, and the kind of its elements."""
     inside = state.field.x + ds < m.ends.length
     x = np.concatenate(([0.0], state.field.x[inside] + ds, [m.ends.length]))
     kind = np.concatenate((state.kind[:1], state.kind[inside[:-1]]))
@@ -152,7 +166,7 @@ def _moved(m: Model, state: State, ds: float) -> tuple[Field, np.ndarray]:
 
 
 def _land(m: Model, old: State, new: State, at: float, target: float) -> State:
-    """The state between two at which what is controlled at ``at`` meets ``target``; ``new`` where it does not pass."""
+    """The state between two at which the quantity controlled at ``at`` equals ``target``; ``new`` if it never does."""
     low, high = 0.0, new.front - old.front
     before, after = (controlled(m, state.field.at(np.array(at)), at)[0] for state in (old, new))
     if not before < target * (1.0 - 1e-9) < after:

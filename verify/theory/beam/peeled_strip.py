@@ -2,7 +2,7 @@
 parameters.
 
 Six states: those of the arm, the deflection w of the substrate's surface, and the shear force T = g w' of the layer.
-Below, k_w w - T' is what the layer bears, and where it is bonded that is the traction of the interface at the gap.
+The pressure on the layer is k_w w - T', and where the strip is bonded it equals the traction of the interface.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ SURFACE, LAYER_SHEAR = 4, 5
 
 @dataclass(frozen=True)
 class Strip:
-    """``arm`` and what is under it in its units: ``bed`` (k_w) and ``coupling`` (g) of the layer.
+    """``arm`` and, in its units, the layer under it: ``bed`` (k_w) and ``coupling`` (g).
 
-    The tractions pull at the lower face, half a thickness under the axis. Where that face turns by phi it rises by
-    (1 - cos phi) / 2 more than the axis, and a traction p has the moment p sin(phi) / 2 about it: both in finite
-    kinematics alone. They stay vertical, since the substrate's surface, whose normal they follow, hardly turns.
+    The tractions act on the lower face, half a thickness below the axis. In finite kinematics a rotation phi raises
+    that face by (1 - cos phi) / 2 relative to the axis, and a traction p has the moment p sin(phi) / 2 about the axis.
+    Tractions stay vertical: they follow the normal of the substrate's surface, which hardly rotates.
     """
 
     arm: Arm
@@ -75,6 +75,6 @@ class Strip:
         return self.arm.energy(y[..., :SURFACE], on) + 0.5 * layer
 
     def decay(self, on: np.ndarray, force: float) -> float:
-        """Fastest rate of the exponentials exp(r x) on the foundation ``on`` (3,) under the force ``force``."""
+        """Largest rate r of the solutions exp(r x) on the foundation ``on`` (3,) under the section force ``force``."""
         roots = np.linalg.eigvals(self.linear().rates(np.zeros(6), on)[1])
         return float(np.sqrt(max(np.abs(roots).max() ** 2, abs(force) if self.arm.finite else 0.0)))

@@ -15,10 +15,10 @@ from verify.theory.law import Bilinear
 class BeamProblem:
     """A double cantilever beam, or a strip that is peeled off a ``substrate``, under a monotone opening.
 
-    A strip has the length and the thickness of an arm, and the length that is not bonded is its precrack. ``young`` is
-    the effective axial modulus (plane strain: E / (1 - nu^2); orthotropic: E1), ``shear`` the shear modulus
-    (orthotropic: G12). ``opening`` is the end of the programme, or the programme; it must not unload. ``irreversible``
-    false books what damage costs as stored. ``points`` is roughly the number of rows.
+    A strip has the length and the thickness of an arm; its precrack is the length that is not bonded. ``young`` is the
+    effective axial modulus (plane strain: E / (1 - nu^2); orthotropic: E1), ``shear`` the shear modulus (orthotropic:
+    G12). ``opening`` is the programme or its end; it must not unload. If ``irreversible`` is False, the energy that
+    damage dissipates counts as stored. ``points`` is roughly the number of rows.
     """
 
     length: float

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Units:
-    """Length h, force EI / h^2, energy EI / h, the number of arms, and what of the problem a row needs."""
+    """Units of the beam (length h, force EI / h^2, energy EI / h) and the data of the problem that rows need."""
 
     h: float
     arms: int
@@ -54,10 +54,10 @@ def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None
 
     Work: along every step a cubic over its chord, with the exact slopes of the path. Interface energies: exact
     integrals of piecewise polynomials.
-    J identity of this beam: J w = n (P |v'(0)| - W(0)), with v' the slope of the deflection (shear included, what
-    du_y/dX of a face is) and W the strain energy per length at the loaded section, of n arms; of a strip less the
-    energy per length of the substrate at its right edge, and plus that at its left one. It is the first integral of the
-    equations, which depend on the place at these edges and at the end of the precrack alone.
+    J identity of this beam, the first integral of its equations: J w = n (P |v'(0)| - W(0)) for n arms, with v' the
+    slope of the deflection (shear included, as du_y/dX of a face) and W the strain energy per length at the loaded
+    section. For a strip the energy per length of the substrate at its right edge is subtracted, that at its left edge
+    added.
     """
     slope = float(-state.tangent.node[0, FORCE] / (units.arms * units.h * state.tangent.node[0, V])) * units.force
     if before is None:
@@ -95,32 +95,16 @@ def row(units: Units, m: Model, state: State, before: Mapping[str, float] | None
 def unloaded(m: Model, units: Units, slope: float) -> dict[str, float]:
     """The row of the specimen before it is loaded, with the slope of its path there."""
     names = (
-        "opening",
-        "load",
-        "crack_length",
-        "stored_energy",
-        "dissipated_energy",
-        "external_work",
-        "newton_iterations",
-        "load_slope",
-        "heading",
-        "tip_opening",
-        "end_opening",
-        "damage_front",
-        "face_slope_top",
-        "face_slope_bottom",
-        "face_energy",
-        "interface_force",
-        "bulk_energy",
-        "cohesive_energy",
-        "contact_energy",
-    )
+        "opening load crack_length stored_energy dissipated_energy external_work newton_iterations load_slope heading "
+        "tip_opening end_opening damage_front face_slope_top face_slope_bottom face_energy interface_force bulk_energy "
+        "cohesive_energy contact_energy"
+    ).split()
     start = dict.fromkeys(("crack_length", "damage_front"), m.ends.precrack * units.h)
     return {**dict.fromkeys(names, 0.0), **start, "load_slope": slope, "heading": 1.0}
 
 
 def _work(units: Units, before: Mapping[str, float], row: Mapping[str, float]) -> float:
-    """Work of a step: below its chord, and between chord and path, which also turns round.
+    """Work of a step: under its chord, and between chord and path; the opening may turn back.
 
     The path is taken as the cubic over the chord, both axes scaled, that has the directions of the path at its ends.
     """

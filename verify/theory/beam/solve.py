@@ -1,12 +1,12 @@
 """The cohesive beam: a shear-flexible beam on the bilinear law, solved to rounding.
 
-It is the arm of a DCB, one of which is enough by symmetry, the gap being twice its deflection; or the strip of a peel
-test, on the interface in series with the substrate as a foundation of two parameters
-(``verify.theory.beam.substrate``). In each zone (free, open, softening, elastic, contact) the equations are smooth,
-and linear for linear kinematics; the mesh keeps its nodes on the ends of the zones, so that nothing is ever integrated
-across a kink. The path is followed by the place of the damage front, which only advances: snap-backs of load or
-opening are no event. Since the traction is continuous from zone to zone, a small error in the place of an end of a
-zone does not change the solution to first order, and Newton on states and ends is quadratic.
+The beam is one arm of a DCB, whose gap is twice the deflection by symmetry, or the strip of a peel test on the
+interface in series with the substrate, a foundation of two parameters (``verify.theory.beam.substrate``). In each zone
+(free, open, softening, elastic, contact) the equations are smooth, and linear for linear kinematics; nodes of the mesh
+lie at the ends of the zones, so that no integral crosses a kink. The position of the damage front, which only advances,
+is the parameter of the path, so that snap-backs of load or opening need no special treatment. Since the traction is
+continuous between zones, an error in the end of a zone has no first-order effect, and Newton's method for states and
+ends converges quadratically.
 
 Source: Skec, Alfano, Jelenic (2019), Int. J. Fract. 215, 67-89, for the linear beam; here with contact, a free far
 end, and with geometrically exact kinematics.
@@ -20,7 +20,7 @@ from math import nan
 
 from verify.theory.beam.arm import SHEAR_CORRECTION, Arm
 from verify.theory.beam.equilibrium import Model, intact
-from verify.theory.beam.path import SEPARATED, UNEQUAL, Pace, follow
+from verify.theory.beam.path import HAS_SEPARATED, UNEQUAL, Pace, follow
 from verify.theory.beam.peeled_strip import Strip
 from verify.theory.beam.problem import BeamProblem
 from verify.theory.beam.rows import Units, row, snapshot, unloaded
@@ -29,8 +29,8 @@ from verify.theory.beam.zones import Ends, Foundation
 
 @dataclass(frozen=True)
 class Solution:
-    """Rows (curve and evidence columns), how the run ended and what is worth saying of it, snapshots as plain
-    dictionaries, steps that were halved."""
+    """Rows (curve and evidence columns), status ("complete" or the reason of a stop), snapshots, the number of halved
+    steps, and a sentence on a separation."""
 
     rows: tuple[Mapping[str, float], ...]
     status: str
@@ -86,5 +86,5 @@ def solve(problem: BeamProblem, on_step: Callable[[Mapping[str, float]], None] |
             wanted = [opening for opening in wanted if opening > rows[-1]["opening"] * (1.0 + 1e-9)]
         if on_step:
             on_step(rows[-1])
-    ending = f"separated at opening {rows[-1]['opening']:.6g}" if status == SEPARATED else ""
+    ending = f"separated at opening {rows[-1]['opening']:.6g}" if status == HAS_SEPARATED else ""
     return Solution(tuple(rows), "complete" if ending else status, tuple(snapshots), rejected, ending)

@@ -1,4 +1,4 @@
-"""Where the arm stands: free, fully open, softening, elastic or in contact, and the mesh that has its nodes there."""
+"""Zones of the arm (free, open, softening, elastic, in contact), and the mesh with nodes at their ends."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from verify.theory.beam.collocation import Field
 from verify.theory.beam.peeled_strip import Strip
 from verify.theory.law import Bilinear
 
-FREE, OPEN, SOFTENING, ELASTIC, CONTACT, BARE = range(6)  # bare: free, and nothing beneath
+FREE, OPEN, SOFTENING, ELASTIC, CONTACT, BARE = range(6)  # bare: free, without a substrate beneath
 
-#: Beyond the last sign change whose wave still carries this part of p_max the law is taken as elastic. The wave acts
-#: back on the front by the square of it. One that is followed already is kept down to the second number, lest it
-#: comes and goes between Newton's iterations.
+#: Parts of p_max: a wave of opening and closing beyond the front becomes a zone above the first number, and stays one
+#: down to the second, so that it does not appear and disappear between Newton's iterations. Farther waves are taken as
+#: elastic: a wave acts on the front by the square of its size.
 SMALLEST_WAVE = 1e-6, 1e-8
 
 
 @dataclass(frozen=True)
 class Foundation:
-    """The law in the units of the arm, of v, the gap over the number of arms that make it.
+    """The law in the units of the arm, as a function of v, the gap over the number of arms.
 
-    ``on`` (6, 3) in each of the zones the k and c of the force c + k v, and whether there is a substrate beneath;
-    ``v_peak`` at damage onset, ``v_open`` when open.
+    ``on`` (6, 3): for each kind of zone k and c of the force c + k v, and 1 if a substrate is beneath, else 0;
+    ``v_peak`` is v at the onset of damage, ``v_open`` that of zero traction.
     """
 
     on: np.ndarray
@@ -47,7 +47,7 @@ class Foundation:
         return self.on[:, 0]
 
     def closing(self, k: float) -> Foundation:
-        """The same with another stiffness of the contact."""
+        """The same with another stiffness of contact."""
         on = self.on.copy()
         on[CONTACT, 0] = k
         return replace(self, on=on)
@@ -55,21 +55,20 @@ class Foundation:
 
 @dataclass(frozen=True)
 class Ends:
-    """Where the arm changes whatever it does: the end of the precrack, the far end, and ``edge`` (0 for none), from
-    which on there is a substrate beneath."""
+    """Fixed positions: end of the precrack, far end, and ``edge`` (0: none), from which on a substrate is beneath."""
 
     precrack: float
     length: float
     edge: float = 0.0
 
     def untouched(self) -> Zones:
-        """Nothing damaged, nothing in contact."""
+        """The zones of an arm without damage and without contact."""
         return _full([self.edge, self.precrack, self.length], [BARE, FREE, ELASTIC])
 
 
 @dataclass(frozen=True)
 class Zones:
-    """``bound`` (n + 1,) ends of the zones along the arm, ``kind`` (n,) what each is."""
+    """Zones along the arm: ``bound`` (n + 1,) their ends, ``kind`` (n,) their kinds."""
 
     bound: np.ndarray
     kind: np.ndarray
@@ -78,7 +77,7 @@ class Zones:
 def find(
     arm: Arm | Strip, base: Foundation, field: Field, kind_e: np.ndarray, ends: Ends, front: float | None
 ) -> Zones:
-    """Zones of a field. ``front`` is where damage begins; None looks for it too (at least the end of the precrack)."""
+    """Zones of a field; ``front`` is the damage front, or None to find it too (not before the end of the precrack)."""
     precrack = ends.precrack
     x, y = field.samples()
     kind = np.append(np.repeat(kind_e, field.stage.shape[1] + 1), kind_e[-1])
@@ -95,13 +94,13 @@ def find(
 
 
 def _full(right: list[float], kinds: list[int]) -> Zones:
-    """Zones by their right ends, without the empty ones."""
+    """Zones by their right ends, without those of zero length."""
     full = np.diff(right, prepend=0.0) > 0.0
     return Zones(np.append(0.0, np.array(right)[full]), np.array(kinds)[full])
 
 
 def _last_above(x: np.ndarray, v: np.ndarray, slope: np.ndarray, level: float, low: float, high: float) -> float:
-    """Last place in [low, high] where v falls through ``level``; ``low`` if it is never above."""
+    """Last position in [low, high] at which v falls below ``level``; ``low`` if v is never above it."""
     inside = np.flatnonzero((x >= low) & (x <= high) & (v >= level))
     if len(inside) == 0:
         return low
@@ -114,9 +113,9 @@ def _last_above(x: np.ndarray, v: np.ndarray, slope: np.ndarray, level: float, l
 def _waves(
     x: np.ndarray, v: np.ndarray, slope: np.ndarray, front: float, followed: int, strain: np.ndarray
 ) -> list[float]:
-    """Sign changes of v beyond ``front``, as long as the wave behind them is worth it; ``followed`` of them were.
+    """Sign changes of v beyond ``front`` whose waves are above `SMALLEST_WAVE`; ``followed`` of them are zones already.
 
-    ``strain`` is the traction of every sample as a part of p_max.
+    ``strain`` is the traction at every sample as a part of p_max.
     """
     beyond = np.flatnonzero(x > front)
     if len(beyond) < 2:
@@ -130,7 +129,7 @@ def _waves(
 
 
 def _root(x: np.ndarray, v: np.ndarray, slope: np.ndarray) -> float:
-    """Root of the cubic through two points and slopes that bracket it, safeguarded Newton."""
+    """Root between two points of the cubic Hermite interpolant, by safeguarded Newton iterations."""
     h = x[1] - x[0]
     low, high, t = 0.0, 1.0, v[0] / (v[0] - v[1]) if v[0] != v[1] else 0.0
     a, b = h * slope[0], h * slope[1]
@@ -148,7 +147,7 @@ def _root(x: np.ndarray, v: np.ndarray, slope: np.ndarray) -> float:
 
 
 def mesh(arm: Arm | Strip, base: Foundation, zones: Zones, force: float) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes (n + 1,) and the kind (n,) of every element: graded to both ends of each zone, where the layers are."""
+    """Nodes (n + 1,) and kinds (n,) of elements: graded to both ends of each zone, where boundary layers are."""
     nodes, kinds = [0.0], []
     for low, high, kind in zip(zones.bound[:-1], zones.bound[1:], zones.kind, strict=True):
         inner = low + (high - low) * _graded(2.0 / max(arm.decay(base.on[kind], force), 1e-300), high - low)
@@ -159,7 +158,7 @@ def mesh(arm: Arm | Strip, base: Foundation, zones: Zones, force: float) -> tupl
 
 
 def _graded(first: float, length: float) -> np.ndarray:
-    """Right ends, on (0, 1], of elements that grow twofold from ``first`` at both ends of a zone of ``length``."""
+    """Right ends, in (0, 1], of elements that double in size from ``first`` at both ends of a zone of ``length``."""
     if length <= 4.0 * first:
         n = max(1, int(np.ceil(length / first)))
         return np.linspace(0.0, 1.0, n + 1)[1:]

@@ -6,8 +6,8 @@ import pytest
 pytest.importorskip("matplotlib")
 
 from matplotlib.figure import Figure  # noqa: E402
+from tmeshes import initial  # noqa: E402
 
-from iga.tsplines.bisection import initial  # noqa: E402
 from iga.tsplines.lines import tensor_grid, with_line  # noqa: E402
 from iga.tsplines.tspline import greville, tspline_mesh  # noqa: E402
 from verify.pages.style import drawing, to_svg  # noqa: E402

@@ -9,8 +9,8 @@ import pytest
 
 from verify.theory.beam import path as front
 from verify.theory.beam.arm import FORCE, V
-from verify.theory.beam.equilibrium import MAX_ITERATIONS, State, intact
-from verify.theory.beam.path import LITTLE, SMALLEST_STEP, Pace, follow
+from verify.theory.beam.equilibrium import BEAM_NEWTON, State, intact
+from verify.theory.beam.path import BEAM_PATH, Pace, follow
 from verify.theory.beam.problem import BeamProblem
 from verify.theory.beam.rows import Units
 from verify.theory.beam.solve import model
@@ -39,7 +39,7 @@ def test_the_path_lands_where_the_bond_opens_and_at_its_end(path: tuple[Pace, li
     assert states[-1].field.node[0, V] == pytest.approx(pace.end, rel=1e-10)
     fronts = np.array([state.front for state in states])
     assert np.all(np.diff(fronts) >= 0.0) and fronts[0] == MODEL.ends.precrack < fronts[-1] < MODEL.ends.length
-    assert all(1 <= state.iterations <= MAX_ITERATIONS for state in states)
+    assert all(1 <= state.iterations <= BEAM_NEWTON.iterations for state in states)
 
 
 def test_steps_go_as_far_and_turn_as_much_as_they_may(path: tuple[Pace, list[State]]) -> None:
@@ -119,7 +119,7 @@ def test_a_front_that_does_not_advance_is_said_with_its_place(
     place = MODEL.ends.precrack / MODEL.ends.length
     assert found[-1] == f"stopped: the damage front did not advance beyond {place:.4g} of the length"
     halved = found.count(None)
-    room = 0.2 * (MODEL.ends.length - MODEL.ends.precrack) / (SMALLEST_STEP * MODEL.ends.length)
+    room = 0.2 * (MODEL.ends.length - MODEL.ends.precrack) / (BEAM_PATH.smallest_step * MODEL.ends.length)
     assert 10 < halved <= np.log2(room) + 1 and found.index(None) == len(found) - 1 - halved
 
 
@@ -136,10 +136,10 @@ def test_a_path_ends_where_little_of_the_bond_or_of_the_load_is_left(
 ) -> None:
     """At once, and not before the load falls: a load that grows from nothing is no end."""
     (pace, states), little = path, 0.9
-    monkeypatch.setattr(front, "LITTLE", little)
+    monkeypatch.setattr(front, "BEAM_PATH", replace(BEAM_PATH, separated=little))
     *found, status = follow(MODEL, intact(MODEL), pace)
     bond = MODEL.ends.length - MODEL.ends.precrack
     left = [(MODEL.ends.length - state.front) / bond for state in found if state is not None]
     load = [-state.field.node[0, FORCE] for state in found if state is not None]
-    assert status == front.SEPARATED and LITTLE < little
+    assert status == front.HAS_SEPARATED and BEAM_PATH.separated < little
     assert (left[-1] < little or load[-1] <= little * max(load)) and left[-2] > little and len(left) < len(states)

@@ -24,12 +24,12 @@ from verify.theory.beam.solve import model, solve
 from verify.theory.beam.substrate import Layer
 
 REFERENCE = Path(__file__).parents[4] / "../shared/reference"
-PEEL = Layer.of(120.0, 10.0, 5e3, 5e3, 5e3 / 2.4, 0.2)
+PEEL = Layer.of((120.0, 10.0), 5e3, 5e3, 5e3 / 2.4, 0.2)
 B120 = BeamProblem(150.0, 2.0, 30.0, 1.0, 250e3, 250e3 / 2.4, 6.0, 0.1, 10.0, 1e3, opening=6.0, substrate=PEEL)
 B120 = replace(B120, kinematics="finite", points=60)
 B60 = replace(B120, precrack=90.0, opening=6.5)
 SOFT = BeamProblem(60.0, 1.0, 25.0, 1.0, 50.0, 50.0 / 2.4, 0.2, 0.1, 10.0, 1e3, kinematics="finite", points=60)
-SOFT = replace(SOFT, opening=30.0, substrate=Layer.of(40.0, 5.0, 5e3, 5e3, 5e3 / 2.4, 0.2))
+SOFT = replace(SOFT, opening=30.0, substrate=Layer.of((40.0, 5.0), 5e3, 5e3, 5e3 / 2.4, 0.2))
 SHORT = replace(B120, opening=0.8, points=30)
 ALL = {"120": B120, "60": B60, "soft": SOFT, "linear": replace(SHORT, kinematics="linear")}
 
@@ -53,7 +53,7 @@ def curve(problem):
 def test_layer_is_the_closed_form_of_an_isotropic_one(nu, plane):
     """Plane elasticity by stress functions, base clamped, surface free of shear; E is 5, the thickness 2."""
     G, kappa = 5.0 / (2 * (1 + nu)), (3 - nu) / (1 + nu) if plane == "stress" else 3 - 4 * nu
-    layer = Layer.of(100.0, 2.0, 5.0, 5.0, G, nu, plane)
+    layer = Layer.of((100.0, 2.0), 5.0, 5.0, G, nu, plane)
     for q in (0.05, 0.3, 0.8, 2.0, 4.9, 20.0):
         x = 2.0 * min(q, 50.0)
         cosh, sinh = np.cosh(2 * x), np.sinh(2 * x)
@@ -64,7 +64,7 @@ def test_layer_is_the_closed_form_of_an_isotropic_one(nu, plane):
 @pytest.mark.parametrize("plane", ["stress", "strain"])
 def test_layer_takes_the_elasticity_of_its_plane(plane):
     constants = {"E1": 120.0, "E2": 9.0, "G12": 5.0, "nu12": 0.3}
-    layer, D = Layer.of(1.0, 1.0, **constants, plane=plane), orthotropic(**constants, plane=plane)
+    layer, D = Layer.of((1.0, 1.0), **constants, plane=plane), orthotropic(**constants, plane=plane)
     assert (layer.C11, layer.C12, layer.C22, layer.C66) == pytest.approx((D[0, 0], D[0, 1], D[1, 1], D[2, 2]))
 
 
@@ -84,7 +84,7 @@ def test_long_waves_feel_winkler_and_a_quarter_of_vlasov():
 
 @pytest.mark.parametrize("nu", [0.45, 0.4999])
 def test_layers_that_hardly_contract_stay_stable(nu):
-    layer = Layer.of(120.0, 10.0, 5e3, 5e3, 2.5e3 / (1 + nu), nu, "strain")
+    layer = Layer.of((120.0, 10.0), 5e3, 5e3, 2.5e3 / (1 + nu), nu, "strain")
     for q in np.geomspace(1e-3, 10.0, 9):
         k, g = layer.parameters(q)
         assert k > 0.0 and g > 0.0
@@ -95,7 +95,7 @@ def test_layers_that_hardly_contract_stay_stable(nu):
 def test_parameters_of_a_layer_know_no_units(nu, length):
     """Where the tangent is taken and where the least coupling is."""
     elastic = {"E1": 5e3, "E2": 5e3, "G12": 2.5e3 / (1 + nu), "nu12": nu, "plane": "strain"}
-    here, there = Layer.of(120.0, 10.0, **elastic), Layer.of(120.0 * length, 10.0 * length, **elastic)
+    here, there = Layer.of((120.0, 10.0), **elastic), Layer.of((120.0 * length, 10.0 * length), **elastic)
     for q in np.geomspace(1e-3, 10.0, 9):
         (k, g), (k_there, g_there) = here.parameters(q), there.parameters(q / length)
         assert k_there == pytest.approx(k / length, rel=1e-9) and g_there == pytest.approx(g * length, rel=1e-9)
@@ -234,7 +234,7 @@ def test_upright_strip_is_peeled_at_the_toughness():
 @pytest.mark.slow
 def test_on_a_rigid_base_it_is_half_a_dcb():
     """A mirror image of gap 2 v: twice the toughness and the opening, half the penalty."""
-    rigid = replace(SHORT, kinematics="linear", opening=0.6, substrate=Layer.of(120.0, 10.0, 1e13, 1e13, 4e12, 0.2))
+    rigid = replace(SHORT, kinematics="linear", opening=0.6, substrate=Layer.of((120.0, 10.0), 1e13, 1e13, 4e12, 0.2))
     dcb = replace(rigid, toughness=0.2, penalty=500.0, opening=1.2, substrate=None)
     a, b = steps(rigid), steps(dcb)
     assert curve_error((2 * a["opening"], a["load"]), (b["opening"], b["load"])) < 1e-4
@@ -257,7 +257,7 @@ def test_runs_until_the_strip_comes_off(kinematics):
 @pytest.mark.parametrize(("metre", "newton"), [pytest.param(1e-3, 1.0, marks=pytest.mark.slow), (25.4, 1e-3)])
 def test_units(metre, newton):
     stress = newton / metre**2
-    base = Layer.of(120 * metre, 10 * metre, 5e3 * stress, 5e3 * stress, 5e3 / 2.4 * stress, 0.2)
+    base = Layer.of((120 * metre, 10 * metre), 5e3 * stress, 5e3 * stress, 5e3 / 2.4 * stress, 0.2)
     there = BeamProblem(
         150 * metre,
         2 * metre,
@@ -300,7 +300,7 @@ def test_scenes_are_solved_and_checked(method):
 def test_a_layer_that_hardly_contracts_is_coupled_by_a_hundredth(part: float) -> None:
     """Of K / (1 / t^2 + q^2), which keeps its foundation stable; one that contracts has more by itself."""
     q, thickness = part / 10.0, 10.0
-    soft, plain = Layer.of(120.0, thickness, 5e3, 5e3, 10.0, 0.2), PEEL
+    soft, plain = Layer.of((120.0, thickness), 5e3, 5e3, 10.0, 0.2), PEEL
     for layer, least in ((soft, part < 5.0), (plain, False)):
         k, g = layer.parameters(q)
         K = layer.stiffness(complex(q)).real
@@ -312,7 +312,7 @@ def test_a_layer_that_hardly_contracts_is_coupled_by_a_hundredth(part: float) ->
 @pytest.mark.parametrize(("part", "exact"), [(0.2, 504.597998049174), (5.0, 508.269973209), (50.0, 1142.05468085637)])
 def test_a_thick_layer_that_shears_easily_is_as_stiff_as_in_exact_arithmetic(part: float, exact: float) -> None:
     """Waves that grow by e^1000 through the layer; the values are those of 1400 digits."""
-    soft = Layer.of(120.0, 10.0, 5e3, 5e3, 10.0, 0.2)
+    soft = Layer.of((120.0, 10.0), 5e3, 5e3, 10.0, 0.2)
     assert soft.stiffness(complex(part / 10.0)).real == pytest.approx(exact, rel=1e-9)
 
 
