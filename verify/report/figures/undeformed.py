@@ -21,7 +21,6 @@ from verify.pages.text import Units, axis, number, quantity
 from verify.report.figures.entry import Entry
 from verify.report.figures.fields import process_zone
 from verify.report.figures.layout import HIGHEST, LEFT, WHOLE, mark, rows, zoom
-from verify.report.figures.tmesh_drawing import JUNCTIONS, LINES
 from verify.result import Snapshot
 
 if TYPE_CHECKING:
@@ -33,6 +32,8 @@ _LOWEST, _FOOT, _APART = 0.62, 0.68, 5.0 / 72.0
 #: Part of the specimen's length within which a point lies on the bond.
 _ON_BOND = 1e-9
 
+_LINES = {"color": colour("ink"), "linewidth": 0.5, "zorder": 3}
+_JUNCTIONS = {"color": colour("bad"), "marker": "s", "markersize": 3.0, "markeredgewidth": 0.0, "zorder": 5}
 _ELEMENTS = {"linewidth": 0.45, "zorder": 2, "solid_capstyle": "butt"}
 _ZONE = {"color": colour("zone"), "linewidth": 72.0 * _APART, "zorder": 1, "solid_capstyle": "butt"}
 
@@ -89,11 +90,11 @@ def draw(axes: Axes, snapshot: Snapshot, ink: str, frame: tuple[Limits, Limits],
     for side in np.unique(side_e):
         shift = np.array([0.0, side * apart])
         _plot(axes, sides(X_euvi[side_e == side]) + shift, frame, "elements", {**_ELEMENTS, "color": ink})
-        _plot(axes, _of_arm(snapshot.line_nki, side) + shift, frame, "T-mesh", LINES)
+        _plot(axes, _of_arm(snapshot.line_nki, side) + shift, frame, "T-mesh", _LINES)
         points_nki = _of_arm(snapshot.junction_ni[:, None], side) + shift
         points_ni = points_nki[seen(points_nki, frame), 0]
         if len(points_ni):
-            axes.plot(*points_ni.T, linestyle="none", label="T-junctions", **{**JUNCTIONS, "markersize": 1.8})
+            axes.plot(*points_ni.T, linestyle="none", label="T-junctions", **{**_JUNCTIONS, "markersize": 1.8})
     if zone is not None:
         axes.plot(zone, (0.0, 0.0), label="zone", **_ZONE)
     axes.set(xlim=frame[0], ylim=frame[1])
@@ -208,8 +209,8 @@ def _legend(figure: Figure, tmesh: bool) -> None:
     handles = [Line2D([], [], label="elements", **{**_ELEMENTS, "color": colour("muted"), "linewidth": 0.8})]
     if tmesh:
         handles[0].set_label("(Bézier) elements, in the colour of the method")
-        handles.append(Line2D([], [], label="line of the T-mesh", **LINES))
-        handles.append(Line2D([], [], label="T-junction", linestyle="none", **JUNCTIONS))
+        handles.append(Line2D([], [], label="line of the T-mesh", **_LINES))
+        handles.append(Line2D([], [], label="T-junction", linestyle="none", **_JUNCTIONS))
     handles.append(Line2D([], [], label="process zone", **_ZONE))
     width, height = figure.get_size_inches()
     place = (LEFT / WIDE, 0.02 / height)
