@@ -196,7 +196,7 @@ def test_a_specimen_that_separates_is_complete(folder: Path, capsys: pytest.Capt
 def test_without_dolfinx_there_is_a_sentence_and_three_ways(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
-    monkeypatch.setattr(dolfinx, "dolfinx_installed", lambda: False)
+    monkeypatch.setattr(dolfinx, "find_spec", lambda name: None)
     assert main(["solve", "dcb-czm1", "--method", "dolfinx"]) == 1
     said = capsys.readouterr().err
     assert "not run: DOLFINx is not installed" in said

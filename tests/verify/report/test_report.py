@@ -73,7 +73,7 @@ class Page(HTMLParser):
 
 
 def page(folder: Path, *reports: SceneReport) -> tuple[str, Page]:
-    report.write(reports, folder / "report.html", ENVIRONMENT)
+    report.write(report.Findings(reports, ENVIRONMENT), folder / "report.html")
     text = (folder / "report.html").read_text(encoding="utf-8")
     return text, Page(text)
 
