@@ -29,7 +29,8 @@ from verify.methods.names import METHODS
 from verify.methods.plugins import known_methods
 from verify.result import Result
 from verify.scene.magnitudes import LEAST, MOST
-from verify.scene.schema import Scene, only_opens, turns
+from verify.scene.schema import Scene
+from verify.support.programme import only_opens, turns
 from verify.support.refusal import Refusal
 from verify.verdict import Check, Run, SceneReport
 

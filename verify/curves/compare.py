@@ -11,7 +11,7 @@ from verify.curves.curve import PROPAGATION, envelope, from_origin, load_at, osc
 from verify.curves.leg_checks import OF_A_POINT, LegDifference, farthest, leg_checks, leg_differences
 from verify.curves.legs import NEAR, ROUNDING, Path, path, programme_of
 from verify.curves.read import CurveError
-from verify.scene.schema import turns
+from verify.support.programme import turns
 from verify.verdict import Check
 
 #: Samples over the opening; points on the propagation branch below which a wave cannot be told from the sampling.

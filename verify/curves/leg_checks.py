@@ -10,7 +10,7 @@ import numpy as np
 from verify.curves.curve import Curve, envelope, load_at
 from verify.curves.legs import NEAR, Leg, Path, path
 from verify.curves.nearness import LEAST_LOAD, distances
-from verify.scene.schema import only_opens
+from verify.support.programme import only_opens
 from verify.verdict import Check, Kind
 
 #: Samples of a leg; a distance up to which that of the loads alone will do, in parts of the load.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from verify.curves.curve import Curve, envelope, from_origin
-from verify.scene.schema import turns
+from verify.support.programme import turns
 
 #: Turns that differ by this part of the largest opening are the same, up to rounding.
 ROUNDING = 1e-6

@@ -32,9 +32,10 @@ from verify.runs.folder import FILES, write_json
 from verify.runs.store import alone_in
 from verify.scene.effects import simulated
 from verify.scene.parse import parse_scene
-from verify.scene.schema import Scene, only_opens, turns
+from verify.scene.schema import Scene
 from verify.studies.cost.accuracy import Choice, with_elements
 from verify.support.checked_files import read_json
+from verify.support.programme import only_opens, turns
 from verify.support.progress import duration
 from verify.support.refusal import Refusal
 from verify.support.say import say
