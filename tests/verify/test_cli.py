@@ -167,7 +167,7 @@ def test_solve_writes_a_folder(folder: Path, capsys: pytest.CaptureFixture) -> N
 
 
 def test_a_scene_of_ones_own_is_a_path(folder: Path) -> None:
-    text = (PROJECT / "verify" / "scenes" / "dcb-czm1.toml").read_text()
+    text = (PROJECT / "verify" / "scene" / "scenes" / "dcb-czm1.toml").read_text()
     (folder / "own.toml").write_text(text.replace("dcb-czm1", "dcb-own"))
     assert main(["solve", "own.toml", "--method", "lefm", "--out", "here"]) == 0
     assert json.loads((folder / "here" / "result.json").read_text())["scene"]["name"] == "dcb-own"

@@ -16,12 +16,12 @@ from verify.command_line.mesh_facts import MeshFacts
 from verify.pages.style import PALETTE
 
 #: Inches: width of the picture, its largest height, and what stands around the mesh.
-_WIDTH, _HIGHEST, _MARGIN, _FOOT = 7.0, 7.0, 0.15, 0.45
+_WIDTH, _MOST_HEIGHT, _SHEET_MARGIN, _TITLE_HEIGHT = 7.0, 7.0, 0.15, 0.45
 
 #: Points on a curved side, and how little of its length a side may bend to be drawn straight.
-_SAMPLES, _STRAIGHT = 17, 1e-6
+_SIDE_SAMPLES, _STRAIGHT_SIDE = 17, 1e-6
 
-_RC = {"font.family": "sans-serif", "font.size": 8.0, "svg.fonttype": "none", "svg.hashsalt": "debond"}
+_SHEET_STYLE = {"font.family": "sans-serif", "font.size": 8.0, "svg.fonttype": "none", "svg.hashsalt": "debond"}
 
 
 def light(name: str) -> str:
@@ -75,14 +75,16 @@ def mesh_figure(facts: MeshFacts, title: str, control: bool = False) -> Figure:
         X = np.concatenate([X, facts.mesh.P_AI])
     low, high = X.min(0), X.max(0)
     extent = np.maximum(high - low, 1e-3 * max((high - low).max(), np.finfo(float).tiny))
-    scale = min((_WIDTH - 2 * _MARGIN) / extent[0], (_HIGHEST - _FOOT) / extent[1])
-    height = max(scale * extent[1] + _MARGIN + 2 * _FOOT, 1.2)
+    scale = min((_WIDTH - 2 * _SHEET_MARGIN) / extent[0], (_MOST_HEIGHT - _TITLE_HEIGHT) / extent[1])
+    height = max(scale * extent[1] + _SHEET_MARGIN + 2 * _TITLE_HEIGHT, 1.2)
     figure = Figure(figsize=(_WIDTH, height))
-    axes = figure.add_axes((_MARGIN / _WIDTH, _FOOT / height, 1 - 2 * _MARGIN / _WIDTH, 1 - 2 * _FOOT / height))
+    axes = figure.add_axes(
+        (_SHEET_MARGIN / _WIDTH, _TITLE_HEIGHT / height, 1 - 2 * _SHEET_MARGIN / _WIDTH, 1 - 2 * _TITLE_HEIGHT / height)
+    )
     draw(axes, facts, control)
     pad = 0.01 * extent.max()
     axes.set(xlim=(low[0] - pad, high[0] + pad), ylim=(low[1] - pad, high[1] + pad))
-    figure.text(_MARGIN / _WIDTH, 1 - 0.25 / height, title, color=light("ink"), parse_math=False)
+    figure.text(_SHEET_MARGIN / _WIDTH, 1 - 0.25 / height, title, color=light("ink"), parse_math=False)
     handles, labels = axes.get_legend_handles_labels()
     if handles:
         figure.legend(handles, labels, loc="lower left", ncols=3, frameon=False, labelcolor=light("muted"))
@@ -96,7 +98,7 @@ def save(facts: MeshFacts, path: Path, title: str, control: bool = False) -> Non
     ------
     OSError : the path cannot be written to.
     """
-    with matplotlib.rc_context(_RC):
+    with matplotlib.rc_context(_SHEET_STYLE):
         figure = mesh_figure(facts, title, control)
         stamp = {"svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}.get(path.suffix[1:].lower())
         figure.savefig(path, dpi=200, facecolor=light("paper"), metadata=stamp)
@@ -105,12 +107,12 @@ def save(facts: MeshFacts, path: Path, title: str, control: bool = False) -> Non
 def _curves(facts: MeshFacts) -> list[np.ndarray]:
     """Points (n, 2) on every side: its ends where it is straight, more where it bends."""
     sides = facts.sides
-    t, k = np.linspace(0.0, 1.0, _SAMPLES), np.arange(len(sides.H_kbI))
-    X_knI = sides.points(np.repeat(k, _SAMPLES), np.tile(t, len(k)))[:, :2].reshape(len(k), _SAMPLES, 2)
+    t, k = np.linspace(0.0, 1.0, _SIDE_SAMPLES), np.arange(len(sides.H_kbI))
+    X_knI = sides.points(np.repeat(k, _SIDE_SAMPLES), np.tile(t, len(k)))[:, :2].reshape(len(k), _SIDE_SAMPLES, 2)
     chord = X_knI[:, -1] - X_knI[:, 0]
     away = X_knI - X_knI[:, :1]
     bent = np.abs(chord[:, None, 0] * away[..., 1] - chord[:, None, 1] * away[..., 0]).max(1)
-    straight = bent <= _STRAIGHT * np.sum(chord * chord, 1)
+    straight = bent <= _STRAIGHT_SIDE * np.sum(chord * chord, 1)
     return [X_nI[[0, -1]] if flat else X_nI for X_nI, flat in zip(X_knI, straight, strict=True)]
 
 

@@ -18,12 +18,12 @@ from verify.scene.published import Published
 from verify.support.refusal import Refusal
 
 #: A value that TOML has and no key takes: what is said of it says what the key does take.
-NEVER = date(1, 1, 1)
+_OUT_OF_PLACE = date(1, 1, 1)
 
 
 def allowed(raw: Mapping[str, Any], key: Key) -> str:
     """What a key takes, in the words in which another value is refused. ``raw`` is a valid scene."""
-    table = {key.name: NEVER}
+    table = {key.name: _OUT_OF_PLACE}
     if key.table == "published":
         wrong = {**raw, "published": [table]}
     elif key.table:
@@ -35,16 +35,16 @@ def allowed(raw: Mapping[str, Any], key: Key) -> str:
     except SceneError as error:
         place = key.dotted.replace("published.", "published[0].")
         said = [one for one in error.sentences if one.startswith(f"{place}: must be ")]
-        return said[0].removeprefix(f"{place}: must be ").removesuffix(f", got {NEVER!r}") if said else ""
+        return said[0].removeprefix(f"{place}: must be ").removesuffix(f", got {_OUT_OF_PLACE!r}") if said else ""
     return ""
 
 
-WIDTH = 100
+_LINE_WIDTH = 100
 
 #: The packaged scene that says what has no default, by the kind of the specimen.
-BASES: Mapping[str, str] = {"dcb": "dcb-czm1", "peel": "peel-60"}
+_EXAMPLES: Mapping[str, str] = {"dcb": "dcb-czm1", "peel": "peel-60"}
 
-#: Names of dimensions in the schema, and how they are written in the units of ``BASES``.
+#: Names of dimensions in the schema, and how they are written in the units of ``_EXAMPLES``.
 UNITS: Mapping[str, str] = {
     "length": "mm",
     "stress": "MPa",
@@ -96,7 +96,7 @@ def new_scene(kind: str) -> str:
 
 def _least(kind: str) -> dict[str, Any]:
     """The example with nothing given but what must be, and all defaults."""
-    example = load_scene(BASES[kind]).model_dump()
+    example = load_scene(_EXAMPLES[kind]).model_dump()
     tables: dict[str, dict[str, Any]] = {}
     for key in keys(kind):
         if key.table and key.field.is_required():
@@ -126,7 +126,7 @@ def _commented(head: str, raw: Mapping[str, Any], these: tuple[Key, ...], values
     return lines
 
 
-def _comment(raw: Mapping[str, Any], key: Key, width: int = WIDTH) -> Iterator[str]:
+def _comment(raw: Mapping[str, Any], key: Key, width: int = _LINE_WIDTH) -> Iterator[str]:
     """What it is, its unit, and what it takes."""
     what = re.sub(
         r"\[([a-z ]+)\]", lambda found: f"[{UNITS[found[1]]}]", " ".join((key.field.description or "").split())

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import PROPAGATION, envelope, from_origin, load_at, oscillation, peak
+from verify.curves.curve import PROPAGATION, SAMPLES, envelope, from_origin, load_at, oscillation, peak
 from verify.curves.leg_checks import OF_A_POINT, LegDifference, farthest, leg_checks, leg_differences
-from verify.curves.legs import NEAR, ROUNDING, Path, path, programme_of
+from verify.curves.legs import SAME_TURN, TURN_TOLERANCE, Path, path, programme_of
 from verify.curves.read import CurveError
 from verify.support.programme import turns
 from verify.verdict import Check
 
-#: Samples over the opening; points on the propagation branch below which a wave cannot be told from the sampling.
-SAMPLES, POINTS_OF_A_WAVE = 400, 10
+#: Points on the propagation branch below which a wave cannot be distinguished from the sampling.
+POINTS_OF_A_WAVE = 10
 
 #: Part of the tolerance of the curve by which its end and its turns may miss those of B, of the largest opening.
 OF_AN_END = 0.2
@@ -65,7 +65,7 @@ class Comparison:
 
     @property
     def reaches(self) -> bool:
-        return self.missing <= ROUNDING
+        return self.missing <= SAME_TURN
 
     @property
     def missing(self) -> float:
@@ -134,7 +134,7 @@ def compare(
         raise CurveError(f"begin: must be >= 0, got {begin:g}")
     (first_a, last_a), (first_b, last_b) = ((float(d[0]), float(np.max(d))) for d, _ in (a, b))
     asked = last_b if end is None else float(end)
-    if not 0.0 < asked <= last_b * (1.0 + ROUNDING):
+    if not 0.0 < asked <= last_b * (1.0 + SAME_TURN):
         raise CurveError(f"end: must be > 0 and <= {last_b:.6g}, the last opening of {names[1]}, got {asked:g}")
     common, begin = min(asked, last_a, last_b), float(begin or 0.0)
     if begin >= common:
@@ -150,15 +150,16 @@ def compare(
             raise CurveError(f"{names[1]}: the loads {span} must go above 0, got at most {top:g}")
         length = common - begin
         grid = np.minimum(begin + length * (np.arange(1, SAMPLES + 1) / SAMPLES), common)  # the sum may round beyond
-        loads = [load_at((part.opening, part.load), grid) for part in (part_a, part_b)]
-        error = _distance(*(load / top for load in loads))
+        load_a, load_b = (load_at((part.opening, part.load), grid) for part in (part_a, part_b))
+        error = _distance(load_a / top, load_b / top)
         whole = (part_a, part_b) if begin == 0.0 else (_part(a, 0.0, common), _part(b, 0.0, common))
         size = whole[1].peak_load
-        wave = _wave([(part.opening / common, part.load / size) for part in whole], whole[1].peak_opening / common)
+        scaled_a, scaled_b = ((part.opening / common, part.load / size) for part in whole)
+        rms, variation = _wave(scaled_a, scaled_b, whole[1].peak_opening / common)
         given = end is not None or begin > 0.0
-        ways = [(part.opening, part.load) for part in (part_a, part_b)] if given else [from_origin(*a), from_origin(*b)]
-        paths = _paths(ways[0], ways[1], names[1], programme, given)
-    return Comparison(part_a, part_b, asked, common, error, *wave, grid, *loads, names, begin, paths)
+        way_a, way_b = ((p.opening, p.load) if given else from_origin(*c) for p, c in ((part_a, a), (part_b, b)))
+        paths = _paths(way_a, way_b, names[1], programme, given)
+    return Comparison(part_a, part_b, asked, common, error, rms, variation, grid, load_a, load_b, names, begin, paths)
 
 
 def checks(
@@ -176,7 +177,7 @@ def checks(
     found = [Check(name, "A / B", v, limit, "cross-code", text) for name, v, limit, text in limits if limit is not None]
     if not found:
         return []
-    near = NEAR if curve is None else min(NEAR, max(ROUNDING, OF_AN_END * curve))
+    near = TURN_TOLERANCE if curve is None else min(TURN_TOLERANCE, max(SAME_TURN, OF_AN_END * curve))
     far = "share of the opening that A does not reach"
     along = [] if curve is None else _along(comparison, curve, near)
     return [*found, *along, Check("end", "A / B", comparison.missing, near, "cross-code", far)]
@@ -242,12 +243,12 @@ def _up_to(d: np.ndarray, P: np.ndarray, end: float) -> Points:
     return np.append(d[:i], end), np.append(P[:i], load)
 
 
-def _wave(scaled: list[Points], peak_opening: float) -> tuple[float, float]:
+def _wave(a: Points, b: Points, peak_opening: float) -> tuple[float, float]:
     """Oscillation of A about B, where both have the points to show one."""
-    points = min(np.count_nonzero(envelope(*curve)[0] > PROPAGATION * peak_opening) for curve in scaled)
+    points = min(np.count_nonzero(envelope(*curve)[0] > PROPAGATION * peak_opening) for curve in (a, b))
     if points < POINTS_OF_A_WAVE:
         return np.nan, np.nan
-    found = oscillation(*scaled, end=1.0, n=SAMPLES)
+    found = oscillation(a, b, end=1.0)
     return found["rms"], found["excess_variation"]
 
 

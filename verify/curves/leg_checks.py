@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import Curve, envelope, load_at
-from verify.curves.legs import NEAR, Leg, Path, path
+from verify.curves.curve import SAMPLES, Curve, envelope, load_at
+from verify.curves.legs import TURN_TOLERANCE, Leg, Path, path
 from verify.curves.nearness import LEAST_LOAD, distances
 from verify.support.programme import only_opens
 from verify.verdict import Check, Kind
 
-#: Samples of a leg; a distance up to which that of the loads alone will do, in parts of the load.
-SAMPLES, CLOSE = 400, 1e-3
+#: Distance, in parts of the load, up to which the difference of the loads is taken for the distance of two points.
+LOADS_ALONE = 1e-3
 
 #: Part of its load that a leg gives up before its slope can be told, and before its residual opening can.
 TELLS_SLOPE, TELLS_RESIDUAL = 0.25, 0.5
@@ -194,7 +194,7 @@ def turns_check(subject: str, curve: Path, kind: Kind = "cross-code") -> Check:
     last = curve.legs[-1]
     lacks = "" if curve.complete else f"; the {last.words} is not there"
     meaning = f"The curve turns where the load programme does (distance over its largest opening){lacks}."
-    return Check("legs", subject, curve.misfit, NEAR, kind, meaning)
+    return Check("legs", subject, curve.misfit, TURN_TOLERANCE, kind, meaning)
 
 
 def _size(path: Path) -> tuple[float, float]:
@@ -230,7 +230,7 @@ def _where(leg: Leg, ends: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]
 
 def _l2(a: Leg, b: Leg, at: np.ndarray, size: tuple[float, float]) -> float:
     mine, other, least = load_at(a.onward, at), load_at(b.onward, at), LEAST_LOAD * size[1]
-    near = distances((at, mine), b.onward, size, CLOSE) * np.maximum(np.abs(mine), least)
+    near = distances((at, mine), b.onward, size, LOADS_ALONE) * np.maximum(np.abs(mine), least)
     off = np.minimum(near, np.abs(mine - other))
     return float(np.sqrt(_mean(off**2, at)) / max(np.sqrt(_mean(other**2, at)), least))
 

@@ -8,7 +8,7 @@ from verify.curves.curve import Curve, curve_error, dense, envelope, peak
 from verify.result import Result
 
 #: Points of a curve between two converged ones.
-PER_STEP = 20
+POINTS_PER_STEP = 20
 
 
 def cubics(result: Result) -> Curve:
@@ -16,7 +16,7 @@ def cubics(result: Result) -> Curve:
     steps = result.steps
     if not {"load_slope", "heading"} <= set(steps):
         return result.opening, result.load
-    return dense(result.opening, result.load, steps["load_slope"], steps["heading"], PER_STEP)
+    return dense(result.opening, result.load, steps["load_slope"], steps["heading"], POINTS_PER_STEP)
 
 
 def distance(curve: Curve, exact: Result) -> float:

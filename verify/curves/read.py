@@ -183,7 +183,7 @@ def _column(place: str, names: Sequence[Any], wanted: Column) -> int:
 
 
 def _counted(place: str, reading: Reading, width: int) -> _Header:
-    columns = (reading.opening or 1, reading.load or 2)
+    columns = (column if isinstance(column, int) else at for column, at in zip(reading.columns, (1, 2), strict=True))
     return _Header(_different(place, [_position(place, column, width) for column in columns]), width)
 
 

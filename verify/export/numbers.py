@@ -15,7 +15,7 @@ from verify.scene.schema import Scene, counted_steps
 from verify.theory.law import Bilinear
 
 #: Laws that other codes are told, and what they are.
-KINDS: Mapping[str, str] = {"bilinear": "bilinear, mode I: the gap along the normal alone bears traction"}
+LAW_NOTES: Mapping[str, str] = {"bilinear": "bilinear, mode I: the gap along the normal alone bears traction"}
 
 
 def law(scene: Scene) -> Bilinear:
@@ -41,7 +41,7 @@ def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
             for name, material in zip(mesh.names, scene.materials, strict=True)
         },
         "law": {
-            "kind": KINDS[scene.interface.law],
+            "kind": LAW_NOTES[scene.interface.law],
             "strength": bond.strength,
             "toughness": bond.toughness,
             "stiffness": bond.stiffness,

@@ -22,6 +22,7 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from verify.pages.svg import adapted
+from verify.support.timing import PHASES
 
 #: name: (light, dark). The methods follow Okabe and Ito 2008, whose colours stay apart in all common colour blindness;
 #: two of them are darker here, so that text in them has a contrast of 4.5 with the page.
@@ -60,7 +61,7 @@ METHOD_NAMES = {
     "beam": "cohesive beam",
     "lefm": "LEFM limit",
 }
-PHASES = ("mesh", "basis", "assembly", "factor", "solve", "other")
+SHOWN_PHASES = (*PHASES, "other")
 
 #: Width of a figure in inches; every figure is drawn at the size that makes 8 pt text readable where it is shown.
 THIRD, HALF, WIDE = 3.3, 4.6, 9.4

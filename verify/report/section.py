@@ -13,7 +13,7 @@ from verify.pages.text import NO_VALUE, Units, inputs, modelled, number, percent
 from verify.report import converged, cost, matched, published, zones
 from verify.report.figures import curves, drawing, fields, meshes, opening, peel_drawing, undeformed
 from verify.report.figures.entry import Entry, entries
-from verify.report.tally import KINDS, Tally, headline, tally
+from verify.report.tally import EVIDENCE, Tally, headline, tally
 from verify.verdict import Check, Counts, Run, SceneReport, counted
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
         frames=opening.frames(report.scene, [g for g in groups if g], drawn, f"{anchor}-frame", between),
         convergence=converged.tables(report, found),
         figures=_figures(report, drawn, groups, anchor),
-        checks=tuple((tally(kind, checks), _check_groups(kind, report)) for kind in KINDS),
+        checks=tuple((tally(kind, checks), _check_groups(kind, report)) for kind in EVIDENCE),
         rows=tuple(_run_row(entry, report.scene) for entry in found),
         matched=matched.sentences(report.scene, found),
         zones=zones.rows(report.scene, found),

@@ -11,7 +11,7 @@ from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS
 from verify.pages.text import percent, seconds, span, tone
 from verify.report.cost import total_seconds
 from verify.report.figures.entry import Entry, rank
-from verify.report.tally import KINDS, Tally, headline, tally
+from verify.report.tally import EVIDENCE, Tally, headline, tally
 from verify.verdict import counted
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def summarise(sections: Sequence[Section], planes: Sequence[PlaneSection | Rates
         sentences=(*_sentences(sections), *(Sentence(p.sentence, p.anchor, "its numbers") for p in planes)),
         missing=tuple(_missing(sections)),
         ways=_ways(sections),
-        tallies=tuple(tally(kind, [check for _, _, check in checks]) for kind in KINDS),
+        tallies=tuple(tally(kind, [check for _, _, check in checks]) for kind in EVIDENCE),
         columns=tuple(Column(method, name) for method, _, name in columns),
         rows=tuple((section, tuple(_cell(section, *column[:2]) for column in columns)) for section in sections),
         not_held=not_held,

@@ -11,7 +11,7 @@ from verify.pages.text import Units, number, quantity
 from verify.report.figures.entry import Entry
 from verify.scene.schema import Scene
 
-UNKNOWN = "–"
+_NOT_MEASURED = "–"
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def _row(scene: Scene, entry: Entry) -> ZoneRow | None:
         element=quantity(zone.element, unit, 2),
         estimate=quantity(zone.length, unit, 2),
         elements=number(zone.elements, 2),
-        measured=quantity(length, unit, 2) if isfinite(length) else UNKNOWN,
-        measured_elements=number(length / zone.element, 2) if isfinite(length) else UNKNOWN,
+        measured=quantity(length, unit, 2) if isfinite(length) else _NOT_MEASURED,
+        measured_elements=number(length / zone.element, 2) if isfinite(length) else _NOT_MEASURED,
         resolved=zone.resolved,
     )

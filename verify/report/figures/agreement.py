@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import PROPAGATION, curve_error, envelope, load_at, oscillation, peak
+from verify.curves.curve import PROPAGATION, SAMPLES, curve_error, envelope, load_at, oscillation, peak
 from verify.result import Result
 from verify.verdict import Run, SceneReport
-
-SAMPLES = 400
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from verify.pages.text import Units, number, quantity
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
-_ABOVE, _BELOW = 0.73, 1.03  # for the load and for the dimensions, inches
+_LOAD_HEIGHT, _DIMENSIONS_HEIGHT = 0.73, 1.03  # for the load and for the dimensions, inches
 _THINNEST = 5.0 / 72.0  # an arm is drawn at least this thick, inches
 
 
@@ -29,11 +29,11 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
     scale = (WIDE - 2.1) / body.length  # inches per unit of length
     thickness = max(body.arm_thickness * scale, _THINNEST)
     with drawing():
-        figure = Figure(figsize=(WIDE, _ABOVE + 2 * thickness + _BELOW))
+        figure = Figure(figsize=(WIDE, _LOAD_HEIGHT + 2 * thickness + _DIMENSIONS_HEIGHT))
         axes = figure.add_axes((0, 0, 1, 1))
         axes.set_axis_off()
         # inches from the middle of the loaded end
-        axes.set(xlim=(-0.9, WIDE - 0.9), ylim=(-thickness - _BELOW, thickness + _ABOVE))
+        axes.set(xlim=(-0.9, WIDE - 0.9), ylim=(-thickness - _DIMENSIONS_HEIGHT, thickness + _LOAD_HEIGHT))
         _bodies(axes, body.length * scale, body.precrack * scale, thickness)
         _loads(axes, thickness)
         _supports(axes, body.length * scale)

@@ -20,7 +20,7 @@ from verify.pages.text import Units, axis, number, quantity
 from verify.report.figures.agreement import path
 from verify.report.figures.entry import Entry
 from verify.report.figures.fields import process_zone
-from verify.report.figures.layout import CLOSE, GAP, LEFT, WHOLE, frame
+from verify.report.figures.layout import CLOSE_UP, GAP, LEFT, WHOLE, frame
 from verify.result import Snapshot
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _FINE, _COARSE = 150, 75
 
 #: Inches: the tractions below the arms, between them, at the foot and at the head, and before what is beside.
-_TRACTION, _BETWEEN, _FOOT, _HEAD, _CLEAR = 1.25, 0.3, 0.42, 0.24, 0.05
+_TRACTION, _BETWEEN, _BELOW_TRACTION, _ABOVE_ARMS, _CLEAR = 1.25, 0.3, 0.42, 0.24, 0.05
 
 
 @dataclass(frozen=True)
@@ -122,15 +122,15 @@ def _picture(
     """The arms, the tractions below them, and beside both the curve."""
     (entry, snapshot), x, y = lead, scales.x, scales.y
     height = WHOLE * (y[1] - y[0]) / (x[1] - x[0])
-    total = _HEAD + height + _BETWEEN + _TRACTION + _FOOT
+    total = _ABOVE_ARMS + height + _BETWEEN + _TRACTION + _BELOW_TRACTION
     figure = Figure(figsize=(WIDE, total))
 
     def place(left: float, bottom: float, width: float, high: float) -> Axes:
         return figure.add_axes((left / WIDE, bottom / total, width / WIDE, high / total))
 
-    arms = place(LEFT, _FOOT + _TRACTION + _BETWEEN, WHOLE, height)
-    tractions = place(LEFT, _FOOT, WHOLE, _TRACTION)
-    load = place(LEFT + WHOLE + GAP, _FOOT, CLOSE, total - _FOOT - _HEAD)
+    arms = place(LEFT, _BELOW_TRACTION + _TRACTION + _BETWEEN, WHOLE, height)
+    tractions = place(LEFT, _BELOW_TRACTION, WHOLE, _TRACTION)
+    load = place(LEFT + WHOLE + GAP, _BELOW_TRACTION, CLOSE_UP, total - _BELOW_TRACTION - _ABOVE_ARMS)
     x_euvi = np.asarray(snapshot.X_euvi) + np.asarray(snapshot.u_euvi)
     dpi = _COARSE if _between(entry, snapshot) else _FINE
     paint(arms, x_euvi, np.asarray(snapshot.stress_euv), scales.stress, x, y, dpi)

@@ -16,7 +16,7 @@ from verify.report.figures.drawing import mark_zone, measure, pull, zone_label
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
-_ABOVE, _BELOW = 0.75, 0.85  # inches for the load and for the dimensions
+_ABOVE_STRIP, _BELOW_SUBSTRATE = 0.75, 0.85  # inches for the load and for the dimensions
 _LEFT, _RIGHT = 0.5, 0.9
 
 
@@ -31,12 +31,12 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
     longest = max(body.strip_length, body.substrate_length)
     scale = (WIDE - _LEFT - _RIGHT) / longest  # inches per unit of length
     top, bottom = body.strip_thickness * scale, body.substrate_thickness * scale
-    height = _ABOVE + top + bottom + _BELOW
+    height = _ABOVE_STRIP + top + bottom + _BELOW_SUBSTRATE
     with drawing():
         figure = Figure(figsize=(WIDE, height))
         axes = figure.add_axes((0, 0, 1, 1))
         axes.set_axis_off()
-        axes.set(xlim=(-_LEFT, WIDE - _LEFT), ylim=(-bottom - _BELOW, top + _ABOVE))  # inches from the left end
+        axes.set(xlim=(-_LEFT, WIDE - _LEFT), ylim=(-bottom - _BELOW_SUBSTRATE, top + _ABOVE_STRIP))
         for length, base, thick in ((body.strip_length, 0.0, top), (body.substrate_length, -bottom, bottom)):
             _body(axes, length * scale, base, thick)
         bond = body.bond_length * scale

@@ -20,14 +20,14 @@ from verify.pages.style import WIDE, Panel, colour, drawing, to_svg
 from verify.pages.text import Units, axis, number, quantity
 from verify.report.figures.entry import Entry
 from verify.report.figures.fields import process_zone
-from verify.report.figures.layout import HIGHEST, LEFT, WHOLE, mark, rows, zoom
+from verify.report.figures.layout import LEFT, MOST_HEIGHT, WHOLE, mark, rows, zoom
 from verify.result import Snapshot
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
 #: Inches: least height of a row, room at the foot, and distance between the arms as drawn, filled by the process zone.
-_LOWEST, _FOOT, _APART = 0.62, 0.68, 5.0 / 72.0
+_LEAST_ROW, _LEGEND, _APART = 0.62, 0.68, 5.0 / 72.0
 
 #: Part of the specimen's length within which a point lies on the bond.
 _ON_BOND = 1e-9
@@ -107,7 +107,7 @@ def _picture(
     units = Units.of(scene.units)
     whole_frame, height, stretch = _frame(scene, [snapshot for _, snapshot, _ in titled])
     with drawing():
-        figure, pairs = rows(len(titled), height, _FOOT)
+        figure, pairs = rows(len(titled), height, _LEGEND)
         for (whole, close), (entry, snapshot, name) in zip(pairs, titled, strict=True):
             part = zoom(scene, [snapshot] if moving else [s for _, s, _ in titled], height - _APART)
             zone = zone_at(scene, snapshot)
@@ -186,9 +186,9 @@ def _frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[tuple[Limits, L
     pad = 0.01 * scene.specimen.extent
     left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
     reach = 1.06 * float(np.abs(x_ni[:, 1]).max())
-    right = max(right, left + WHOLE / (HIGHEST - _APART) * 2 * reach)
+    right = max(right, left + WHOLE / (MOST_HEIGHT - _APART) * 2 * reach)
     to_scale = WHOLE * 2 * reach / (right - left)
-    height = max(to_scale + _APART, _LOWEST)
+    height = max(to_scale + _APART, _LEAST_ROW)
     return ((left, right), (-reach, reach)), height, (height - _APART) / to_scale
 
 
