@@ -86,7 +86,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Page]:
 
 def test_asks_nothing_of_the_network(whole: tuple[str, Page]) -> None:
     text, parsed = whole
-    assert all(a.startswith(("#", "data:image/png;base64,", "./")) for a in parsed.addresses)
+    assert all(a.startswith(("#", "data:image/webp;base64,", "./")) for a in parsed.addresses)
     assert not {"link", "iframe", "object", "embed"} & set(parsed.tags)
     assert parsed.tags.count("script") == 1 and "stepper" in re.findall("<script>(.*?)</script>", text, re.DOTALL)[0]
     assert not re.search(r"fetch\(|XMLHttpRequest|WebSocket|import\(|sendBeacon", text)
