@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -42,9 +43,9 @@ def draw(axes: Axes, facts: MeshFacts, control: bool = False, ink: Callable[[str
     odd = [number for number, block in enumerate(facts.mesh.blocks) if tuple(block.degrees) != common]
     other = np.flatnonzero(np.isin(sides.block_k[:: len(SIDES)], odd))
     if other.size:
-        fill = {"color": ink("zone"), "alpha": 0.25, "linewidth": 0}
         label = f"degrees other than {common[0]} and {common[1]}"
-        axes.add_collection(PolyCollection([_outline(curves, e) for e in other], **fill, label=label))
+        outlines = [_outline(curves, e) for e in other]
+        axes.add_collection(PolyCollection(outlines, color=ink("zone"), alpha=0.25, linewidth=0, label=label))
     k, opposite, t = sides.opposite
     shared_k = sides.shared_k.copy()
     shared_k[k[(t == 0.5) & (k > opposite)]] = False  # the other of the two is drawn
@@ -56,14 +57,14 @@ def draw(axes: Axes, facts: MeshFacts, control: bool = False, ink: Callable[[str
     if control:
         axes.plot(*facts.mesh.P_AI.T, ".", color=ink("muted"), markersize=2.5, label="control points")
     if len(facts.junctions):
-        style = {"color": ink("bad"), "markersize": 3.5, "markeredgewidth": 0}
-        axes.plot(*facts.junctions.T, "o", **style, label=f"{len(facts.junctions)} T-junctions")
+        label = f"{len(facts.junctions)} T-junctions"
+        axes.plot(*facts.junctions.T, "o", color=ink("bad"), markersize=3.5, markeredgewidth=0, label=label)
     if facts.extraordinary:
         X = np.array([x for _, x in facts.extraordinary])
         axes.plot(*X.T, "D", color=ink("tspline"), markersize=4.5, label="extraordinary points, with their valence")
         for valence, x in facts.extraordinary:
-            place = {"xytext": (4, 4), "textcoords": "offset points"}
-            axes.annotate(str(valence), x, **place, color=ink("tspline"), fontweight="bold")
+            style: dict[str, Any] = {"color": ink("tspline"), "fontweight": "bold", "textcoords": "offset points"}
+            axes.annotate(str(valence), (x[0], x[1]), xytext=(4, 4), **style)
     axes.set_aspect("equal")
     axes.set_axis_off()
 

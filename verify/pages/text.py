@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -110,7 +111,7 @@ def seconds(value: float | None, unknown: str = NO_VALUE) -> str:
     return f"{int(round(value)) // 60}\u00a0min\u00a0{int(round(value)) % 60}\u00a0s"
 
 
-def span(values: list[float], form: object) -> str:
+def span(values: list[float], form: Callable[[float], str]) -> str:
     """``form`` of the smallest and the largest value, once if they read the same."""
     low, high = form(min(values)), form(max(values))
     return low if low == high else f"{low} to {high}"
@@ -145,7 +146,7 @@ def _body(specimen: Dcb | Peel, unit: str) -> str:
 
 def _effects(scene: Scene) -> str:
     found, chosen = simulated(scene, "nurbs"), [key for key, value in scene.effects if value == "auto"]
-    words = {
+    words: Mapping[str, Mapping[object, str]] = {
         "kinematics": {
             "finite": "finite kinematics (large rotations)",
             "linear": "linear kinematics (small displacements)",
@@ -223,8 +224,8 @@ def _moduli(material: Material, units: Units) -> list[tuple[str, float, str]]:
         ("G12", "G12", units.stress),
         ("nu12", "nu12", ""),
     )
-    values = [(label, getattr(material, key, None), unit) for key, label, unit in names]
-    return [row for row in values if row[1] is not None]
+    given = [(label, getattr(material, key, None), unit) for key, label, unit in names]
+    return [(label, value, unit) for label, value, unit in given if value is not None]
 
 
 def tone(counts: Counts) -> str:

@@ -32,9 +32,9 @@ def reference_run(report: SceneReport) -> Run | None:
     """The curve that the others are held against: DOLFINx, or else the cohesive beam. LEFM is a limit, never this."""
     for method in ("dolfinx", "beam"):
         runs = [run for run in report.runs if run.method == method and usable(run)]
-        complete = [run for run in runs if run.result.complete]
+        complete = [run for run in runs if run.result is not None and run.result.complete]
         if complete:
-            return max(complete, key=lambda run: run.result.dofs)
+            return max(complete, key=lambda run: run.result.dofs if run.result is not None else 0)
     return None
 
 
@@ -75,12 +75,12 @@ def branch(result: Result, reference: Result) -> tuple[np.ndarray, np.ndarray]:
 
 def agreement(run: Run, reference: Run | None) -> Agreement:
     """The numbers of one run; the comparison is NaN without a reference, for the reference itself and for LEFM."""
-    curve = run.result.opening, run.result.load
-    top, end = peak(curve), float(np.max(run.result.opening))
+    curve = _curve(run)
+    top, end = peak(curve), float(np.max(curve[0]))
     if reference is None or run is reference or run.method == "lefm":
         return Agreement(math.nan, math.nan, peak_load=top[1], peak_opening=top[0], end=end)
-    base = reference.result.opening, reference.result.load
-    end = min(end, float(np.max(reference.result.opening)))
+    base = _curve(reference)
+    end = min(end, float(np.max(base[0])))
     return Agreement(
         error=curve_error(curve, base, end),
         oscillation=oscillation(curve, base, end)["rms"],
@@ -88,3 +88,8 @@ def agreement(run: Run, reference: Run | None) -> Agreement:
         peak_opening=top[0],
         end=end,
     )
+
+
+def _curve(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    assert run.result is not None, "usable runs alone have a curve"
+    return run.result.opening, run.result.load

@@ -164,8 +164,8 @@ def ledger_gap(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
             seen = gap > 0
             axes.plot(entry.result.opening[seen], gap[seen], **entry.line.options())
         axes.axhline(0.005, color=colour("bad"), linewidth=0.8, dashes=(2, 2))
-        place = {"ha": "right", "va": "bottom", "transform": axes.get_yaxis_transform()}
-        axes.text(0.99, 0.005, "0.5 %", color=colour("bad"), **place)
+        at_the_edge = axes.get_yaxis_transform()
+        axes.text(0.99, 0.005, "0.5 %", color=colour("bad"), ha="right", va="bottom", transform=at_the_edge)
         least = min((float(np.nanmin(gap[gap > 0])) for _, gap in gaps if np.any(gap > 0)), default=1e-6)
         axes.set(yscale="log", xlim=(0, None), ylim=(max(least, 1e-10), 0.1))
         axes.yaxis.set_major_formatter(lambda value, _: power_of_ten(value))

@@ -10,6 +10,7 @@ from matplotlib.patches import Polygon, Rectangle
 
 from verify.pages.style import WIDE, Panel, colour, drawing, to_svg
 from verify.pages.text import Units, number, quantity
+from verify.scene.bodies import Dcb
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
@@ -26,6 +27,7 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
     zone : start and end of the process zone along the specimen and the opening at which it was there
     """
     body, units = scene.specimen, Units.of(scene.units)
+    assert isinstance(body, Dcb)
     scale = (WIDE - 2.1) / body.length  # inches per unit of length
     thickness = max(body.arm_thickness * scale, _THINNEST)
     with drawing():
@@ -37,7 +39,7 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
         _bodies(axes, body.length * scale, body.precrack * scale, thickness)
         _loads(axes, thickness)
         _supports(axes, body.length * scale)
-        _dimensions(axes, scene, units, scale, thickness)
+        _dimensions(axes, body, units, scale, thickness)
         if zone is not None and zone[1] > zone[0]:
             mark_zone(axes, zone[0] * scale, zone[1] * scale, thickness + 0.42, zone_label(zone, units))
         svg = to_svg(figure, key, f"Side view of the specimen of {scene.name}")
@@ -90,8 +92,8 @@ def _supports(axes: Axes, length: float) -> None:
     axes.text(length + size + 0.06, 0, note, ha="left", va="center", fontsize=7, color=colour("muted"))
 
 
-def _dimensions(axes: Axes, scene: Scene, units: Units, scale: float, thickness: float) -> None:
-    body, below = scene.specimen, -thickness - 0.44
+def _dimensions(axes: Axes, body: Dcb, units: Units, scale: float, thickness: float) -> None:
+    below = -thickness - 0.44
     a, length = body.precrack * scale, body.length * scale
     length_of, thick, wide = (quantity(v, units.length) for v in (body.length, body.arm_thickness, body.width))
     measure(axes, 0, a, below, f"precrack {quantity(body.precrack, units.length)}")

@@ -41,6 +41,7 @@ class Entry:
 
     @property
     def result(self) -> Result:
+        assert self.run.result is not None, "entries with an agreement alone are drawn"
         return self.run.result
 
     @property

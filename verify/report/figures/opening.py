@@ -133,7 +133,7 @@ def _picture(
     load = place(LEFT + WHOLE + GAP, _BELOW_TRACTION, CLOSE_UP, total - _BELOW_TRACTION - _ABOVE_ARMS)
     x_euvi = np.asarray(snapshot.X_euvi) + np.asarray(snapshot.u_euvi)
     dpi = _COARSE if _between(entry, snapshot) else _FINE
-    paint(arms, x_euvi, np.asarray(snapshot.stress_euv), scales.stress, x, y, dpi)
+    paint(arms, x_euvi, np.asarray(snapshot.stress_euv), scales.stress, (x, y), dpi)
     arms.grid(False)
     arms.set_title(f"{entry.label}, stress along the specimen", color=colour(entry.line.colour))
     arms.tick_params(labelbottom=False)
