@@ -24,7 +24,7 @@ from verify.support.say import say  # noqa: E402
 
 REFUSED, INTERRUPTED = 2, 130
 
-#: What begins a negative number: argparse takes -1 and -0.5 for numbers, but -1e-3 for an option.
+#: The beginning of a negative number: argparse takes -1 and -0.5 for numbers, but -1e-3 for an option.
 NEGATIVE = re.compile(r"-\.?\d")
 
 Parser = argparse.ArgumentParser
@@ -57,7 +57,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _how_to_go_on(options: argparse.Namespace | None) -> str:
-    """What an interrupt has left, and what the same command does with it."""
+    """The rest of a sentence: finished work, and how the same command continues."""
     if options is None or not options.keeps or options.out is None or getattr(options, "dry_run", False):
         return "; the same command again starts over"
     kept, then = options.keeps

@@ -74,8 +74,8 @@ def assert_curves_close(
         and ``load``, as a result of this package is; or the path of a text file or of the folder of a run.
     curve, peak, energy : relative tolerances, 0.01 for 1 %
     end : compare up to this opening; default: the last of ``expected``
-    programme : the openings at which the load turns, and the last one; default: those at which ``expected`` is seen to
-        unload. A path that snaps back does not unload: it comes back at smaller loads.
+    programme : the openings at which the load turns, and the last one; default: those at which ``expected``
+        unloads. A path that snaps back does not unload: it comes back at smaller loads.
     actual_as, expected_as
         Which columns are opening and load, and what they are multiplied by; default: those of these names, unscaled.
 
@@ -84,8 +84,8 @@ def assert_curves_close(
     AssertionError
         With a table of both curves, the opening at which they differ most, and every tolerance that is broken.
     ValueError, TypeError
-        What was given is no curve or no tolerance (missing file or column, text or NaN among the numbers, one point,
-        openings without overlap): a test that could not be made, not one that failed.
+        An invalid curve or tolerance (missing file or column, text or NaN among the numbers, one point, openings
+        without overlap): the test could not be made, it did not fail.
 
     Examples
     --------
@@ -163,7 +163,7 @@ def _two_columns(name: str, source: Any, reading: Reading) -> tuple[Any, Any]:
 
 
 def _names(source: Any) -> list[Any] | None:
-    """The names of the columns; None where there are none."""
+    """The names of the columns; None where columns have no names."""
     if isinstance(source, Mapping):
         return list(source)
     if isinstance(source, np.ndarray):

@@ -16,7 +16,7 @@ from iga.mesh.extraction import SIDES
 from verify.command_line.mesh_facts import MeshFacts
 from verify.pages.style import PALETTE
 
-#: Inches: width of the picture, its largest height, and what stands around the mesh.
+#: Inches: width of the picture, its largest height, margin, and height of title and legend.
 _WIDTH, _MOST_HEIGHT, _SHEET_MARGIN, _TITLE_HEIGHT = 7.0, 7.0, 0.15, 0.45
 
 #: Points on a curved side, and how little of its length a side may bend to be drawn straight.

@@ -1,4 +1,4 @@
-"""A scene to start from: every key with what it is, its dimension, what it takes and its default."""
+"""A scene to start from: every key with its meaning, dimension, range and default."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from verify.scene.parse import SceneError, parse_scene
 from verify.scene.published import Published
 from verify.support.refusal import Refusal
 
-#: A value that TOML has and no key takes: what is said of it says what the key does take.
+#: A TOML value that no key accepts: its refusal names the values that the key does accept.
 _OUT_OF_PLACE = date(1, 1, 1)
 
 
 def allowed(raw: Mapping[str, Any], key: Key) -> str:
-    """What a key takes, in the words in which another value is refused. ``raw`` is a valid scene."""
+    """The values that a key accepts, in the words of a refusal. ``raw`` is a valid scene."""
     table = {key.name: _OUT_OF_PLACE}
     if key.table == "published":
         wrong = {**raw, "published": [table]}
@@ -41,7 +41,7 @@ def allowed(raw: Mapping[str, Any], key: Key) -> str:
 
 _LINE_WIDTH = 100
 
-#: The packaged scene that says what has no default, by the kind of the specimen.
+#: The packaged scene that supplies the values without a default, by the kind of the specimen.
 _EXAMPLES: Mapping[str, str] = {"dcb": "dcb-czm1", "peel": "peel-60"}
 
 #: Names of dimensions in the schema, and how they are written in the units of ``_EXAMPLES``.
@@ -54,7 +54,7 @@ UNITS: Mapping[str, str] = {
     "degrees": "degrees",
 }
 
-#: Numbers for what a scene may have instead or besides.
+#: Numbers of optional and alternative keys.
 ORTHOTROPIC = {"E1": 120e3, "E2": 10e3, "G12": 5e3, "nu12": 0.3}
 PUBLISHED = {
     "quantity": "load_at",
@@ -95,7 +95,7 @@ def new_scene(kind: str) -> str:
 
 
 def _least(kind: str) -> dict[str, Any]:
-    """The example with nothing given but what must be, and all defaults."""
+    """The example with its required keys alone, and all defaults."""
     example = load_scene(_EXAMPLES[kind]).model_dump()
     tables: dict[str, dict[str, Any]] = {}
     for key in keys(kind):
@@ -127,7 +127,7 @@ def _commented(head: str, raw: Mapping[str, Any], these: tuple[Key, ...], values
 
 
 def _comment(raw: Mapping[str, Any], key: Key, width: int = _LINE_WIDTH) -> Iterator[str]:
-    """What it is, its unit, and what it takes."""
+    """Meaning, unit and range of a key."""
     what = re.sub(
         r"\[([a-z ]+)\]", lambda found: f"[{UNITS[found[1]]}]", " ".join((key.field.description or "").split())
     )

@@ -1,4 +1,4 @@
-"""Two load-opening curves against each other, of one's own or of somebody else's code."""
+"""Comparison of two load-opening curves, of any code."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Points = tuple[np.ndarray, np.ndarray]
 
 @dataclass(frozen=True)
 class Part:
-    """One of the curves, as far as it is compared."""
+    """The compared part of a curve."""
 
     opening: np.ndarray  # (n,) path from the first arrival at the beginning to that at the end
     load: np.ndarray  # (n,)
@@ -41,7 +41,7 @@ class Comparison:
     """A against B over the openings (begin, end].
 
     ``curve_error``, ``peak_difference``, ``peak_shift`` and ``energy_difference`` are relative to B. Oscillation is of
-    the whole branch behind the peak, NaN where it cannot be told.
+    the whole branch behind the peak, NaN where it is undefined.
     """
 
     a: Part
@@ -118,7 +118,7 @@ def compare(
 ) -> Comparison:
     """Hold A against B over the openings that both reach, from ``begin`` on and up to ``end``.
 
-    Without them from 0, and to the last opening of B. What counts of a path begins where it first comes to ``begin``.
+    Without them from 0, and to the last opening of B. A path is compared from its first arrival at ``begin``.
     Where the load ``programme`` turns, its legs are compared as well; without it the turns are those of B, see
     `verify.curves.legs.programme_of`.
 
@@ -165,9 +165,9 @@ def compare(
 def checks(
     comparison: Comparison, curve: float | None = None, peak: float | None = None, energy: float | None = None
 ) -> list[Check]:
-    """What the given relative tolerances ask for; and with any of them, that A goes as far as it was to be compared.
+    """The checks of the given relative tolerances; with any of them also that A reaches the end of the comparison.
 
-    That of the curve asks for every leg of a programme that turns, and `OF_A_POINT` times as much of every point of A.
+    That of the curve applies to every leg of a programme that turns, and `OF_A_POINT` times it to every point of A.
     """
     limits = (
         ("curve-error", comparison.curve_error, curve, "relative L2 distance of the loads over the opening"),
@@ -230,8 +230,7 @@ def _part(curve: Points, begin: float, end: float) -> Part:
 
 
 def _distance(load: np.ndarray, wanted: np.ndarray) -> float:
-    """Relative L2 distance of the very samples that are shown: taken anew at openings over their range, one that falls
-    on a vertical drop may come out on its other side."""
+    """Relative L2 distance of the samples shown. New samples could fall on the other side of a vertical drop."""
     return float(np.sqrt(np.sum((load - wanted) ** 2) / np.sum(wanted**2)))
 
 
@@ -244,7 +243,7 @@ def _up_to(d: np.ndarray, P: np.ndarray, end: float) -> Points:
 
 
 def _wave(a: Points, b: Points, peak_opening: float) -> tuple[float, float]:
-    """Oscillation of A about B, where both have the points to show one."""
+    """Oscillation of A about B, where both have enough points."""
     points = min(np.count_nonzero(envelope(*curve)[0] > PROPAGATION * peak_opening) for curve in (a, b))
     if points < POINTS_OF_A_WAVE:
         return np.nan, np.nan

@@ -21,14 +21,14 @@ Values: TypeAlias = Sequence[float] | np.ndarray
 
 @dataclass(frozen=True)
 class Convergence:
-    """What a sequence of meshes says about its limit.
+    """The limit of a sequence of meshes, with its uncertainty.
 
     order : observed order of the three finest meshes, NaN where there is none
     limit : Richardson's extrapolation from the two finest
     error : estimated relative error of the finest, |f1 - limit| / |limit|
     gci : grid convergence index of the finest, relative; GCI_SAFETY times the relative error that the order implies
     asymptotic : whether ``limit`` and ``gci`` can be trusted
-    verdict : one sentence that says so, or why not
+    verdict : a sentence: converged, or the reason why not
     """
 
     order: float
@@ -94,7 +94,7 @@ def assess(size: Values, value: Values, expected: float | None = None) -> Conver
     Parameters
     ----------
     size : (n,) typical element sizes, n >= 3, in any order
-    value : (n,) what was computed on them
+    value : (n,) computed on them
     expected : the order that the discretisation states, if it does
 
     Raises

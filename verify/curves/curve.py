@@ -18,7 +18,7 @@ PROPAGATION = 1.3
 
 
 def envelope(opening: ArrayLike, load: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """What a test under displacement control would show: points whose opening exceeds all before.
+    """The curve that a test under displacement control would show: points whose opening exceeds all before.
 
     At a snap-back, and where a programme unloads, the load jumps vertically to where the path comes back through the
     largest opening so far.

@@ -1,4 +1,4 @@
-"""The legs of a load programme: where a curve turns from one to the next."""
+"""The legs of a load programme, and the turns of a curve between them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from verify.support.programme import turns
 #: Turns that differ by this part of the largest opening are the same, up to rounding.
 SAME_TURN = 1e-6
 
-#: A fifth of the tolerance between two codes: what the turns and the end of a curve may miss of the largest opening.
+#: Largest distance of turns and end of a curve from those of the programme, in parts of the largest opening: a fifth of
+#: the tolerance between two codes.
 #: The load of a branch ``P ~ opening^-1/2`` changes by half of it, the stiffness of an unloading by 3/2.
 TURN_TOLERANCE = 1e-3
 
@@ -112,7 +113,7 @@ def programme_of(curve: Curve) -> tuple[float, ...]:
     """The programme that a curve itself shows: its turns and its last opening.
 
     A fall of the opening is an unloading where it is `DEEP`, and where the path does not come back at smaller loads;
-    otherwise it is a snap-back, or what the converged steps make of one.
+    otherwise it is a snap-back, or its image in converged steps.
     """
     d, P = from_origin(*curve)
     pivots = _pivots(d, DEEP * float(np.max(np.abs(d))))

@@ -20,7 +20,7 @@ def cubics(result: Result) -> Curve:
 
 
 def distance(curve: Curve, exact: Result) -> float:
-    """Relative L2 distance of the load of a complete run to that of another; where one has come apart there is none."""
+    """Relative L2 distance of the load of a complete run to that of another; the load is zero after separation."""
     known = cubics(exact)
     end = max(float(envelope(*one)[0][-1]) for one in (curve, known))
     return curve_error(_onward(curve, end), _onward(known, end))

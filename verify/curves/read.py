@@ -1,4 +1,4 @@
-"""Load-opening curves in files: of a run, or of anybody's code or testing machine."""
+"""Load-opening curves in files, of runs, other codes or testing machines, and their columns."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class CurveError(Refusal):
 class Reading:
     """Which columns of a table are opening and load, and what they are multiplied by.
 
-    A column is a name, in capitals or not, or a number from 1. Without either it is the one that is called so, and in
-    a table without a header the first is the opening and the second the load. A negative scale turns a sign.
+    A column is a name, in capitals or not, or a number from 1. Without either the columns are those named opening and
+    load, in a table without a header the first two. A negative scale turns a sign.
 
     Raises
     ------
@@ -225,8 +225,8 @@ def _listed(names: Sequence[Any]) -> str:
 
 
 def _of_one_width(path: Path, dialect: Dialect, body: list[Row], header: _Header) -> list[Row]:
-    """The rows. One of more cells than there are columns would put numbers under wrong names; so would one of fewer
-    where blanks separate, which leave no cell empty."""
+    """The rows, if no number stands under a wrong name. A row must not have more cells than columns, nor fewer where
+    blanks separate, as these leave no cell empty."""
     for line, cells in body:
         if len(cells) > header.width or (len(cells) < header.width and not dialect.separator):
             raise CurveError(f"{path}:{line}: must have {header.width} columns as above, got {len(cells)}")

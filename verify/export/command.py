@@ -20,7 +20,7 @@ FORMATS = (*ENDINGS, "csv")
 
 
 def export(scene: Scene, kind: str, folder: Path, layers: int | None = None) -> list[str]:
-    """Write a scene into a folder; what was written and what to know of it, a line each.
+    """Write a scene into a folder; returns the files and remarks on them, a line each.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from verify.support.refusal import Refusal
 #: Upper body first.
 BODIES: Mapping[str, tuple[str, str]] = {"dcb": ("upper", "lower"), "peel": ("strip", "substrate")}
 
-#: What the layers of a specimen are called by the problem of `fem_reference`.
+#: Names of the layers of a specimen in `fem_reference.problem`.
 LAYERS: Mapping[str, str] = {"dcb": "elements_across", "peel": "strip_layers"}
 
 #: Part of a height by which a node may lie beside the middle of a face, by rounding.
@@ -159,7 +159,7 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
 
 
 def _pulled(face: LoadedFace, at: str, X_nI: np.ndarray) -> LoadedFace:
-    """The face, or the one node of it that the load is at.
+    """The loaded face, or its loaded node.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Lines of a mesh as a pen would draw them: each side once, and straight on from one element to the next.
+"""Lines of a mesh as long strokes: each side once, straight on from element to element.
 
 As outlines of the elements every side would be drawn twice, and be three quarters of the bytes of a page.
 """
@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-#: Part of the largest coordinate within which two points are one.
+#: Part of the largest coordinate within which two points are the same.
 _SAME_PLACE = 1e-7
 
-#: Cosine between two sides from where on one goes on as the other.
+#: Cosine of the angle between two sides that continue each other.
 _STRAIGHT_ON = 0.8
 
 

@@ -25,7 +25,7 @@ NO_VALUE = "no value"
 
 @dataclass(frozen=True)
 class Units:
-    """Unit labels, empty where the scene's label does not tell them apart."""
+    """Unit labels, empty where the scene's label does not separate them."""
 
     force: str = ""
     length: str = ""
@@ -123,7 +123,7 @@ def programme(scene: Scene) -> tuple[float, ...]:
 
 
 def sentence(scene: Scene) -> str:
-    """What was solved, and with which effects, in words."""
+    """The problem with its effects, in words."""
     units, specimen = Units.of(scene.units), scene.specimen
     openings = " → ".join(number(v, 4) for v in programme(scene))
     moved = f"to {openings} {units.length}".rstrip()
@@ -132,7 +132,7 @@ def sentence(scene: Scene) -> str:
 
 
 def _body(specimen: Dcb | Peel, unit: str) -> str:
-    """The specimen and what is done to it."""
+    """The specimen and its load."""
     if specimen.kind == "peel":
         lengths = ("strip_length", "strip_thickness", "substrate_length", "substrate_thickness", "bond_length")
         strip, thick, substrate, depth, bond = (quantity(getattr(specimen, name), unit) for name in lengths)

@@ -33,7 +33,7 @@ def page(
     labels : names of A and B
     rows : name, name of its check, value of A, of B, and difference
     found : the checks that were asked for
-    remarks : what is printed above the numbers
+    remarks : sentences above the numbers
     """
     return rendered(
         "verify.report",

@@ -1,4 +1,4 @@
-"""Figures of cost: where the time went, and what it bought."""
+"""Figures of cost: time by phase, and error against time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a verification has found: the content of its page. Imports no drawing library."""
+"""The results of a verification, which its page shows. Imports no drawing library."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the top of the page says: what agrees with what, to how much, at which time, and what fails."""
+"""The top of the page: which methods agree, how closely, in which time, and which checks fail."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Sentence:
-    """Something said at the top, and where on the page it comes from."""
+    """A sentence at the top, with a link to its evidence on the page."""
 
     text: str
     target: str = ""
@@ -102,7 +102,7 @@ def _cell(section: Section, method: str, repeat: int) -> Cell:
     if entry is None:
         return Cell("–", "", "absent")
     if entry.agreement is None:
-        return Cell("not run" if entry.result is None else "no curve", "", "absent")
+        return Cell("not run" if entry.run.result is None else "no curve", "", "absent")
     time = seconds(total_seconds(entry.result), "")
     unknowns = f"{entry.result.dofs} unknowns" if entry.result.dofs else ""
     tail = ", ".join(part for part in (time, unknowns) if part)
@@ -150,7 +150,7 @@ def _sentences(sections: Sequence[Section]) -> list[Sentence]:
 
 
 def _missing(sections: Sequence[Section]) -> list[str]:
-    """What was not run or stopped early, each reason once with the scenes it concerns."""
+    """Reasons why runs are missing or stopped early, each once with its scenes."""
     reasons: dict[str, list[str]] = {}
     for section in sections:
         for note in section.notes:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from verify.verdict import Check
 
 
-#: kind: what stands behind a check of that kind
+#: kind: the evidence of a check of that kind
 EVIDENCE = {
     "exact": "An identity that any solution must meet. Nothing else is needed to judge it.",
     "analytical": "Against a closed form or the cohesive-beam solution, which rests on beam theory.",

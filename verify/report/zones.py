@@ -28,7 +28,7 @@ class ZoneRow:
 
 
 def rows(scene: Scene, found: Sequence[Entry]) -> tuple[ZoneRow, ...]:
-    """One for each run with a mesh along the interface."""
+    """A row for each run with a mesh along the interface."""
     lines = (_row(scene, entry) for entry in found if entry.agreement is not None)
     return tuple(line for line in lines if line is not None)
 

@@ -42,7 +42,7 @@ def path(result: Result, refine: int = 6) -> tuple[np.ndarray, np.ndarray]:
     """Opening and load to draw: cubic Hermite arcs between converged steps where the method knows the slope.
 
     A straight line where the arc would leave the chord by more than 1 % of the peak: there the step went over a turn
-    of the path, and the arc would invent one. LEFM stays a polygon: its path has a kink.
+    of the path, and the arc would add one. LEFM stays a polygon: its path has a kink.
     """
     x, y = np.asarray(result.opening, float), np.asarray(result.load, float)
     if "load_slope" not in result.steps or result.method == "lefm" or len(x) < 2:

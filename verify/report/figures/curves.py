@@ -148,7 +148,7 @@ def energies(scene: Scene, entry: Entry, key: str) -> Panel | None:
 
 
 def ledger_gap(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
-    """What the ledger of each run misses, relative to the work done so far."""
+    """The gap of the energy ledger of each run, relative to the work done so far."""
     gaps = []
     for entry in (entry for entry in runs if _LEDGER <= set(entry.result.steps)):
         steps = entry.result.steps
@@ -187,7 +187,7 @@ def _peak_point(result: Result) -> tuple[float, float]:
 
 
 def _top_load(runs: Sequence[Entry]) -> float:
-    """Largest load of what is not a limit: LEFM may run out of the figure."""
+    """Largest load of all curves but LEFM, which may leave the figure."""
     own = [d for d in runs if d.method != "lefm"] or list(runs)
     return max(float(np.nanmax(d.result.load)) for d in own) or 1.0
 

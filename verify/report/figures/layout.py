@@ -65,7 +65,7 @@ def zoom(scene: Scene, snapshots: Sequence[Snapshot], height: float) -> tuple[Li
 
 
 def mark(axes: Axes, part: tuple[Limits, Limits]) -> None:
-    """Frame what is enlarged beside."""
+    """Frame the part that is enlarged beside."""
     (x0, x1), (y0, y1) = part
     frame = Rectangle((x0, y0), x1 - x0, y1 - y0, fill=False, edgecolor=colour("muted"), linewidth=0.6, zorder=5)
     axes.add_patch(frame)

@@ -53,7 +53,7 @@ def undeformed(scene: Scene, drawn: Sequence[Entry], key: str) -> Panel | None:
 
 
 def followed(scene: Scene, drawn: Sequence[Entry], key: str) -> Panel | None:
-    """T-meshes of an adaptive run at up to three openings; none where no run changes its mesh."""
+    """T-meshes of an adaptive run at up to three openings; None where no run changes its mesh."""
     found = next(((entry, moves) for entry in drawn if len(moves := _changes(entry)) > 1), None)
     if found is None:
         return None
@@ -200,14 +200,14 @@ def _frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[tuple[Limits, L
 
 
 def _plot(axes: Axes, lines_nki: np.ndarray, frame: tuple[Limits, Limits], label: str, style: Style) -> None:
-    """Lines that are seen, as one path."""
+    """The visible lines as one path."""
     lines_nki = lines_nki[seen(lines_nki, frame)]
     if len(lines_nki):
         axes.plot(*strokes(lines_nki).T, label=label, **style)
 
 
 def _of_arm(lines_nki: np.ndarray, side: float) -> np.ndarray:
-    """Lines of the arm above (+1) or below (-1), each once: both have what lies on the bond, Y = 0."""
+    """Lines of the arm above (+1) or below (-1), each once; lines on the bond, Y = 0, belong to both."""
     own = np.sign(lines_nki[..., 1].mean(axis=1)) * side >= 0
     return np.unique(lines_nki[own], axis=0) if own.any() else lines_nki[own]
 
