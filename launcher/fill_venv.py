@@ -19,7 +19,7 @@ EXTRAS_OF_TESTS = ("distributed", "docs", "fields", "tests")
 
 def requirements(tests: bool) -> list[str]:
     """What to install: the dependencies and the extras of the report, of development and of tests."""
-    project = tomllib.loads((HERE.parent.parent / "pyproject.toml").read_text())["project"]
+    project = tomllib.loads((HERE.parent / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
     wanted = (*EXTRAS, *(EXTRAS_OF_TESTS if tests else ()))
     return [*project["dependencies"], *(wish for extra in wanted for wish in extras[extra])]

@@ -3,11 +3,14 @@
 import importlib.util
 import os
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from verify.cli import parser
 
 PROJECT = Path(__file__).parents[1]
 SITE = PROJECT / "docs"
@@ -114,17 +117,42 @@ def test_every_example_has_a_place_in_the_order():
 
 def test_written_pages_lead_to_pages_that_will_be():
     examples = {f"{script.stem}.md" for script in (PROJECT / "examples").glob("*.py")}
-    for page in (SITE / "docs").rglob("*.md"):
+    written = sorted((SITE / "pages").rglob("*.md"))
+    assert len(written) > 15
+    for page in written:
         for target in re.findall(r"\]\(\s*([^)#\s]+\.md)", page.read_text()):
-            goal = (page.parent / target).resolve().relative_to(SITE / "docs")
+            goal = (page.parent / target).resolve().relative_to(SITE / "pages")
             folder, name = goal.parts[0], goal.name
             if folder == "examples":
                 assert name in examples, f"{page.name}: {target}"
             elif folder == "modules":
-                package, module = name.removesuffix(".md").split(".")
-                assert (PROJECT / package / f"{module}.py").is_file(), f"{page.name}: {target}"
+                module = name.removesuffix(".md").replace(".", "/")
+                assert (PROJECT / f"{module}.py").is_file(), f"{page.name}: {target}"
             else:
-                assert (SITE / "docs" / goal).is_file(), f"{page.name}: {target}"
+                assert (SITE / "pages" / goal).is_file(), f"{page.name}: {target}"
+
+
+def test_links_of_the_readme_lead_somewhere():
+    """To files, and in the guide to headings by their names."""
+    targets = re.findall(r"\]\((?!https?:)([^)\s]+)\)", (PROJECT / "README.md").read_text())
+    assert len(targets) > 15
+    for target in targets:
+        path, _, place = target.partition("#")
+        assert (PROJECT / path).exists(), target
+        headings = re.findall(r"^#+ (.+)$", (PROJECT / path).read_text(), re.MULTILINE) if place else []
+        assert not place or place in [re.sub(r"[^\w -]", "", text).lower().replace(" ", "-") for text in headings], (
+            target
+        )
+
+
+def test_commands_of_the_guide_are_taken():
+    """Every command with its options in the README and in the guide."""
+    written = [PROJECT / "README.md", *sorted((SITE / "pages" / "guide").glob("*.md"))]
+    text = "\n".join(page.read_text() for page in written).replace("\\\n", " ")
+    lines = re.findall(r"(?:^ {4}|`)\./debond ((?!exec|test)[^`#>\n]+)", text, re.MULTILINE)
+    assert len(lines) > 30
+    for line in lines:
+        assert line.strip() == "compare A B" or parser().parse_args(shlex.split(line)).command, line
 
 
 @pytest.mark.slow

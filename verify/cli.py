@@ -13,6 +13,7 @@ import errno  # noqa: E402
 import re  # noqa: E402
 from collections.abc import Callable, Sequence  # noqa: E402
 from pathlib import Path  # noqa: E402
+from typing import Any  # noqa: E402
 
 from verify.command_line import commands  # noqa: E402
 from verify.command_line.arguments import accuracy, column, count, fraction, number, numbers, positive, scale, seeds  # noqa: E402
@@ -23,7 +24,7 @@ from verify.support.say import say  # noqa: E402
 
 REFUSED, INTERRUPTED = 2, 130
 
-#: What begins a negative number: argparse takes -1 and -0.5 for numbers, but -1e-3 for an option.
+#: The beginning of a negative number: argparse takes -1 and -0.5 for numbers, but -1e-3 for an option.
 NEGATIVE = re.compile(r"-\.?\d")
 
 Parser = argparse.ArgumentParser
@@ -56,7 +57,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _how_to_go_on(options: argparse.Namespace | None) -> str:
-    """What an interrupt has left, and what the same command does with it."""
+    """The rest of a sentence: finished work, and how the same command continues."""
     if options is None or not options.keeps or options.out is None or getattr(options, "dry_run", False):
         return "; the same command again starts over"
     kept, then = options.keeps
@@ -75,11 +76,19 @@ def parser() -> Parser:
     subs = top.add_subparsers(title="commands", required=True, metavar="COMMAND")
 
     def command(function: Callable[[argparse.Namespace], int], text: str, example: str, leaves: str) -> Parser:
-        texts = {"help": text, "description": text, "epilog": f"example: debond {example}\n         # {leaves}"}
-        sub = subs.add_parser(function.__name__, **texts, formatter_class=Help, allow_abbrev=False)
-        sub.set_defaults(command=function, keeps=None)
+        end = f"example: debond {example}\n         # {leaves}"
+        options: dict[str, Any] = {"description": text, "epilog": end, "formatter_class": Help, "allow_abbrev": False}
+        sub: Parser = subs.add_parser(function.__name__, help=text, **options)
+        sub.set_defaults(command=function, keeps=None, parser=top)
         return sub
 
+    _studies(command)
+    _tools(command)
+    return top
+
+
+def _studies(command: Callable[..., Parser]) -> None:
+    """The commands that solve scenes and compare curves."""
     text = "Every method on the scenes of the paper or those named, all checks, one report."
     leaves = "read debond-report/report.html; exit 0: all checks hold"
     _verify_options(command(commands.verify, text, "verify dcb-czm1 --jobs 2", leaves))
@@ -98,6 +107,10 @@ def parser() -> Parser:
     text = "Two load-opening curves: error, peak, energy; of runs, or of anybody's code."
     example = "compare my.csv run --opening-a U2 --load-a RF2 --curve-tol 0.01"
     _compare_options(command(commands.compare, text, example, "a table; exit 1: my.csv is more than 1 % off the run"))
+
+
+def _tools(command: Callable[..., Parser]) -> None:
+    """The commands around them: other formats, scenes, the shell, the installation."""
     text = "One scene for another code: mesh, sets, interface pairs, material, law and steps."
     leaves = "input files in debond-export/dcb-czm1-abaqus"
     _export_options(command(commands.export, text, "export dcb-czm1 --format abaqus", leaves))
@@ -112,12 +125,10 @@ def parser() -> Parser:
     text = "What completes commands, options, scenes, methods and keys at the tab key of a shell."
     sub = command(commands.completion, text, "completion bash > ~/.debond-completion", "source it in ~/.bashrc")
     sub.add_argument("shell", metavar="SHELL", help="bash, zsh or fish")
-    sub.set_defaults(parser=top)
     text = "What is installed, what works, how to get the rest."
     command(commands.doctor, text, "doctor", "one line a package, then what works")
     sub = command(commands.test, "Run the tests; arguments go to pytest.", "test -k curve", "the tests of curves")
     sub.add_argument("rest", nargs=argparse.REMAINDER, metavar="ARG")
-    return top
 
 
 def _verify_options(sub: Parser) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from verify.curves.compare import Points, checks, compare
-from verify.curves.read import Column, CurveError, Reading, read_curve, sound
+from verify.curves.read import CurveError, Reading, columns_of, read_curve, sound
 from verify.curves.wording import complaints, remarks, table
 
 __all__ = ["CurveError", "CurveLike", "Reading", "assert_curves_close"]
@@ -74,8 +74,8 @@ def assert_curves_close(
         and ``load``, as a result of this package is; or the path of a text file or of the folder of a run.
     curve, peak, energy : relative tolerances, 0.01 for 1 %
     end : compare up to this opening; default: the last of ``expected``
-    programme : the openings at which the load turns, and the last one; default: those at which ``expected`` is seen to
-        unload. A path that snaps back does not unload: it comes back at smaller loads.
+    programme : the openings at which the load turns, and the last one; default: those at which ``expected``
+        unloads. A path that snaps back does not unload: it comes back at smaller loads.
     actual_as, expected_as
         Which columns are opening and load, and what they are multiplied by; default: those of these names, unscaled.
 
@@ -84,8 +84,8 @@ def assert_curves_close(
     AssertionError
         With a table of both curves, the opening at which they differ most, and every tolerance that is broken.
     ValueError, TypeError
-        What was given is no curve or no tolerance (missing file or column, text or NaN among the numbers, one point,
-        openings without overlap): a test that could not be made, not one that failed.
+        An invalid curve or tolerance (missing file or column, text or NaN among the numbers, one point, openings
+        without overlap): the test could not be made, it did not fail.
 
     Examples
     --------
@@ -144,15 +144,14 @@ def _points(name: str, source: CurveLike, reading: Reading | None) -> Points:
     d, P = _numbers(f"{name}, opening", opening), _numbers(f"{name}, load", load)
     if d.size != P.size:
         raise CurveError(f"{name}: opening and load must be of one length, got {d.size} and {P.size}")
-    with np.errstate(over="ignore"):
-        return sound(name, d * reading.opening_scale, P * reading.load_scale)
+    return sound(name, d, P, reading)
 
 
 def _two_columns(name: str, source: Any, reading: Reading) -> tuple[Any, Any]:
     columns = _names(source)
     if columns is not None:
-        opening, load = (_column(name, columns, column) for column in reading.columns)
-        return source[opening], source[load]
+        opening, load = columns_of(name, columns, reading)
+        return source[columns[opening]], source[columns[load]]
     if reading.opening is not None or reading.load is not None:
         raise TypeError(f"{name}_as: columns are chosen in a file or a table, got {type(source).__name__}")
     if hasattr(source, "opening") and hasattr(source, "load"):
@@ -164,26 +163,12 @@ def _two_columns(name: str, source: Any, reading: Reading) -> tuple[Any, Any]:
 
 
 def _names(source: Any) -> list[Any] | None:
-    """The names of the columns; None where there are none."""
+    """The names of the columns; None where columns have no names."""
     if isinstance(source, Mapping):
         return list(source)
     if isinstance(source, np.ndarray):
         return list(source.dtype.names) if source.dtype.names else None
     return list(source.columns) if hasattr(source, "columns") else None
-
-
-def _column(name: str, columns: list[Any], wanted: Column) -> Any:
-    if wanted in columns:
-        return wanted
-    if isinstance(wanted, int):
-        if wanted > len(columns):
-            raise CurveError(f"{name}: has {len(columns)} columns, got column number {wanted}")
-        return columns[wanted - 1]
-    alike = [column for column in columns if str(column).casefold() == wanted.casefold()]
-    if len(alike) != 1:
-        listed = ", ".join(map(str, columns)) or "none"
-        raise CurveError(f"{name}: must have {'one' if alike else 'a'} column {wanted!r}, got {listed}")
-    return alike[0]
 
 
 def _numbers(name: str, values: Any) -> np.ndarray:

@@ -9,6 +9,7 @@ from pathlib import Path
 from verify.checks.foreign_curves import Curve, joined
 from verify.checks.judgement import NO_DEMANDS, Demands, judged
 from verify.checks.table import check_table, not_held, overview
+from verify.report.findings import Findings
 from verify.runs import verdict_file
 from verify.runs.environment import environment
 from verify.runs.jobs import Job, dry_run, run_all
@@ -74,8 +75,8 @@ def verify(
     others += [("plane elasticity", check) for check in rate_checks(bases)]
     judgement = judged(reports, others, demands)
     verdict_file.write(out, reports, judgement, [os.path.relpath(study.folder, out) for study in studies])
-    what = (reports, page, environment(), quadrature, paper, planes, bases, peels, studies, text)
-    written = write_page("verify.report.page", *what)
+    findings = Findings(reports, environment(), quadrature, paper, planes, bases, peels, studies)
+    written = write_page("verify.report.page", findings, page, text)
     tables = [line for found in planes for line in [*plane_lines(found), *check_table(found.checks), ""]]
     print("\n".join([*overview(reports), *tables, *convergence(reports), *not_held(judgement.checks)]))
     if quadrature is not None:

@@ -167,7 +167,7 @@ def test_solve_writes_a_folder(folder: Path, capsys: pytest.CaptureFixture) -> N
 
 
 def test_a_scene_of_ones_own_is_a_path(folder: Path) -> None:
-    text = (PROJECT / "verify" / "scenes" / "dcb-czm1.toml").read_text()
+    text = (PROJECT / "verify" / "scene" / "scenes" / "dcb-czm1.toml").read_text()
     (folder / "own.toml").write_text(text.replace("dcb-czm1", "dcb-own"))
     assert main(["solve", "own.toml", "--method", "lefm", "--out", "here"]) == 0
     assert json.loads((folder / "here" / "result.json").read_text())["scene"]["name"] == "dcb-own"
@@ -196,7 +196,7 @@ def test_a_specimen_that_separates_is_complete(folder: Path, capsys: pytest.Capt
 def test_without_dolfinx_there_is_a_sentence_and_three_ways(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
-    monkeypatch.setattr(dolfinx, "dolfinx_installed", lambda: False)
+    monkeypatch.setattr(dolfinx, "find_spec", lambda name: None)
     assert main(["solve", "dcb-czm1", "--method", "dolfinx"]) == 1
     said = capsys.readouterr().err
     assert "not run: DOLFINx is not installed" in said

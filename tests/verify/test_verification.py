@@ -38,12 +38,12 @@ LINEAR = "dcb-czm1-linear"
 def reports(monkeypatch: pytest.MonkeyPatch) -> list[SceneReport]:
     """What the report would have been written from."""
     seen: list[SceneReport] = []
-    monkeypatch.setattr(verification, "write_page", lambda module, reports, *others: not seen.extend(reports))
+    monkeypatch.setattr(verification, "write_page", lambda module, findings, *others: not seen.extend(findings.reports))
     return seen
 
 
 def only(monkeypatch: pytest.MonkeyPatch, *jobs: Job) -> None:
-    monkeypatch.setattr(one_scene, "planned", lambda source, scene, full: [j for j in jobs if j.scene is scene])
+    monkeypatch.setattr(verification, "planned", lambda source, scene, full: [j for j in jobs if j.scene is scene])
 
 
 @pytest.fixture
@@ -125,7 +125,7 @@ def test_a_failing_check_fails_the_whole(scene: Scene, reports: list, tmp_path: 
 def test_without_dolfinx_its_rows_say_so_and_nothing_fails(
     scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
-    monkeypatch.setattr(dolfinx, "dolfinx_installed", lambda: False)
+    monkeypatch.setattr(dolfinx, "find_spec", lambda name: None)
     only(monkeypatch, Job(LINEAR, scene, "dolfinx", "dolfinx"), Job(LINEAR, scene, "lefm", "lefm"))
     assert verify([(LINEAR, scene)], tmp_path, jobs=1)
     assert reports[0].runs[0].left_out == "not run: DOLFINx is not installed"

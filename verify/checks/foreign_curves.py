@@ -23,13 +23,14 @@ from verify.checks.between_codes import (
 )
 from verify.checks.odd_one_out import ODD, odd_one_out
 from verify.curves.leg_checks import farthest_check, turns_check
-from verify.curves.legs import NEAR, path
+from verify.curves.legs import TURN_TOLERANCE, path
 from verify.curves.read import Reading, read_curve
 from verify.methods.names import METHODS
 from verify.methods.plugins import known_methods
 from verify.result import Result
 from verify.scene.magnitudes import LEAST, MOST
-from verify.scene.schema import Scene, only_opens, turns
+from verify.scene.schema import Scene
+from verify.support.programme import only_opens, turns
 from verify.support.refusal import Refusal
 from verify.verdict import Check, Run, SceneReport
 
@@ -155,7 +156,7 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
     if max(programme) > 0.0:
         missing = max(0.0, 1.0 - float(curve.opening.max()) / max(programme))
         meaning = "The curve goes as far as the load programme opens the specimen (missing part of it)."
-        checks.append(Check("end", name, missing, NEAR, "cross-code", meaning))
+        checks.append(Check("end", name, missing, TURN_TOLERANCE, "cross-code", meaning))
     if not only_opens(programme):
         checks.append(turns_check(name, path((curve.opening, curve.load), programme)))
     usable = {method: result for method, result in results.items() if result.load.size > 1}

@@ -1,1 +1,1 @@
-"""What the command line offers besides work: scenes to look at and to start from, completion of words."""
+"""The commands, a file each: options, output, scenes to start from, shell completion."""

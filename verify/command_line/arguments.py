@@ -1,4 +1,4 @@
-"""Values of options of the command line, each with what is said of one that it cannot be."""
+"""Types of command-line options, each with its sentence for an invalid value."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ PAGE, NUMBERS = "comparison.html", "comparison.json"
 
 @dataclass(frozen=True)
 class Source:
-    """One of the curves as the command line names it."""
+    """A curve as given on the command line."""
 
     path: Path
     reading: Reading
@@ -56,7 +56,7 @@ def write(
     loads: Sequence[tuple[float, float, float]],
     found: Sequence[Check],
 ) -> None:
-    """Write comparison.json, and comparison.html where there is what to draw it with."""
+    """Write comparison.json, and comparison.html where matplotlib and Jinja are installed."""
     write_json(folder / NUMBERS, numbers(sources, comparison, loads, found))
     try:
         from verify.report.comparison import page
@@ -76,7 +76,7 @@ def numbers(
     loads: Sequence[tuple[float, float, float]],
     found: Sequence[Check],
 ) -> dict[str, object]:
-    """Everything as plain numbers and words; what cannot be told is null in the file."""
+    """All results as plain numbers and words; undefined values are null in the file."""
     worst = dict(zip(("opening", "load_a", "load_b"), comparison.worst, strict=True))
     judged = {
         check.name: {"value": check.value, "tolerance": check.tolerance, "kind": check.kind, "passed": check.passed}

@@ -1,4 +1,4 @@
-"""What is installed here, what therefore works, and how to get the rest."""
+"""Installed packages, working methods, and how to get the others."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from verify.methods.plugins import Plugin, plugins
 
 @dataclass(frozen=True)
 class Package:
-    """One that debond can use: what for, and the extra of debond that brings it; without an extra, debond needs it."""
+    """A package, its purpose, and the extra of debond that installs it; without an extra it is required."""
 
     module: str
     distribution: str

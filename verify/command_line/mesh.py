@@ -52,7 +52,7 @@ def examine(path: Path, out: Path | None, as_json: bool, control: bool) -> bool:
 
 
 def _seconds(path: Path) -> float:
-    """About how long a file takes; one that cannot be read is refused later."""
+    """Expected seconds for a file; an unreadable file is refused later."""
     try:
         return 1.0 + path.stat().st_size / BYTES_A_SECOND
     except OSError:
@@ -73,7 +73,7 @@ def _read(path: Path) -> tuple[IgaFile, Mesh]:
 
 
 def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts, control: bool) -> Path | None:
-    """Where the picture or the other format has gone; None where there is nothing to draw with."""
+    """Path of the picture or of the other format; None without matplotlib."""
     target = out or Path("debond-mesh") / f"{path.stem}.svg"
     try:
         if out is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -15,13 +16,13 @@ from iga.mesh.extraction import SIDES
 from verify.command_line.mesh_facts import MeshFacts
 from verify.pages.style import PALETTE
 
-#: Inches: width of the picture, its largest height, and what stands around the mesh.
-_WIDTH, _HIGHEST, _MARGIN, _FOOT = 7.0, 7.0, 0.15, 0.45
+#: Inches: width of the picture, its largest height, margin, and height of title and legend.
+_WIDTH, _MOST_HEIGHT, _SHEET_MARGIN, _TITLE_HEIGHT = 7.0, 7.0, 0.15, 0.45
 
 #: Points on a curved side, and how little of its length a side may bend to be drawn straight.
-_SAMPLES, _STRAIGHT = 17, 1e-6
+_SIDE_SAMPLES, _STRAIGHT_SIDE = 17, 1e-6
 
-_RC = {"font.family": "sans-serif", "font.size": 8.0, "svg.fonttype": "none", "svg.hashsalt": "debond"}
+_SHEET_STYLE = {"font.family": "sans-serif", "font.size": 8.0, "svg.fonttype": "none", "svg.hashsalt": "debond"}
 
 
 def light(name: str) -> str:
@@ -42,9 +43,9 @@ def draw(axes: Axes, facts: MeshFacts, control: bool = False, ink: Callable[[str
     odd = [number for number, block in enumerate(facts.mesh.blocks) if tuple(block.degrees) != common]
     other = np.flatnonzero(np.isin(sides.block_k[:: len(SIDES)], odd))
     if other.size:
-        fill = {"color": ink("zone"), "alpha": 0.25, "linewidth": 0}
         label = f"degrees other than {common[0]} and {common[1]}"
-        axes.add_collection(PolyCollection([_outline(curves, e) for e in other], **fill, label=label))
+        outlines = [_outline(curves, e) for e in other]
+        axes.add_collection(PolyCollection(outlines, color=ink("zone"), alpha=0.25, linewidth=0, label=label))
     k, opposite, t = sides.opposite
     shared_k = sides.shared_k.copy()
     shared_k[k[(t == 0.5) & (k > opposite)]] = False  # the other of the two is drawn
@@ -56,14 +57,14 @@ def draw(axes: Axes, facts: MeshFacts, control: bool = False, ink: Callable[[str
     if control:
         axes.plot(*facts.mesh.P_AI.T, ".", color=ink("muted"), markersize=2.5, label="control points")
     if len(facts.junctions):
-        style = {"color": ink("bad"), "markersize": 3.5, "markeredgewidth": 0}
-        axes.plot(*facts.junctions.T, "o", **style, label=f"{len(facts.junctions)} T-junctions")
+        label = f"{len(facts.junctions)} T-junctions"
+        axes.plot(*facts.junctions.T, "o", color=ink("bad"), markersize=3.5, markeredgewidth=0, label=label)
     if facts.extraordinary:
         X = np.array([x for _, x in facts.extraordinary])
         axes.plot(*X.T, "D", color=ink("tspline"), markersize=4.5, label="extraordinary points, with their valence")
         for valence, x in facts.extraordinary:
-            place = {"xytext": (4, 4), "textcoords": "offset points"}
-            axes.annotate(str(valence), x, **place, color=ink("tspline"), fontweight="bold")
+            style: dict[str, Any] = {"color": ink("tspline"), "fontweight": "bold", "textcoords": "offset points"}
+            axes.annotate(str(valence), (x[0], x[1]), xytext=(4, 4), **style)
     axes.set_aspect("equal")
     axes.set_axis_off()
 
@@ -75,14 +76,16 @@ def mesh_figure(facts: MeshFacts, title: str, control: bool = False) -> Figure:
         X = np.concatenate([X, facts.mesh.P_AI])
     low, high = X.min(0), X.max(0)
     extent = np.maximum(high - low, 1e-3 * max((high - low).max(), np.finfo(float).tiny))
-    scale = min((_WIDTH - 2 * _MARGIN) / extent[0], (_HIGHEST - _FOOT) / extent[1])
-    height = max(scale * extent[1] + _MARGIN + 2 * _FOOT, 1.2)
+    scale = min((_WIDTH - 2 * _SHEET_MARGIN) / extent[0], (_MOST_HEIGHT - _TITLE_HEIGHT) / extent[1])
+    height = max(scale * extent[1] + _SHEET_MARGIN + 2 * _TITLE_HEIGHT, 1.2)
     figure = Figure(figsize=(_WIDTH, height))
-    axes = figure.add_axes((_MARGIN / _WIDTH, _FOOT / height, 1 - 2 * _MARGIN / _WIDTH, 1 - 2 * _FOOT / height))
+    axes = figure.add_axes(
+        (_SHEET_MARGIN / _WIDTH, _TITLE_HEIGHT / height, 1 - 2 * _SHEET_MARGIN / _WIDTH, 1 - 2 * _TITLE_HEIGHT / height)
+    )
     draw(axes, facts, control)
     pad = 0.01 * extent.max()
     axes.set(xlim=(low[0] - pad, high[0] + pad), ylim=(low[1] - pad, high[1] + pad))
-    figure.text(_MARGIN / _WIDTH, 1 - 0.25 / height, title, color=light("ink"), parse_math=False)
+    figure.text(_SHEET_MARGIN / _WIDTH, 1 - 0.25 / height, title, color=light("ink"), parse_math=False)
     handles, labels = axes.get_legend_handles_labels()
     if handles:
         figure.legend(handles, labels, loc="lower left", ncols=3, frameon=False, labelcolor=light("muted"))
@@ -96,7 +99,7 @@ def save(facts: MeshFacts, path: Path, title: str, control: bool = False) -> Non
     ------
     OSError : the path cannot be written to.
     """
-    with matplotlib.rc_context(_RC):
+    with matplotlib.rc_context(_SHEET_STYLE):
         figure = mesh_figure(facts, title, control)
         stamp = {"svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}.get(path.suffix[1:].lower())
         figure.savefig(path, dpi=200, facecolor=light("paper"), metadata=stamp)
@@ -105,12 +108,12 @@ def save(facts: MeshFacts, path: Path, title: str, control: bool = False) -> Non
 def _curves(facts: MeshFacts) -> list[np.ndarray]:
     """Points (n, 2) on every side: its ends where it is straight, more where it bends."""
     sides = facts.sides
-    t, k = np.linspace(0.0, 1.0, _SAMPLES), np.arange(len(sides.H_kbI))
-    X_knI = sides.points(np.repeat(k, _SAMPLES), np.tile(t, len(k)))[:, :2].reshape(len(k), _SAMPLES, 2)
+    t, k = np.linspace(0.0, 1.0, _SIDE_SAMPLES), np.arange(len(sides.H_kbI))
+    X_knI = sides.points(np.repeat(k, _SIDE_SAMPLES), np.tile(t, len(k)))[:, :2].reshape(len(k), _SIDE_SAMPLES, 2)
     chord = X_knI[:, -1] - X_knI[:, 0]
     away = X_knI - X_knI[:, :1]
     bent = np.abs(chord[:, None, 0] * away[..., 1] - chord[:, None, 1] * away[..., 0]).max(1)
-    straight = bent <= _STRAIGHT * np.sum(chord * chord, 1)
+    straight = bent <= _STRAIGHT_SIDE * np.sum(chord * chord, 1)
     return [X_nI[[0, -1]] if flat else X_nI for X_nI, flat in zip(X_knI, straight, strict=True)]
 
 

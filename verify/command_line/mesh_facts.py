@@ -1,4 +1,4 @@
-"""What can be said of any extracted mesh: its elements, T-junctions, extraordinary points, and whether it is sound."""
+"""Facts of any extracted mesh: its elements, T-junctions, extraordinary points, and whether it is sound."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ class MeshFacts:
 
     @property
     def unsound(self) -> list[str]:
-        """What keeps a solver from using the mesh, in sentences."""
+        """Reasons why a solver cannot use the mesh, a sentence each."""
         n_A, found = len(self.mesh.P_AI), []
         if self.folded:
             found.append(f"Jacobians are not positive on {self.folded} of {self.mesh.elements} elements")

@@ -1,4 +1,4 @@
-"""A scene to start from: every key with what it is, its dimension, what it takes and its default."""
+"""A scene to start from: every key with its meaning, dimension, range and default."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from verify.scene.parse import SceneError, parse_scene
 from verify.scene.published import Published
 from verify.support.refusal import Refusal
 
-#: A value that TOML has and no key takes: what is said of it says what the key does take.
-NEVER = date(1, 1, 1)
+#: A TOML value that no key accepts: its refusal names the values that the key does accept.
+_OUT_OF_PLACE = date(1, 1, 1)
 
 
 def allowed(raw: Mapping[str, Any], key: Key) -> str:
-    """What a key takes, in the words in which another value is refused. ``raw`` is a valid scene."""
-    table = {key.name: NEVER}
+    """The values that a key accepts, in the words of a refusal. ``raw`` is a valid scene."""
+    table = {key.name: _OUT_OF_PLACE}
     if key.table == "published":
         wrong = {**raw, "published": [table]}
     elif key.table:
@@ -35,16 +35,16 @@ def allowed(raw: Mapping[str, Any], key: Key) -> str:
     except SceneError as error:
         place = key.dotted.replace("published.", "published[0].")
         said = [one for one in error.sentences if one.startswith(f"{place}: must be ")]
-        return said[0].removeprefix(f"{place}: must be ").removesuffix(f", got {NEVER!r}") if said else ""
+        return said[0].removeprefix(f"{place}: must be ").removesuffix(f", got {_OUT_OF_PLACE!r}") if said else ""
     return ""
 
 
-WIDTH = 100
+_LINE_WIDTH = 100
 
-#: The packaged scene that says what has no default, by the kind of the specimen.
-BASES: Mapping[str, str] = {"dcb": "dcb-czm1", "peel": "peel-60"}
+#: The packaged scene that supplies the values without a default, by the kind of the specimen.
+_EXAMPLES: Mapping[str, str] = {"dcb": "dcb-czm1", "peel": "peel-60"}
 
-#: Names of dimensions in the schema, and how they are written in the units of ``BASES``.
+#: Names of dimensions in the schema, and how they are written in the units of ``_EXAMPLES``.
 UNITS: Mapping[str, str] = {
     "length": "mm",
     "stress": "MPa",
@@ -54,7 +54,7 @@ UNITS: Mapping[str, str] = {
     "degrees": "degrees",
 }
 
-#: Numbers for what a scene may have instead or besides.
+#: Numbers of optional and alternative keys.
 ORTHOTROPIC = {"E1": 120e3, "E2": 10e3, "G12": 5e3, "nu12": 0.3}
 PUBLISHED = {
     "quantity": "load_at",
@@ -95,8 +95,8 @@ def new_scene(kind: str) -> str:
 
 
 def _least(kind: str) -> dict[str, Any]:
-    """The example with nothing given but what must be, and all defaults."""
-    example = load_scene(BASES[kind]).model_dump()
+    """The example with its required keys alone, and all defaults."""
+    example = load_scene(_EXAMPLES[kind]).model_dump()
     tables: dict[str, dict[str, Any]] = {}
     for key in keys(kind):
         if key.table and key.field.is_required():
@@ -126,8 +126,8 @@ def _commented(head: str, raw: Mapping[str, Any], these: tuple[Key, ...], values
     return lines
 
 
-def _comment(raw: Mapping[str, Any], key: Key, width: int = WIDTH) -> Iterator[str]:
-    """What it is, its unit, and what it takes."""
+def _comment(raw: Mapping[str, Any], key: Key, width: int = _LINE_WIDTH) -> Iterator[str]:
+    """Meaning, unit and range of a key."""
     what = re.sub(
         r"\[([a-z ]+)\]", lambda found: f"[{UNITS[found[1]]}]", " ".join((key.field.description or "").split())
     )

@@ -13,7 +13,7 @@ NAME_WIDTH = 24
 
 
 def line(name: str, scene: Scene, width: int) -> str:
-    """What tells the scene from the others; on a narrow terminal below its name."""
+    """The distinctive data of a scene; on a narrow terminal below its name."""
     law, effects = scene.interface, scene.effects
     text = (
         f"{scene.specimen.kind}, {effects.kinematics} kinematics, strength {law.strength:g}, "

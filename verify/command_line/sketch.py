@@ -5,7 +5,7 @@ from __future__ import annotations
 from verify.scene.bodies import Dcb, Peel
 from verify.scene.schema import Scene
 
-#: What the notes to the right of a drawing need.
+#: Width of the notes to the right of a drawing.
 NOTES = 16
 
 

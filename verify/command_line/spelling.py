@@ -1,4 +1,4 @@
-"""Words on the command line that no parser knows: what was probably meant."""
+"""Unknown words on the command line, answered by the nearest known word."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Na
 
     Raises
     ------
-    Refusal : for a command or an option that is none
-    SystemExit : where argparse has something to say
+    Refusal : an unknown command or option
+    SystemExit : help, or an error that argparse reports itself
     """
     (subs,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
     if words and not words[0].startswith("-") and words[0] not in subs.choices:

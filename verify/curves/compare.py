@@ -1,4 +1,4 @@
-"""Two load-opening curves against each other, of one's own or of somebody else's code."""
+"""Comparison of two load-opening curves, of any code."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import PROPAGATION, envelope, from_origin, load_at, oscillation, peak
+from verify.curves.curve import PROPAGATION, SAMPLES, envelope, from_origin, load_at, oscillation, peak
 from verify.curves.leg_checks import OF_A_POINT, LegDifference, farthest, leg_checks, leg_differences
-from verify.curves.legs import NEAR, ROUNDING, Path, path, programme_of
+from verify.curves.legs import SAME_TURN, TURN_TOLERANCE, Path, path, programme_of
 from verify.curves.read import CurveError
-from verify.scene.schema import turns
+from verify.support.programme import turns
 from verify.verdict import Check
 
-#: Samples over the opening; points on the propagation branch below which a wave cannot be told from the sampling.
-SAMPLES, POINTS_OF_A_WAVE = 400, 10
+#: Points on the propagation branch below which a wave cannot be distinguished from the sampling.
+POINTS_OF_A_WAVE = 10
 
 #: Part of the tolerance of the curve by which its end and its turns may miss those of B, of the largest opening.
 OF_AN_END = 0.2
@@ -25,7 +25,7 @@ Points = tuple[np.ndarray, np.ndarray]
 
 @dataclass(frozen=True)
 class Part:
-    """One of the curves, as far as it is compared."""
+    """The compared part of a curve."""
 
     opening: np.ndarray  # (n,) path from the first arrival at the beginning to that at the end
     load: np.ndarray  # (n,)
@@ -41,7 +41,7 @@ class Comparison:
     """A against B over the openings (begin, end].
 
     ``curve_error``, ``peak_difference``, ``peak_shift`` and ``energy_difference`` are relative to B. Oscillation is of
-    the whole branch behind the peak, NaN where it cannot be told.
+    the whole branch behind the peak, NaN where it is undefined.
     """
 
     a: Part
@@ -65,7 +65,7 @@ class Comparison:
 
     @property
     def reaches(self) -> bool:
-        return self.missing <= ROUNDING
+        return self.missing <= SAME_TURN
 
     @property
     def missing(self) -> float:
@@ -118,7 +118,7 @@ def compare(
 ) -> Comparison:
     """Hold A against B over the openings that both reach, from ``begin`` on and up to ``end``.
 
-    Without them from 0, and to the last opening of B. What counts of a path begins where it first comes to ``begin``.
+    Without them from 0, and to the last opening of B. A path is compared from its first arrival at ``begin``.
     Where the load ``programme`` turns, its legs are compared as well; without it the turns are those of B, see
     `verify.curves.legs.programme_of`.
 
@@ -134,7 +134,7 @@ def compare(
         raise CurveError(f"begin: must be >= 0, got {begin:g}")
     (first_a, last_a), (first_b, last_b) = ((float(d[0]), float(np.max(d))) for d, _ in (a, b))
     asked = last_b if end is None else float(end)
-    if not 0.0 < asked <= last_b * (1.0 + ROUNDING):
+    if not 0.0 < asked <= last_b * (1.0 + SAME_TURN):
         raise CurveError(f"end: must be > 0 and <= {last_b:.6g}, the last opening of {names[1]}, got {asked:g}")
     common, begin = min(asked, last_a, last_b), float(begin or 0.0)
     if begin >= common:
@@ -150,23 +150,24 @@ def compare(
             raise CurveError(f"{names[1]}: the loads {span} must go above 0, got at most {top:g}")
         length = common - begin
         grid = np.minimum(begin + length * (np.arange(1, SAMPLES + 1) / SAMPLES), common)  # the sum may round beyond
-        loads = [load_at((part.opening, part.load), grid) for part in (part_a, part_b)]
-        error = _distance(*(load / top for load in loads))
+        load_a, load_b = (load_at((part.opening, part.load), grid) for part in (part_a, part_b))
+        error = _distance(load_a / top, load_b / top)
         whole = (part_a, part_b) if begin == 0.0 else (_part(a, 0.0, common), _part(b, 0.0, common))
         size = whole[1].peak_load
-        wave = _wave([(part.opening / common, part.load / size) for part in whole], whole[1].peak_opening / common)
+        scaled_a, scaled_b = ((part.opening / common, part.load / size) for part in whole)
+        rms, variation = _wave(scaled_a, scaled_b, whole[1].peak_opening / common)
         given = end is not None or begin > 0.0
-        ways = [(part.opening, part.load) for part in (part_a, part_b)] if given else [from_origin(*a), from_origin(*b)]
-        paths = _paths(ways[0], ways[1], names[1], programme, given)
-    return Comparison(part_a, part_b, asked, common, error, *wave, grid, *loads, names, begin, paths)
+        way_a, way_b = ((p.opening, p.load) if given else from_origin(*c) for p, c in ((part_a, a), (part_b, b)))
+        paths = _paths(way_a, way_b, names[1], programme, given)
+    return Comparison(part_a, part_b, asked, common, error, rms, variation, grid, load_a, load_b, names, begin, paths)
 
 
 def checks(
     comparison: Comparison, curve: float | None = None, peak: float | None = None, energy: float | None = None
 ) -> list[Check]:
-    """What the given relative tolerances ask for; and with any of them, that A goes as far as it was to be compared.
+    """The checks of the given relative tolerances; with any of them also that A reaches the end of the comparison.
 
-    That of the curve asks for every leg of a programme that turns, and `OF_A_POINT` times as much of every point of A.
+    That of the curve applies to every leg of a programme that turns, and `OF_A_POINT` times it to every point of A.
     """
     limits = (
         ("curve-error", comparison.curve_error, curve, "relative L2 distance of the loads over the opening"),
@@ -176,7 +177,7 @@ def checks(
     found = [Check(name, "A / B", v, limit, "cross-code", text) for name, v, limit, text in limits if limit is not None]
     if not found:
         return []
-    near = NEAR if curve is None else min(NEAR, max(ROUNDING, OF_AN_END * curve))
+    near = TURN_TOLERANCE if curve is None else min(TURN_TOLERANCE, max(SAME_TURN, OF_AN_END * curve))
     far = "share of the opening that A does not reach"
     along = [] if curve is None else _along(comparison, curve, near)
     return [*found, *along, Check("end", "A / B", comparison.missing, near, "cross-code", far)]
@@ -229,8 +230,7 @@ def _part(curve: Points, begin: float, end: float) -> Part:
 
 
 def _distance(load: np.ndarray, wanted: np.ndarray) -> float:
-    """Relative L2 distance of the very samples that are shown: taken anew at openings over their range, one that falls
-    on a vertical drop may come out on its other side."""
+    """Relative L2 distance of the samples shown. New samples could fall on the other side of a vertical drop."""
     return float(np.sqrt(np.sum((load - wanted) ** 2) / np.sum(wanted**2)))
 
 
@@ -242,12 +242,12 @@ def _up_to(d: np.ndarray, P: np.ndarray, end: float) -> Points:
     return np.append(d[:i], end), np.append(P[:i], load)
 
 
-def _wave(scaled: list[Points], peak_opening: float) -> tuple[float, float]:
-    """Oscillation of A about B, where both have the points to show one."""
-    points = min(np.count_nonzero(envelope(*curve)[0] > PROPAGATION * peak_opening) for curve in scaled)
+def _wave(a: Points, b: Points, peak_opening: float) -> tuple[float, float]:
+    """Oscillation of A about B, where both have enough points."""
+    points = min(np.count_nonzero(envelope(*curve)[0] > PROPAGATION * peak_opening) for curve in (a, b))
     if points < POINTS_OF_A_WAVE:
         return np.nan, np.nan
-    found = oscillation(*scaled, end=1.0, n=SAMPLES)
+    found = oscillation(a, b, end=1.0)
     return found["rms"], found["excess_variation"]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 #: Safety factor of the index for three or more meshes (Roache 1994).
-SAFETY = 1.25
+GCI_SAFETY = 1.25
 
 #: Successive triples whose orders differ by more than this part are not in the asymptotic range.
 STEADY = 0.1
@@ -21,14 +21,14 @@ Values: TypeAlias = Sequence[float] | np.ndarray
 
 @dataclass(frozen=True)
 class Convergence:
-    """What a sequence of meshes says about its limit.
+    """The limit of a sequence of meshes, with its uncertainty.
 
     order : observed order of the three finest meshes, NaN where there is none
     limit : Richardson's extrapolation from the two finest
     error : estimated relative error of the finest, |f1 - limit| / |limit|
-    gci : grid convergence index of the finest, relative; SAFETY times the relative error that the order implies
+    gci : grid convergence index of the finest, relative; GCI_SAFETY times the relative error that the order implies
     asymptotic : whether ``limit`` and ``gci`` can be trusted
-    verdict : one sentence that says so, or why not
+    verdict : a sentence: converged, or the reason why not
     """
 
     order: float
@@ -85,7 +85,7 @@ def richardson(size: Values, value: Values, order: float) -> float:
 
 def grid_convergence_index(size: Values, value: Values, order: float) -> float:
     """SAFETY |(f1 - f2) / f1| / (r^p - 1), relative (Celik et al. 2008, eq. 7)."""
-    return float(SAFETY * abs((value[0] - value[1]) / value[0]) / ((size[1] / size[0]) ** order - 1.0))
+    return float(GCI_SAFETY * abs((value[0] - value[1]) / value[0]) / ((size[1] / size[0]) ** order - 1.0))
 
 
 def assess(size: Values, value: Values, expected: float | None = None) -> Convergence:
@@ -94,7 +94,7 @@ def assess(size: Values, value: Values, expected: float | None = None) -> Conver
     Parameters
     ----------
     size : (n,) typical element sizes, n >= 3, in any order
-    value : (n,) what was computed on them
+    value : (n,) computed on them
     expected : the order that the discretisation states, if it does
 
     Raises

@@ -10,12 +10,15 @@ from numpy.typing import ArrayLike
 
 Curve = tuple[ArrayLike, ArrayLike]
 
+#: Samples of a curve over its opening where two curves are compared.
+SAMPLES = 400
+
 #: The propagation branch begins at this multiple of the opening at the peak.
 PROPAGATION = 1.3
 
 
 def envelope(opening: ArrayLike, load: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """What a test under displacement control would show: points whose opening exceeds all before.
+    """The curve that a test under displacement control would show: points whose opening exceeds all before.
 
     At a snap-back, and where a programme unloads, the load jumps vertically to where the path comes back through the
     largest opening so far.
@@ -106,7 +109,7 @@ def first_drop(curve: Curve, part: float) -> float:
     return float(d[:-1][falls][0]) if falls.any() else np.inf
 
 
-def curve_error(curve: Curve, reference: Curve, end: float | None = None, n: int = 400) -> float:
+def curve_error(curve: Curve, reference: Curve, end: float | None = None, n: int = SAMPLES) -> float:
     """Relative L2 distance of two envelopes over ``n`` equal openings in (0, end].
 
     ``end`` is at most the last opening of the reference. NaN where ``curve`` does not reach it.
@@ -164,7 +167,7 @@ def hermite(opening: ArrayLike, load: ArrayLike, slope: ArrayLike, at: ArrayLike
     return np.where(inside, value, np.nan)
 
 
-def oscillation(curve: Curve, reference: Curve, end: float | None = None, n: int = 400) -> dict[str, float]:
+def oscillation(curve: Curve, reference: Curve, end: float | None = None, n: int = SAMPLES) -> dict[str, float]:
     """How much a curve wiggles on the propagation branch, opening > 1.3 x the reference's opening at its peak.
 
     Returns

@@ -1,4 +1,4 @@
-"""Two curves along one load programme, leg by leg: what each leg shows, and the checks that it makes."""
+"""Two curves along one load programme, leg by leg: differences and checks."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import Curve, envelope, load_at
-from verify.curves.legs import NEAR, Leg, Path, path
+from verify.curves.curve import SAMPLES, Curve, envelope, load_at
+from verify.curves.legs import TURN_TOLERANCE, Leg, Path, path
 from verify.curves.nearness import LEAST_LOAD, distances
-from verify.scene.schema import only_opens
+from verify.support.programme import only_opens
 from verify.verdict import Check, Kind
 
-#: Samples of a leg; a distance up to which that of the loads alone will do, in parts of the load.
-SAMPLES, CLOSE = 400, 1e-3
+#: Distance, in parts of the load, up to which the difference of the loads is taken for the distance of two points.
+LOADS_ALONE = 1e-3
 
-#: Part of its load that a leg gives up before its slope can be told, and before its residual opening can.
+#: Part of its load by which a leg must unload before its slope is defined, and before its residual opening is.
 TELLS_SLOPE, TELLS_RESIDUAL = 0.25, 0.5
 
-#: Part of half the largest load above which a load tells the stiffness.
+#: Part of half the largest load above which a load defines the stiffness.
 TELLS_STIFFNESS = 0.2
 
 #: Part of the opening at its beginning above which an unloading is a straight line: below, faces begin to touch.
 CLEAR = 0.2
 
-#: Part of a tolerance up to which the load alone says how far a point is.
+#: Part of a tolerance up to which the difference of the loads is taken for the distance of a point.
 NO_MATTER = 0.25
 
 #: A single point may be farther off than a whole curve, by the tolerance of the curve times this.
@@ -34,7 +34,7 @@ OF_A_POINT = 4.0
 
 @dataclass(frozen=True)
 class LegDifference:
-    """A leg of A against that of B; what cannot be told is NaN.
+    """A leg of A against that of B; undefined values are NaN.
 
     ``error`` is relative L2, ``slope`` relative to that of B, ``residual`` relative to the opening at which the
     unloading begins, ``loop`` relative to the work that B gives back.
@@ -162,7 +162,7 @@ def programme_checks(
 def leg_checks(
     legs: Sequence[LegDifference], subject: str, tolerance: float, kind: Kind = "cross-code"
 ) -> tuple[Check, ...]:
-    """What can be told of every leg, each a check with the tolerance of the curve."""
+    """The defined differences of every leg, each a check with the tolerance of the curve."""
     rows = [
         row
         for leg in legs
@@ -194,7 +194,7 @@ def turns_check(subject: str, curve: Path, kind: Kind = "cross-code") -> Check:
     last = curve.legs[-1]
     lacks = "" if curve.complete else f"; the {last.words} is not there"
     meaning = f"The curve turns where the load programme does (distance over its largest opening){lacks}."
-    return Check("legs", subject, curve.misfit, NEAR, kind, meaning)
+    return Check("legs", subject, curve.misfit, TURN_TOLERANCE, kind, meaning)
 
 
 def _size(path: Path) -> tuple[float, float]:
@@ -220,7 +220,7 @@ def _error(a: Leg, b: Leg, size: tuple[float, float]) -> float:
 def _where(leg: Leg, ends: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
     """Where a leg is compared: along its chords, and at its own points. The nearer one counts.
 
-    A chord says something of the steps alone, as across the kink at which a reloading comes back to the envelope.
+    A chord depends on the steps alone, as across the kink at which a reloading comes back to the envelope.
     """
     low, high = ends
     grid = np.minimum(low + (high - low) * (np.arange(SAMPLES + 1) / SAMPLES), high)
@@ -230,7 +230,7 @@ def _where(leg: Leg, ends: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]
 
 def _l2(a: Leg, b: Leg, at: np.ndarray, size: tuple[float, float]) -> float:
     mine, other, least = load_at(a.onward, at), load_at(b.onward, at), LEAST_LOAD * size[1]
-    near = distances((at, mine), b.onward, size, CLOSE) * np.maximum(np.abs(mine), least)
+    near = distances((at, mine), b.onward, size, LOADS_ALONE) * np.maximum(np.abs(mine), least)
     off = np.minimum(near, np.abs(mine - other))
     return float(np.sqrt(_mean(off**2, at)) / max(np.sqrt(_mean(other**2, at)), least))
 
@@ -241,7 +241,7 @@ def _mean(values: np.ndarray, at: np.ndarray) -> float:
 
 
 def _unloading(a: Leg, b: Leg, least: float) -> tuple[float, float]:
-    """Slope and residual opening of A against B, of a leg that unloads; NaN where they cannot be told.
+    """Slope and residual opening of A against B, of a leg that unloads; NaN where they are undefined.
 
     Both are those of the secant to the end of the leg, or to the last point of B before `CLEAR`, near which faces
     begin to touch.

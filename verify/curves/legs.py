@@ -1,4 +1,4 @@
-"""The legs of a load programme: where a curve turns from one to the next."""
+"""The legs of a load programme, and the turns of a curve between them."""
 
 from __future__ import annotations
 
@@ -8,14 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from verify.curves.curve import Curve, envelope, from_origin
-from verify.scene.schema import turns
+from verify.support.programme import turns
 
 #: Turns that differ by this part of the largest opening are the same, up to rounding.
-ROUNDING = 1e-6
+SAME_TURN = 1e-6
 
-#: A fifth of the tolerance between two codes: what the turns and the end of a curve may miss of the largest opening.
+#: Largest distance of turns and end of a curve from those of the programme, in parts of the largest opening: a fifth of
+#: the tolerance between two codes.
 #: The load of a branch ``P ~ opening^-1/2`` changes by half of it, the stiffness of an unloading by 3/2.
-NEAR = 1e-3
+TURN_TOLERANCE = 1e-3
 
 #: Without a programme: a curve unloads where its opening falls by this part of its largest one, and comes back at no
 #: smaller loads, but for this part of the work. A snap-back comes back at smaller loads: its crack has grown.
@@ -72,7 +73,7 @@ class Path:
 
     @property
     def complete(self) -> bool:
-        return self.misfit <= NEAR
+        return self.misfit <= TURN_TOLERANCE
 
 
 def path(curve: Curve, programme: Sequence[float]) -> Path:
@@ -81,12 +82,12 @@ def path(curve: Curve, programme: Sequence[float]) -> Path:
     A leg ends where the path first comes to its goal, or is farthest as long as it stays there: before that the
     opening may fall, as at a snap-back. A curve that begins beyond 0 is joined to the origin by a straight line.
 
-    Where the turns are not those of the programme to the last digits, all that lie within `NEAR` of it count.
+    Where the turns are not those of the programme to the last digits, all that lie within `TURN_TOLERANCE` of it count.
     """
     corners = turns(programme)
     d, P = from_origin(*curve, ahead=corners[0])
-    exact = _split(d, P, corners, ROUNDING)
-    return exact if exact.misfit <= ROUNDING else _split(d, P, corners, NEAR)
+    exact = _split(d, P, corners, SAME_TURN)
+    return exact if exact.misfit <= SAME_TURN else _split(d, P, corners, TURN_TOLERANCE)
 
 
 def _split(d: np.ndarray, P: np.ndarray, corners: Sequence[float], near: float) -> Path:
@@ -112,7 +113,7 @@ def programme_of(curve: Curve) -> tuple[float, ...]:
     """The programme that a curve itself shows: its turns and its last opening.
 
     A fall of the opening is an unloading where it is `DEEP`, and where the path does not come back at smaller loads;
-    otherwise it is a snap-back, or what the converged steps make of one.
+    otherwise it is a snap-back, or its image in converged steps.
     """
     d, P = from_origin(*curve)
     pivots = _pivots(d, DEEP * float(np.max(np.abs(d))))

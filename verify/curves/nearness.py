@@ -1,4 +1,4 @@
-"""How far the points of a curve are from the graph of another one."""
+"""Distance of the points of a curve from the graph of another curve."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def distances(
     Parameters
     ----------
     near : a point whose load alone is no more than that off counts with this.
-    enough : where one of `CHUNK` points is farther, those that are not looked at yet count as 0.
+    enough : once a point of a chunk of `CHUNK` points is farther, the remaining chunks count as 0
     """
     d, P = (np.asarray(values, dtype=float) for values in points)
     found = distances_along_load(points, graph, size)

@@ -8,7 +8,7 @@ from verify.curves.curve import Curve, curve_error, dense, envelope, peak
 from verify.result import Result
 
 #: Points of a curve between two converged ones.
-PER_STEP = 20
+POINTS_PER_STEP = 20
 
 
 def cubics(result: Result) -> Curve:
@@ -16,11 +16,11 @@ def cubics(result: Result) -> Curve:
     steps = result.steps
     if not {"load_slope", "heading"} <= set(steps):
         return result.opening, result.load
-    return dense(result.opening, result.load, steps["load_slope"], steps["heading"], PER_STEP)
+    return dense(result.opening, result.load, steps["load_slope"], steps["heading"], POINTS_PER_STEP)
 
 
 def distance(curve: Curve, exact: Result) -> float:
-    """Relative L2 distance of the load of a complete run to that of another; where one has come apart there is none."""
+    """Relative L2 distance of the load of a complete run to that of another; the load is zero after separation."""
     known = cubics(exact)
     end = max(float(envelope(*one)[0][-1]) for one in (curve, known))
     return curve_error(_onward(curve, end), _onward(known, end))

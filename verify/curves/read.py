@@ -1,4 +1,4 @@
-"""Load-opening curves in files: of a run, or of anybody's code or testing machine."""
+"""Load-opening curves in files, of runs, other codes or testing machines, and their columns."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -17,15 +18,15 @@ Column = str | int
 
 
 class CurveError(Refusal):
-    """What holds no curve."""
+    """A file, table or pair of arrays that holds no curve."""
 
 
 @dataclass(frozen=True)
 class Reading:
     """Which columns of a table are opening and load, and what they are multiplied by.
 
-    A column is a name, in capitals or not, or a number from 1. Without either it is the one that is called so, and in
-    a table without a header the first is the opening and the second the load. A negative scale turns a sign.
+    A column is a name, in capitals or not, or a number from 1. Without either the columns are those named opening and
+    load, in a table without a header the first two. A negative scale turns a sign.
 
     Raises
     ------
@@ -75,18 +76,18 @@ def read_curve(path: Path, reading: Reading | None = None) -> tuple[np.ndarray, 
             for line, cells in _of_one_width(path, table.dialect, body, header)
         ]
     ).reshape(-1, 2)
-    with np.errstate(over="ignore", invalid="ignore"):
-        d, P = points.T * [[reading.opening_scale], [reading.load_scale]]
-    return sound(str(path), d, P)
+    return sound(str(path), points[:, 0], points[:, 1], reading)
 
 
-def sound(source: str, d: np.ndarray, P: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The curve, if it can be held against another one: finite, of growing opening.
+def sound(source: str, d: np.ndarray, P: np.ndarray, reading: Reading) -> tuple[np.ndarray, np.ndarray]:
+    """The curve, scaled, if it can be compared with another one: finite, of growing opening.
 
     Raises
     ------
     CurveError : beginning with ``source``.
     """
+    with np.errstate(over="ignore", invalid="ignore"):
+        d, P = d * reading.opening_scale, P * reading.load_scale
     if not (np.isfinite(d).all() and np.isfinite(P).all()):
         row = int(np.flatnonzero(~(np.isfinite(d) & np.isfinite(P)))[0])
         raise CurveError(f"{source}: must hold finite numbers, got {d[row]:g} and {P[row]:g} in point {row + 1}")
@@ -139,7 +140,7 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[_Header, list[R
     for line, cells in [*table.lead, *remarks] if wanted else []:
         if {_key(name) for name in wanted} <= {_key(cell) for cell in cells}:
             below = _below_units(table.dialect, [row for row in rows if row[0] > line])
-            return _named(f"{path}:{line}", cells, reading), below
+            return _Header(columns_of(f"{path}:{line}", cells, reading), len(cells), cells), below
     below = _below_units(table.dialect, rows)
     titles = rows[: len(rows) - len(below)]
     if wanted and (titles or isinstance(reading.opening, str) or isinstance(reading.load, str)):
@@ -159,17 +160,30 @@ def _below_units(dialect: Dialect, rows: list[Row]) -> list[Row]:
     return rows[start:]
 
 
-def _named(place: str, names: list[str], reading: Reading) -> _Header:
-    known = [_key(name) for name in names]
-    for column in reading.columns:
-        if isinstance(column, str) and known.count(_key(column)) > 1:
-            raise CurveError(f"{place}: must name {column} once, got {_listed(names)}; numbers choose columns as well")
-    chosen = [_position(place, c, len(names)) if isinstance(c, int) else known.index(_key(c)) for c in reading.columns]
-    return _Header(_different(place, chosen), len(names), names)
+def columns_of(place: str, names: Sequence[Any], reading: Reading) -> tuple[int, int]:
+    """Where opening and load stand among named columns: by their very names, by number, by names in other capitals.
+
+    Raises
+    ------
+    CurveError : no such column, several, or one for both, beginning with ``place``.
+    """
+    return _different(place, [_column(place, names, column) for column in reading.columns])
+
+
+def _column(place: str, names: Sequence[Any], wanted: Column) -> int:
+    found = [i for i, name in enumerate(names) if name == wanted]
+    if isinstance(wanted, int):
+        return found[0] if found else _position(place, wanted, len(names))
+    found = found or [i for i, name in enumerate(names) if _key(str(name)) == _key(wanted)]
+    if len(found) != 1:
+        which = "one" if found else "a"
+        text = f"must have {which} column {wanted!r}, got {_listed(names)}; numbers choose columns as well"
+        raise CurveError(f"{place}: {text}")
+    return found[0]
 
 
 def _counted(place: str, reading: Reading, width: int) -> _Header:
-    columns = (reading.opening or 1, reading.load or 2)
+    columns = (column if isinstance(column, int) else at for column, at in zip(reading.columns, (1, 2), strict=True))
     return _Header(_different(place, [_position(place, column, width) for column in columns]), width)
 
 
@@ -205,14 +219,14 @@ def _key(name: str) -> str:
     return name.strip(" ,;").casefold()
 
 
-def _listed(names: Sequence[str]) -> str:
-    text = ", ".join(names)
+def _listed(names: Sequence[Any]) -> str:
+    text = ", ".join(map(str, names)) or "none"
     return text if len(text) <= 300 else f"{text[:300]}..."
 
 
 def _of_one_width(path: Path, dialect: Dialect, body: list[Row], header: _Header) -> list[Row]:
-    """The rows. One of more cells than there are columns would put numbers under wrong names; so would one of fewer
-    where blanks separate, which leave no cell empty."""
+    """The rows, if no number stands under a wrong name. A row must not have more cells than columns, nor fewer where
+    blanks separate, as these leave no cell empty."""
     for line, cells in body:
         if len(cells) > header.width or (len(cells) < header.width and not dialect.separator):
             raise CurveError(f"{path}:{line}: must have {header.width} columns as above, got {len(cells)}")

@@ -1,4 +1,4 @@
-"""A table of numbers in a text that nobody described: separator, decimal mark, comments, header."""
+"""A table of numbers in a text of unknown format: separator, decimal mark, comments, header."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 
-#: How the lines of other people's files begin where they hold no data; the last one is Abaqus's.
+#: Beginnings of comment lines; the last one is Abaqus's.
 COMMENTS = ("#", "%", "!", "//", "**")
 
-_SAMPLE = 400  # lines that the separator is told from, spread over the file
+_SAMPLE = 400  # lines from which the separator is found, spread over the file
 
 Row = tuple[int, list[str]]  # line number, from 1, and cells
 

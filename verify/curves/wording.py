@@ -15,7 +15,7 @@ _FARTHEST = "farthest point, in parts of its own"
 
 
 def table(comparison: Comparison, loads: Loads, found: Sequence[Check]) -> list[str]:
-    """Lines for people: what, A, B, A against B, tolerance and verdict."""
+    """Lines of a table: quantity, A, B, A against B, tolerance and verdict."""
     a, b = comparison.names
     limits = {check.name: f"<= {_percent(check.tolerance)}, " for check in found if check.name != "end"}
     verdicts = {check.name: limits.get(check.name, "") + _verdict(check) for check in found}
@@ -51,7 +51,7 @@ def rows(comparison: Comparison, loads: Loads, found: Sequence[Check] = ()) -> l
 
 
 def _leg(leg: LegDifference) -> list[tuple[str, str, str, str, str]]:
-    """What can be told of one leg."""
+    """The defined differences of one leg."""
     first = (f"leg {leg.number}, {leg.words}", f"curve-leg-{leg.number}", "", "", _percent(leg.error))
     cells = [
         ("  secant stiffness", "slope", leg.slope),

@@ -20,7 +20,7 @@ SOLIDS = {("stress", 1): "CPS4I", ("strain", 1): "CPE4I", ("stress", 2): "CPS8",
 SLIDING = 1e-6
 
 #: Strength against sliding over that against opening: mode I alone does damage.
-NEVER = 1e6
+BEYOND_DAMAGE = 1e6
 
 
 def write_abaqus(scene: Scene, mesh: SceneMesh, path: Path) -> None:
@@ -105,7 +105,7 @@ def _materials(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
     yield "*ELASTIC, TYPE=TRACTION"
     yield ", ".join(map(_number, (K, SLIDING * K, SLIDING * K)))
     yield "*DAMAGE INITIATION, CRITERION=MAXS"
-    yield ", ".join(map(_number, (p, NEVER * p, NEVER * p)))
+    yield ", ".join(map(_number, (p, BEYOND_DAMAGE * p, BEYOND_DAMAGE * p)))
     yield "*DAMAGE EVOLUTION, TYPE=ENERGY, SOFTENING=LINEAR"
     yield f"{_number(bond.toughness)},"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from verify.export.abaqus import write_abaqus
 from verify.export.gmsh import write_gmsh
 from verify.export.mesh import SceneMesh, scene_mesh
-from verify.export.numbers import KINDS, notes, numbers
+from verify.export.numbers import LAW_NOTES, notes, numbers
 from verify.export.tables import write_tables
 from verify.export.vtu import write_scene_vtu
 from verify.runs.folder import write_json
@@ -20,7 +20,7 @@ FORMATS = (*ENDINGS, "csv")
 
 
 def export(scene: Scene, kind: str, folder: Path, layers: int | None = None) -> list[str]:
-    """Write a scene into a folder; what was written and what to know of it, a line each.
+    """Write a scene into a folder; returns the files and remarks on them, a line each.
 
     Parameters
     ----------
@@ -31,8 +31,8 @@ def export(scene: Scene, kind: str, folder: Path, layers: int | None = None) -> 
     ------
     Refusal : a law that is not written down, a degree above 2, too few elements, a folder that cannot be written to.
     """
-    if scene.interface.law not in KINDS:
-        raise Refusal(f"interface.law: must be {one_of(KINDS)} for an export, got {scene.interface.law!r}")
+    if scene.interface.law not in LAW_NOTES:
+        raise Refusal(f"interface.law: must be {one_of(LAW_NOTES)} for an export, got {scene.interface.law!r}")
     mesh = scene_mesh(scene, layers)
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -156,7 +156,7 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
 
 
 def _pulled(face: LoadedFace, at: str, X_nI: np.ndarray) -> LoadedFace:
-    """The face, or the one node of it that the load is at.
+    """The loaded face, or its loaded node.
 
     Raises
     ------

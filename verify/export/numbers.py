@@ -1,4 +1,4 @@
-"""What a mesh does not say of a scene, as plain numbers: materials, law, programme, sets, and what was left out."""
+"""A scene without its mesh, as plain numbers: materials, law, programme, sets, and omissions."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from verify.scene.effects import simulated
 from verify.scene.schema import Scene, counted_steps
 from verify.theory.law import Bilinear
 
-#: Laws that other codes are told, and what they are.
-KINDS: Mapping[str, str] = {"bilinear": "bilinear, mode I: the gap along the normal alone bears traction"}
+#: Exported laws, each described.
+LAW_NOTES: Mapping[str, str] = {"bilinear": "bilinear, mode I: the gap along the normal alone bears traction"}
 
 
 def law(scene: Scene) -> Bilinear:
@@ -25,7 +25,7 @@ def law(scene: Scene) -> Bilinear:
 
 
 def effects(scene: Scene) -> dict[str, Any]:
-    """What is to be simulated; both bodies, always."""
+    """The simulated effects; always with both bodies."""
     return {key: value for key, value in simulated(scene, "").items() if key != "symmetry"}
 
 
@@ -41,7 +41,7 @@ def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
             for name, material in zip(mesh.names, scene.materials, strict=True)
         },
         "law": {
-            "kind": KINDS[scene.interface.law],
+            "kind": LAW_NOTES[scene.interface.law],
             "strength": bond.strength,
             "toughness": bond.toughness,
             "stiffness": bond.stiffness,
@@ -76,7 +76,7 @@ def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
 
 
 def notes(scene: Scene) -> list[str]:
-    """What whoever solves the scene must know besides."""
+    """Conventions for a code that solves the scene."""
     simulate, bond = effects(scene), law(scene)
     closing = (
         f"a closed gap has the stiffness {bond.penalty:g}" if bond.contact else "a closed gap has that of the bond"
@@ -96,7 +96,7 @@ def notes(scene: Scene) -> list[str]:
 
 
 def _load(scene: Scene) -> list[str]:
-    """Where the load acts, and what another place would change."""
+    """The place of the load, and the effect of another place."""
     free = "free to turn and to move along x; its load"
     if scene.load.at != "face":
         where = "corner away from the bond" if scene.load.at == "node" else "middle"

@@ -13,7 +13,7 @@ def write_tables(mesh: SceneMesh, folder: Path) -> tuple[Path, ...]:
     """Write nodes.csv, elements.csv, pairs.csv and sets.csv into a folder; their paths.
 
     Corners of an element go counter-clockwise, then the middles of its sides. Pairs are ordered along the bond, and
-    ``length`` is what of it belongs to each. ``weight`` is a node's part of the load of a loaded face.
+    ``length`` is the share of each in the interface. ``weight`` is a node's part of the load of a loaded face.
     """
     names, nodes = [mesh.names[b] for b in mesh.body_e], [f"n{a + 1}" for a in range(mesh.conn_ea.shape[1])]
     elements = zip(names, mesh.conn_ea + 1, strict=True)

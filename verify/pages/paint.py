@@ -23,7 +23,7 @@ Limits = tuple[float, float]
 
 
 def paint(
-    axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, x: Limits, y: Limits, dpi: int = _DPI
+    axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, frame: tuple[Limits, Limits], dpi: int = _DPI
 ) -> None:
     """Fill the axes with a field and its element outlines, and set their limits.
 
@@ -31,19 +31,27 @@ def paint(
     ----------
     x_euvi : positions (n_e, m, m, 2) of the sampling grids
     value_euv : (n_e, m, m), coloured from -limit to limit
+    frame : limits of the axes along x and y
     """
-    box = axes.get_position()
-    width, height = axes.figure.get_size_inches() * (box.width, box.height)
-    levels = _grey_levels(x_euvi, value_euv, limit, (x, y), (width, height), dpi)
+    x, y = frame
+    levels = _grey_levels(x_euvi, value_euv, limit, frame, inches(axes), dpi)
     pixels = STRESS_MAP(levels[..., 0] / 255.0)
     pixels[..., 3] *= levels[..., 3] > 0
     axes.imshow(pixels, extent=(*x, *y), aspect="auto", interpolation="none", zorder=1)
     many = len(x_euvi) > _MANY_ELEMENTS
     ink = "#808a96" if many else colour("ink")  # pixels cannot follow the page
     sides_nki = sides(x_euvi)
-    lines_pi = strokes(sides_nki[seen(sides_nki, (x, y))])  # one path: a path each would be long
+    lines_pi = strokes(sides_nki[seen(sides_nki, frame)])  # one path: a path each would be long
     axes.plot(*lines_pi.T, color=ink, linewidth=0.25, alpha=0.7, zorder=2, rasterized=many)
     axes.set(xlim=x, ylim=y)
+
+
+def inches(axes: Axes) -> tuple[float, float]:
+    """Width and height of the axes."""
+    box, figure = axes.get_position(), axes.figure
+    assert isinstance(figure, Figure)
+    width, height = figure.get_size_inches()
+    return width * box.width, height * box.height
 
 
 def _grey_levels(

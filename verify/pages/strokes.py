@@ -1,4 +1,4 @@
-"""Lines of a mesh as a pen would draw them: each side once, and straight on from one element to the next.
+"""Lines of a mesh as long strokes: each side once, straight on from element to element.
 
 As outlines of the elements every side would be drawn twice, and be three quarters of the bytes of a page.
 """
@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
-#: Part of the largest coordinate within which two points are one.
-_SAME = 1e-7
+#: Part of the largest coordinate within which two points are the same.
+_SAME_PLACE = 1e-7
 
-#: Cosine between two sides from where on one goes on as the other.
-_STRAIGHT = 0.8
+#: Cosine of the angle between two sides that continue each other.
+_STRAIGHT_ON = 0.8
 
 
 def sides(x_euvi: np.ndarray) -> np.ndarray:
@@ -58,7 +58,7 @@ def _onward(lines_nki: np.ndarray) -> np.ndarray:
     cosine_pab = np.einsum("pai,pbi->pab", away_pai, away_pai)
     best = np.argmin(cosine_pab, axis=2)
     mutual = np.take_along_axis(best, best, axis=1) == np.arange(best.shape[1])
-    straight = mutual & (cosine_pab.min(axis=2) < -_STRAIGHT)
+    straight = mutual & (cosine_pab.min(axis=2) < -_STRAIGHT_ON)
     onward = np.full(len(points), -1)
     onward[ends[straight]] = np.take_along_axis(ends, best, axis=1)[straight]
     return onward
@@ -67,4 +67,4 @@ def _onward(lines_nki: np.ndarray) -> np.ndarray:
 def _names(x: np.ndarray) -> np.ndarray:
     """Whole numbers that are the same for points which are."""
     largest = float(np.abs(x).max(initial=0.0)) or 1.0
-    return np.rint(x / (_SAME * largest)).astype(np.int64)
+    return np.rint(x / (_SAME_PLACE * largest)).astype(np.int64)

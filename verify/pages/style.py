@@ -22,6 +22,7 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from verify.pages.svg import adapted
+from verify.support.timing import PHASES
 
 #: name: (light, dark). The methods follow Okabe and Ito 2008, whose colours stay apart in all common colour blindness;
 #: two of them are darker here, so that text in them has a contrast of 4.5 with the page.
@@ -60,12 +61,12 @@ METHOD_NAMES = {
     "beam": "cohesive beam",
     "lefm": "LEFM limit",
 }
-PHASES = ("mesh", "basis", "assembly", "factor", "solve", "other")
+SHOWN_PHASES = (*PHASES, "other")
 
 #: Width of a figure in inches; every figure is drawn at the size that makes 8 pt text readable where it is shown.
 THIRD, HALF, WIDE = 3.3, 4.6, 9.4
 
-#: Inches around what is drawn: a browser's font may be a little larger than that of the layout.
+#: Inches around the drawing: a browser's font may be a little larger than that of the layout.
 _MARGIN = 0.04
 
 # A stress near zero is transparent: it takes the page's own colour, light or dark.
@@ -121,7 +122,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Line:
-    """How one run is drawn, the same in every figure."""
+    """The line style of a run, the same in every figure."""
 
     colour: str  # name in PALETTE
     width: float
@@ -223,7 +224,7 @@ def to_svg(figure: Figure, key: str, title: str, dpi: float = 180.0, sheet: Bbox
     ----------
     key : unique in the page; ids inside the SVG carry it, as all figures share one document.
     title : read out by screen readers in place of the drawing.
-    sheet : what of it is shown, in inches; where it is not told, all that is drawn (``sheet_of``).
+    sheet : the visible part, in inches; default: everything drawn (``sheet_of``).
     """
     buffer = io.StringIO()
     sheet = sheet_of(figure) if sheet is None else sheet

@@ -1,7 +1,7 @@
-"""SVG of matplotlib as a part of the page: nothing in it that is not seen, and what is seen in few bytes.
+"""SVG of matplotlib made fit for a page: without invisible parts, and in few bytes.
 
-Numbers are rounded to what can be seen, lines go by steps, the markers of a series are one path, a page says a style
-once.
+Numbers are rounded to visible digits, paths use relative steps, the markers of a series are one path, images are
+lossless WebP, and a style that occurs twice becomes a class.
 """
 
 from __future__ import annotations
@@ -9,14 +9,13 @@ from __future__ import annotations
 import base64
 import io
 import re
-import struct
 from collections import Counter
 from collections.abc import Iterable
 from html import escape
-from zlib import compress, crc32
+from zlib import crc32
 
 import numpy as np
-from PIL import Image
+from PIL import Image, features
 
 _TRIPLE = re.compile(r"([ML]) (\S+) (\S+)|z")
 _USES = re.compile(
@@ -39,7 +38,7 @@ def adapted(svg: str, key: str, title: str) -> str:
     svg = re.sub(r' transform="rotate\(-?0 [-\d. ]+\)"', "", svg)
     svg = re.sub(r'<path d="[^"]*" style="fill: none"/>', "", svg)  # neither filled nor stroked
     svg = _with_joined_markers(svg)
-    svg = re.sub(r"(?<=data:image/png;base64,)[^\"]*", _few_colours, svg)
+    svg = re.sub(r"data:image/png;base64,([^\"]*)", _as_webp, svg)
     svg = _private_ids(svg, key)
     svg = _without_empty_groups(svg)
     width, height = _VIEW.findall(svg)[0]
@@ -51,7 +50,7 @@ def adapted(svg: str, key: str, title: str) -> str:
 
 
 def short_numbers(match: re.Match[str]) -> str:
-    """Coordinates to a hundredth of a point, and lines to a tenth, by steps: the rest are digits that nobody sees."""
+    """Coordinates to a hundredth of a point, and lines to a tenth, by relative steps: further digits are invisible."""
     text = re.sub(r"\s+", " ", re.sub(r"(\.\d\d)\d+", r"\1", match[0]))
     data = text.removeprefix(' d="').removesuffix('"').strip()
     if not data or text == data or _TRIPLE.sub("", data).strip():  # no path data, or curves
@@ -62,7 +61,7 @@ def short_numbers(match: re.Match[str]) -> str:
 
 
 def _by_steps(data: str) -> str:
-    """Straight path data by the steps from point to point, to a tenth of a point; rounding does not add up."""
+    """Straight path data as steps from point to point, in tenths of a point; rounding errors do not accumulate."""
     pen = start = (0, 0)
     steps: list[tuple[str, int, int]] = []
     for letter, *point in _TRIPLE.findall(data):
@@ -74,24 +73,11 @@ def _by_steps(data: str) -> str:
         steps.append((letter, x - pen[0], y - pen[1]))
         pen = x, y
         start = pen if letter == "M" else start
-    return _written(_merged(steps), 10)
-
-
-def _merged(steps: Iterable[tuple[str, int, int]]) -> list[tuple[str, int, int]]:
-    """Without steps to the same place, and with those that go on along an axis as one."""
-    kept: list[tuple[str, int, int]] = []
-    for letter, dx, dy in steps:
-        before, bx, by = kept[-1] if kept else ("", 0, 0)
-        along = before == letter == "L" and (bx == dx == 0 and by * dy >= 0 or by == dy == 0 and bx * dx >= 0)
-        if along:
-            kept[-1] = ("L", bx + dx, by + dy)
-        elif letter != "L" or dx or dy or before == "M":  # a line of no length is a dot
-            kept.append((letter, dx, dy))
-    return kept
+    return _written(steps, 10)
 
 
 def _written(steps: Iterable[tuple[str, int, int]], unit: int) -> str:
-    """Path data of relative steps, M, L and z, in parts of a point: ``unit`` of them are a point."""
+    """Path data of relative steps M, L and z; ``unit`` of their numbers are one point."""
     text, before = [], ""
     for letter, dx, dy in steps:
         x, y = (re.sub(r"^(-?)0\.", r"\1.", f"{value / unit:g}") for value in (dx, dy))
@@ -103,7 +89,7 @@ def _written(steps: Iterable[tuple[str, int, int]], unit: int) -> str:
 
 
 def _with_joined_markers(svg: str) -> str:
-    """The markers of one series as one path, where they are of one colour; what defined them goes with the last."""
+    """The markers of one series as one path, where they have one colour, without their definitions."""
     shapes = {name: rest for name, *rest in re.findall(r'<path id="([^"]*)" d="([^"]*)"(?: style="([^"]*)")?/>', svg)}
     most = np.array(_VIEW.findall(svg)[0], float)
 
@@ -126,9 +112,9 @@ def _with_joined_markers(svg: str) -> str:
 
 
 def _series(shape: str, style: dict[str, str], at: list[tuple[int, int]]) -> str:
-    """A shape in its style at these tenths of a point; empty where one path would look different."""
+    """A shape at places in tenths of a point, as one path; empty where that would look different."""
     fill, stroke = style.get("fill", "black"), style.get("stroke", "none")
-    if len({fill, stroke} - {"none"}) > 1:  # edges of those below would be seen on those above
+    if len({fill, stroke} - {"none"}) > 1:  # one path would show edges that upper markers hide
         return ""
     at = [point for point, before in zip(at, [None, *at], strict=False) if point != before]
     if not _TRIPLE.sub("", shape).strip():
@@ -143,8 +129,8 @@ def _series(shape: str, style: dict[str, str], at: list[tuple[int, int]]) -> str
         data = _written(_repeated([("M", 0, 0), ("L", 0, 0)], at), 10)
     else:
         return ""
-    said = "; ".join(f"{name}: {value}" for name, value in style.items())
-    return f'<path d="{data}" style="{said}"/>'
+    declarations = "; ".join(f"{name}: {value}" for name, value in style.items())
+    return f'<path d="{data}" style="{declarations}"/>'
 
 
 def _points(data: str) -> list[tuple[str, str, str]]:
@@ -164,7 +150,7 @@ def _repeated(outline: list[tuple[str, int, int]], at: list[tuple[int, int]]) ->
 
 
 def _radius(shape: str) -> float:
-    """Of a disc about the origin that is drawn by curves; 0 where the shape is none."""
+    """Radius of a disc about the origin that is drawn by curves; 0 for any other shape."""
     if set(re.findall("[A-Za-z]", shape)) != {"M", "C", "z"}:
         return 0.0
     numbers = [float(value) for value in re.findall(r"-?\d[\d.]*", shape)]
@@ -180,13 +166,13 @@ def _declared(style: str) -> dict[str, str]:
 
 
 def _without_empty_groups(svg: str) -> str:
-    """Groups that say nothing, of which every tick is in three, are left out with what closes them."""
-    says: list[bool] = []
+    """Without groups that have no attributes; matplotlib wraps every tick in three of them."""
+    has_attributes: list[bool] = []
 
     def kept(match: re.Match[str]) -> str:
         if match[0] != "</g>":
-            says.append(match[0] != "<g>")
-        keep = says.pop() if match[0] == "</g>" else says[-1]
+            has_attributes.append(match[0] != "<g>")
+        keep = has_attributes.pop() if match[0] == "</g>" else has_attributes[-1]
         return match[0] if keep else ""
 
     return re.sub(r"<g>|<g [^>]*[^/]>|</g>", kept, svg.replace("<g/>", ""))
@@ -195,8 +181,8 @@ def _without_empty_groups(svg: str) -> str:
 def with_classes(page: str) -> str:
     """Styles that come more than once in the figures of a page as classes, whose rules end its style sheet.
 
-    The head is read by every browser; a figure may stand in ``<noscript>``, which is read without scripts alone.
-    Two names in front of a rule let it win over that of the page for all paths, as a style would.
+    The rules are in the head, as a figure may stand in ``<noscript>``, which a browser with scripts does not read.
+    Two class names let a rule override that of the page for all paths, as a style attribute would.
 
     Raises
     ------
@@ -220,43 +206,18 @@ def with_classes(page: str) -> str:
     return f"{head}{rules}\n{end}{rest}"
 
 
-def _few_colours(match: re.Match[str]) -> str:
-    """An image whose colours fit into a palette with that palette: the same pixels in a third of the bytes."""
-    with Image.open(io.BytesIO(base64.b64decode(match[0]))) as image:
-        pixels = np.asarray(image.convert("RGBA"))
-    pixels = np.ascontiguousarray(np.where(pixels[..., 3:] > 0, pixels, 0))  # what is not seen has one colour
-    colours, number = np.unique(pixels.view(np.uint32), return_inverse=True)
-    if len(colours) > 256:
+def _as_webp(match: re.Match[str]) -> str:
+    """A PNG image as lossless WebP: the same pixels to be seen in fewer bytes."""
+    if not features.check("webp"):
         return match[0]
-    palette = colours.view(np.uint8).reshape(-1, 4)
-    order = np.argsort(palette[:, 0].astype(int) - palette[:, 2], kind="stable")  # as a map goes from blue to red
-    text = base64.b64encode(_png(np.argsort(order)[number].reshape(pixels.shape[:2]), palette[order])).decode()
-    return min(text, match[0], key=len)
-
-
-def _png(colour_yx: np.ndarray, palette: np.ndarray) -> bytes:
-    """An image (PNG, ISO/IEC 15948) by what changes from pixel to pixel, its filter 1, which Pillow has for no palette.
-
-    Parameters
-    ----------
-    colour_yx : rows of the palette (n <= 256, 4), red, green, blue, alpha
-    """
-    changes = np.diff(colour_yx.astype(np.uint8), axis=1, prepend=np.uint8(0))  # modulo 256
-    rows = np.pad(changes, ((0, 0), (1, 0)), constant_values=1)
-    height, width = colour_yx.shape
-    chunks = {
-        b"IHDR": struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0),
-        b"PLTE": palette[:, :3].tobytes(),
-        b"tRNS": palette[:, 3].tobytes(),
-        b"IDAT": compress(rows.tobytes(), 9),
-        b"IEND": b"",
-    }
-    made = (struct.pack(">I", len(d)) + name + d + struct.pack(">I", crc32(name + d)) for name, d in chunks.items())
-    return b"\x89PNG\r\n\x1a\n" + b"".join(made)
+    made = io.BytesIO()
+    with Image.open(io.BytesIO(base64.b64decode(match[1]))) as image:
+        image.save(made, "WEBP", lossless=True)
+    return f"data:image/webp;base64,{base64.b64encode(made.getvalue()).decode()}"
 
 
 def _private_ids(svg: str, key: str) -> str:
-    """Drop the ids that nothing refers to, and make the others unique in the page."""
+    """Without unreferenced ids; the others are made unique in the page."""
     used = dict.fromkeys(re.findall(r'(?:url\(#|href="#)([^)"]+)', svg))
     short = {name: f"p{crc32(key.encode()):x}-{i}" for i, name in enumerate(used)}  # hundreds of markers repeat them
 

@@ -20,8 +20,8 @@ def rendered(package: str, template: str, filters: Mapping[str, Callable], /, **
 
     Parameters
     ----------
-    filters : what the template calls, beside ``svg`` and ``number``
-    content : what the template names, beside the palettes ``light`` and ``dark`` and the style sheet ``css``
+    filters : functions of the template, beside ``svg``, ``number`` and ``tone``
+    content : variables of the template, beside the palettes ``light`` and ``dark`` and the style sheet ``css``
     """
     jinja = Environment(
         loader=ChoiceLoader([PackageLoader(package, "."), PackageLoader("verify", ".")]),  # parts of other pages

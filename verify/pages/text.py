@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -24,7 +25,7 @@ NO_VALUE = "no value"
 
 @dataclass(frozen=True)
 class Units:
-    """Unit labels, empty where the scene's label does not tell them apart."""
+    """Unit labels, empty where the scene's label does not separate them."""
 
     force: str = ""
     length: str = ""
@@ -110,7 +111,7 @@ def seconds(value: float | None, unknown: str = NO_VALUE) -> str:
     return f"{int(round(value)) // 60}\u00a0min\u00a0{int(round(value)) % 60}\u00a0s"
 
 
-def span(values: list[float], form: object) -> str:
+def span(values: list[float], form: Callable[[float], str]) -> str:
     """``form`` of the smallest and the largest value, once if they read the same."""
     low, high = form(min(values)), form(max(values))
     return low if low == high else f"{low} to {high}"
@@ -122,7 +123,7 @@ def programme(scene: Scene) -> tuple[float, ...]:
 
 
 def sentence(scene: Scene) -> str:
-    """What was solved, and with which effects, in words."""
+    """The problem with its effects, in words."""
     units, specimen = Units.of(scene.units), scene.specimen
     openings = " → ".join(number(v, 4) for v in programme(scene))
     moved = f"to {openings} {units.length}".rstrip()
@@ -131,7 +132,7 @@ def sentence(scene: Scene) -> str:
 
 
 def _body(specimen: Dcb | Peel, unit: str) -> str:
-    """The specimen and what is done to it."""
+    """The specimen and its load."""
     if specimen.kind == "peel":
         lengths = ("strip_length", "strip_thickness", "substrate_length", "substrate_thickness", "bond_length")
         strip, thick, substrate, depth, bond = (quantity(getattr(specimen, name), unit) for name in lengths)
@@ -145,7 +146,7 @@ def _body(specimen: Dcb | Peel, unit: str) -> str:
 
 def _effects(scene: Scene) -> str:
     found, chosen = simulated(scene, "nurbs"), [key for key, value in scene.effects if value == "auto"]
-    words = {
+    words: Mapping[str, Mapping[object, str]] = {
         "kinematics": {
             "finite": "finite kinematics (large rotations)",
             "linear": "linear kinematics (small displacements)",
@@ -223,8 +224,8 @@ def _moduli(material: Material, units: Units) -> list[tuple[str, float, str]]:
         ("G12", "G12", units.stress),
         ("nu12", "nu12", ""),
     )
-    values = [(label, getattr(material, key, None), unit) for key, label, unit in names]
-    return [row for row in values if row[1] is not None]
+    given = [(label, getattr(material, key, None), unit) for key, label, unit in names]
+    return [(label, value, unit) for label, value, unit in given if value is not None]
 
 
 def tone(counts: Counts) -> str:

@@ -1,12 +1,16 @@
-"""The report: one self-contained HTML file about all scenes of a verification; other pages share its parts."""
+"""The report of a verification: one self-contained HTML file about all scenes."""
 
 from __future__ import annotations
 
-__all__ = ["write"]
+from pathlib import Path
+
+from verify.report.findings import Findings
+
+__all__ = ["Findings", "write"]
 
 
-def write(*what: object, **more: object) -> None:
-    """``verify.report.page.write``; imported here alone, as it takes from other pages what these take from here."""
+def write(findings: Findings, path: Path, text: bool = False) -> None:
+    """``verify.report.page.write``; its module is imported here, as it needs matplotlib and Jinja."""
     from verify.report import page
 
-    page.write(*what, **more)
+    page.write(findings, path, text)

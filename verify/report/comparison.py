@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -15,7 +16,7 @@ from verify.pages.template import rendered
 from verify.verdict import Check
 
 _A, _B = Line("lagrange", 1.2, (), 1.0, 4.0), Line("dolfinx", 3.4, (), 0.5, 2.0)
-_PATH = {"alpha": 0.35, "linewidth": 0.7, "linestyle": "solid"}
+_PATH: Mapping[str, Any] = {"alpha": 0.35, "linewidth": 0.7, "linestyle": "solid"}
 
 
 def page(
@@ -32,7 +33,7 @@ def page(
     labels : names of A and B
     rows : name, name of its check, value of A, of B, and difference
     found : the checks that were asked for
-    remarks : what is printed above the numbers
+    remarks : sentences above the numbers
     """
     return rendered(
         "verify.report",
@@ -75,5 +76,5 @@ def _difference(comparison: Comparison) -> Panel:
 
 def _mark_worst(axes: Axes, comparison: Comparison, gap: np.ndarray) -> None:
     i = int(np.argmax(np.abs(gap)))
-    ring = {"markerfacecolor": "none", "color": colour("bad"), "markersize": 6, "zorder": 6}
-    axes.plot(comparison.opening_n[i], gap[i], "o", **ring)
+    at = comparison.opening_n[i]
+    axes.plot(at, gap[i], "o", markerfacecolor="none", color=colour("bad"), markersize=6, zorder=6)

@@ -1,4 +1,4 @@
-"""Convergence tables: what a scene's sequences of meshes say of their limit."""
+"""Convergence tables: the limits of a scene's sequences of meshes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from verify.verdict import SceneReport
 
 @dataclass(frozen=True)
 class MeshRow:
-    """One mesh: its entry, the value on it, and how far that is from the one on the next coarser mesh."""
+    """One mesh: its entry, the value on it, and the distance to the value on the next coarser mesh."""
 
     entry: Entry
     value: str
@@ -38,7 +38,7 @@ class ConvergenceTable:
 
 
 def tables(report: SceneReport, entries: tuple[Entry, ...]) -> tuple[ConvergenceTable, ...]:
-    """All of them; none without three meshes of one method."""
+    """The tables of all methods with three meshes or more."""
     return tuple(_table(report.scene, one, entries) for one in sequences(report))
 
 

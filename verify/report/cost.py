@@ -1,4 +1,4 @@
-"""Figures of cost: where the time went, and what it bought."""
+"""Figures of cost: time by phase, and error against time."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from verify.pages.labels import name_points
 from verify.pages.parts import phase_bars, plain
-from verify.pages.style import HALF, PHASES, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, SHOWN_PHASES, Panel, colour, drawing, panel, to_svg
 from verify.pages.text import seconds
 from verify.report.figures.entry import Entry, short_names
 from verify.result import Result
@@ -25,7 +25,7 @@ def total_seconds(result: Result) -> float:
 def phase_seconds(result: Result) -> dict[str, float]:
     """The named phases; whatever the total has besides them counts as ``other``."""
     times = dict(result.seconds or {})
-    named = {name: float(times.get(name, 0.0)) for name in PHASES}
+    named = {name: float(times.get(name, 0.0)) for name in SHOWN_PHASES}
     if "other" not in times and "total" in times:
         named["other"] = max(float(times["total"]) - sum(named.values()), 0.0)
     return named
@@ -41,7 +41,7 @@ def timing(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
         left_margin = 0.15 + 0.068 * max(len(name) for name in names)
         figure, axes = panel(HALF, 0.42 * len(timed) + 0.85, left=left_margin, top=0.4)
         longest = max(total_seconds(entry.result) for entry in timed)
-        taken = {phase: [phase_seconds(entry.result)[phase] for entry in timed] for phase in PHASES}
+        taken = {phase: [phase_seconds(entry.result)[phase] for entry in timed] for phase in SHOWN_PHASES}
         ends = phase_bars(axes, names, {phase: width for phase, width in taken.items() if sum(width) > 0})
         for row, end, entry in zip(*ends, timed, strict=True):
             axes.text(end + 0.015 * longest, row, seconds(total_seconds(entry.result)), va="center", fontsize=7.5)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from verify.studies.hard.page import Row as HardRow
     from verify.verdict import Check
 
-#: What would be markup where it stands; an angle bracket before a space or a digit is none.
+#: Characters that would be markup; an angle bracket before a space or a digit would not.
 _SPECIAL = re.compile(r"[\\`*\[\]|]|<(?=[A-Za-z/!?])|&(?=#?\w+;)|~(?=~)|^[>#+-]|(?<!\w)_|_(?!\w)")
 
 
@@ -51,7 +51,7 @@ def lines(
 
 
 def plain(text: object) -> str:
-    """Text that is no markup, on one line."""
+    """Text without markup, on one line."""
     return _SPECIAL.sub(r"\\\g<0>", re.sub(r"\s*[\r\n]+\s*", " ", str(text)))
 
 

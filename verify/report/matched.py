@@ -1,4 +1,4 @@
-"""What a matched interface leaves out of a peel test, in a sentence for every run that has one."""
+"""The effects that a matched interface neglects in a peel test, a sentence for each such run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from verify.scene.schema import Scene
 
 
 def sentences(scene: Scene, found: Sequence[Entry]) -> tuple[str, ...]:
-    """One for each DOLFINx run of a peel test with finite kinematics; with linear ones no code follows the surfaces."""
+    """A sentence for each DOLFINx run of a peel test with finite kinematics; linear kinematics follow no surface."""
     if scene.specimen.kind != "peel" or simulated(scene, "dolfinx")["kinematics"] == "linear":
         return ()
     runs = (entry for entry in found if entry.method == "dolfinx" and entry.agreement is not None)

@@ -10,6 +10,7 @@ from markupsafe import Markup
 from verify.pages.template import rendered
 from verify.pages.text import percent, seconds, symbols
 from verify.report import markdown
+from verify.report.findings import Findings
 from verify.report.section import Section, section
 from verify.report.studies import interface_rules, paper_section, peel_section, plane, plane_rates
 from verify.report.studies.included import IncludedSection
@@ -18,14 +19,7 @@ from verify.report.summary import summarise
 from verify.studies.cost.figures import named
 from verify.studies.cost.page import script as chart_script
 from verify.studies.effects.page import in_cell
-from verify.studies.found import Included
 from verify.studies.hard.suite import totals
-from verify.studies.interface_rules import Study
-from verify.studies.paper.peel import PeelStudy
-from verify.studies.paper.study import Study as Figures
-from verify.studies.plane.rates import Convergence
-from verify.studies.plane.study import PlaneStudy
-from verify.verdict import SceneReport
 
 __all__ = ["write"]
 
@@ -44,41 +38,16 @@ _FILTERS: Mapping[str, Callable] = {
 }
 
 
-def write(
-    reports: tuple[SceneReport, ...],
-    path: Path,
-    environment: Mapping[str, str],
-    quadrature: Study | None = None,
-    paper: Figures | None = None,
-    planes: Sequence[PlaneStudy] = (),
-    rates: tuple[Convergence, ...] = (),
-    peels: PeelStudy | None = None,
-    included: Sequence[Included] = (),
-    text: bool = False,
-) -> None:
-    """Write the page.
-
-    Parameters
-    ----------
-    reports : one for each scene, in the order of the page
-    path : the HTML file; its folder is made
-    environment : what to print about versions and machine, name to value
-    quadrature : the study of the interface rules, where it was made
-    paper : the runs behind the figures of the paper, where they were made
-    planes : the studies of plane problems, one a mesh file
-    rates : the convergence of the bases in plane elasticity, where it was measured
-    peels : the runs behind Figure 9 of the paper, where they were made
-    included : studies of other commands, to be shown as well
-    text : whether the same is written in Markdown, too, beside the page
-    """
+def write(findings: Findings, path: Path, text: bool = False) -> None:
+    """Write the page, an HTML file whose folder is made; ``text``: beside it the same in Markdown."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    few = len(reports) <= FEW
-    sections = tuple(section(report, f"scene-{i + 1}", between=few) for i, report in enumerate(reports))
-    plane_sections = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(planes))
-    rates_section = plane_rates.section(rates, "rates") if rates else None
-    summary = summarise(sections, (*plane_sections, *filter(None, [rates_section])))
-    studies = shown(included, path.parent)
+    few = len(findings.reports) <= FEW
+    sections = tuple(section(report, f"scene-{i + 1}", between=few) for i, report in enumerate(findings.reports))
+    planes = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(findings.planes))
+    rates = plane_rates.section(findings.rates, "rates") if findings.rates else None
+    summary = summarise(sections, (*planes, *filter(None, [rates])))
+    studies = shown(findings.included, path.parent)
     page = rendered(
         "verify.report",
         "page.html.j2",
@@ -87,21 +56,21 @@ def write(
         summary=summary,
         included=studies,
         scripts=_scripts(sections, studies),
-        planes=plane_sections,
-        rates=rates_section,
-        quadrature=None if quadrature is None else interface_rules.section(quadrature, "quadrature"),
-        paper=None if paper is None else paper_section.section(paper, "figures"),
-        peels=None if peels is None else peel_section.section(peels, "figure-9"),
-        environment=dict(environment),
+        planes=planes,
+        rates=rates,
+        quadrature=findings.quadrature and interface_rules.section(findings.quadrature, "quadrature"),
+        paper=findings.paper and paper_section.section(findings.paper, "figures"),
+        peels=findings.peels and peel_section.section(findings.peels, "figure-9"),
+        environment=dict(findings.environment),
     )
     path.write_text(page, encoding="utf-8")
     if text:
-        told = markdown.lines(summary, sections, plane_sections, rates_section, studies, environment)
-        path.with_suffix(".md").write_text("\n".join(told), encoding="utf-8")
+        lines = markdown.lines(summary, sections, planes, rates, studies, findings.environment)
+        path.with_suffix(".md").write_text("\n".join(lines), encoding="utf-8")
 
 
 def _scripts(sections: Sequence[Section], studies: Sequence[IncludedSection]) -> tuple[Markup, ...]:
-    """Those that something on the page needs."""
+    """The scripts that something on the page needs."""
     stepper = (_HERE / "stepper.js").read_text(encoding="utf-8")
     return (
         *((Markup(stepper),) if any(s.frames for s in sections) else ()),

@@ -1,4 +1,4 @@
-"""What others published for a scene, beside what the runs found."""
+"""Published values of a scene beside those of the runs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def compared(found: Sequence[Entry]) -> tuple[Entry, ...]:
 
 
 def rows(scene: Scene, found: Sequence[Entry]) -> tuple[PublishedRow, ...]:
-    """One for each published value."""
+    """A row for each published value."""
     return tuple(_row(known, scene, compared(found)) for known in scene.published)
 
 

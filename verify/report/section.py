@@ -13,7 +13,7 @@ from verify.pages.text import NO_VALUE, Units, inputs, modelled, number, percent
 from verify.report import converged, cost, matched, published, zones
 from verify.report.figures import curves, drawing, fields, meshes, opening, peel_drawing, undeformed
 from verify.report.figures.entry import Entry, entries
-from verify.report.tally import KINDS, Tally, headline, tally
+from verify.report.tally import EVIDENCE, Tally, headline, tally
 from verify.verdict import Check, Counts, Run, SceneReport, counted
 
 if TYPE_CHECKING:
@@ -87,10 +87,10 @@ class Section:
     figures: tuple[Figures, ...]
     checks: tuple[tuple[Tally, tuple[CheckGroup, ...]], ...]
     rows: tuple[RunRow, ...]
-    matched: tuple[str, ...]  # what a matched interface leaves out
+    matched: tuple[str, ...]  # effects that a matched interface neglects
     zones: tuple[zones.ZoneRow, ...]
     published: tuple[published.PublishedRow, ...]
-    compared: tuple[Entry, ...]  # columns of what was published
+    compared: tuple[Entry, ...]  # columns of the table of published values
     notes: tuple[str, ...]
 
     @property
@@ -103,7 +103,7 @@ class Section:
 
 
 def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
-    """Compute and draw one scene; ``between``: with more openings than those that all runs keep."""
+    """Compute and draw one scene; ``between``: also at openings that the leading run alone has kept."""
     found = entries(report)
     drawn = tuple(entry for entry in found if entry.agreement is not None)
     checks = report.checks
@@ -120,7 +120,7 @@ def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
         frames=opening.frames(report.scene, [g for g in groups if g], drawn, f"{anchor}-frame", between),
         convergence=converged.tables(report, found),
         figures=_figures(report, drawn, groups, anchor),
-        checks=tuple((tally(kind, checks), _check_groups(kind, report)) for kind in KINDS),
+        checks=tuple((tally(kind, checks), _check_groups(kind, report)) for kind in EVIDENCE),
         rows=tuple(_run_row(entry, report.scene) for entry in found),
         matched=matched.sentences(report.scene, found),
         zones=zones.rows(report.scene, found),
@@ -234,7 +234,7 @@ def _steps(accepted: int, rejected: int) -> str:
 
 
 def _notes(found: Sequence[Entry]) -> list[str]:
-    """What a reader must know before believing the figures."""
+    """Remarks on the runs that qualify the figures."""
     notes = []
     for entry in found:
         if entry.run.result is None:

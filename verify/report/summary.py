@@ -1,4 +1,4 @@
-"""What the top of the page says: what agrees with what, to how much, at which time, and what fails."""
+"""The top of the page: which methods agree, how closely, in which time, and which checks fail."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS
 from verify.pages.text import percent, seconds, span, tone
 from verify.report.cost import total_seconds
 from verify.report.figures.entry import Entry, rank
-from verify.report.tally import KINDS, Tally, headline, tally
+from verify.report.tally import EVIDENCE, Tally, headline, tally
 from verify.verdict import counted
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Sentence:
-    """Something said at the top, and where on the page it comes from."""
+    """A sentence at the top, with a link to its evidence on the page."""
 
     text: str
     target: str = ""
@@ -72,7 +72,7 @@ def summarise(sections: Sequence[Section], planes: Sequence[PlaneSection | Rates
         sentences=(*_sentences(sections), *(Sentence(p.sentence, p.anchor, "its numbers") for p in planes)),
         missing=tuple(_missing(sections)),
         ways=_ways(sections),
-        tallies=tuple(tally(kind, [check for _, _, check in checks]) for kind in KINDS),
+        tallies=tuple(tally(kind, [check for _, _, check in checks]) for kind in EVIDENCE),
         columns=tuple(Column(method, name) for method, _, name in columns),
         rows=tuple((section, tuple(_cell(section, *column[:2]) for column in columns)) for section in sections),
         not_held=not_held,
@@ -102,7 +102,7 @@ def _cell(section: Section, method: str, repeat: int) -> Cell:
     if entry is None:
         return Cell("–", "", "absent")
     if entry.agreement is None:
-        return Cell("not run" if entry.result is None else "no curve", "", "absent")
+        return Cell("not run" if entry.run.result is None else "no curve", "", "absent")
     time = seconds(total_seconds(entry.result), "")
     unknowns = f"{entry.result.dofs} unknowns" if entry.result.dofs else ""
     tail = ", ".join(part for part in (time, unknowns) if part)
@@ -150,7 +150,7 @@ def _sentences(sections: Sequence[Section]) -> list[Sentence]:
 
 
 def _missing(sections: Sequence[Section]) -> list[str]:
-    """What was not run or stopped early, each reason once with the scenes it concerns."""
+    """Reasons why runs are missing or stopped early, each once with its scenes."""
     reasons: dict[str, list[str]] = {}
     for section in sections:
         for note in section.notes:

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from verify.verdict import Check
 
 
-#: kind: what stands behind a check of that kind
-KINDS = {
+#: kind: the evidence of a check of that kind
+EVIDENCE = {
     "exact": "An identity that any solution must meet. Nothing else is needed to judge it.",
     "analytical": "Against a closed form or the cohesive-beam solution, which rests on beam theory.",
     "cross-code": "Against another code or a published value: two programs that share nothing but the problem.",
@@ -47,4 +47,4 @@ def headline(counts: Counts, scenes: int, planes: int = 0) -> str:
 
 def tally(kind: str, checks: Sequence[Check]) -> Tally:
     of_kind = [check for check in checks if check.kind == kind]
-    return Tally(kind, KINDS[kind], counted(of_kind))
+    return Tally(kind, EVIDENCE[kind], counted(of_kind))

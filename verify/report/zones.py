@@ -11,7 +11,7 @@ from verify.pages.text import Units, number, quantity
 from verify.report.figures.entry import Entry
 from verify.scene.schema import Scene
 
-UNKNOWN = "–"
+_NOT_MEASURED = "–"
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class ZoneRow:
 
 
 def rows(scene: Scene, found: Sequence[Entry]) -> tuple[ZoneRow, ...]:
-    """One for each run with a mesh along the interface."""
+    """A row for each run with a mesh along the interface."""
     lines = (_row(scene, entry) for entry in found if entry.agreement is not None)
     return tuple(line for line in lines if line is not None)
 
@@ -43,7 +43,7 @@ def _row(scene: Scene, entry: Entry) -> ZoneRow | None:
         element=quantity(zone.element, unit, 2),
         estimate=quantity(zone.length, unit, 2),
         elements=number(zone.elements, 2),
-        measured=quantity(length, unit, 2) if isfinite(length) else UNKNOWN,
-        measured_elements=number(length / zone.element, 2) if isfinite(length) else UNKNOWN,
+        measured=quantity(length, unit, 2) if isfinite(length) else _NOT_MEASURED,
+        measured_elements=number(length / zone.element, 2) if isfinite(length) else _NOT_MEASURED,
         resolved=zone.resolved,
     )

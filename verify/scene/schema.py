@@ -6,7 +6,6 @@ user reads about a broken one are made in ``verify.scene.complaints``.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, ValidationInfo, ValidatorFunctionWrapHandler, field_validator
@@ -16,6 +15,7 @@ from verify.scene.bodies import MATERIALS, Material, Specimen, definite
 from verify.scene.laws import PLAIN, known
 from verify.scene.published import Published
 from verify.scene.tables import Positive, Section, one_of, refuse
+from verify.support.programme import turns
 
 if TYPE_CHECKING:
     pass
@@ -292,18 +292,6 @@ class Scene(Section):
                 rule = f">= {low:g} and <= {high:g}, leg {value.leg} of load.opening"
                 raise refuse(rule, ((i, "opening"), value.opening))
         return published
-
-
-def turns(programme: Sequence[float]) -> tuple[float, ...]:
-    """The openings at which a programme turns, and its last one; at the beginning the opening is 0."""
-    way = (0.0, *programme)
-    later = zip(way[:-2], way[1:-1], way[2:], strict=True)
-    return (*(goal for before, goal, after in later if (goal - before) * (after - goal) < 0.0), way[-1])
-
-
-def only_opens(programme: Sequence[float]) -> bool:
-    """Whether the programme has one leg, on which the opening grows."""
-    return len(turns(programme)) == 1 and programme[-1] > 0.0
 
 
 #: Steps where the path does not choose them.

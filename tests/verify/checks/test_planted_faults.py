@@ -26,7 +26,7 @@ from verify.checks.identities import growing, law_of, run_checks
 from verify.checks.odd_one_out import odd_one_out
 from verify.checks.proof import REFERENCE, SECOND
 from verify.curves.compare import checks, compare
-from verify.curves.legs import NEAR
+from verify.curves.legs import TURN_TOLERANCE
 from verify.methods.solve import solve
 from verify.result import Result
 from verify.scene.bodies import elastic_constants
@@ -342,10 +342,10 @@ BETWEEN: Mapping[str, tuple[Callable, float, Callable[[Result, float], Result]]]
     "farthest-point of a foreign curve and the beam": (from_elsewhere("beam"), 0.008, one_point),
     "curve of a foreign curve": (from_elsewhere("nurbs"), 0.005, after_the_peak),
     "peak of a foreign curve": (from_elsewhere("nurbs"), 0.005, spike),
-    "end": (from_elsewhere("nurbs"), NEAR, short),
-    "legs": (legs_from_elsewhere, NEAR, late_turn),
-    "end of a comparison": (compared, NEAR, short),
-    "legs of a comparison": (compared_leg_by_leg, NEAR, late_turn),
+    "end": (from_elsewhere("nurbs"), TURN_TOLERANCE, short),
+    "legs": (legs_from_elsewhere, TURN_TOLERANCE, late_turn),
+    "end of a comparison": (compared, TURN_TOLERANCE, short),
+    "legs of a comparison": (compared_leg_by_leg, TURN_TOLERANCE, late_turn),
     "curve-leg-2 of a comparison": (compared_leg_by_leg, 0.005, wavy),
     "curve-error": (compared, 0.005, wave),
     "peak-load": (compared, 0.005, spike),

@@ -153,7 +153,9 @@ def test_the_page_shows_published_values_with_their_source(tmp_path: Path) -> No
     scene = load_scene("compdam-dcb")
     runs = {"beam": solve(scene, "lefm")}  # what is shown does not depend on who computed it
     found = tuple(Run(name, name, replace(result, method=name)) for name, result in runs.items())
-    report.write((SceneReport(scene, found, published_checks(scene, runs)),), tmp_path / "report.html", {})
+    report.write(
+        report.Findings((SceneReport(scene, found, published_checks(scene, runs)),), {}), tmp_path / "report.html"
+    )
     text = (tmp_path / "report.html").read_text()
     table = re.search(r'<table class="published">.*?</table>', text, re.DOTALL)[0]
     plain = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", table))

@@ -100,7 +100,9 @@ def test_pages_of_odd_curves(text: bytes, tmp_path: Path) -> None:
         return
     given = scene_report()
     bare = tuple(replace(run, result=replace(run.result, snapshots=())) for run in given.runs)
-    report.write((joined(replace(given, runs=bare), curves, tmp_path),), tmp_path / "report.html", ENVIRONMENT)
+    report.write(
+        report.Findings((joined(replace(given, runs=bare), curves, tmp_path),), ENVIRONMENT), tmp_path / "report.html"
+    )
 
 
 @pytest.mark.parametrize("number", ["1e31", "-1e300", "1.7e308"])

@@ -18,7 +18,7 @@ from verify.curves.read import read_curve
 from verify.methods.solve import solve
 from verify.result import Result
 from verify.scene.load import load_scene
-from verify.scene.schema import only_opens, turns
+from verify.support.programme import only_opens, turns
 from verify.verdict import Check
 
 PROGRAMME = (1.5, 0.2, 3.0)

@@ -104,7 +104,7 @@ REFUSED = [
     ("opening,load\n3,1\n1,2\n0,0\n", Reading(), ": the opening must grow from the first point on, got the largest, 3"),
     ("X,U2,RF2\n0,0,0\n1,1,1\n", Reading(), ":1: the header must name opening and load, got X, U2, RF2;"),
     ("\nX,U2,RF2\n0,0,0\n", Reading("U2", "RF3"), ":2: the header must name RF3, got X, U2, RF2;"),
-    ("X,U2,U2\n0,0,0\n", Reading("X", "U2"), ":1: must name U2 once, got X, U2, U2;"),
+    ("X,U2,U2\n0,0,0\n", Reading("X", "U2"), ":1: must have one column 'U2', got X, U2, U2;"),
     ("X,U2\n0,0\n", Reading("X", 3), ":1: has 2 columns, got column number 3"),
     ("X,U2\n0,0\n", Reading("X", 1), ":1: opening and load must be different columns, got column 1 for both"),
     ("0,0\n1,1\n", Reading("U2"), ":1: has no header, so columns go by number, got U2 and load"),

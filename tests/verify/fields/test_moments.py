@@ -75,7 +75,7 @@ def test_the_slider_has_them_between_the_others(tmp_path: Path) -> None:
     lead, *others = given.runs
     between = tuple(snapshot(opening, 5.0 + opening, 112, 0.0) for opening in (0.8, 1.7, 2.4))
     runs = (replace(lead, result=replace(lead.result, between=between)), *others)
-    report.write((replace(given, runs=runs),), tmp_path / "report.html", {})
+    report.write(report.Findings((replace(given, runs=runs),), {}), tmp_path / "report.html")
     page = (tmp_path / "report.html").read_text()
     assert re.findall(r'data-opening="([\d.]+)', page) == ["0.62", "0.8", "1", "1.7", "2.4", "3"]
     assert 'max="5"' in page
@@ -91,7 +91,7 @@ def test_the_slider_has_them_between_the_others(tmp_path: Path) -> None:
 def test_pages_of_few_scenes_have_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
-    from verify.report import page
+    from verify.report import Findings, page
 
     asked: list[tuple[str, bool]] = []
     monkeypatch.setattr(page, "section", lambda report, anchor, between: asked.append((anchor, between)))
@@ -100,7 +100,7 @@ def test_pages_of_few_scenes_have_them(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(page, "rendered", lambda *words, **parts: "page")
     for number, between in ((1, True), (5, True), (6, False)):
         asked.clear()
-        page.write((scene_report(),) * number, tmp_path / "of" / "all" / "report.html", {})
+        page.write(Findings((scene_report(),) * number, {}), tmp_path / "of" / "all" / "report.html")
         assert asked == [(f"scene-{i + 1}", between) for i in range(number)]
         assert [path.name for path in (tmp_path / "of" / "all").iterdir()] == ["report.html"], (
             "Markdown only if asked for"

@@ -187,7 +187,7 @@ def test_verify_holds_the_mesh_against_methods_on_meshes_of_their_own(
 ) -> None:
     """Both arms from files are solved as two, the others as the scene without files would be."""
     seen: list[SceneReport] = []
-    monkeypatch.setattr(verification, "write_page", lambda module, reports, *others: seen.extend(reports))
+    monkeypatch.setattr(verification, "write_page", lambda module, findings, *others: seen.extend(findings.reports))
     every = one_scene.planned
     few = ("tspline", "nurbs", "lefm")
     monkeypatch.setattr(one_scene, "planned", lambda *what: [job for job in every(*what) if job.variant in few])

@@ -202,7 +202,7 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
     package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     scene, seen = load_scene(LINEAR), []
-    monkeypatch.setattr(verification, "write_page", lambda module, reports, *others: seen.extend(reports))
+    monkeypatch.setattr(verification, "write_page", lambda module, findings, *others: seen.extend(findings.reports))
     all_jobs = list(planned(LINEAR, scene))
     assert [job.method for job in all_jobs][:6] == list(names.METHODS)
 

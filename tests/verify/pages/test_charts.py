@@ -18,7 +18,7 @@ from made_up_runs import scene_report  # noqa: E402
 from verify.curves.compare import compare  # noqa: E402
 from verify.curves.curve import envelope  # noqa: E402
 from verify.pages.labels import name_points  # noqa: E402
-from verify.pages.style import HALF, PHASES, colour, drawing, panel  # noqa: E402
+from verify.pages.style import HALF, SHOWN_PHASES, colour, drawing, panel  # noqa: E402
 from verify.report import comparison  # noqa: E402
 from verify.studies.cost import figures as charts  # noqa: E402
 from verify.studies.scaling import page as scaling  # noqa: E402
@@ -118,8 +118,8 @@ def test_bars_of_the_cheapest_are_their_phases(monkeypatch: pytest.MonkeyPatch) 
         assert [width for _, width, _ in bars] == pytest.approx(
             [getattr(row, container.get_label()) for row in ROWS[:2]]
         )
-    assert {container.get_label() for container in axes.containers} == set(PHASES)
-    assert legend(axes.figure) == list(PHASES)
+    assert {container.get_label() for container in axes.containers} == set(SHOWN_PHASES)
+    assert legend(axes.figure) == list(SHOWN_PHASES)
     assert not any(line.get_visible() for line in axes.get_ygridlines()), "a line beside a bar would be one of length 0"
     assert all(line.get_visible() for line in axes.get_xgridlines())
 

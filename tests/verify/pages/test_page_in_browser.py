@@ -11,7 +11,7 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
 from browser import Browser, found  # noqa: E402
-from pages import verification  # noqa: E402
+from made_up_pages import verification  # noqa: E402
 
 pytestmark = pytest.mark.skipif(found() is None, reason="there is no Chromium")
 

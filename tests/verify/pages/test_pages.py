@@ -12,7 +12,7 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
 from browser import Browser, found  # noqa: E402
-from pages import PAGES  # noqa: E402
+from made_up_pages import PAGES  # noqa: E402
 
 pytestmark = pytest.mark.skipif(found() is None, reason="there is no Chromium")
 

@@ -154,7 +154,7 @@ def test_a_label_longer_than_its_axis_is_broken_into_lines() -> None:
 
 def test_a_page_is_dark_on_screens_of_those_who_want_it_and_light_elsewhere(tmp_path: Path) -> None:
     pytest.importorskip("jinja2")
-    report.write((), tmp_path / "report.html", {})
+    report.write(report.Findings((), {}), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text()
     inks = [PALETTE["ink"][dark] for dark in (0, 1)]
     assert f":root {{ --ink: {inks[0]};" in text

@@ -72,13 +72,13 @@ def test_steps_of_a_drawn_line_add_up_to_its_points() -> None:
 
 
 def test_closed_and_straight_parts_of_a_path_stay_where_they_are() -> None:
-    """After z the next part counts from where the closed one began; steps along an axis are one, turns are none."""
+    """After z the next part counts from where the closed one began; steps along an axis are short."""
     text = ' d="M 20 30 L 30 30 L 40 30 L 40 50 L 40 45 z M 25 31 L 25.04 31 M 60.5 70 L 60.5 70.4 L 61.8 70.4 "'
     short = short_numbers(re.match(r' d="[^"]*"', text))
     box, dot, corner = points(short)
-    assert box.tolist() == [[20, 30], [40, 30], [40, 50], [40, 45], [20, 30]]
+    assert box.tolist() == [[20, 30], [30, 30], [40, 30], [40, 50], [40, 45], [20, 30]]
     assert np.allclose(dot, [[25, 31], [25, 31]]) and np.allclose(corner, [[60.5, 70], [60.5, 70.4], [61.8, 70.4]])
-    assert short == ' d="m20 30h20v20v-5zm5 1h0m35.5 39v.4h1.3"'
+    assert short == ' d="m20 30h10h10v20v-5zm5 1h0m35.5 39v.4h1.3"'
 
 
 def test_dots_of_a_series_are_one_path_with_round_ends() -> None:
@@ -149,9 +149,8 @@ def test_figures_say_nothing_in_vain_and_their_images_keep_every_pixel() -> None
     svg = to_svg(figure, "key", "title")
     assert "<g>" not in svg and "rotate(-0" not in svg
     assert 'fill: none"/>' not in svg and "<style" not in svg
-    (data,) = re.findall(r"data:image/png;base64,([^\"]*)", svg)
+    (data,) = re.findall(r"data:image/webp;base64,([^\"]*)", svg)
     with Image.open(io.BytesIO(base64.b64decode(data))) as image:
-        assert image.mode == "P"
         found = np.asarray(image.convert("RGBA"))
     expected = np.round(255 * pixels).astype(int)
     seen = expected[..., 3] > 0
@@ -174,17 +173,6 @@ def test_a_page_says_a_style_once() -> None:
     assert with_classes(bar + bar) == bar + bar
     with pytest.raises(ValueError, match="style sheet"):
         with_classes("".join(figures))
-
-
-def test_an_image_of_too_many_colours_stays_what_it_was() -> None:
-    figure = Figure(figsize=(4.0, 2.0))
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    pixels = np.random.default_rng(1).random((40, 40, 3))
-    axes.imshow(pixels, interpolation="none")
-    svg = to_svg(figure, "key", "title")
-    with Image.open(io.BytesIO(base64.b64decode(re.search(r"base64,([^\"]*)", svg)[1]))) as image:
-        colours = np.unique(np.asarray(image.convert("RGB")).reshape(-1, 3), axis=0)
-        assert image.mode != "P" and len(colours) > 256
 
 
 def test_a_disc_is_what_curves_of_one_radius_enclose() -> None:

@@ -98,6 +98,8 @@ def test_it_is_not_known_without_fields(scene: Scene) -> None:
 
 def test_the_sentence_is_on_the_page(scene: Scene, tmp_path: Path) -> None:
     result = peel(scene, 0.002)
-    report.write((SceneReport(scene, (Run(LABEL, "dolfinx", result),), ()),), tmp_path / "report.html", {})
+    report.write(
+        report.Findings((SceneReport(scene, (Run(LABEL, "dolfinx", result),), ()),), {}), tmp_path / "report.html"
+    )
     text = unescape(sub(r"<[^>]+>", "", (tmp_path / "report.html").read_text())).replace("\u00a0", " ")
     assert said(scene, result).replace("G_Ic", "GIc").replace("g_u", "gu") + "." in text

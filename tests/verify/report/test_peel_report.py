@@ -40,7 +40,7 @@ def test_the_zone_is_marked_where_the_bond_ends(scene: Scene, run: Run) -> None:
 
 
 def test_the_page_tells_of_strip_and_substrate(scene: Scene, run: Run, tmp_path: Path) -> None:
-    report.write((SceneReport(scene, (run,), ()),), tmp_path / "report.html", {})
+    report.write(report.Findings((SceneReport(scene, (run,), ()),), {}), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text().replace("\u00a0", " ")
     for words in (
         "A strip of 150 mm by 2 mm, bonded over 80 mm to a clamped substrate of 120 mm by 10 mm, is peeled off",

@@ -303,7 +303,7 @@ def test_pictures_of_meshes_can_be_read(control: bool, marked: bool, stretch: fl
         -1, 2
     )
     facts.__dict__["extraordinary"] = [(5, np.array([1.5, 1.5 * stretch]))] if marked else []
-    with matplotlib.rc_context(mesh_drawing._RC):
+    with matplotlib.rc_context(mesh_drawing._SHEET_STYLE):
         figure = mesh_drawing.mesh_figure(facts, "a mesh of nine elements", control)
         assert unreadable(figure) == []
     marks = ["2 T-junctions", "extraordinary points, with their valence"]
@@ -324,7 +324,7 @@ def test_all_marks_of_a_mesh_are_named_below_it() -> None:
     facts.__dict__["kinds"] = [((2, 2), 9, 1), *facts.kinds]
     facts.__dict__["junctions"] = np.array([[1.0, 0.5]])
     facts.__dict__["extraordinary"] = [(3, np.array([1.0, 1.0])), (5, np.array([2.0, 2.0]))]
-    with matplotlib.rc_context(mesh_drawing._RC):
+    with matplotlib.rc_context(mesh_drawing._SHEET_STYLE):
         figure = mesh_drawing.mesh_figure(facts, "a mesh with everything", True)
         assert unreadable(figure) == []
     names = ["control points", "1 T-junctions", "extraordinary points, with their valence"]

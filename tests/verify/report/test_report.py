@@ -21,7 +21,7 @@ from verify.curves.curve import curve_error  # noqa: E402
 from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS  # noqa: E402
 from verify.pages.text import inputs, number, percent, quantity, seconds  # noqa: E402
 from verify.report.figures.agreement import path  # noqa: E402
-from verify.report.tally import KINDS  # noqa: E402
+from verify.report.tally import EVIDENCE  # noqa: E402
 from verify.result import CURVE_COLUMNS, Result  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
 from verify.verdict import Check, SceneReport  # noqa: E402
@@ -73,7 +73,7 @@ class Page(HTMLParser):
 
 
 def page(folder: Path, *reports: SceneReport) -> tuple[str, Page]:
-    report.write(reports, folder / "report.html", ENVIRONMENT)
+    report.write(report.Findings(reports, ENVIRONMENT), folder / "report.html")
     text = (folder / "report.html").read_text(encoding="utf-8")
     return text, Page(text)
 
@@ -86,7 +86,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Page]:
 
 def test_asks_nothing_of_the_network(whole: tuple[str, Page]) -> None:
     text, parsed = whole
-    assert all(a.startswith(("#", "data:image/png;base64,", "./")) for a in parsed.addresses)
+    assert all(a.startswith(("#", "data:image/webp;base64,", "./")) for a in parsed.addresses)
     assert not {"link", "iframe", "object", "embed"} & set(parsed.tags)
     assert parsed.tags.count("script") == 1 and "stepper" in re.findall("<script>(.*?)</script>", text, re.DOTALL)[0]
     assert not re.search(r"fetch\(|XMLHttpRequest|WebSocket|import\(|sendBeacon", text)
@@ -129,7 +129,7 @@ def test_says_everything_about_every_run_and_check(whole: tuple[str, Page]) -> N
             assert all(part in parsed.text for part in (run.label, run.folder, run.command))
         for check in given.checks:
             assert all(part in parsed.text for part in (check.name, check.subject, check.meaning, number(check.value)))
-    assert all(kind in parsed.text for kind in KINDS) and all(text in parsed.text for text in KINDS.values())
+    assert all(kind in parsed.text for kind in EVIDENCE) and all(text in parsed.text for text in EVIDENCE.values())
     assert all(f"{name} {value}" in parsed.text for name, value in ENVIRONMENT.items())
 
 

@@ -19,7 +19,7 @@ from scipy.interpolate import CubicHermiteSpline  # noqa: E402
 
 from verify.curves.curve import PROPAGATION, curve_error, oscillation, peak  # noqa: E402
 from verify.methods.dolfinx import DOLFINX_MISSING  # noqa: E402
-from verify.pages.style import PHASES, colour  # noqa: E402
+from verify.pages.style import SHOWN_PHASES, colour  # noqa: E402
 from verify.pages.text import NO_VALUE, percent, quantity  # noqa: E402
 from verify.report import cost
 from verify.report import section as section_of  # noqa: E402
@@ -341,7 +341,7 @@ def test_bars_of_time_are_as_long_as_their_phases(report: SceneReport, drawn: Dr
             )
     for place, entry in enumerate(timed):
         total, end = entry.result.seconds["total"], 0.0
-        for phase in (phase for phase in PHASES if (entry.label, phase) in bars):
+        for phase in (phase for phase in SHOWN_PHASES if (entry.label, phase) in bars):
             start, width, y = bars[entry.label, phase]
             assert start == pytest.approx(end) and y == len(timed) - 1 - place, "the first on top"
             assert width == pytest.approx(entry.result.seconds[phase])

@@ -148,7 +148,7 @@ def test_the_page_is_written_without_a_study_that_is_damaged(studies: Path, tmp_
     made_up_studies.effects(tmp_path / "effects")
     made_up_studies.cost(tmp_path / "cost")
     (tmp_path / "cost" / "cost.json").write_text("{}")
-    report.write((), tmp_path / "report.html", ENVIRONMENT, included=found_in(tmp_path))
+    report.write(report.Findings((), ENVIRONMENT, included=found_in(tmp_path)), tmp_path / "report.html")
     page = (tmp_path / "report.html").read_text()
     assert "What each effect does" in page and "What accuracy costs" not in page
 

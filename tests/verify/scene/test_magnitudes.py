@@ -112,7 +112,7 @@ def test_limits_are_taken_and_what_is_beyond_is_not(key: str, first: float, last
 
 
 def test_what_is_not_given_is_as_it_is_written() -> None:
-    """In the README and in `debond new`: whoever leaves a key out counts on it."""
+    """In the guide and in `debond new`: whoever leaves a key out counts on it."""
     given = load_scene("dcb-czm1").model_dump()
     needed = {"name": "a", "specimen": given["specimen"], "material": given["material"], "load": {"opening": 1.0}}
     law = {key: given["interface"][key] for key in ("strength", "toughness", "ductility", "penalty")}

@@ -54,7 +54,7 @@ def test_a_folder_without_a_study_is_refused(tmp_path: Path, capsys: pytest.Capt
 
 
 def test_page_has_chart_effects_and_matrix_and_no_text_becomes_markup(out: Path) -> None:
-    report.write((bare(scene_report()),), out / "report.html", ENVIRONMENT, included=found_in(out))
+    report.write(report.Findings((bare(scene_report()),), ENVIRONMENT, included=found_in(out)), out / "report.html")
     page = (out / "report.html").read_text()
     data = json.loads(re.search(r'class="rows">(.*?)</script>', page, re.DOTALL)[1])
     assert [row["dofs"] for row in data["rows"]] == [500, 2000, 2700]  # what stopped is no point
@@ -66,7 +66,7 @@ def test_page_has_chart_effects_and_matrix_and_no_text_becomes_markup(out: Path)
 
 
 def test_growth_and_ranks_are_on_the_page_and_in_its_text(out: Path) -> None:
-    report.write((), out / "report.html", ENVIRONMENT, included=found_in(out), text=True)
+    report.write(report.Findings((), ENVIRONMENT, included=found_in(out)), out / "report.html", text=True)
     page, text = (out / "report.html").read_text(), (out / "report.md").read_text()
     assert "How it scales: dcb-czm1" in page and "4 ranks: left out: 2 cores here" in page
     grown = r'<th scope="row">NURBS</th><td>1.00 ± 0.00</td><td>0.\d\d ± 0.\d\d</td><td>1.00 ± 0.00</td>'
@@ -80,7 +80,7 @@ def test_growth_and_ranks_are_on_the_page_and_in_its_text(out: Path) -> None:
 def test_a_cost_study_without_a_run_that_came_to_its_end_has_no_chart(out: Path) -> None:
     header, *_, stopped = (out / "cost" / "cost.csv").read_text().splitlines()
     (out / "cost" / "cost.csv").write_text(f"{header}\n{stopped}\n")
-    report.write((), out / "report.html", ENVIRONMENT, included=found_in(out))
+    report.write(report.Findings((), ENVIRONMENT, included=found_in(out)), out / "report.html")
     page = (out / "report.html").read_text()
     assert "Curve error 1%: no run is that accurate." in page and 'class="rows"' not in page
 
@@ -88,7 +88,7 @@ def test_a_cost_study_without_a_run_that_came_to_its_end_has_no_chart(out: Path)
 def test_rows_of_the_chart_cannot_end_their_script(out: Path) -> None:
     rows = (out / "cost" / "cost.csv").read_text()
     (out / "cost" / "cost.csv").write_text(rows.replace("cost/nurbs-p3-500", "</script><script>alert(1)</script>"))
-    report.write((), out / "report.html", ENVIRONMENT, included=found_in(out))
+    report.write(report.Findings((), ENVIRONMENT, included=found_in(out)), out / "report.html")
     page = (out / "report.html").read_text()
     assert "<script>alert" not in page and page.count("<script") == page.count("</script>")
     data = json.loads(re.search(r'class="rows">(.*?)</script>', page, re.DOTALL)[1])
@@ -98,7 +98,7 @@ def test_rows_of_the_chart_cannot_end_their_script(out: Path) -> None:
 @pytest.mark.parametrize("source", ["", "another"])
 def test_a_study_of_other_sources_says_so(tmp_path: Path, source: str) -> None:
     (study,) = named([made_up_studies.cost(tmp_path / "cost", source=source)])
-    report.write((), tmp_path / "report.html", ENVIRONMENT, included=[study])
+    report.write(report.Findings((), ENVIRONMENT, included=[study]), tmp_path / "report.html")
     assert ("solvers have changed" in (tmp_path / "report.html").read_text()) == bool(source)
 
 
@@ -110,7 +110,7 @@ def test_markdown_says_what_the_page_says(out: Path) -> None:
         for n, wobble in ((978, 1.6e-3), (489, 3.2e-3))
     )
     given = replace(given, runs=(*given.runs, *(replace(run, key="0123456789abcdef0123") for run in coarse)))
-    report.write((given,), out / "report.html", ENVIRONMENT, included=found_in(out), text=True)
+    report.write(report.Findings((given,), ENVIRONMENT, included=found_in(out)), out / "report.html", text=True)
     text = (out / "report.md").read_text()
     assert text.startswith("# Verification report\n\n**All 6 checks hold on 1 scene.**")
     for check in given.checks:

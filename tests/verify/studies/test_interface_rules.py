@@ -47,7 +47,7 @@ def test_a_rule_that_fails_is_told_and_costs_no_other(found, tmp_path):
 
     lost = Trial("nurbs", "gauss", 2, 50_000.0, float("nan"), None, "failed: ValueError: no mesh")
     trials = tuple(lost if (t.method, t.rule, t.ductility) == ("nurbs", "gauss", 50_000.0) else t for t in found.trials)
-    report.write((), tmp_path / "report.html", {}, replace(found, trials=trials))
+    report.write(report.Findings((), {}, replace(found, trials=trials)), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text()
     assert "failed: ValueError: no mesh" in text and "NURBS, gauss, 2 points" in text
     assert text.count('id="quadrature-nurbs-t"') == 1 and 'href="#quadrature"' in text

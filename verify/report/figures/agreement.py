@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import PROPAGATION, curve_error, envelope, load_at, oscillation, peak
+from verify.curves.curve import PROPAGATION, SAMPLES, curve_error, envelope, load_at, oscillation, peak
 from verify.result import Result
 from verify.verdict import Run, SceneReport
-
-SAMPLES = 400
 
 
 @dataclass(frozen=True)
@@ -34,9 +32,9 @@ def reference_run(report: SceneReport) -> Run | None:
     """The curve that the others are held against: DOLFINx, or else the cohesive beam. LEFM is a limit, never this."""
     for method in ("dolfinx", "beam"):
         runs = [run for run in report.runs if run.method == method and usable(run)]
-        complete = [run for run in runs if run.result.complete]
+        complete = [run for run in runs if run.result is not None and run.result.complete]
         if complete:
-            return max(complete, key=lambda run: run.result.dofs)
+            return max(complete, key=lambda run: run.result.dofs if run.result is not None else 0)
     return None
 
 
@@ -44,7 +42,7 @@ def path(result: Result, refine: int = 6) -> tuple[np.ndarray, np.ndarray]:
     """Opening and load to draw: cubic Hermite arcs between converged steps where the method knows the slope.
 
     A straight line where the arc would leave the chord by more than 1 % of the peak: there the step went over a turn
-    of the path, and the arc would invent one. LEFM stays a polygon: its path has a kink.
+    of the path, and the arc would add one. LEFM stays a polygon: its path has a kink.
     """
     x, y = np.asarray(result.opening, float), np.asarray(result.load, float)
     if "load_slope" not in result.steps or result.method == "lefm" or len(x) < 2:
@@ -77,12 +75,12 @@ def branch(result: Result, reference: Result) -> tuple[np.ndarray, np.ndarray]:
 
 def agreement(run: Run, reference: Run | None) -> Agreement:
     """The numbers of one run; the comparison is NaN without a reference, for the reference itself and for LEFM."""
-    curve = run.result.opening, run.result.load
-    top, end = peak(curve), float(np.max(run.result.opening))
+    curve = _curve(run)
+    top, end = peak(curve), float(np.max(curve[0]))
     if reference is None or run is reference or run.method == "lefm":
         return Agreement(math.nan, math.nan, peak_load=top[1], peak_opening=top[0], end=end)
-    base = reference.result.opening, reference.result.load
-    end = min(end, float(np.max(reference.result.opening)))
+    base = _curve(reference)
+    end = min(end, float(np.max(base[0])))
     return Agreement(
         error=curve_error(curve, base, end),
         oscillation=oscillation(curve, base, end)["rms"],
@@ -90,3 +88,8 @@ def agreement(run: Run, reference: Run | None) -> Agreement:
         peak_opening=top[0],
         end=end,
     )
+
+
+def _curve(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    assert run.result is not None, "usable runs alone have a curve"
+    return run.result.opening, run.result.load

@@ -148,7 +148,7 @@ def energies(scene: Scene, entry: Entry, key: str) -> Panel | None:
 
 
 def ledger_gap(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
-    """What the ledger of each run misses, relative to the work done so far."""
+    """The gap of the energy ledger of each run, relative to the work done so far."""
     gaps = []
     for entry in (entry for entry in runs if _LEDGER <= set(entry.result.steps)):
         steps = entry.result.steps
@@ -164,8 +164,8 @@ def ledger_gap(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
             seen = gap > 0
             axes.plot(entry.result.opening[seen], gap[seen], **entry.line.options())
         axes.axhline(0.005, color=colour("bad"), linewidth=0.8, dashes=(2, 2))
-        place = {"ha": "right", "va": "bottom", "transform": axes.get_yaxis_transform()}
-        axes.text(0.99, 0.005, "0.5 %", color=colour("bad"), **place)
+        at_the_edge = axes.get_yaxis_transform()
+        axes.text(0.99, 0.005, "0.5 %", color=colour("bad"), ha="right", va="bottom", transform=at_the_edge)
         least = min((float(np.nanmin(gap[gap > 0])) for _, gap in gaps if np.any(gap > 0)), default=1e-6)
         axes.set(yscale="log", xlim=(0, None), ylim=(max(least, 1e-10), 0.1))
         axes.yaxis.set_major_formatter(lambda value, _: power_of_ten(value))
@@ -187,7 +187,7 @@ def _peak_point(result: Result) -> tuple[float, float]:
 
 
 def _top_load(runs: Sequence[Entry]) -> float:
-    """Largest load of what is not a limit: LEFM may run out of the figure."""
+    """Largest load of all curves but LEFM, which may leave the figure."""
     own = [d for d in runs if d.method != "lefm"] or list(runs)
     return max(float(np.nanmax(d.result.load)) for d in own) or 1.0
 

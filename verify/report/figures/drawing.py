@@ -10,11 +10,12 @@ from matplotlib.patches import Polygon, Rectangle
 
 from verify.pages.style import WIDE, Panel, colour, drawing, to_svg
 from verify.pages.text import Units, number, quantity
+from verify.scene.bodies import Dcb
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
-_ABOVE, _BELOW = 0.73, 1.03  # for the load and for the dimensions, inches
+_LOAD_HEIGHT, _DIMENSIONS_HEIGHT = 0.73, 1.03  # for the load and for the dimensions, inches
 _THINNEST = 5.0 / 72.0  # an arm is drawn at least this thick, inches
 
 
@@ -26,18 +27,19 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
     zone : start and end of the process zone along the specimen and the opening at which it was there
     """
     body, units = scene.specimen, Units.of(scene.units)
+    assert isinstance(body, Dcb)
     scale = (WIDE - 2.1) / body.length  # inches per unit of length
     thickness = max(body.arm_thickness * scale, _THINNEST)
     with drawing():
-        figure = Figure(figsize=(WIDE, _ABOVE + 2 * thickness + _BELOW))
+        figure = Figure(figsize=(WIDE, _LOAD_HEIGHT + 2 * thickness + _DIMENSIONS_HEIGHT))
         axes = figure.add_axes((0, 0, 1, 1))
         axes.set_axis_off()
         # inches from the middle of the loaded end
-        axes.set(xlim=(-0.9, WIDE - 0.9), ylim=(-thickness - _BELOW, thickness + _ABOVE))
+        axes.set(xlim=(-0.9, WIDE - 0.9), ylim=(-thickness - _DIMENSIONS_HEIGHT, thickness + _LOAD_HEIGHT))
         _bodies(axes, body.length * scale, body.precrack * scale, thickness)
         _loads(axes, thickness)
         _supports(axes, body.length * scale)
-        _dimensions(axes, scene, units, scale, thickness)
+        _dimensions(axes, body, units, scale, thickness)
         if zone is not None and zone[1] > zone[0]:
             mark_zone(axes, zone[0] * scale, zone[1] * scale, thickness + 0.42, zone_label(zone, units))
         svg = to_svg(figure, key, f"Side view of the specimen of {scene.name}")
@@ -90,8 +92,8 @@ def _supports(axes: Axes, length: float) -> None:
     axes.text(length + size + 0.06, 0, note, ha="left", va="center", fontsize=7, color=colour("muted"))
 
 
-def _dimensions(axes: Axes, scene: Scene, units: Units, scale: float, thickness: float) -> None:
-    body, below = scene.specimen, -thickness - 0.44
+def _dimensions(axes: Axes, body: Dcb, units: Units, scale: float, thickness: float) -> None:
+    below = -thickness - 0.44
     a, length = body.precrack * scale, body.length * scale
     length_of, thick, wide = (quantity(v, units.length) for v in (body.length, body.arm_thickness, body.width))
     measure(axes, 0, a, below, f"precrack {quantity(body.precrack, units.length)}")

@@ -1,4 +1,4 @@
-"""A run together with what the page needs of it everywhere: its line and its distance to the reference."""
+"""A run with its line style and its distance to the reference."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from verify.verdict import Run, SceneReport
 
 @dataclass(frozen=True, eq=False)
 class Entry:
-    """One run on the page; ``agreement`` is None where there is no curve."""
+    """A run on the page; ``agreement`` is None without a curve."""
 
     run: Run
     repeat: int  # how many runs of the same method come before, or of methods of other packages and other codes
@@ -41,6 +41,7 @@ class Entry:
 
     @property
     def result(self) -> Result:
+        assert self.run.result is not None, "entries with an agreement alone are drawn"
         return self.run.result
 
     @property

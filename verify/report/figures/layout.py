@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
 #: Inches: margin, width of the whole specimen, gap, width of the enlarged part; least and largest height of a row.
-LEFT, WHOLE, GAP, CLOSE = 0.42, 6.3, 0.5, WIDE - 7.32
-LOWEST, HIGHEST = 0.8, 2.2
+LEFT, WHOLE, GAP, CLOSE_UP = 0.42, 6.3, 0.5, WIDE - 7.32
+LEAST_HEIGHT, MOST_HEIGHT = 0.8, 2.2
 
 
 def rows(count: int, height: float, below: float) -> tuple[Figure, list[tuple[Axes, Axes]]]:
@@ -34,7 +34,7 @@ def rows(count: int, height: float, below: float) -> tuple[Figure, list[tuple[Ax
     pairs = []
     for i in range(count):
         bottom = (total - (i + 1) * (height + between) + 0.15) / total
-        places = ((LEFT, WHOLE), (LEFT + WHOLE + GAP, CLOSE))
+        places = ((LEFT, WHOLE), (LEFT + WHOLE + GAP, CLOSE_UP))
         whole, close = (figure.add_axes((x / WIDE, bottom, w / WIDE, height / total)) for x, w in places)
         whole.grid(False)
         close.grid(False)
@@ -49,8 +49,8 @@ def frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[Limits, Limits]:
     x_ni = np.concatenate([(np.asarray(s.X_euvi) + np.asarray(s.u_euvi)).reshape(-1, 2) for s in snapshots])
     pad = 0.01 * scene.specimen.extent
     left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
-    height = max(2.06 * float(np.abs(x_ni[:, 1]).max()) + pad, LOWEST / WHOLE * (right - left))
-    right = max(right, left + WHOLE / HIGHEST * height)
+    height = max(2.06 * float(np.abs(x_ni[:, 1]).max()) + pad, LEAST_HEIGHT / WHOLE * (right - left))
+    right = max(right, left + WHOLE / MOST_HEIGHT * height)
     return (left, right), (-height / 2, height / 2)
 
 
@@ -60,12 +60,12 @@ def zoom(scene: Scene, snapshots: Sequence[Snapshot], height: float) -> tuple[Li
     zone = next((z for s in snapshots if (z := process_zone(s)) is not None), (body.free_length, body.free_length))
     width = min(max(1.7 * (zone[1] - zone[0]), 5 * body.loaded_thickness), 0.3 * body.extent)
     middle = body.place(min(sum(zone) / 2, body.extent - width / 2))
-    reach = width * height / CLOSE / 2
+    reach = width * height / CLOSE_UP / 2
     return (middle - width / 2, middle + width / 2), (-reach, reach)
 
 
 def mark(axes: Axes, part: tuple[Limits, Limits]) -> None:
-    """Frame what is enlarged beside."""
+    """Frame the part that is enlarged beside."""
     (x0, x1), (y0, y1) = part
     frame = Rectangle((x0, y0), x1 - x0, y1 - y0, fill=False, edgecolor=colour("muted"), linewidth=0.6, zorder=5)
     axes.add_patch(frame)

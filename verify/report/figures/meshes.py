@@ -35,8 +35,8 @@ def deformed(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str) ->
         figure, pairs = rows(len(group), height, 0.95)
         for (whole, close), (entry, snapshot) in zip(pairs, group, strict=True):
             x_euvi = np.asarray(snapshot.X_euvi) + np.asarray(snapshot.u_euvi)
-            paint(whole, x_euvi, np.asarray(snapshot.stress_euv), limit, x, y)
-            paint(close, x_euvi, np.asarray(snapshot.stress_euv), limit, *part)
+            paint(whole, x_euvi, np.asarray(snapshot.stress_euv), limit, (x, y))
+            paint(close, x_euvi, np.asarray(snapshot.stress_euv), limit, part)
             mark(whole, part)
             title = f"{entry.label}, opening {quantity(snapshot.opening, units.length, 3)}"
             whole.set_title(title, color=colour(entry.line.colour))

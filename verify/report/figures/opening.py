@@ -1,6 +1,6 @@
-"""The opening crack in frames: one an opening, with the stress in the arms, the tractions and the place on the curve.
+"""The opening crack in frames, one for each opening: stress in the arms, tractions and the place on the curve.
 
-All frames have the same scales, so that what moves from one to the next is the crack.
+All frames have the same scales, so that only the crack moves from one to the next.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from verify.pages.text import Units, axis, number, quantity
 from verify.report.figures.agreement import path
 from verify.report.figures.entry import Entry
 from verify.report.figures.fields import process_zone
-from verify.report.figures.layout import CLOSE, GAP, LEFT, WHOLE, frame
+from verify.report.figures.layout import CLOSE_UP, GAP, LEFT, WHOLE, frame
 from verify.result import Snapshot
 
 if TYPE_CHECKING:
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 #: Pixels an inch of the stress, and between the openings that all runs keep.
 _FINE, _COARSE = 150, 75
 
-#: Inches: the tractions below the arms, between them, at the foot and at the head, and before what is beside.
-_TRACTION, _BETWEEN, _FOOT, _HEAD, _CLEAR = 1.25, 0.3, 0.42, 0.24, 0.05
+#: Inches: height of the tractions, gap to the arms above, foot, head, and clear space before the load curve.
+_TRACTION, _BETWEEN, _BELOW_TRACTION, _ABOVE_ARMS, _CLEAR = 1.25, 0.3, 0.42, 0.24, 0.05
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Frame:
 
 @dataclass(frozen=True)
 class Scales:
-    """What all frames share: the largest stress, the limits along and across, and those of the traction."""
+    """Scales of all frames: the largest stress, the limits along and across, and those of the traction."""
 
     stress: float
     x: Limits
@@ -59,7 +59,7 @@ def frames(
     key: str,
     between: bool = True,
 ) -> tuple[Frame, ...]:
-    """Frames of the run that leads the page, the tractions of all; none where fewer than two openings were kept.
+    """Frames of the leading run with the tractions of all runs; empty where fewer than two openings were kept.
 
     With ``between``, where it has more openings, it is drawn at these as well, alone and with fewer pixels.
 
@@ -96,7 +96,7 @@ def _lead(group: Sequence[tuple[Entry, Snapshot]]) -> tuple[Entry, Snapshot] | N
 
 
 def _one(scene: Scene, lead: tuple[Entry, Snapshot], scales: Scales, picture: Figure, sheet: Bbox, key: str) -> Frame:
-    """A picture with what is said of it."""
+    """A picture with its caption."""
     (entry, snapshot), units, said = lead, Units.of(scene.units), _said(scene, lead[1])
     whose = entry.label if _between(entry, snapshot) else "all runs with fields"
     caption = (
@@ -108,7 +108,7 @@ def _one(scene: Scene, lead: tuple[Entry, Snapshot], scales: Scales, picture: Fi
 
 
 def _between(entry: Entry, snapshot: Snapshot) -> bool:
-    """Whether this opening is one that only the run itself has kept."""
+    """Whether this run alone has kept the opening."""
     return any(snapshot is other for other in entry.result.between)
 
 
@@ -122,18 +122,18 @@ def _picture(
     """The arms, the tractions below them, and beside both the curve."""
     (entry, snapshot), x, y = lead, scales.x, scales.y
     height = WHOLE * (y[1] - y[0]) / (x[1] - x[0])
-    total = _HEAD + height + _BETWEEN + _TRACTION + _FOOT
+    total = _ABOVE_ARMS + height + _BETWEEN + _TRACTION + _BELOW_TRACTION
     figure = Figure(figsize=(WIDE, total))
 
     def place(left: float, bottom: float, width: float, high: float) -> Axes:
         return figure.add_axes((left / WIDE, bottom / total, width / WIDE, high / total))
 
-    arms = place(LEFT, _FOOT + _TRACTION + _BETWEEN, WHOLE, height)
-    tractions = place(LEFT, _FOOT, WHOLE, _TRACTION)
-    load = place(LEFT + WHOLE + GAP, _FOOT, CLOSE, total - _FOOT - _HEAD)
+    arms = place(LEFT, _BELOW_TRACTION + _TRACTION + _BETWEEN, WHOLE, height)
+    tractions = place(LEFT, _BELOW_TRACTION, WHOLE, _TRACTION)
+    load = place(LEFT + WHOLE + GAP, _BELOW_TRACTION, CLOSE_UP, total - _BELOW_TRACTION - _ABOVE_ARMS)
     x_euvi = np.asarray(snapshot.X_euvi) + np.asarray(snapshot.u_euvi)
     dpi = _COARSE if _between(entry, snapshot) else _FINE
-    paint(arms, x_euvi, np.asarray(snapshot.stress_euv), scales.stress, x, y, dpi)
+    paint(arms, x_euvi, np.asarray(snapshot.stress_euv), scales.stress, (x, y), dpi)
     arms.grid(False)
     arms.set_title(f"{entry.label}, stress along the specimen", color=colour(entry.line.colour))
     arms.tick_params(labelbottom=False)
@@ -144,7 +144,7 @@ def _picture(
 
 
 def _apart(left: Axes, right: Axes) -> None:
-    """Move what is on the right so far that its numbers and its label do not reach into what is on the left."""
+    """Move the right axes until their numbers and label clear the left ones."""
     figure, ends, begins = right.figure, left.get_tightbbox(), right.yaxis.get_tightbbox()
     if ends is None or begins is None:
         return

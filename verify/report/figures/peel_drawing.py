@@ -12,11 +12,12 @@ from matplotlib.patches import Rectangle
 from verify.pages.style import WIDE, Panel, colour, drawing, to_svg
 from verify.pages.text import Units, quantity
 from verify.report.figures.drawing import mark_zone, measure, pull, zone_label
+from verify.scene.bodies import Peel
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
-_ABOVE, _BELOW = 0.75, 0.85  # inches for the load and for the dimensions
+_ABOVE_STRIP, _BELOW_SUBSTRATE = 0.75, 0.85  # inches for the load and for the dimensions
 _LEFT, _RIGHT = 0.5, 0.9
 
 
@@ -28,25 +29,26 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
     zone : start and end of the process zone, distances from the loaded end, and the opening at which it was there
     """
     body, units = scene.specimen, Units.of(scene.units)
+    assert isinstance(body, Peel)
     longest = max(body.strip_length, body.substrate_length)
     scale = (WIDE - _LEFT - _RIGHT) / longest  # inches per unit of length
     top, bottom = body.strip_thickness * scale, body.substrate_thickness * scale
-    height = _ABOVE + top + bottom + _BELOW
+    height = _ABOVE_STRIP + top + bottom + _BELOW_SUBSTRATE
     with drawing():
         figure = Figure(figsize=(WIDE, height))
         axes = figure.add_axes((0, 0, 1, 1))
         axes.set_axis_off()
-        axes.set(xlim=(-_LEFT, WIDE - _LEFT), ylim=(-bottom - _BELOW, top + _ABOVE))  # inches from the left end
+        axes.set(xlim=(-_LEFT, WIDE - _LEFT), ylim=(-bottom - _BELOW_SUBSTRATE, top + _ABOVE_STRIP))
         for length, base, thick in ((body.strip_length, 0.0, top), (body.substrate_length, -bottom, bottom)):
             _body(axes, length * scale, base, thick)
         bond = body.bond_length * scale
         axes.plot([0, bond], [0, 0], color=colour("accent"), linewidth=2.0, zorder=3, solid_capstyle="butt")
         _clamp(axes, body.substrate_length * scale, -bottom)
         _load(axes, body.strip_length * scale, top)
-        _dimensions(axes, scene, units, scale, -bottom)
+        _dimensions(axes, body, units, scale, -bottom)
         if zone is not None and zone[1] > zone[0]:
-            ends = (body.place(s) * scale for s in zone[1::-1])
-            mark_zone(axes, *ends, top + 0.4, zone_label(zone, units))
+            start, end = (body.place(s) * scale for s in zone[1::-1])
+            mark_zone(axes, start, end, top + 0.4, zone_label(zone, units))
         svg = to_svg(figure, key, f"Side view of the specimen of {scene.name}")
     caption = (
         "The undeformed specimen, to scale. The load P is the resultant of a uniform dead traction on the right end of "
@@ -57,10 +59,11 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
 
 
 def _body(axes: Axes, length: float, base: float, thickness: float) -> None:
-    fill = {"facecolor": colour("muted"), "alpha": 0.28, "edgecolor": "none", "zorder": 1}
-    axes.add_patch(Rectangle((0, base), length, thickness, **fill))
-    frame = {"fill": False, "edgecolor": colour("ink"), "linewidth": 0.6, "zorder": 2}
-    axes.add_patch(Rectangle((0, base), length, thickness, **frame))
+    axes.add_patch(
+        Rectangle((0, base), length, thickness, facecolor=colour("muted"), alpha=0.28, edgecolor="none", zorder=1)
+    )
+    frame = Rectangle((0, base), length, thickness, fill=False, edgecolor=colour("ink"), linewidth=0.6, zorder=2)
+    axes.add_patch(frame)
 
 
 def _clamp(axes: Axes, length: float, y: float) -> None:
@@ -76,8 +79,7 @@ def _load(axes: Axes, x: float, top: float) -> None:
     axes.text(x + 0.1, top + 0.25, "P, Δ", ha="left", va="center", color=colour("bad"))
 
 
-def _dimensions(axes: Axes, scene: Scene, units: Units, scale: float, bottom: float) -> None:
-    body = scene.specimen
+def _dimensions(axes: Axes, body: Peel, units: Units, scale: float, bottom: float) -> None:
     lengths = (body.bond_length, body.strip_length, body.strip_thickness)
     depths = (body.substrate_length, body.substrate_thickness, body.width)
     bond, strip, thick, substrate, depth, width = (quantity(v, units.length) for v in (*lengths, *depths))

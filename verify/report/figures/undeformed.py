@@ -6,35 +6,39 @@ process zone is a band between them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from verify.pages.paint import Limits, seen
+from verify.pages.paint import Limits, inches, seen
 from verify.pages.strokes import sides, strokes
 from verify.pages.style import WIDE, Panel, colour, drawing, to_svg
 from verify.pages.text import Units, axis, number, quantity
 from verify.report.figures.entry import Entry
 from verify.report.figures.fields import process_zone
-from verify.report.figures.layout import HIGHEST, LEFT, WHOLE, mark, rows, zoom
-from verify.report.figures.tmesh_drawing import JUNCTIONS, LINES
+from verify.report.figures.layout import LEFT, MOST_HEIGHT, WHOLE, mark, rows, zoom
 from verify.result import Snapshot
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
+#: Keywords of a matplotlib artist.
+Style = Mapping[str, Any]
+
 #: Inches: least height of a row, room at the foot, and distance between the arms as drawn, filled by the process zone.
-_LOWEST, _FOOT, _APART = 0.62, 0.68, 5.0 / 72.0
+_LEAST_ROW, _LEGEND, _APART = 0.62, 0.68, 5.0 / 72.0
 
 #: Part of the specimen's length within which a point lies on the bond.
 _ON_BOND = 1e-9
 
-_ELEMENTS = {"linewidth": 0.45, "zorder": 2, "solid_capstyle": "butt"}
-_ZONE = {"color": colour("zone"), "linewidth": 72.0 * _APART, "zorder": 1, "solid_capstyle": "butt"}
+_LINES: Style = {"color": colour("ink"), "linewidth": 0.5, "zorder": 3}
+_JUNCTIONS: Style = {"color": colour("bad"), "marker": "s", "markersize": 3.0, "markeredgewidth": 0.0, "zorder": 5}
+_ELEMENTS: Style = {"linewidth": 0.45, "zorder": 2, "solid_capstyle": "butt"}
+_ZONE: Style = {"color": colour("zone"), "linewidth": 72.0 * _APART, "zorder": 1, "solid_capstyle": "butt"}
 
 
 def undeformed(scene: Scene, drawn: Sequence[Entry], key: str) -> Panel | None:
@@ -49,11 +53,11 @@ def undeformed(scene: Scene, drawn: Sequence[Entry], key: str) -> Panel | None:
 
 
 def followed(scene: Scene, drawn: Sequence[Entry], key: str) -> Panel | None:
-    """T-meshes of an adaptive run at up to three openings; none where no run changes its mesh."""
-    found = ((entry, moves) for entry in drawn if len(moves := _changes(entry)) > 1)
-    entry, moves = next(found, (None, ()))
-    if entry is None:
+    """T-meshes of an adaptive run at up to three openings; None where no run changes its mesh."""
+    found = next(((entry, moves) for entry in drawn if len(moves := _changes(entry)) > 1), None)
+    if found is None:
         return None
+    entry, moves = found
     length = Units.of(scene.units).length
     titled = [(entry, s, f"Opening {quantity(s.opening, length, 3)}") for s in moves[-3:]]
     title = f"The T-mesh follows the process zone, {scene.name}"
@@ -65,7 +69,10 @@ def followed(scene: Scene, drawn: Sequence[Entry], key: str) -> Panel | None:
 def zone_at(scene: Scene, snapshot: Snapshot) -> Limits | None:
     """Where the process zone begins and ends along X; None where nothing is damaged."""
     zone = process_zone(snapshot)
-    return None if zone is None else tuple(sorted(map(scene.specimen.place, zone)))
+    if zone is None:
+        return None
+    start, end = sorted(map(scene.specimen.place, zone))
+    return start, end
 
 
 def bond_element(snapshot: Snapshot, zone: Limits) -> float:
@@ -81,7 +88,7 @@ def bond_element(snapshot: Snapshot, zone: Limits) -> float:
 def draw(axes: Axes, snapshot: Snapshot, ink: str, frame: tuple[Limits, Limits], zone: Limits | None) -> None:
     """The mesh within a frame, which the axes get as their limits: elements, T-mesh, T-junctions, process zone."""
     x, y = frame
-    height = axes.get_position().height * axes.figure.get_size_inches()[1]
+    height = inches(axes)[1]
     apart = 0.5 * _APART / (height - _APART) * (y[1] - y[0])
     frame = x, (y[0] - apart, y[1] + apart)
     X_euvi = np.asarray(snapshot.X_euvi)
@@ -89,11 +96,11 @@ def draw(axes: Axes, snapshot: Snapshot, ink: str, frame: tuple[Limits, Limits],
     for side in np.unique(side_e):
         shift = np.array([0.0, side * apart])
         _plot(axes, sides(X_euvi[side_e == side]) + shift, frame, "elements", {**_ELEMENTS, "color": ink})
-        _plot(axes, _of_arm(snapshot.line_nki, side) + shift, frame, "T-mesh", LINES)
+        _plot(axes, _of_arm(snapshot.line_nki, side) + shift, frame, "T-mesh", _LINES)
         points_nki = _of_arm(snapshot.junction_ni[:, None], side) + shift
         points_ni = points_nki[seen(points_nki, frame), 0]
         if len(points_ni):
-            axes.plot(*points_ni.T, linestyle="none", label="T-junctions", **{**JUNCTIONS, "markersize": 1.8})
+            axes.plot(*points_ni.T, linestyle="none", label="T-junctions", **{**_JUNCTIONS, "markersize": 1.8})
     if zone is not None:
         axes.plot(zone, (0.0, 0.0), label="zone", **_ZONE)
     axes.set(xlim=frame[0], ylim=frame[1])
@@ -106,7 +113,7 @@ def _picture(
     units = Units.of(scene.units)
     whole_frame, height, stretch = _frame(scene, [snapshot for _, snapshot, _ in titled])
     with drawing():
-        figure, pairs = rows(len(titled), height, _FOOT)
+        figure, pairs = rows(len(titled), height, _LEGEND)
         for (whole, close), (entry, snapshot, name) in zip(pairs, titled, strict=True):
             part = zoom(scene, [snapshot] if moving else [s for _, s, _ in titled], height - _APART)
             zone = zone_at(scene, snapshot)
@@ -138,8 +145,7 @@ def _counted(snapshot: Snapshot, zone: Limits | None, units: Units) -> str:
     """Elements in all and in the process zone, and T-junctions, in words."""
     text = f"{len(snapshot.X_euvi)} elements"
     text += f", {junctions} T-junctions" if (junctions := len(snapshot.junction_ni)) else ""
-    element = bond_element(snapshot, zone) if zone is not None else float("nan")
-    if np.isfinite(element):
+    if zone is not None and np.isfinite(element := bond_element(snapshot, zone)):
         count = number((zone[1] - zone[0]) / element, 2)
         text += f"; {count} of {quantity(element, units.length, 2)} in the process zone"
     return text
@@ -163,9 +169,11 @@ def _distinct(shown: Sequence[tuple[Entry, Snapshot]]) -> list[tuple[list[Entry]
     """Runs by mesh: the same elements and the same T-mesh."""
     groups: dict[tuple[bytes, bytes], tuple[list[Entry], Snapshot]] = {}
     for entry, snapshot in shown:
-        places = _corners(snapshot), snapshot.line_nki
-        mesh = tuple((np.round(values, 9) + 0.0).tobytes() for values in places)  # + 0.0 makes 0 of -0
-        groups.setdefault(mesh, ([], snapshot))[0].append(entry)
+        elements, lines = (
+            (np.round(values, 9) + 0.0).tobytes()  # + 0.0 makes 0 of -0
+            for values in (_corners(snapshot), snapshot.line_nki)
+        )
+        groups.setdefault((elements, lines), ([], snapshot))[0].append(entry)
     return list(groups.values())
 
 
@@ -185,21 +193,21 @@ def _frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[tuple[Limits, L
     pad = 0.01 * scene.specimen.extent
     left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
     reach = 1.06 * float(np.abs(x_ni[:, 1]).max())
-    right = max(right, left + WHOLE / (HIGHEST - _APART) * 2 * reach)
+    right = max(right, left + WHOLE / (MOST_HEIGHT - _APART) * 2 * reach)
     to_scale = WHOLE * 2 * reach / (right - left)
-    height = max(to_scale + _APART, _LOWEST)
+    height = max(to_scale + _APART, _LEAST_ROW)
     return ((left, right), (-reach, reach)), height, (height - _APART) / to_scale
 
 
-def _plot(axes: Axes, lines_nki: np.ndarray, frame: tuple[Limits, Limits], label: str, style: dict) -> None:
-    """Lines that are seen, as one path."""
+def _plot(axes: Axes, lines_nki: np.ndarray, frame: tuple[Limits, Limits], label: str, style: Style) -> None:
+    """The visible lines as one path."""
     lines_nki = lines_nki[seen(lines_nki, frame)]
     if len(lines_nki):
         axes.plot(*strokes(lines_nki).T, label=label, **style)
 
 
 def _of_arm(lines_nki: np.ndarray, side: float) -> np.ndarray:
-    """Lines of the arm above (+1) or below (-1), each once: both have what lies on the bond, Y = 0."""
+    """Lines of the arm above (+1) or below (-1), each once; lines on the bond, Y = 0, belong to both."""
     own = np.sign(lines_nki[..., 1].mean(axis=1)) * side >= 0
     return np.unique(lines_nki[own], axis=0) if own.any() else lines_nki[own]
 
@@ -208,8 +216,8 @@ def _legend(figure: Figure, tmesh: bool) -> None:
     handles = [Line2D([], [], label="elements", **{**_ELEMENTS, "color": colour("muted"), "linewidth": 0.8})]
     if tmesh:
         handles[0].set_label("(Bézier) elements, in the colour of the method")
-        handles.append(Line2D([], [], label="line of the T-mesh", **LINES))
-        handles.append(Line2D([], [], label="T-junction", linestyle="none", **JUNCTIONS))
+        handles.append(Line2D([], [], label="line of the T-mesh", **_LINES))
+        handles.append(Line2D([], [], label="T-junction", linestyle="none", **_JUNCTIONS))
     handles.append(Line2D([], [], label="process zone", **_ZONE))
     width, height = figure.get_size_inches()
     place = (LEFT / WIDE, 0.02 / height)

@@ -126,7 +126,7 @@ def _picture(study: PlaneStudy, value_euv: np.ndarray, limit: float, label: str,
         figure = Figure(figsize=(THIRD, total))
         left, bottom = 0.5 * (THIRD - width), _MARGIN + _STRIP
         axes = figure.add_axes((left / THIRD, bottom / total, width / THIRD, height / total))
-        paint(axes, study.X_euvi, value_euv, limit, x, y)
+        paint(axes, study.X_euvi, value_euv, limit, (x, y))
         axes.set_axis_off()
         place = figure.add_axes((0.1, 0.4 / total, 0.8, 0.08 / total))
         bar = figure.colorbar(ScalarMappable(Normalize(-limit, limit), STRESS_MAP), cax=place, orientation="horizontal")

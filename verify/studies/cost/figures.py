@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from verify.pages.parts import phase_bars, plain
-from verify.pages.style import HALF, PHASES, THIRD, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, SHOWN_PHASES, THIRD, Panel, colour, drawing, panel, to_svg
 from verify.studies.cost.findings import LEVELS, by_family, pareto
 from verify.studies.cost.row import Row
 
@@ -100,7 +100,7 @@ def phases(rows: Sequence[Row], key: str) -> Panel:
         left_margin = 0.3 + 0.062 * max(len(named(row)) + 7 for row in rows)
         figure, axes = panel(HALF * 1.5, 0.3 * len(rows) + 0.85, left=left_margin, top=0.4)
         labels = [f"{named(row)}, {row.dofs}" if row.dofs else named(row) for row in rows]
-        phase_bars(axes, labels, {name: [getattr(row, name) for row in rows] for name in PHASES})
+        phase_bars(axes, labels, {name: [getattr(row, name) for row in rows] for name in SHOWN_PHASES})
         axes.set(xlabel="seconds")
         figure.legend(loc="upper center", ncols=6, handlelength=0.9, columnspacing=0.9, handletextpad=0.4)
         svg = to_svg(figure, key, "Where the time of the cheapest runs goes")

@@ -8,7 +8,7 @@ from math import nan
 
 import numpy as np
 
-from verify.curves.convergence import SAFETY, assess
+from verify.curves.convergence import GCI_SAFETY, assess
 from verify.curves.of_run import cubics, dissipated, distance, peak_load
 from verify.methods.dolfinx import dolfinx_installed
 from verify.result import Result
@@ -116,7 +116,7 @@ def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, fl
     if not ratio[0] <= wanted <= ratio[-1]:
         return nan, CAUTION * apart[1]
     p = float(np.interp(wanted, ratio, orders))
-    return p, SAFETY * apart[1] / ((h[1] / h[2]) ** p - 1.0)
+    return p, GCI_SAFETY * apart[1] / ((h[1] / h[2]) ** p - 1.0)
 
 
 def _index(h: Sequence[float], values: Sequence[float]) -> float:

@@ -21,7 +21,7 @@ import numpy as np
 from verify.curves.curve import Curve, peak
 from verify.curves.leg_checks import leg_differences
 from verify.curves.legs import path
-from verify.curves.of_run import PER_STEP, cubics, distance
+from verify.curves.of_run import POINTS_PER_STEP, cubics, distance
 from verify.fields.frames import cleared
 from verify.methods.names import WITH_DOFS
 from verify.methods.reference_mesh import reference_mesh
@@ -32,9 +32,10 @@ from verify.runs.folder import FILES, write_json
 from verify.runs.store import alone_in
 from verify.scene.effects import simulated
 from verify.scene.parse import parse_scene
-from verify.scene.schema import Scene, only_opens, turns
+from verify.scene.schema import Scene
 from verify.studies.cost.accuracy import Choice, with_elements
 from verify.support.checked_files import read_json
+from verify.support.programme import only_opens, turns
 from verify.support.progress import duration
 from verify.support.refusal import Refusal
 from verify.support.say import say
@@ -214,10 +215,10 @@ def _curved(result: Result, programme: Sequence[float]) -> Curve:
     if only_opens(programme) or len(d) == len(ends):
         return d, P
     at = np.linspace(0.0, len(ends) - 1.0, len(d))
-    low, high = (np.repeat(of(ends[:-1], ends[1:]), PER_STEP) for of in (np.minimum, np.maximum))
+    low, high = (np.repeat(of(ends[:-1], ends[1:]), POINTS_PER_STEP) for of in (np.minimum, np.maximum))
     trifle = 1e-9 * float(np.max(np.abs(ends)))
     beyond = np.maximum(low - d[1:], d[1:] - high) > trifle
-    straight = np.append(False, np.repeat(beyond.reshape(-1, PER_STEP).any(axis=1), PER_STEP))
+    straight = np.append(False, np.repeat(beyond.reshape(-1, POINTS_PER_STEP).any(axis=1), POINTS_PER_STEP))
     steps = np.arange(len(ends))
     return np.where(straight, np.interp(at, steps, ends), d), np.where(straight, np.interp(at, steps, result.load), P)
 

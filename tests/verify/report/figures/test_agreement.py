@@ -18,7 +18,7 @@ from verify.pages.text import number  # noqa: E402
 from verify.report import published, zones  # noqa: E402
 from verify.report.figures.agreement import agreement, branch, path, reference_run, usable  # noqa: E402
 from verify.report.figures.entry import entries, rank, short_names  # noqa: E402
-from verify.report.figures.layout import CLOSE, GAP, LEFT, WHOLE, rows, zoom  # noqa: E402
+from verify.report.figures.layout import CLOSE_UP, GAP, LEFT, WHOLE, rows, zoom  # noqa: E402
 from verify.result import Result, Snapshot  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
 from verify.scene.schema import Scene
@@ -161,7 +161,7 @@ def test_rows_are_as_high_as_they_are_told_and_stand_below_each_other(count: int
     for whole, close in boxes:
         assert (whole.height * height, close.height * height) == pytest.approx((0.7, 0.7))
         assert (whole.x0 * width, whole.width * width) == pytest.approx((LEFT, WHOLE))
-        assert (close.x0 * width, close.width * width) == pytest.approx((LEFT + WHOLE + GAP, CLOSE))
+        assert (close.x0 * width, close.width * width) == pytest.approx((LEFT + WHOLE + GAP, CLOSE_UP))
         assert close.x1 < 1.0 and whole.y0 == close.y0
     tops, feet = [pair[0].y1 for pair in boxes], [pair[0].y0 for pair in boxes]
     assert tops[0] < 1.0 and all(foot > top for foot, top in zip(feet, tops[1:], strict=False))
@@ -182,7 +182,7 @@ def test_what_is_enlarged_is_to_scale_around_the_zone(start: float, end: float) 
     body = SCENE.specimen
     wanted = min(max(1.7 * (end - start), 5 * body.arm_thickness), 0.3 * body.length)
     assert right - left == pytest.approx(wanted, rel=0.02) and low == -high
-    assert (high - low) / 0.7 == pytest.approx((right - left) / CLOSE), "an inch is as long both ways"
+    assert (high - low) / 0.7 == pytest.approx((right - left) / CLOSE_UP), "an inch is as long both ways"
     assert right <= body.length + 1e-9
     middle = min(0.5 * (start + end), body.length - 0.5 * wanted)
     assert 0.5 * (left + right) == pytest.approx(middle, rel=0.01)

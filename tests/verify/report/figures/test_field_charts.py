@@ -216,7 +216,7 @@ def test_a_field_has_the_colour_of_its_value_and_nothing_is_painted_beside_it(va
     figure = Figure(figsize=(2.0, 2.0))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     u, v = np.meshgrid(np.linspace(0.0, 0.5, 4), np.linspace(0.0, 1.0, 4), indexing="ij")
-    paint.paint(axes, np.stack([u, v], axis=-1)[None], np.full((1, 4, 4), 2.0 * value), 2.0, (0.0, 1.0), (0.0, 1.0))
+    paint.paint(axes, np.stack([u, v], axis=-1)[None], np.full((1, 4, 4), 2.0 * value), 2.0, ((0.0, 1.0), (0.0, 1.0)))
     (image,) = axes.images
     pixels = np.asarray(image.get_array())
     rows, columns = pixels.shape[:2]
@@ -231,7 +231,7 @@ def test_a_field_varies_over_its_element_as_its_samples_do() -> None:
     figure = Figure(figsize=(2.0, 2.0))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     u, v = np.meshgrid(np.linspace(0.0, 1.0, 4), np.linspace(0.0, 1.0, 4), indexing="ij")
-    paint.paint(axes, np.stack([u, v], axis=-1)[None], (2.0 * u - 1.0)[None], 1.0, (0.0, 1.0), (0.0, 1.0))
+    paint.paint(axes, np.stack([u, v], axis=-1)[None], (2.0 * u - 1.0)[None], 1.0, ((0.0, 1.0), (0.0, 1.0)))
     pixels = np.asarray(axes.images[0].get_array())
     for share in (0.1, 0.5, 0.9):
         found = pixels[pixels.shape[0] // 2, int(share * pixels.shape[1])]

@@ -15,7 +15,7 @@ from made_up_runs import scene_report  # noqa: E402
 from verify.report.figures import opening  # noqa: E402
 from verify.report.figures.entry import entries  # noqa: E402
 from verify.report.figures.fields import shared_snapshots  # noqa: E402
-from verify.report.figures.layout import HIGHEST, LOWEST, WHOLE, frame  # noqa: E402
+from verify.report.figures.layout import LEAST_HEIGHT, MOST_HEIGHT, WHOLE, frame  # noqa: E402
 from verify.result import Snapshot  # noqa: E402
 
 
@@ -47,5 +47,5 @@ def test_however_far_arms_open_their_picture_is_neither_too_low_nor_too_high(rea
     (left, right), (low, high) = frame(scene, [shown])
     assert left < 0.0 and right > 14.0 and low < -reach and high > reach
     inches = WHOLE * (high - low) / (right - left)
-    assert LOWEST * (1.0 - 1e-9) <= inches <= HIGHEST * (1.0 + 1e-9)
+    assert LEAST_HEIGHT * (1.0 - 1e-9) <= inches <= MOST_HEIGHT * (1.0 + 1e-9)
     assert (right == pytest.approx(14.14)) == (reach < 2.5), "no more room than it takes"

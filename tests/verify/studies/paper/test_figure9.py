@@ -167,7 +167,7 @@ def test_the_page_shows_every_basis_bond_and_statement(tmp_path):
     stopped = made_up("peel-80", status="stopped: no step is small enough")
     lost = trial(case, Outcome(case.job(SCENES["peel-80"]), stopped), study.references["peel-80"])
     study = replace(study, trials=tuple(lost if t.case == case else t for t in study.trials))
-    report.write((), tmp_path / "report.html", {}, peels=study)
+    report.write(report.Findings((), {}, peels=study), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text()
     assert text.count('<svg class="plot"') == 3 + 4 and text.count('<a href="#figure-9">') == 1
     assert all(s.text in text and s.extent in text for s in statements(study))
@@ -184,7 +184,7 @@ def test_without_a_scene_of_the_paper_it_says_so(tmp_path):
     pytest.importorskip("jinja2")
     from verify import report
 
-    report.write((), tmp_path / "report.html", {}, peels=study)
+    report.write(report.Findings((), {}, peels=study), tmp_path / "report.html")
     assert "left out: none of its scenes" in (tmp_path / "report.html").read_text()
 
 

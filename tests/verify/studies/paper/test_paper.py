@@ -163,7 +163,7 @@ def test_a_run_that_stops_keeps_its_row_and_takes_part_in_no_comparison(tmp_path
     pytest.importorskip("jinja2")
     from verify import report
 
-    report.write((), tmp_path / "report.html", {}, None, study)
+    report.write(report.Findings((), {}, None, study), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text()
     assert f"of {len(study.trials)} runs came to their end" in text and "Runs that stopped" in text
     assert text.count("no step is small enough") == 3 and '<td class="absent">stopped</td>' in text
@@ -176,7 +176,7 @@ def test_the_page_shows_every_run_statement_and_figure(tmp_path):
     from verify import report
 
     study = world()
-    report.write((), tmp_path / "report.html", {}, None, study)
+    report.write(report.Findings((), {}, None, study), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text()
     for n, title in ((6, "with 280 unknowns"), (7, "with 1956 unknowns"), (8, "2 to 8 interface points")):
         assert f"Figure {n}: " in text and title in text
@@ -197,7 +197,7 @@ def test_without_a_scene_of_the_paper_it_says_so(tmp_path):
     pytest.importorskip("jinja2")
     from verify import report
 
-    report.write((), tmp_path / "report.html", {}, None, study)
+    report.write(report.Findings((), {}, None, study), tmp_path / "report.html")
     assert "left out: none of its scenes" in (tmp_path / "report.html").read_text()
 
 

@@ -29,7 +29,7 @@ def test_the_t_spline_has_junctions():
 def test_they_are_on_the_page(found, tmp_path):
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
-    report.write((), tmp_path / "report.html", {}, rates=found)
+    report.write(report.Findings((), {}, rates=found), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text()
     assert all(family.name in text for family in FAMILIES)
     assert "around extraordinary points 2." in text and 'id="rates-errors-t"' in text

@@ -62,7 +62,7 @@ def verification(out: Path) -> Path:
     runs += (Run("T-spline", "tspline", None, "not run: no mesh has so few unknowns"),)
     given = replace(given, runs=runs, checks=(*given.checks, failing))
     path = out / "report.html"
-    report.write((given,), path, ENVIRONMENT, included=found_in(out))
+    report.write(report.Findings((given,), ENVIRONMENT, included=found_in(out)), path)
     return path
 
 
@@ -72,14 +72,16 @@ def peel(out: Path) -> Path:
     found = {method: solve(scene, method) for method in ("nurbs", "tspline")}
     runs = tuple(Run(METHOD_NAMES[method], method, one, "", f"peel-80/{method}") for method, one in found.items())
     checks = tuple(check for one in found.values() for check in run_checks(scene, one))
-    report.write((SceneReport(scene, runs, checks),), out / "report.html", ENVIRONMENT)
+    report.write(report.Findings((SceneReport(scene, runs, checks),), ENVIRONMENT), out / "report.html")
     return out / "report.html"
 
 
 def plane_problems(out: Path) -> Path:
     """What mesh files from CAD add, and the rates of the bases."""
     rates = tuple(test_plane_rates.made_up(i, rate) for i, rate in enumerate((4.0, 3.5, 2.5, 2.25)))
-    report.write((), out / "report.html", ENVIRONMENT, planes=(test_plane_page.made_up(),), rates=rates)
+    report.write(
+        report.Findings((), ENVIRONMENT, planes=(test_plane_page.made_up(),), rates=rates), out / "report.html"
+    )
     return out / "report.html"
 
 
@@ -87,7 +89,9 @@ def paper(out: Path) -> Path:
     """What ``--full`` adds."""
     figures, peels = test_paper.world(), test_figure9.world()
     quadrature = test_quadrature_study.made_up()
-    report.write((), out / "report.html", ENVIRONMENT, quadrature=quadrature, paper=figures, peels=peels)
+    report.write(
+        report.Findings((), ENVIRONMENT, quadrature=quadrature, paper=figures, peels=peels), out / "report.html"
+    )
     return out / "report.html"
 
 
