@@ -35,7 +35,8 @@ def _onward(curve: Curve, end: float) -> Curve:
 
 
 def peak_load(result: Result) -> float:
-    return peak(cubics(result))[1]
+    """Largest load of the path, between the steps too where their slopes are known."""
+    return peak((result.opening, result.load), result.steps.get("load_slope"))[1]
 
 
 def dissipated(result: Result) -> float:

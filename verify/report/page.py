@@ -11,9 +11,10 @@ from verify.pages.template import rendered
 from verify.pages.text import percent, seconds, symbols
 from verify.report import markdown
 from verify.report.section import Section, section
-from verify.report.studies import interface_rules, paper_section, peel_section, plane, plane_rates
+from verify.report.studies import interface_rules, plane, plane_rates
 from verify.report.studies.included import IncludedSection
 from verify.report.studies.included import sections as shown
+from verify.report.studies.paper import section as paper_section
 from verify.report.summary import summarise
 from verify.studies.cost.figures import named
 from verify.studies.cost.page import script as chart_script
@@ -21,7 +22,6 @@ from verify.studies.effects.page import in_cell
 from verify.studies.found import Included
 from verify.studies.hard.suite import totals
 from verify.studies.interface_rules import Study
-from verify.studies.paper.peel import PeelStudy
 from verify.studies.paper.study import Study as Figures
 from verify.studies.plane.rates import Convergence
 from verify.studies.plane.study import PlaneStudy
@@ -52,7 +52,7 @@ def write(
     paper: Figures | None = None,
     planes: Sequence[PlaneStudy] = (),
     rates: tuple[Convergence, ...] = (),
-    peels: PeelStudy | None = None,
+    peels: Figures | None = None,
     included: Sequence[Included] = (),
     text: bool = False,
 ) -> None:
@@ -90,8 +90,11 @@ def write(
         planes=plane_sections,
         rates=rates_section,
         quadrature=None if quadrature is None else interface_rules.section(quadrature, "quadrature"),
-        paper=None if paper is None else paper_section.section(paper, "figures"),
-        peels=None if peels is None else peel_section.section(peels, "figure-9"),
+        papers=[
+            paper_section(study, anchor)
+            for study, anchor in ((paper, "figures"), (peels, "figure-9"))
+            if study is not None
+        ],
         environment=dict(environment),
     )
     path.write_text(page, encoding="utf-8")

@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from verify.checks.between_codes import peak_load
 from verify.curves.convergence import Convergence, assess
-from verify.curves.of_run import dissipated
+from verify.curves.of_run import dissipated, peak_load
 from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.verdict import Run, SceneReport
