@@ -140,7 +140,7 @@ def _from_table(scene: Scene, accuracy: float) -> Choice:
     overrides = (*_steps(scene, accuracy), *with_elements(scene, METHOD, degree, elements))
     chosen = parse_scene(scene.model_dump(), overrides)
     require(chosen, METHOD)
-    seconds = run_seconds(chosen, METHOD, iterations(chosen, METHOD))
+    seconds = predicted_seconds(chosen, METHOD, iterations(chosen, METHOD))
     mesh = f"NURBS of degree {degree} with {chosen.discretization.dofs} unknowns"
     zone = f"{expected(chosen, METHOD).elements:.1f} elements in the process zone"
     return Choice(METHOD, overrides, seconds, f"{mesh}, {zone}: about {duration(seconds)}")
@@ -206,7 +206,7 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
     raise Refusal(f"--accuracy: no mesh is known with {elements:.1f} elements in the process zone of {scene.name}")
 
 
-def run_seconds(scene: Scene, method: str, iterations: float) -> float:
+def predicted_seconds(scene: Scene, method: str, iterations: float) -> float:
     """Time of a run of so many Newton iterations, from a few steps on the same mesh.
 
     An iteration, with what belongs to it, takes the median over these steps; the rest is for what is done once.

@@ -63,6 +63,19 @@ class Reference:
             f"({self.uncertainty['curve']:.3%} and {self.other:.3%})."
         )
 
+    def summary(self) -> dict[str, object]:
+        """The entry ``reference`` of ``cost.json``."""
+        return {
+            "label": self.label,
+            "dofs": self.result.dofs,
+            "uncertainty": dict(self.uncertainty),
+            "order": self.order,
+            "other_code": self.other_label,
+            "other_code_apart": self.apart,
+            "other_code_uncertainty": self.other,
+            "agrees": self.agrees,
+        }
+
 
 def reference_jobs(source: str, scene: Scene, given: Sequence[str]) -> tuple[tuple[Job, ...], tuple[Job, ...]]:
     """Runs of the reference, coarse to fine, and of the other code: none where DOLFINx is missing."""
@@ -82,27 +95,26 @@ def _jobs(source: str, scene: Scene, family: Family, zone: Sequence[float], give
 
 def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | None:
     """What the runs give; None where one of the three of the reference did not come to its end."""
-    results = [outcome.result for outcome in own]
-    if any(result is None or not result.complete for result in results):
+    results, second = _complete(own), _complete(other)
+    if not results:
         return None
     finest, h = results[-1], [1.0 / result.elements for result in results]
-    apart = [distance(cubics(result), finest) for result in results[:2]]
-    order, index = _of_distances(h, apart)
+    order, index = _of_distances(h, [distance(cubics(result), finest) for result in results[:2]])
     values = {"peak": [peak_load(r) for r in results], "energy": [dissipated(r) for r in results]}
     sure = {"curve": index} | {name: _index(h, found) for name, found in values.items()}
-    label = "cubic NURBS" + (", one arm" if results[-1].method == "nurbs" and "symmetry" in str(own[-1].job) else "")
-    second = [outcome.result for outcome in other]
-    if not second or any(result is None or not result.complete for result in second):
+    label = "cubic NURBS" + (", one arm" if finest.method == "nurbs" and "symmetry" in str(own[-1].job) else "")
+    if not second:
         return Reference(label, finest, sure, order)
-    return Reference(
-        label,
-        finest,
-        sure,
-        order,
-        f"DOLFINx of degree 3 with {second[-1].dofs} unknowns",
-        distance(cubics(second[-1]), finest),
-        distance(cubics(second[0]), second[-1]),
-    )
+    coarse, fine = second[0], second[-1]
+    other_label = f"DOLFINx of degree 3 with {fine.dofs} unknowns"
+    apart, unsure = distance(cubics(fine), finest), distance(cubics(coarse), fine)
+    return Reference(label, finest, sure, order, other_label, apart, unsure)
+
+
+def _complete(outcomes: Sequence[Outcome]) -> list[Result]:
+    """The results of runs that all came to their end; empty where one of them did not."""
+    results = [outcome.result for outcome in outcomes if outcome.result is not None and outcome.result.complete]
+    return results if len(results) == len(outcomes) else []
 
 
 def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import isfinite, nan
 from pathlib import Path
 
@@ -13,10 +13,19 @@ from verify.curves.curve import oscillation
 from verify.curves.of_run import cubics, dissipated, distance, peak_load
 from verify.result import Result, Snapshot, run_seconds
 from verify.runs.jobs import Outcome
-from verify.studies.cost.ladder import Try
+from verify.studies.cost.ladder import BEAM, FAMILIES, Try
 from verify.studies.cost.reference import Reference
-from verify.support.checked_files import read_table
+from verify.studies.frame import unmeasured
+from verify.support.checked_files import NUMBER, Damaged, Shape, read_table
 from verify.support.timing import PHASES
+
+#: What is read of ``cost.json`` again.
+ABOUT: Shape = {
+    "reference": {
+        **{"label": str, "dofs": int, "uncertainty": {"curve": NUMBER}},
+        **{"other_code": str, "other_code_apart": NUMBER},
+    }
+}
 
 
 @dataclass(frozen=True)
@@ -76,12 +85,10 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int
     family = one.family
     head = {"method": family.method, "degree": family.degree, "asked": str(one.steps), "run": one.variant}
     if not results or not results[0].complete:
-        status = results[0].status if results else outcomes[0].left_out
-        unknown = {field.name: nan if field.type == "float" else 0 for field in fields(Row)}
-        return Row(**unknown | head | {"status": status})
+        return unmeasured(Row, head | {"status": results[0].status if results else outcomes[0].left_out})
     result = results[0]
     quickest = min(results, key=run_seconds)
-    phases = {name: quickest.seconds[name] for name in (*PHASES, "other")}
+    phases = {name: (quickest.seconds or {})[name] for name in (*PHASES, "other")}
     phases["basis"] -= quickest.jit_seconds
     steps = result.steps
     return Row(
@@ -136,8 +143,17 @@ def traction_error(snapshots: Sequence[Snapshot], exact: Sequence[Snapshot]) -> 
 
 
 def read_csv(path: Path) -> list[Row]:
-    """Rows that were written."""
-    return read_table(path, Row)
+    """Rows that were written.
+
+    Raises
+    ------
+    Damaged : they are not as they were written, or of a method that is not known.
+    """
+    rows = read_table(path, Row)
+    known = {(family.method, family.degree) for family in (*FAMILIES, BEAM)}
+    if strange := [row for row in rows if (row.method, row.degree) not in known]:
+        raise Damaged(path, f"the method {strange[0].method[:30]!r} of degree {strange[0].degree}")
+    return rows
 
 
 def _middle(snapshot: Snapshot) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -10,18 +9,18 @@ from functools import partial
 from math import inf
 from pathlib import Path
 from time import monotonic
+from typing import ClassVar
 
-from verify.runs.environment import ALL_PACKAGES, THREADS, machine, versions
-from verify.runs.fingerprint import source as source_of
-from verify.runs.folder import write_csv, write_json
-from verify.runs.jobs import Job, Outcome, dry_run, run_all
+from verify.runs.jobs import Job, Outcome, run_all
 from verify.scene.schema import Scene
+from verify.studies import frame
 from verify.studies.cost.findings import LEVELS, cheapest, growth, of_equal_steps, orders, pareto, table
 from verify.studies.cost.ladder import Family, Try, ladders
 from verify.studies.cost.nonzeros import nonzeros
 from verify.studies.cost.reference import Reference, reference, reference_jobs
 from verify.studies.cost.row import Row, row
-from verify.support.say import say, write_page
+from verify.studies.frame import failure, one_thread
+from verify.support.say import say
 
 #: A ladder ends below this part of the finest level, where a rung took so many times as long as the cheapest run that
 #: is accurate enough, where another degree of the method is as accurate in so much less time, or after so many seconds.
@@ -41,45 +40,27 @@ CLOSE, ONCE, LATE, TIMES = 1.25, 1.7, 0.03, 5
 
 
 @dataclass(frozen=True)
-class Study:
-    """What a sweep found.
+class Study(frame.Study):
+    """What was found against a reference; ``how``: overrides with which a run was made, by its name."""
 
-    left_out : a sentence for every method that cannot solve the scene here
-    how : overrides of the scene with which a run was made, by its name
-    """
+    NAME: ClassVar[str] = "cost"
+    ROW: ClassVar[type] = Row
 
-    scene: Scene
     against: Reference
-    rows: tuple[Row, ...]
-    left_out: tuple[str, ...]
     how: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
-    def summary(self) -> dict[str, object]:
-        """The content of ``cost.json``."""
+    def lines(self) -> list[str]:
+        return [self.against.sentence, *self.left_out, *table(self.rows)]
+
+    def about(self) -> dict[str, object]:
         equal = of_equal_steps(self.rows)
-        known = self.against
         return {
-            "scene": self.scene.model_dump(),
-            "reference": {
-                "label": known.label,
-                "dofs": known.result.dofs,
-                "uncertainty": dict(known.uncertainty),
-                "order": known.order,
-                "other_code": known.other_label,
-                "other_code_apart": known.apart,
-                "other_code_uncertainty": known.other,
-                "agrees": known.agrees,
-            },
+            "reference": self.against.summary(),
             "cheapest": {level: cheapest(self.rows, level).summary() for level in LEVELS},
             "cheapest_at_equal_steps": {level: cheapest(equal, level).summary() for level in LEVELS},
             "pareto": [self._front(one) for one in pareto(self.rows)],
-            "orders": orders(self.rows, 2.0 * known.uncertainty["curve"]),
+            "orders": orders(self.rows, 2.0 * self.against.uncertainty["curve"]),
             "growth": growth(self.rows),
-            "left_out": list(self.left_out),
-            "source": source_of(ALL_PACKAGES),
-            "versions": versions(),
-            "machine": machine(),
-            "threads": 1,
         }
 
     def _front(self, one: Row) -> dict[str, object]:
@@ -107,7 +88,7 @@ class Runner:
     def __call__(self, tries: Iterable[Try], seconds: float = inf) -> bool:
         """Do what has not been done; whether all of it was begun within so many seconds after the start."""
         jobs = {one.job(self.source, self.scene, self.given): one for one in tries if one not in self.found}
-        for outcome in run_all(list(jobs), self.out, jobs=1):
+        for outcome in run_all(list(jobs), self.out, 1):
             self.found[jobs[outcome.job]] = outcome
             if monotonic() - self.start > seconds:
                 break
@@ -132,13 +113,14 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     given : overrides that ``scene`` has, and that every run repeats
     jobs : runs of the reference at a time; what is timed runs alone
     """
-    os.environ.update(dict.fromkeys(THREADS, "1"))
+    one_thread()
     rungs, reasons = ladders(source, scene, given)
     plans = reference_jobs(source, scene, given)
-    outcomes = {outcome.job: outcome for outcome in run_all([job for plan in plans for job in plan], out, jobs)}
+    outcomes = frame.run([job for plan in plans for job in plan], out, jobs)
     against = reference(*([outcomes[job] for job in plan] for plan in plans))
     if against is None:
-        say(_no_reference([outcomes[job] for job in plans[0]]))
+        why = next(filter(None, (failure(outcomes[job]) for job in plans[0])), "")
+        say(f"no converged reference, so that nothing can be measured: {why}")
         return None
     print(against.sentence, file=sys.stderr, flush=True)
     runner = Runner(source, scene, tuple(given), out, against)
@@ -153,11 +135,8 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     if not all(whole):
         reasons.append("The time allowed for a study is over; the same command goes on from here.")
     how = {one.variant: one.job(source, scene).overrides for one in runner.found}
-    study = Study(scene, against, tuple(_counted(runner)), tuple(reasons), how)
-    write_csv(out / "cost.csv", Row, study.rows)
-    write_json(out / "cost.json", study.summary())
-    write_page("verify.studies.cost.page", study, out / "report.html")
-    print("\n".join([against.sentence, *study.left_out, *table(study.rows), f"written: {out / 'cost.csv'}"]))
+    study = Study(scene, tuple(_counted(runner)), tuple(reasons), against, how)
+    study.write(out)
     return study
 
 
@@ -241,10 +220,4 @@ def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: 
     plan: list[Job] = [job for jobs_of in reference_jobs(source, scene, given) for job in jobs_of]
     plan += [one.job(source, scene, given) for ones in rungs.values() for one in ones]
     note = "ladders end where they are accurate enough; the best runs are made again with other steps, and repeated"
-    return [*dry_run(plan, out, jobs), note, *reasons]
-
-
-def _no_reference(outcomes: Sequence[Outcome]) -> str:
-    ends = [(o.left_out, o.result) for o in outcomes if o.result is None or not o.result.complete]
-    why = [left_out or (result.status if result is not None else "") for left_out, result in ends]
-    return f"no converged reference, so that nothing can be measured: {why[0]}"
+    return frame.would_run(plan, [note, *reasons], out, jobs)

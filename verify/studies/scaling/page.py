@@ -1,4 +1,4 @@
-"""The study as a page: one self-contained HTML file with what was measured, and apart from it what is extrapolated."""
+"""The study as a page: growth of time and memory, and what more ranks gain."""
 
 from __future__ import annotations
 
@@ -13,12 +13,10 @@ from matplotlib.axes import Axes
 
 from verify.pages.parts import phase_bars, plain
 from verify.pages.style import HALF, METHOD_NAMES, WIDE, Panel, colour, drawing, panel, to_svg
-from verify.pages.template import rendered
-from verify.pages.text import number, sentence
 from verify.runs.environment import environment
-from verify.studies.scaling.expect import DISSECTED, GHOSTS, WORTH, Range
+from verify.studies.page import write_study
 from verify.studies.scaling.growth import Fit
-from verify.studies.scaling.plan import DEGREES, SHORT, STEPS, most_elements
+from verify.studies.scaling.plan import DEGREES, SHORT, STEPS
 from verify.studies.scaling.row import PARTS, Row
 
 if TYPE_CHECKING:
@@ -32,45 +30,34 @@ COLUMNS = {
     "model_memory_mb": "less that of the program",
 }
 
+#: Unknowns a rank from which on PETSc's own advice has ranks worth their messages.
+WORTH = 20_000
+
 _MARKERS = {"nurbs": "o", "dolfinx": "s"}
 
 
 def write(study: Study, path: Path) -> None:
     """Write the page."""
-    page = rendered(
-        "verify.studies.scaling",
-        "page.html.j2",
-        {"between": between, "power": power, "readable": readable},
-        name=study.scene.name,
-        sentence=sentence(study.scene),
-        study=study,
+    loads = " and ".join(f"{load:.1f}" for load in study.load)
+    write_study(
+        study,
+        path,
+        {"power": power, "readable": readable},
         names=METHOD_NAMES,
         degrees=DEGREES,
         columns=COLUMNS,
         parts=PARTS,
         growth=[time_of_an_iteration(study, "time"), memory(study, "memory")] if study.growth else [],
         bars=strong(_strong(study.rows), "strong") if study.shared else None,
-        expected=study.expected(),
-        larger=study.larger(),
         programme=(SHORT, STEPS),
-        assumed={"ghosts": GHOSTS, "dissected": DISSECTED, "worth": WORTH, "most_elements": most_elements()},
-        environment={
-            **environment(),
-            "load average at the beginning and at the end": " and ".join(f"{load:.1f}" for load in study.load),
-        },
+        worth=WORTH,
+        environment=environment() | {"load average at the beginning and at the end": loads},
     )
-    path.write_text(page, encoding="utf-8")
-
-
-def between(ends: Range) -> str:
-    """0.4 to 16: a range to two digits, which it reads the same at both ends only where it is that narrow."""
-    low, high = (number(float(f"{end:.2g}"), 6) for end in ends)
-    return low if low == high else f"{low} to {high}"
 
 
 def power(one: Fit) -> str:
     """1.02 ± 0.01."""
-    return f"{one.exponent:.2f} ± {one.error:.2f}".replace("-", "−") if isfinite(one.exponent) else "–"
+    return str(one).replace("+-", "±").replace("-", "−").replace("?", "–")
 
 
 def readable(text: str) -> str:

@@ -51,24 +51,8 @@ class Run(Job):
         return replace(alone, key=digest(alone.key, program), program=program)
 
 
-@dataclass(frozen=True)
-class Plan:
-    """Every run once, and a sentence for what is left out."""
-
-    runs: tuple[Run, ...]
-    reasons: tuple[str, ...]
-
-    def again(self) -> list[Run]:
-        """Every run and its repetitions: all of them one after the other, and then again."""
-        return [
-            replace(run, repeat=repeat, variant=f"{run.variant}-again-{repeat}") if repeat else run
-            for repeat in range(TIMES)
-            for run in self.runs
-        ]
-
-
-def planned(source: str, scene: Scene, given: Sequence[str] = ()) -> Plan:
-    """The runs of a scene; ``given`` are the overrides that all of them have."""
+def planned(source: str, scene: Scene, given: Sequence[str] = ()) -> tuple[list[Run], tuple[str, ...]]:
+    """Every run once, with the overrides ``given``, and a sentence for what is left out."""
     runs: list[Run] = []
     reasons: list[str] = []
     for method in DEGREES:
@@ -83,7 +67,7 @@ def planned(source: str, scene: Scene, given: Sequence[str] = ()) -> Plan:
             more, why = _shared([run for run in possible if not run.bare])
             runs += more
             reasons += why
-    return Plan(tuple(runs), tuple(reasons))
+    return runs, tuple(reasons)
 
 
 def sizes() -> list[int]:

@@ -160,7 +160,7 @@ def test_the_page_says_it_and_carries_the_rows(tmp_path: Path) -> None:
     pytest.importorskip("jinja2")
     from verify.studies.cost.page import write
 
-    study = Study(SCENE, against(), tuple(ROWS), ("lefm: a <limit>",))
+    study = Study(SCENE, tuple(ROWS), ("lefm: a <limit>",), against())
     write(study, tmp_path / "report.html")
     page = (tmp_path / "report.html").read_text()
     assert "Curve error 0.3%: T-spline, degree 3, 400 unknowns" in page and "DOLFINx 3.8 ×" in page
@@ -190,7 +190,7 @@ def test_a_run_that_was_timed_once_may_be_half_as_long_again() -> None:
 
 
 def test_cost_json_names_the_cheapest_and_the_front(tmp_path: Path) -> None:
-    found = Study(SCENE, against(), tuple(ROWS), ()).summary()
+    found = Study(SCENE, tuple(ROWS), (), against()).summary()
     assert list(found["cheapest"]) == ["1%", "0.3%", "0.1%"]
     assert found["cheapest"]["0.3%"]["method"] == "tspline" and found["cheapest"]["0.3%"]["dofs"] == 400
     assert found["cheapest_at_equal_steps"]["0.3%"]["ratio"]["dolfinx"] == pytest.approx(5.0)

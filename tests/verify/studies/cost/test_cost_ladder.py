@@ -16,6 +16,7 @@ from verify.cli import main
 from verify.methods.zone_resolution import expected
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
+from verify.studies import frame
 from verify.studies.cost import ladder as ladder_of
 from verify.studies.cost import reference as reference_of
 from verify.studies.cost import study as study_of
@@ -48,7 +49,7 @@ def test_every_run_repeats_what_the_study_was_given() -> None:
 def test_methods_that_cannot_are_left_out_with_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     few = tuple(f for f in FAMILIES if f.name in ("tspline-adaptive", "nurbs-p2", "dolfinx-p1", "dolfinx-p2"))
     monkeypatch.setattr(ladder_of, "FAMILIES", few)
-    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.solve.dolfinx_installed", lambda: False)
     found, why = ladders("peel-60", load_scene("peel-60"), ())
     assert [family.name for family in found] == ["nurbs-p2", "beam"]
     assert why == [
@@ -149,14 +150,15 @@ def test_a_study_from_ladder_to_files(seconds: float, tmp_path: Path, monkeypatc
         monkeypatch.setattr(study_of, name, seconds)
     asked: list[Job] = []
 
-    def run_all(plan, out, jobs):
+    def run_all(plan, out, jobs, scheduler=None):
         for job in plan:
             asked.append(job)
             size = job.solved.discretization.dofs
             yield Outcome(job, made_up(1.0 + (60.0 / size) ** 3, dofs=size, elements=size, n=120))
 
     monkeypatch.setattr(study_of, "run_all", run_all)
-    monkeypatch.setattr(study_of, "write_page", lambda module, study, path: None)
+    monkeypatch.setattr(frame, "run_all", run_all)
+    monkeypatch.setattr(frame, "write_page", lambda module, study, path: None)
     found = study_of.cost("dcb-czm1", SCENE, (), tmp_path, 2)
     rows = read_csv(tmp_path / "cost.csv")
     assert (tmp_path / "cost.json").exists() and "written: " in capsys.readouterr().out

@@ -1,0 +1,18 @@
+"""Pages of studies: one self-contained HTML file each, on the template ``studies/base.html.j2``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from verify.pages.template import rendered
+from verify.pages.text import sentence
+from verify.runs.environment import environment
+from verify.studies.frame import Study
+
+
+def write_study(study: Study, path: Path, filters: Mapping[str, Callable], **content: object) -> None:
+    """Write the page that ``page.html.j2`` in the package of the study makes of it and of ``content``."""
+    about = {"study": study, "name": study.scene.name, "sentence": sentence(study.scene), "environment": environment()}
+    page = rendered(f"verify.studies.{study.NAME}", "page.html.j2", filters, **about | content)
+    path.write_text(page, encoding="utf-8")
