@@ -96,7 +96,7 @@ def section(study: Included, out: Path, anchor: str) -> IncludedSection:
     """One study."""
     name = study.about.get("scene", {}).get("name", "")
     prefix = quote(Path(os.path.relpath(study.folder, out)).as_posix())
-    head = {
+    head: dict[str, Any] = {
         "anchor": anchor,
         "command": study.command,
         "title": f"{TITLES[study.command]}: {name}" if name else TITLES[study.command],

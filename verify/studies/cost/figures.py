@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -108,11 +109,11 @@ def phases(rows: Sequence[Row], key: str) -> Panel:
 
 
 def _curve(axes: Axes, ladder: Sequence[Row], x: Value, y: Value, label: str) -> None:
-    style = {"marker": _MARKERS[ladder[0].degree], "markersize": 3, "linewidth": 0.9, **_ink(ladder[0])}
+    style: dict[str, Any] = {"marker": _MARKERS[ladder[0].degree], "markersize": 3, "linewidth": 0.9, **_ink(ladder[0])}
     axes.plot([x(row) for row in ladder], [y(row) for row in ladder], label=label, **style)
 
 
-def _ink(row: Row) -> dict[str, str]:
+def _ink(row: Row) -> dict[str, Any]:
     return {"color": colour(METHODS[row.method][1])}
 
 

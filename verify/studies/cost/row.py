@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite, nan
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -83,12 +84,17 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int
     """Measure a run and its repetitions, the first of them first; the errors are those of the first."""
     results = [outcome.result for outcome in outcomes if outcome.result is not None]
     family = one.family
-    head = {"method": family.method, "degree": family.degree, "asked": str(one.steps), "run": one.variant}
+    head: dict[str, Any] = {
+        "method": family.method,
+        "degree": family.degree,
+        "asked": str(one.steps),
+        "run": one.variant,
+    }
     if not results or not results[0].complete:
         return unmeasured(Row, head | {"status": results[0].status if results else outcomes[0].left_out})
     result = results[0]
     quickest = min(results, key=run_seconds)
-    phases = {name: (quickest.seconds or {})[name] for name in (*PHASES, "other")}
+    phases: dict[str, Any] = {name: (quickest.seconds or {})[name] for name in (*PHASES, "other")}
     phases["basis"] -= quickest.jit_seconds
     steps = result.steps
     return Row(
@@ -109,7 +115,7 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int
     )
 
 
-def errors(result: Result, against: Reference) -> dict[str, float]:
+def errors(result: Result, against: Reference) -> dict[str, Any]:
     """All distances of a complete run to the reference."""
     exact = against.result
     known = cubics(exact)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, nan
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -96,7 +97,7 @@ def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[O
     sides = {"with": pair.with_it, "without": pair.without}
     took = {side: _seconds(again[job]) for side, job in sides.items()}
     least = {side: min(seconds, default=nan) for side, seconds in took.items()}
-    known = {
+    known: dict[str, Any] = {
         "effect": pair.switch.name,
         "key": pair.switch.key,
         "with_it": pair.switch.on,
@@ -108,15 +109,14 @@ def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[O
         "time_spread": max(max(seconds, default=nan) / least[side] for side, seconds in took.items()),
         "times": min(len(again[job]) for job in sides.values()),
     }
-    results = [result for job in sides.values() if (result := first[job].result) is not None]
+    ours, theirs = first[pair.with_it].result, first[pair.without].result
     stopped = [f"{side} it: {why}" for side, job in sides.items() if (why := failure(first[job]))]
-    if stopped or len(results) < 2:
+    if stopped or ours is None or theirs is None:
         return unmeasured(Row, known | {"status": "; ".join(stopped)})
-    found = changes(*results, pair.with_it.scene.load.opening)
-    return Row(**known, **found, status="complete")
+    return Row(**known, **changes(ours, theirs, pair.with_it.scene.load.opening), status="complete")
 
 
-def changes(with_it: Result, without: Result, programme: Sequence[float]) -> dict[str, float]:
+def changes(with_it: Result, without: Result, programme: Sequence[float]) -> dict[str, Any]:
     """What one effect makes of curve, peak, end and energies: with over without, less 1."""
     top = max(abs(peak_load(with_it)), abs(peak_load(without)))
     most = max(abs(work(with_it)), abs(work(without)))

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -73,7 +74,7 @@ def read_csv(path: Path) -> list[Row]:
 
 def row(run: Run, outcomes: Sequence[Outcome]) -> Row:
     """Measure a run, the first of ``outcomes``, and its repetitions."""
-    head = {"method": run.method, "degree": DEGREES[run.method], "ranks": run.ranks, "bare": run.bare}
+    head: dict[str, Any] = {"method": run.method, "degree": DEGREES[run.method], "ranks": run.ranks, "bare": run.bare}
     head["run"] = run.variant
     results = [o.result for o in outcomes if o.result is not None and o.result.complete and o.result.seconds]
     if not results:
@@ -104,6 +105,6 @@ def iterations(result: Result) -> int:
     return int(np.sum(result.steps["newton_iterations"]))
 
 
-def seconds(result: Result) -> dict[str, float]:
+def seconds(result: Result) -> dict[str, Any]:
     """Seconds of a Newton iteration by its parts."""
     return {name: (result.seconds or {})[name] / max(iterations(result), 1) for name in PARTS}
