@@ -41,7 +41,7 @@ _STRIPS_APART_NOTE = (
 )
 
 #: Measure -> label of its axis.
-_MEASURES = {"error": "curve distance (%)", "oscillation": "oscillation (%)"}
+_LABELS = {"error": "curve distance (%)", "oscillation": "oscillation (%)"}
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def _of_beams(study: Study, key: str) -> Iterator[FigureGroup]:
         yield FigureGroup(title, _SWEEP_NOTE, tuple(sweeps))
         over = [
             _against_points(study, law, measure, f"{key}-{law}-{measure}")
-            for law, measure in product(study.scenes, _MEASURES)
+            for law, measure in product(study.scenes, _LABELS)
         ]
         yield FigureGroup("Error and oscillation against the number of points", _POINTS_NOTE, tuple(over))
 
@@ -187,13 +187,13 @@ def _against_points(study: Study, law: str, measure: str, key: str) -> Panel:
                 values = [100 * getattr(trial, measure) if trial else np.nan for trial in trials]
                 label = METHOD_NAMES[basis] if dofs == meshes[-1] else None
                 axes.plot(points, values, marker="o", markersize=3, label=label, **style)
-        axes.set(xlabel="interface points an element", ylabel=_MEASURES[measure], yscale="log")
+        axes.set(xlabel="interface points an element", ylabel=_LABELS[measure], yscale="log")
         axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.yaxis.set_minor_locator(NullLocator())
         low, high = axes.get_ylim()
         axes.set_ylim(low, high * (high / low) ** 0.15)
         axes.legend(loc="upper right", ncols=3)
-        svg = to_svg(figure, key, f"{_MEASURES[measure]} against the number of interface points, {LAWS[law]}")
+        svg = to_svg(figure, key, f"{_LABELS[measure]} against the number of interface points, {LAWS[law]}")
     return Panel(svg, f"{LAWS[law]}.")
 
 

@@ -8,7 +8,7 @@ from math import isfinite, nan
 
 import numpy as np
 
-from verify.studies.cost.ladder import STEPS
+from verify.studies.cost.ladder import LADDER
 from verify.studies.cost.row import Row
 
 #: Errors of the curve that are asked for, as people write them.
@@ -56,7 +56,7 @@ def cheapest(rows: Sequence[Row], level: str) -> Cheapest:
 
 def of_equal_steps(rows: Sequence[Row]) -> list[Row]:
     """Rows of the runs that were asked for the same number of steps."""
-    return [row for row in rows if row.asked == str(STEPS)]
+    return [row for row in rows if row.asked == str(LADDER.steps)]
 
 
 def pareto(rows: Sequence[Row]) -> list[Row]:

@@ -16,14 +16,23 @@ from verify.runs.jobs import Job, Outcome
 from verify.scene.schema import Scene
 from verify.studies.cost.ladder import Family, Try, size_of_an_element
 
-#: Elements that span the process zone on the three meshes of the reference, and the steps asked for.
-ZONE, STEPS = (4.0, 8.0, 16.0), 200
 
-#: And those of the two meshes of the other code, with elements of degree 3.
-OTHER_ZONE = (2.5, 5.0)
+@dataclass(frozen=True)
+class Meshes:
+    """Those of the reference.
 
-#: Where no order is observed, the distance of the two finest meshes is multiplied by this (Roache 1994).
-CAUTION = 3.0
+    zone, other_zone : elements that span the process zone, and those of the other code, of degree 3
+    steps : asked for
+    caution : where no order is observed, the distance of the two finest meshes is multiplied by this (Roache 1994)
+    """
+
+    zone: tuple[float, ...] = (4.0, 8.0, 16.0)
+    other_zone: tuple[float, ...] = (2.5, 5.0)
+    steps: int = 200
+    caution: float = 3.0
+
+
+MESHES = Meshes()
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,14 +90,18 @@ def reference_jobs(source: str, scene: Scene, given: Sequence[str]) -> tuple[tup
     """Runs of the reference, coarse to fine, and of the other code: none where DOLFINx is missing."""
     one_arm = scene.specimen.kind == "dcb" and scene.discretization.mismatch == 1.0
     halved = ("effects.symmetry=true",) if one_arm else ()
-    own = _jobs(source, scene, Family("nurbs", "nurbs", 3, 0.0), ZONE, (*given, *halved))
-    other = _jobs(source, scene, Family("dolfinx", "dolfinx", 3, 0.0), OTHER_ZONE, given) if dolfinx_installed() else ()
+    own = _jobs(source, scene, Family("nurbs", "nurbs", 3, 0.0), MESHES.zone, (*given, *halved))
+    other = (
+        _jobs(source, scene, Family("dolfinx", "dolfinx", 3, 0.0), MESHES.other_zone, given)
+        if dolfinx_installed()
+        else ()
+    )
     return own, other
 
 
 def _jobs(source: str, scene: Scene, family: Family, zone: Sequence[float], given: Sequence[str]) -> tuple[Job, ...]:
     each = size_of_an_element(scene, family)
-    tries = (Try(family, i, int(round(each * elements)), STEPS) for i, elements in enumerate(zone))
+    tries = (Try(family, i, int(round(each * elements)), MESHES.steps) for i, elements in enumerate(zone))
     jobs = (one.job(source, scene, given) for one in tries)
     return tuple(Job(j.source, j.scene, j.method, j.variant.replace("cost/", "reference/"), j.overrides) for j in jobs)
 
@@ -126,7 +139,7 @@ def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, fl
     ratio = (h[0] ** orders - h[2] ** orders) / (h[1] ** orders - h[2] ** orders)
     wanted = apart[0] / apart[1] if apart[1] > 0.0 else np.inf
     if not ratio[0] <= wanted <= ratio[-1]:
-        return nan, CAUTION * apart[1]
+        return nan, MESHES.caution * apart[1]
     p = float(np.interp(wanted, ratio, orders))
     return p, SAFETY * apart[1] / ((h[1] / h[2]) ** p - 1.0)
 
@@ -136,4 +149,4 @@ def _index(h: Sequence[float], values: Sequence[float]) -> float:
     found = assess(h, values)
     if np.isfinite(found.gci) and found.asymptotic:
         return found.gci
-    return CAUTION * max(abs(values[-1] - value) for value in values[:2]) / abs(values[-1])
+    return MESHES.caution * max(abs(values[-1] - value) for value in values[:2]) / abs(values[-1])

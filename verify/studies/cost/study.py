@@ -22,21 +22,38 @@ from verify.studies.cost.row import Row, row
 from verify.studies.frame import failure, one_thread
 from verify.support.say import say
 
-#: A ladder ends below this part of the finest level, where a rung took so many times as long as the cheapest run that
-#: is accurate enough, where another degree of the method is as accurate in so much less time, or after so many seconds.
-ENOUGH, PATIENCE, BEATEN, LONGEST = 0.7, 12.0, 2.5, 120.0
 
-#: Seconds after which no more of it is begun: the ladders, other numbers of steps, repetitions. What was begun is
-#: remembered, so that a second call goes further.
-CLIMB, VARY, REPEAT = 1200.0, 1700.0, 2000.0
+@dataclass(frozen=True)
+class Limits:
+    """What a sweep spends on accuracy.
 
-#: Fewer steps are tried on meshes whose error is this close to the coarsest level.
-NEAR = 1.2
+    enough, patience, beaten, longest : a ladder ends below this part of the finest level; where a rung took so many
+        times as long as the cheapest run that is accurate enough; where another degree of the method is as accurate in
+        so much less time; after so many seconds
+    climb, vary, repeat : seconds after which no more of ladders, of other numbers of steps, of repetitions is begun;
+        runs are kept, so that a second call goes further
+    near : fewer steps are tried on meshes whose error is this close to the coarsest level
+    close, once, late, times : runs within the factor ``close`` of a method's cheapest one for a level (``once`` where
+        they were timed once) and ``late`` seconds are timed so many times. On a machine that does something else as
+        well a run is late by such seconds, and one that is timed once by half: 0.36 to 0.63 s were measured for equal
+        runs
+    """
 
-#: Runs that are within the first factor of a method's cheapest one for a level, or the second one as long as they were
-#: timed once, and so many seconds, are timed so many times: on a machine that does something else as well any run may
-#: come out late by these seconds, and one that is timed once by half (measured: 0.36 to 0.63 s for one and the same).
-CLOSE, ONCE, LATE, TIMES = 1.25, 1.7, 0.03, 5
+    enough: float = 0.7
+    patience: float = 12.0
+    beaten: float = 2.5
+    longest: float = 120.0
+    climb: float = 1200.0
+    vary: float = 1700.0
+    repeat: float = 2000.0
+    near: float = 1.2
+    close: float = 1.25
+    once: float = 1.7
+    late: float = 0.03
+    times: int = 5
+
+
+LIMITS = Limits()
 
 
 @dataclass(frozen=True)
@@ -125,13 +142,20 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     print(against.sentence, file=sys.stderr, flush=True)
     runner = Runner(source, scene, tuple(given), out, against)
     whole = [
-        climb(rungs, partial(runner, seconds=CLIMB), lambda: runner.rows),
-        runner(_between(runner.rows), VARY),
-        runner([other for one, row in runner.rows.items() if _worth(row) for other in one.with_few_steps()], VARY),
-        runner([other for one in _best(runner.rows) for other in one.with_other_steps()], VARY),
+        climb(rungs, partial(runner, seconds=LIMITS.climb), lambda: runner.rows),
+        runner(_between(runner.rows), LIMITS.vary),
+        runner(
+            [other for one, row in runner.rows.items() if _worth(row) for other in one.with_few_steps()], LIMITS.vary
+        ),
+        runner([other for one in _best(runner.rows) for other in one.with_other_steps()], LIMITS.vary),
     ]
-    for repeat in range(1, TIMES):
-        whole.append(runner([replace(one, repeat=repeat) for one in _best(runner.rows, CLOSE, ONCE, LATE)], REPEAT))
+    for repeat in range(1, LIMITS.times):
+        whole.append(
+            runner(
+                [replace(one, repeat=repeat) for one in _best(runner.rows, LIMITS.close, LIMITS.once, LIMITS.late)],
+                LIMITS.repeat,
+            )
+        )
     if not all(whole):
         reasons.append("The time allowed for a study is over; the same command goes on from here.")
     how = {one.variant: one.job(source, scene).overrides for one in runner.found}
@@ -166,17 +190,21 @@ def _high_enough(last: Row, rows: Sequence[Row]) -> bool:
     finest = min(LEVELS.values())
     others = [one for one in rows if one.measured and one.dofs]
     accurate = [one.seconds for one in others if one.curve_error <= finest]
-    too_slow = last.measured and last.seconds > min(LONGEST, PATIENCE * min(accurate, default=LONGEST))
+    too_slow = last.measured and last.seconds > min(
+        LIMITS.longest, LIMITS.patience * min(accurate, default=LIMITS.longest)
+    )
     beaten = any(
-        one.method == last.method and one.curve_error <= last.curve_error and BEATEN * one.seconds <= last.seconds
+        one.method == last.method
+        and one.curve_error <= last.curve_error
+        and LIMITS.beaten * one.seconds <= last.seconds
         for one in others
     )
-    return too_slow or beaten or last.curve_error <= ENOUGH * finest
+    return too_slow or beaten or last.curve_error <= LIMITS.enough * finest
 
 
 def _worth(found: Row) -> bool:
     """Whether a run comes near the coarsest level, so that fewer steps may make it cheaper."""
-    return found.curve_error <= NEAR * max(LEVELS.values())
+    return found.curve_error <= LIMITS.near * max(LEVELS.values())
 
 
 def _best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late: float = 0.0) -> list[Try]:

@@ -9,9 +9,9 @@ from typing import Literal
 
 import numpy as np
 
-#: Who expects what is stated: the paper does not give numbers for Figure 9.
+#: Who expects what is stated; the paper does not give numbers for Figure 9.
 PAPER, REFINEMENT, READING = "the paper", "convergence", "moduli read as GPa"
-BEAM, J, LIMIT = "beam theory", "the J-integral", "LEFM, plate limit"
+THEORY, J_INTEGRAL, LIMIT = "beam theory", "the J_INTEGRAL-integral", "LEFM, plate limit"
 
 Unit = Literal["ratio", "fraction", "number"]
 

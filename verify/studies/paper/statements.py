@@ -18,13 +18,13 @@ from verify.result import Result
 from verify.scene.schema import Scene
 from verify.studies.paper.plan import BEAMS, BONDS, LAWS, Case
 from verify.studies.paper.statement import (
-    BEAM,
+    THEORY,
+    J_INTEGRAL,
     LIMIT,
     PAPER,
     READING,
     REFINEMENT,
     Comparison,
-    J,
     Statement,
     each,
 )
@@ -33,7 +33,7 @@ from verify.studies.paper.study import Study, apart, curve
 #: Curves whose relative L2 distance is below this lie within the width of a line drawn in a figure.
 VISIBLE = 0.01
 
-NAMES = {"tspline": "T-splines", "nurbs": "NURBS", "lagrange": "Lagrange elements"}
+PLURALS = {"tspline": "T-splines", "nurbs": "NURBS", "lagrange": "Lagrange elements"}
 
 #: Measure of a trial -> its name, and what a basis is that has less of it.
 MEASURES = {"error": ("curve distance", "closer to the converged curve"), "oscillation": ("oscillation", "smoother")}
@@ -60,16 +60,16 @@ def _of_beams(study: Study) -> Iterator[Statement]:
     coarse, _ = _ends(study, "dofs")
     law = next(iter(LAWS))
     said = f"{coarse} unknowns just resolve the process zone of {LAWS[law]}: 1 to {ENOUGH} elements in it"
-    zones = [(NAMES[case.basis], n) for case, n in study.zones.items() if (case.scene, case.dofs) == (law, coarse)]
+    zones = [(PLURALS[case.basis], n) for case, n in study.zones.items() if (case.scene, case.dofs) == (law, coarse)]
     yield each((said, "elements in the zone"), "number", zones, lambda n: 1.0 <= n < ENOUGH)
-    for better, worse in pairwise(NAMES):
+    for better, worse in pairwise(PLURALS):
         for measure in MEASURES:
             yield from _rankings(study, better, worse, measure)
     yield _strength(study)
-    for basis in list(NAMES)[1:]:
+    for basis in list(PLURALS)[1:]:
         for measure in MEASURES:
             yield _points_help(study, basis, measure)
-    yield _points_idle(study, next(iter(NAMES)))
+    yield _points_idle(study, next(iter(PLURALS)))
     yield _penalty(study)
     for measure in MEASURES:
         yield _refinement(study, measure)
@@ -101,7 +101,7 @@ def _points_help(study: Study, basis: str, measure: str) -> Statement:
     few, many = _ends(study, "points")
     name, adjective = MEASURES[measure]
     cases = _cases(study, basis=basis, points=many) if many > few else []
-    said = f"More interface points make {NAMES[basis]} {adjective}", f"{name} with {few} points over that with {many}"
+    said = f"More interface points make {PLURALS[basis]} {adjective}", f"{name} with {few} points over that with {many}"
     return _ratios(study, said, measure, _pairs(study, cases, {"points": few}, "law", "dofs", "penalty"))
 
 
@@ -109,7 +109,7 @@ def _points_idle(study: Study, basis: str) -> Statement:
     few, _ = _ends(study, "points")
     cases = [case for case in _cases(study, basis=basis) if case.points > few]
     off = _distances(study, _pairs(study, cases, {"points": few}, "law", "dofs", "points", "penalty"))
-    said = f"More interface points hardly change {NAMES[basis]}: less than {VISIBLE:.0%}"
+    said = f"More interface points hardly change {PLURALS[basis]}: less than {VISIBLE:.0%}"
     return each((said, f"distance of the curve to that with {few} points"), "fraction", off, _unseen)
 
 
@@ -145,7 +145,7 @@ def _beams_coincide(study: Study) -> Statement:
 
 
 def _of_strips(study: Study) -> Iterator[Statement]:
-    for better, worse in pairwise(NAMES):
+    for better, worse in pairwise(PLURALS):
         pairs = _pairs(study, [Case(better, bond) for bond, _ in study.references], {"basis": worse}, "bond")
         for measure in MEASURES:
             yield _ranking(study, "are {} than {} at equal unknowns", measure, pairs, (better, worse))
@@ -155,7 +155,7 @@ def _of_strips(study: Study) -> Iterator[Statement]:
     zones = [(_where(study, case, "basis", "bond"), n) for case, n in study.zones.items()]
     said = f"The meshes resolve the process zone: {ENOUGH} elements or more in it"
     yield each((said, "elements in the zone as measured"), "number", zones, lambda n: n >= ENOUGH, READING)
-    printed = [(NAMES[basis], n) for basis, n in study.printed.items()]
+    printed = [(PLURALS[basis], n) for basis, n in study.printed.items()]
     said = f"With the moduli as printed, in MPa, they do not: fewer than {ENOUGH} elements"
     yield each((said, "elements in the zone as expected"), "number", printed, lambda n: n < ENOUGH, READING)
     yield from _peaks(study)
@@ -171,12 +171,12 @@ def _peaks(study: Study) -> Iterator[Statement]:
     peaks = {(name, bond): peak_load(result) for name, bond, result in study.complete_runs()}
     known = [
         (f"{_name(name)}, bond {study.bond(longer):g} over {study.bond(shorter):g}", peaks[name, longer] / shorter_peak)
-        for name in (*NAMES, "converged")
+        for name in (*PLURALS, "converged")
         for shorter, longer in pairwise(BONDS)
         if (name, longer) in peaks and (shorter_peak := peaks.get((name, shorter)))
     ]
     said = "A longer bond gives a larger peak load, as it leaves a shorter lever arm"
-    yield each((said, "peak load over that of the next shorter bond"), "ratio", known, lambda more: more > 1.0, BEAM)
+    yield each((said, "peak load over that of the next shorter bond"), "ratio", known, lambda more: more > 1.0, THEORY)
     limits = {bond: peak(limit)[1] for bond, limit in study.limits.items()}
     parts = [(_of(study, name, bond), top / limits[bond]) for (name, bond), top in peaks.items()]
     said = "The peak load stays below that of a clamped plate, sqrt(2 G_Ic w E I) / a"
@@ -193,7 +193,7 @@ def _one_branch(study: Study) -> Statement:
         if bond != longest
     ]
     said = f"All bonds share one propagation branch: less than {VISIBLE:.0%} apart"
-    return each((said, "distance of the branch to that of the longest bond"), "fraction", off, _unseen, BEAM)
+    return each((said, "distance of the branch to that of the longest bond"), "fraction", off, _unseen, THEORY)
 
 
 def branch_distance(one: Curve, other: Curve) -> float:
@@ -211,10 +211,10 @@ def _growth(study: Study) -> Iterator[Statement]:
     found = [(_of(study, *run), identities(study.scenes[run[1]], result)) for *run, result in study.complete_runs()]
     load, angle = ([(who, known[name]) for who, known in found] for name in ("load", "angle"))
     said = "While the crack grows the load never falls below G_Ic w", "least load over G_Ic w"
-    yield each(said, "ratio", load, lambda part: part >= 1.0 - J_TOLERANCE, J)
+    yield each(said, "ratio", load, lambda part: part >= 1.0 - J_TOLERANCE, J_INTEGRAL)
     text = f"In the end load sin(theta) is G_Ic w: within {ANGLE_TOLERANCE:.0%}"
     said = text, "load sin(theta) over G_Ic w at the last step"
-    yield each(said, "ratio", angle, lambda part: abs(part - 1.0) <= ANGLE_TOLERANCE, J)
+    yield each(said, "ratio", angle, lambda part: abs(part - 1.0) <= ANGLE_TOLERANCE, J_INTEGRAL)
 
 
 def identities(scene: Scene, result: Result) -> dict[str, float]:
@@ -229,7 +229,7 @@ def identities(scene: Scene, result: Result) -> dict[str, float]:
 
 
 def _ranking(study: Study, text: str, measure: str, pairs: Pairs, bases: tuple[str, str]) -> Statement:
-    better, worse = (NAMES[basis] for basis in bases)
+    better, worse = (PLURALS[basis] for basis in bases)
     name, adjective = MEASURES[measure]
     said = f"{better} {text.format(adjective, worse)}", f"{name} of {worse} over that of {better}"
     return _ratios(study, said, measure, pairs)
@@ -291,4 +291,4 @@ def _of(study: Study, name: str, bond: str) -> str:
 
 
 def _name(basis: str) -> str:
-    return NAMES.get(basis, "converged curve")
+    return PLURALS.get(basis, "converged curve")

@@ -26,7 +26,7 @@ from verify.theory.plane_fields import smooth
 from verify.verdict import Check
 
 COUNTS = (4, 8, 16)
-RATE_TOLERANCE = 0.15
+WITHIN = 0.15
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def rate_checks(found: tuple[Convergence, ...]) -> tuple[Check, ...]:
     """The rate of every family whose order is known."""
     meaning = "The rate in L2 is p + 1."
     return tuple(
-        Check("rate", c.family.name, c.rates[0] - c.family.order, RATE_TOLERANCE, "analytical", meaning)
+        Check("rate", c.family.name, c.rates[0] - c.family.order, WITHIN, "analytical", meaning)
         for c in found
         if c.family.order is not None
     )

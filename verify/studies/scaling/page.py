@@ -16,7 +16,7 @@ from verify.pages.style import HALF, METHOD_NAMES, WIDE, Panel, colour, drawing,
 from verify.runs.environment import environment
 from verify.studies.page import write_study
 from verify.studies.scaling.growth import Fit
-from verify.studies.scaling.plan import DEGREES, SHORT, STEPS
+from verify.studies.scaling.plan import DEGREES, SIZES
 from verify.studies.scaling.row import PARTS, Row
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ COLUMNS = {
 #: Unknowns a rank from which on PETSc's own advice has ranks worth their messages.
 WORTH = 20_000
 
-_MARKERS = {"nurbs": "o", "dolfinx": "s"}
+_MARKS = {"nurbs": "o", "dolfinx": "s"}
 
 
 def write(study: Study, path: Path) -> None:
@@ -49,7 +49,7 @@ def write(study: Study, path: Path) -> None:
         parts=PARTS,
         growth=[time_of_an_iteration(study, "time"), memory(study, "memory")] if study.growth else [],
         bars=strong(_strong(study.rows), "strong") if study.shared else None,
-        programme=(SHORT, STEPS),
+        programme=(SIZES.way, SIZES.steps),
         worth=WORTH,
         environment=environment() | {"load average at the beginning and at the end": loads},
     )
@@ -122,7 +122,7 @@ def _strong(rows: Sequence[Row]) -> list[Row]:
 
 
 def _points(axes: Axes, n: np.ndarray, value: np.ndarray, law: Fit, method: str) -> None:
-    axes.plot(n, value, _MARKERS[method], markersize=4, color=colour(method))
+    axes.plot(n, value, _MARKS[method], markersize=4, color=colour(method))
     if isfinite(law.exponent):
         name = f"{METHOD_NAMES[method]}: {law.exponent:.2f}"
         axes.plot(n, law.factor * n**law.exponent, linewidth=1.0, color=colour(method), label=name)

@@ -13,7 +13,7 @@ from verify.scene.schema import Scene
 from verify.studies import frame
 from verify.studies.frame import BUSY, one_thread, repeated
 from verify.studies.scaling.growth import Fit, Shared, fit, shared
-from verify.studies.scaling.plan import TIMES, planned
+from verify.studies.scaling.plan import SIZES, planned
 from verify.studies.scaling.row import PARTS, Row, row
 
 #: What grows, by the name of the column.
@@ -126,7 +126,7 @@ def scaling(source: str, scene: Scene, given: Sequence[str], out: Path) -> Study
     """
     one_thread()
     (runs, left_out), before = planned(source, scene, given), _load()
-    found = frame.run(repeated(runs, range(TIMES)), out)
+    found = frame.run(repeated(runs, range(SIZES.times)), out)
     rows = tuple(
         row(run, [o for job, o in found.items() if (job.overrides, job.ranks) == (run.overrides, run.ranks)])
         for run in runs
@@ -139,7 +139,7 @@ def scaling(source: str, scene: Scene, given: Sequence[str], out: Path) -> Study
 def would_run(source: str, scene: Scene, given: Sequence[str], out: Path) -> list[str]:
     """The runs with their times, a line each, and what is left out; nothing is run."""
     runs, left_out = planned(source, scene, given)
-    return frame.would_run(repeated(runs, range(TIMES)), left_out, out)
+    return frame.would_run(repeated(runs, range(SIZES.times)), left_out, out)
 
 
 def _load() -> float:

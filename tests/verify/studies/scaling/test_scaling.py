@@ -23,7 +23,7 @@ from verify.studies.frame import repeated
 from verify.studies.scaling import plan as plan_of
 from verify.studies.scaling import ranks as ranks_of
 from verify.studies.scaling.growth import fit, serial_part, shared
-from verify.studies.scaling.plan import BARE, LARGEST, RUNGS, SMALLEST, TIMES, Run, elements, planned, sizes
+from verify.studies.scaling.plan import SIZES, Run, elements, planned, sizes
 from verify.studies.scaling.row import Row, row
 from verify.studies.scaling.study import Study, scaling
 
@@ -100,11 +100,11 @@ def test_the_part_that_is_not_shared_gives_back_the_speed_up(ranks: int) -> None
 
 def test_the_ladders_span_the_sizes_asked_for(two_cores: None) -> None:
     runs, left_out = planned("dcb-czm1", SCENE)
-    assert sizes()[0] == SMALLEST and sizes()[-1] == LARGEST and len(sizes()) == RUNGS
+    assert sizes()[0] == SIZES.smallest and sizes()[-1] == SIZES.largest and len(sizes()) == SIZES.rungs
     for method in ("nurbs", "dolfinx"):
         alone = [run for run in runs if run.method == method and run.ranks == 1]
-        assert [run.bare for run in alone] == [True] + [False] * RUNGS
-        for run, size in zip(alone, (BARE, *sizes()), strict=True):
+        assert [run.bare for run in alone] == [True] + [False] * SIZES.rungs
+        for run, size in zip(alone, (SIZES.bare, *sizes()), strict=True):
             has = SCENE.effects.model_copy(update={"search": method == "nurbs"})  # the other one never searches
             assert run.solved.load.opening == (0.015,) and run.solved.effects == has
             if method == "dolfinx":
@@ -114,8 +114,8 @@ def test_the_ladders_span_the_sizes_asked_for(two_cores: None) -> None:
         (2, "scaling/dolfinx-20913-2-ranks"), (2, "scaling/dolfinx-100000-2-ranks")
     ]  # fmt: skip
     assert left_out == ("4, 8, 16 ranks: left out: 2 cores here",)
-    again = repeated(runs, range(TIMES))
-    assert len({run.task().key for run in again}) == len(again) == TIMES * len(runs)
+    again = repeated(runs, range(SIZES.times))
+    assert len({run.task().key for run in again}) == len(again) == SIZES.times * len(runs)
     task = more[0].task()
     assert task.program[:4] == ("verify.studies.scaling.ranks", "2", "solve", "dcb-czm1") and task.lane == "dolfinx"
 
@@ -185,7 +185,7 @@ def test_growth_with_and_without_the_memory_of_the_program(two_cores: None) -> N
         assert fits["iteration"].exponent == pytest.approx(1.2) == fits["factor"].exponent
         assert fits["model_memory_mb"].exponent == pytest.approx(1.0, abs=0.03)
         assert fits["peak_memory_mb"].exponent < 0.8, "the program's own hides how the mesh grows"
-    assert study.program_mb("nurbs") == pytest.approx(PROGRAM + MB * BARE)
+    assert study.program_mb("nurbs") == pytest.approx(PROGRAM + MB * SIZES.bare)
 
 
 def test_two_ranks_that_share_the_assembly_alone(two_cores: None) -> None:
@@ -225,7 +225,7 @@ def test_a_study_from_runs_to_files(two_cores: None, tmp_path: Path, monkeypatch
     assert "4, 8, 16 ranks: left out" in said and "on 2 ranks: 1.3 x as fast (assembly 2 x), efficiency 66%" in said
     with (tmp_path / "scaling.csv").open(newline="") as stream:
         lines = list(csv.DictReader(stream))
-    assert list(lines[0]) == [field.name for field in fields(Row)] and len(lines) == 2 * (RUNGS + 1) + 2
+    assert list(lines[0]) == [field.name for field in fields(Row)] and len(lines) == 2 * (SIZES.rungs + 1) + 2
     about = json.loads((tmp_path / "scaling.json").read_text())
     assert about["growth"]["dolfinx"]["iteration"]["exponent"] == pytest.approx(1.0)
     assert len(about["strong_scaling"]) == 2 and about["left_out"]
