@@ -18,12 +18,12 @@ from verify.result import Result
 from verify.scene.schema import Scene
 from verify.studies.paper.plan import BEAMS, BONDS, LAWS, Case
 from verify.studies.paper.statement import (
-    THEORY,
     J_INTEGRAL,
     LIMIT,
     PAPER,
     READING,
     REFINEMENT,
+    THEORY,
     Comparison,
     Statement,
     each,
