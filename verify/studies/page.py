@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from matplotlib.axes import Axes
+
+from verify.pages.parts import plain
 from verify.pages.template import rendered
 from verify.pages.text import sentence
 from verify.runs.environment import environment
@@ -16,3 +19,10 @@ def write_study(study: Study, path: Path, filters: Mapping[str, Callable], **con
     about = {"study": study, "name": study.scene.name, "sentence": sentence(study.scene), "environment": environment()}
     page = rendered(f"verify.studies.{study.NAME}", "page.html.j2", filters, **about | content)
     path.write_text(page, encoding="utf-8")
+
+
+def logarithmic(axes: Axes, x: str, y: str) -> None:
+    """Logarithmic axes with plain numbers."""
+    axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
+    for part in (axes.xaxis, axes.yaxis):
+        plain(part)

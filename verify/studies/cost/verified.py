@@ -237,8 +237,8 @@ def bound(distance: float, before: float = inf) -> float:
     """Bound of the error of the finer one of two levels from their distance, and from that of the two before them.
 
     ``caution`` times the distance is enough where the coarser one is at least 5/3 times as far off: with ``ratio`` 1.5
-    from an order of 1.3 on. Where distances have fallen more slowly, to the part f, the ones to come add up to f / (1 - f)
-    of the last one, as in a geometric series, of which ``slowest`` is the most that is taken for one.
+    from an order of 1.3 on. Where distances have fallen more slowly, to the part f, the ones to come add up to
+    f / (1 - f) of the last one, as in a geometric series; more than ``slowest`` is never taken.
     """
     f = distance / before if before > 0.0 else 0.0
     return distance * min(max(REFINEMENT.caution, f / (1.0 - f) if f < 1.0 else inf), REFINEMENT.slowest)

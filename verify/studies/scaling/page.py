@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 
-from verify.pages.parts import phase_bars, plain
+from verify.pages.parts import phase_bars
 from verify.pages.style import HALF, METHOD_NAMES, WIDE, Panel, colour, drawing, panel, to_svg
 from verify.runs.environment import environment
-from verify.studies.page import write_study
+from verify.studies.page import logarithmic, write_study
 from verify.studies.scaling.growth import Fit
 from verify.studies.scaling.plan import DEGREES, SIZES
 from verify.studies.scaling.row import PARTS, Row
@@ -76,7 +76,7 @@ def time_of_an_iteration(study: Study, key: str) -> Panel:
             for part, dashes in (("assembly", (4, 2)), ("factor", (1, 1.5))):
                 value = [getattr(one, part) for one in ladder]
                 axes.plot(n, value, linewidth=0.8, dashes=dashes, color=colour(method), label=f"its {part}")
-        _logarithmic(axes, "unknowns", "seconds")
+        logarithmic(axes, "unknowns", "seconds")
         axes.legend(loc="upper left")
         svg = to_svg(figure, key, "Time of a Newton iteration against unknowns")
     return Panel(svg, "Time of a Newton iteration on one core: measured, with the power law through all sizes.")
@@ -92,7 +92,7 @@ def memory(study: Study, key: str) -> Panel:
             added = np.array([study.value(one, "model_memory_mb") for one in ladder])
             _points(axes, n, added, study.growth[method]["model_memory_mb"], method)
             axes.plot(n, peak, linewidth=0.8, dashes=(4, 2), color=colour(method), label="with the program")
-        _logarithmic(axes, "unknowns", "MB")
+        logarithmic(axes, "unknowns", "MB")
         axes.legend(loc="upper left")
         svg = to_svg(figure, key, "Peak memory against unknowns")
     return Panel(svg, "Peak memory of a run: what the mesh adds to that of the program, and both together.")
@@ -126,9 +126,3 @@ def _points(axes: Axes, n: np.ndarray, value: np.ndarray, law: Fit, method: str)
     if isfinite(law.exponent):
         name = f"{METHOD_NAMES[method]}: {law.exponent:.2f}"
         axes.plot(n, law.factor * n**law.exponent, linewidth=1.0, color=colour(method), label=name)
-
-
-def _logarithmic(axes: Axes, x: str, y: str) -> None:
-    axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
-    for part in (axes.xaxis, axes.yaxis):
-        plain(part)
