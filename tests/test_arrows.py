@@ -62,6 +62,8 @@ FLOORS = (
         "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.paper",
         "verify.studies.plane", "verify.studies.scaling",
     ),
+    ("verify.studies.page",),
+    ("verify.studies.frame",),
     ("verify.runs",),
     ("verify.checks",),
     ("verify.pages",),

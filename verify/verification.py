@@ -17,9 +17,8 @@ from verify.scene.schema import Scene
 from verify.studies.found import Included, found_in
 from verify.studies.interface_rules import finding, study
 from verify.studies.one_scene import convergence, planned, scene_report
-from verify.studies.paper import peel, peel_statements, statements
-from verify.studies.paper import plan as figures
-from verify.studies.paper.comparison import lines
+from verify.studies.paper.plan import Plan, beams, strips
+from verify.studies.paper.statements import lines
 from verify.studies.paper.study import measured
 from verify.studies.plane.rates import rate_checks, rates
 from verify.studies.plane.study import Plate
@@ -59,15 +58,14 @@ def verify(
     included : studies of other commands for the report to show, besides those in folders of ``out``
     text : whether report.md is written, too
     """
-    plan, beams, strips = _plans(scenes, full)
-    outcomes = {outcome.job: outcome for outcome in run_all(_all_jobs(plan, beams, strips), out, jobs, scheduler)}
+    plan, *figures = _plans(scenes, full)
+    outcomes = {outcome.job: outcome for outcome in run_all(_all_jobs(plan, *figures), out, jobs, scheduler)}
     own = [scene_report(scene, [outcomes[job] for job in plan if job.scene is scene], out) for _, scene in scenes]
     reports = tuple(joined(report, curves, out) for report in own)
     page = out / "report.html"
     with telling("studies", STUDIES_SECONDS * full + PLATE_SECONDS * len(plates)):
         quadrature = study() if full else None
-        paper = measured(beams, outcomes) if full else None
-        peels = peel.measured(strips, outcomes) if full else None
+        paper, peels = (measured(figure, outcomes) if full else None for figure in figures)
         planes = tuple(plane_study(plate) for plate in plates)
         bases = rates() if full else ()
     studies = tuple({(study.command, study.folder.resolve()): study for study in (*found_in(out), *included)}.values())
@@ -81,10 +79,9 @@ def verify(
     print("\n".join([*overview(reports), *tables, *convergence(reports), *not_held(judgement.checks)]))
     if quadrature is not None:
         print(finding(quadrature))
-    if paper is not None:
-        print("\n".join(lines("Figures 6 to 8", paper.left_out, statements.statements(paper))))
-    if peels is not None:
-        print("\n".join(lines("Figure 9", peels.left_out, peel_statements.statements(peels))))
+    for title, found in (("Figures 6 to 8", paper), ("Figure 9", peels)):
+        if found is not None:
+            print("\n".join(lines(title, found)))
     for gap in judgement.lacking:
         say(f"{gap.scene}: {gap.check or gap.subject} must have been judged: {gap.why}")
     print(f"{judgement.in_short()}: {page if written else out / verdict_file.NAME}")
@@ -96,10 +93,10 @@ def would_run(scenes: Sequence[tuple[str, Scene]], out: Path, jobs: int, full: b
     return dry_run(_all_jobs(*_plans(scenes, full)), out, jobs)
 
 
-def _plans(scenes: Sequence[tuple[str, Scene]], full: bool) -> tuple[list[Job], figures.Plan, peel.PeelPlan]:
+def _plans(scenes: Sequence[tuple[str, Scene]], full: bool) -> tuple[list[Job], Plan, Plan]:
     plan = [job for source, scene in scenes for job in planned(source, scene, full)]
-    return plan, figures.planned(scenes if full else ()), peel.planned(scenes if full else ())
+    return plan, beams(scenes if full else ()), strips(scenes if full else ())
 
 
-def _all_jobs(plan: Sequence[Job], beams: figures.Plan, strips: peel.PeelPlan) -> list[Job]:
-    return list(dict.fromkeys([*plan, *beams.jobs, *strips.jobs]))
+def _all_jobs(plan: Sequence[Job], *figures: Plan) -> list[Job]:
+    return list(dict.fromkeys([*plan, *(job for figure in figures for job in figure.jobs)]))

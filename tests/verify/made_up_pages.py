@@ -104,7 +104,7 @@ def cost(out: Path) -> Path:
         for (method, (degree, size)), n, asked in product(at.items(), sizes, ("20", "80"))
     ]
     rows += [a_row("beam", 5e-4, 0.1, 0, 0), a_row("lagrange", nan, 0.1)]
-    cost_page.write(CostStudy(SCENE, against(), tuple(rows), ("lefm: only a limit",)), out / "report.html")
+    cost_page.write(CostStudy(SCENE, tuple(rows), ("lefm: only a limit",), against()), out / "report.html")
     return out / "report.html"
 
 
@@ -119,7 +119,7 @@ def effects(out: Path) -> Path:
         for name, size in sizes.items()
     ]
     rows.append(replace(rows[0], effect="search", key="search", status="with it: stopped"))
-    study = EffectsStudy(SCENE, "nurbs", tuple(rows), ("moments: left out: the scene has none",))
+    study = EffectsStudy(SCENE, tuple(rows), ("moments: left out: the scene has none",), "nurbs")
     effects_page.write(study, out / "report.html")
     return out / "report.html"
 

@@ -57,7 +57,7 @@ def scaling_study(scene: str = "dcb-czm1") -> Study:
     for dofs in (20_000, 100_000):
         rows += [_scaling("dolfinx", 1, dofs, 2e-5 * dofs), _scaling("dolfinx", 2, dofs, 1.5e-5 * dofs)]
     given = load_scene("dcb-czm1").model_copy(update={"name": scene})
-    return Study(given, tuple(rows), ("4 ranks: left out: 2 cores here",), 8000, (0.0, 0.0))
+    return Study(given, tuple(rows), ("4 ranks: left out: 2 cores here",), (0.0, 0.0))
 
 
 def scaling(folder: Path, scene: str = "dcb-czm1") -> Path:

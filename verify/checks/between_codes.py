@@ -12,9 +12,10 @@ from math import inf
 
 from verify.checks import beam_error, load_introduction
 from verify.checks.proof import MATCHED, REFERENCE, beside_models, difference_of_models, drawn, held_against, proof
-from verify.curves.curve import curve_error, first_drop, from_origin, load_at, peak
+from verify.curves.curve import curve_error, first_drop, from_origin, load_at
 from verify.curves.leg_checks import farthest_check, programme_checks, stiffness_check
 from verify.curves.legs import path
+from verify.curves.of_run import peak_load
 from verify.methods import through_thickness, zone_resolution
 from verify.result import Result
 from verify.scene.published import Published
@@ -176,8 +177,3 @@ def distance(a: Result, b: Result, end: float) -> float:
     """Curve error of ``a`` against ``b``, of a run that stopped early up to where both have come."""
     end = min(end, float(a.opening.max()), float(b.opening.max()))
     return curve_error(from_origin(a.opening, a.load), from_origin(b.opening, b.load), end)
-
-
-def peak_load(result: Result) -> float:
-    """Largest load of the path, between the steps too where their slopes are known."""
-    return peak((result.opening, result.load), result.steps.get("load_slope"))[1]

@@ -11,12 +11,12 @@ from verify.result import Result
 POINTS_PER_STEP = 20
 
 
-def cubics(result: Result) -> Curve:
+def cubics(result: Result, per_step: int = POINTS_PER_STEP) -> Curve:
     """The path with points between the steps, on the cubics that their exact slopes give."""
     steps = result.steps
-    if not {"load_slope", "heading"} <= set(steps):
+    if not {"load_slope", "heading"} <= set(steps) or result.opening.size < 2 or per_step == 1:
         return result.opening, result.load
-    return dense(result.opening, result.load, steps["load_slope"], steps["heading"], POINTS_PER_STEP)
+    return dense(result.opening, result.load, steps["load_slope"], steps["heading"], per_step)
 
 
 def distance(curve: Curve, exact: Result) -> float:
@@ -35,9 +35,15 @@ def _onward(curve: Curve, end: float) -> Curve:
 
 
 def peak_load(result: Result) -> float:
-    return peak(cubics(result))[1]
+    """Largest load of the path, between the steps too where their slopes are known."""
+    return peak((result.opening, result.load), result.steps.get("load_slope"))[1]
 
 
 def dissipated(result: Result) -> float:
     """At the end of the programme."""
     return float(result.steps["dissipated_energy"][-1])
+
+
+def work(result: Result) -> float:
+    """Of the load, at the end of the programme."""
+    return float(result.steps["external_work"][-1])

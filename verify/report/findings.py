@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from verify.studies.found import Included
     from verify.studies.interface_rules import Study
-    from verify.studies.paper.peel import PeelStudy
     from verify.studies.paper.study import Study as Figures
     from verify.studies.plane.rates import Convergence
     from verify.studies.plane.study import PlaneStudy
@@ -38,5 +37,5 @@ class Findings:
     paper: Figures | None = None
     planes: Sequence[PlaneStudy] = ()
     rates: tuple[Convergence, ...] = ()
-    peels: PeelStudy | None = None
+    peels: Figures | None = None
     included: Sequence[Included] = ()

@@ -203,15 +203,11 @@ def _scaling(found: Scaling) -> Iterator[str]:
     if found.growth:
         yield from (
             "",
-            *table(["Method, growth with the unknowns", *found.columns], [[m, *q] for m, q in found.growth]),
+            *table(["Method, growth with the unknowns", *found.columns], found.growth),
         )
     if found.shared:
         heads = ["Unknowns", "Ranks", "Iteration", "Efficiency", "Not shared", *found.parts]
-        rows = [
-            [str(row.dofs), str(row.ranks), row.faster, row.efficiency, row.not_shared, *row.parts]
-            for row in found.shared
-        ]
-        yield from ("", *table(heads, rows))
+        yield from ("", *table(heads, found.shared))
 
 
 def _held(row: HardRow, basis: str) -> str:

@@ -12,9 +12,10 @@ from verify.pages.text import percent, seconds, symbols
 from verify.report import markdown
 from verify.report.findings import Findings
 from verify.report.section import Section, section
-from verify.report.studies import interface_rules, paper_section, peel_section, plane, plane_rates
+from verify.report.studies import interface_rules, plane, plane_rates
 from verify.report.studies.included import IncludedSection
 from verify.report.studies.included import sections as shown
+from verify.report.studies.paper import section as paper_section
 from verify.report.summary import summarise
 from verify.studies.cost.figures import named
 from verify.studies.cost.page import script as chart_script
@@ -59,8 +60,11 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
         planes=planes,
         rates=rates,
         quadrature=findings.quadrature and interface_rules.section(findings.quadrature, "quadrature"),
-        paper=findings.paper and paper_section.section(findings.paper, "figures"),
-        peels=findings.peels and peel_section.section(findings.peels, "figure-9"),
+        papers=[
+            paper_section(study, anchor)
+            for study, anchor in ((findings.paper, "figures"), (findings.peels, "figure-9"))
+            if study is not None
+        ],
         environment=dict(findings.environment),
     )
     path.write_text(page, encoding="utf-8")

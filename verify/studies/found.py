@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from verify.runs.fingerprint import source
-from verify.support.checked_files import ANY, NUMBER, Damaged, Shape, read_json, read_table
+from verify.support.checked_files import Damaged, Shape, read_json
 from verify.support.refusal import Refusal
 from verify.support.say import say
 
@@ -19,6 +20,9 @@ MARKS: Mapping[str, tuple[str, ...]] = {
     "scaling": ("scaling.json", "scaling.csv"),
     "hard": ("*/*/verdict.json",),
 }
+
+#: What is read of the JSON file of every study, beside ``ABOUT`` of its rows.
+_HEAD: Shape = {"scene": {"name": str}, "left_out": [str], "source?": str}
 
 
 @dataclass(frozen=True)
@@ -78,63 +82,20 @@ def _commands(folder: Path) -> list[str]:
 
 
 def _study(command: str, folder: Path) -> Included:
-    about, rows = _READ[command](folder)
-    return Included(command, folder, about, tuple(rows))
+    if command == "hard":
+        return Included(command, folder, {}, tuple(_verdicts(folder)))
+    of_rows = import_module(f"verify.studies.{command}.row")
+    about = read_json(folder / f"{command}.json", {**_HEAD, **of_rows.ABOUT})
+    return Included(command, folder, about, tuple(of_rows.read_csv(folder / f"{command}.csv")))
 
 
-Content = tuple[Mapping[str, Any], Iterable[Any]]
-
-_HEAD: Shape = {"scene": {"name": str}, "left_out": [str], "source?": str}
-
-
-def _cost(folder: Path) -> Content:
-    from verify.studies.cost.ladder import BEAM, FAMILIES
-    from verify.studies.cost.row import read_csv
-
-    reference = {
-        "label": str,
-        "dofs": int,
-        "uncertainty": {"curve": NUMBER},
-        "other_code": str,
-        "other_code_apart": NUMBER,
-    }
-    rows = read_csv(folder / "cost.csv")
-    known = {(family.method, family.degree) for family in (*FAMILIES, BEAM)}
-    if strange := [row for row in rows if (row.method, row.degree) not in known]:
-        raise Damaged(folder / "cost.csv", f"the method {strange[0].method[:30]!r} of degree {strange[0].degree}")
-    return read_json(folder / "cost.json", {**_HEAD, "reference": reference}), rows
-
-
-def _effects(folder: Path) -> Content:
-    from verify.studies.effects.row import Row
-
-    return read_json(folder / "effects.json", _HEAD), read_table(folder / "effects.csv", Row)
-
-
-def _scaling(folder: Path) -> Content:
-    from verify.studies.scaling.row import Row
-
-    growth = {ANY: {ANY: {"exponent": NUMBER, "standard_error": NUMBER, "factor": NUMBER}}}
-    shared = {"dofs": int, "ranks": int, "speed_up": {ANY: NUMBER}, "serial": {ANY: NUMBER}, "efficiency": NUMBER}
-    shape = {**_HEAD, "growth": growth, "strong_scaling": [shared], "sentences": [str]}
-    return read_json(folder / "scaling.json", shape), read_table(folder / "scaling.csv", Row)
-
-
-def _hard(folder: Path) -> Content:
+def _verdicts(folder: Path) -> Iterator[Any]:
     from verify.studies.hard.cases import CASES
     from verify.studies.hard.one import read_verdict
 
-    paths = [path for path in sorted(folder.glob("*/*/verdict.json")) if path.parent.parent.name in CASES]
-    verdicts = [read_verdict(path.parent) for path in paths]
-    for path, found in zip(paths, verdicts, strict=True):
-        if (found.case, found.basis) != path.parts[-3:-1]:
-            raise Damaged(path, f"the verdict of {found.case} on {found.basis}")
-    return {}, verdicts
-
-
-_READ: Mapping[str, Callable[[Path], Content]] = {
-    "cost": _cost,
-    "effects": _effects,
-    "scaling": _scaling,
-    "hard": _hard,
-}
+    for path in sorted(folder.glob("*/*/verdict.json")):
+        if path.parent.parent.name in CASES:
+            found = read_verdict(path.parent)
+            if (found.case, found.basis) != path.parts[-3:-1]:
+                raise Damaged(path, f"the verdict of {found.case} on {found.basis}")
+            yield found

@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from verify.checks.between_codes import peak_load
 from verify.curves.convergence import Convergence, assess
-from verify.curves.of_run import dissipated
+from verify.curves.of_run import dissipated, peak_load, work
 from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.verdict import Run, SceneReport
@@ -19,7 +18,7 @@ from verify.verdict import Run, SceneReport
 QUANTITIES: Mapping[str, Callable[[Result], float]] = {
     "peak load": peak_load,
     "dissipated energy at the end": dissipated,
-    "work at the end": lambda result: float(result.steps["external_work"][-1]),
+    "work at the end": work,
 }
 
 #: Fewer meshes say nothing of an order.

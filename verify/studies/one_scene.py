@@ -20,7 +20,7 @@ from verify.runs.jobs import Job, Outcome, is_missing
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.studies.mesh_sequences import sequences
-from verify.studies.paper import plan as figures
+from verify.studies.paper.plan import cubic
 from verify.verdict import Check, Run, SceneReport
 
 NAMES = {
@@ -47,8 +47,8 @@ def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
     if scene.specimen.kind == "dcb" and effects["kinematics"] == "finite" and effects["search"]:
         yield Job(source, scene, SEARCHING, MATCHED, (*own, "effects.search=false"), fields=False)
     if full and scene.specimen.kind == "dcb":
-        cubic = figures.cubic(source, scene)
-        yield replace(cubic, overrides=(*own, *cubic.overrides))
+        fine = cubic(source, scene)
+        yield replace(fine, overrides=(*own, *fine.overrides))
         yield Job(source, scene, "tspline", "tspline-adaptive", (*own, *ADAPTIVE))
     if full:
         for parts in (2, 4):

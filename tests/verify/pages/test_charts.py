@@ -170,7 +170,7 @@ def a_study(power: float) -> Study:
         for n in sizes
     ]
     bare = replace(plain, dofs=100, bare=True, peak_memory_mb=90.0)
-    return Study(scene_report().scene, (bare, *rows), (), 10, (0.0, 0.0))
+    return Study(scene_report().scene, (bare, *rows), (), (0.0, 0.0))
 
 
 def test_time_and_memory_grow_as_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -233,22 +233,7 @@ def test_bars_of_ranks_are_the_parts_of_their_iterations(monkeypatch: pytest.Mon
 
 
 def test_ranges_and_exponents_read_well() -> None:
-    assert scaling.between((0.4, 16.0)) == "0.4 to 16" and scaling.between((1.001, 0.999)) == "1"
     known = [replace(fit([], []), exponent=p, error=e) for p, e in ((1.024, 0.006), (-0.5, 0.1))]
     assert [scaling.power(one) for one in known] == ["1.02 ± 0.01", "−0.50 ± 0.10"]
     assert scaling.power(fit([1.0, 2.0], [1.0, 2.0])) == "–"
     assert scaling.readable("0.9 x as fast, N^1.0 +- 0.1, a box") == "0.9 × as fast, N^1.0 ± 0.1, a box"
-
-
-@pytest.mark.parametrize("left_out", [1, 2])
-def test_what_ranks_wait_for_needs_two_sizes_on_one_and_on_two(left_out: int) -> None:
-    """Of straight lines through both sizes, what two ranks need more than one where there is nothing to do."""
-    study = a_study(1.0)
-    small, *_, large = study.ladder("dolfinx")
-    two = [replace(one, ranks=2, iteration=0.5 * one.iteration + 0.125) for one in (small, large)]
-    assert replace(study, rows=(small, large, *two)).waiting == pytest.approx(0.125)
-    assert (
-        replace(study, rows=(small, large, *(replace(one, iteration=0.0 * one.iteration) for one in two))).waiting == 0
-    )
-    kept = tuple(one for one in (small, large, *two) if one.ranks != left_out)
-    assert replace(study, rows=kept).waiting == 0.0 and replace(study, rows=(small, *two[:1])).waiting == 0.0

@@ -43,6 +43,7 @@ from verify.scene.schema import Scene
 from verify.studies.cost import figures as cost_figures  # noqa: E402
 from verify.studies.effects import page as effects_page  # noqa: E402
 from verify.studies.effects.row import Row  # noqa: E402
+from verify.studies.effects.study import Study as EffectsStudy  # noqa: E402
 from verify.studies.hard import page as hard_page  # noqa: E402
 from verify.studies.hard import suite  # noqa: E402
 from verify.studies.hard.case import Case, variant  # noqa: E402
@@ -189,17 +190,13 @@ def test_bars_of_times_begin_at_equal_times(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_the_page_of_effects_draws_what_was_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    class Study:
-        scene, method, reasons = load_scene("dcb-czm1"), "nurbs", ("search: left out: no",)
-        rows = tuple(effect_rows())
-
+    study = EffectsStudy(load_scene("dcb-czm1"), tuple(effect_rows()), ("search: left out: no",), "nurbs")
     drawn = Drawn(monkeypatch, effects_page)
-    effects_page.write(Study(), tmp_path / "page.html")
+    effects_page.write(study, tmp_path / "page.html")
     text = (tmp_path / "page.html").read_text()
     assert len(drawn) == 2 and all(len(f.axes[0].get_yticks()) == 3 for _, f in drawn), "one of the four stopped"
-    assert text.count("<svg") == 2 and all(one.effect in text for one in Study.rows) and "left out: no" in text
-    Study.rows = Study.rows[3:]
-    effects_page.write(Study(), tmp_path / "none.html")
+    assert text.count("<svg") == 2 and all(one.effect in text for one in study.rows) and "left out: no" in text
+    effects_page.write(replace(study, rows=study.rows[3:]), tmp_path / "none.html")
     assert "<svg" not in (tmp_path / "none.html").read_text()
 
 

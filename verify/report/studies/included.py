@@ -21,7 +21,8 @@ from verify.studies.hard.cases import CASES
 from verify.studies.hard.one import Verdict
 from verify.studies.hard.page import Row as HardRow
 from verify.studies.hard.suite import Cell
-from verify.studies.scaling.page import readable
+from verify.studies.scaling.growth import Fit
+from verify.studies.scaling.page import power, readable
 from verify.studies.scaling.row import PARTS
 
 TITLES = {
@@ -36,26 +37,15 @@ GROWTH = {"iteration": "time of an iteration", "peak_memory_mb": "peak memory", 
 
 
 @dataclass(frozen=True)
-class SharedRow:
-    """A size on some ranks against the same on one, in words."""
-
-    dofs: int
-    ranks: int
-    faster: str
-    efficiency: str
-    not_shared: str
-    parts: tuple[str, ...]
-
-
-@dataclass(frozen=True)
 class Scaling:
-    """How a study found time and memory to grow, and what more ranks gain.
+    """How a study found time and memory to grow, and what more ranks gain: rows of texts.
 
     growth : method, and an exponent with its standard error for each of `GROWTH`
+    shared : unknowns, ranks, speed-up of an iteration, efficiency, part that is not shared, speed-up of each of `PARTS`
     """
 
-    growth: tuple[tuple[str, tuple[str, ...]], ...]
-    shared: tuple[SharedRow, ...]
+    growth: tuple[tuple[str, ...], ...]
+    shared: tuple[tuple[str, ...], ...]
     columns: tuple[str, ...] = tuple(GROWTH.values())
     parts: tuple[str, ...] = PARTS
 
@@ -96,7 +86,7 @@ def section(study: Included, out: Path, anchor: str) -> IncludedSection:
     """One study."""
     name = study.about.get("scene", {}).get("name", "")
     prefix = quote(Path(os.path.relpath(study.folder, out)).as_posix())
-    head = {
+    head: dict[str, Any] = {
         "anchor": anchor,
         "command": study.command,
         "title": f"{TITLES[study.command]}: {name}" if name else TITLES[study.command],
@@ -133,7 +123,7 @@ def _effects(study: Included, anchor: str) -> dict[str, Any]:
 def _scaling(study: Included, anchor: str) -> dict[str, Any]:
     about = study.about
     growth = tuple(
-        (METHOD_NAMES.get(method, method), tuple(_exponent(fits.get(what)) for what in GROWTH))
+        (METHOD_NAMES.get(method, method), *(_exponent(fits.get(what)) for what in GROWTH))
         for method, fits in about["growth"].items()
     )
     shared = tuple(_shared(one) for one in about["strong_scaling"])
@@ -143,25 +133,19 @@ def _scaling(study: Included, anchor: str) -> dict[str, Any]:
 
 def _exponent(fit: dict[str, float | None] | None) -> str:
     """1.02 ± 0.01, where there is a fit."""
-    if fit is None or fit["exponent"] is None or fit["standard_error"] is None:
-        return NO_VALUE
-    return f"{fit['exponent']:.2f} ± {fit['standard_error']:.2f}".replace("-", "−")
+    exponent, error = (None, None) if fit is None else (fit["exponent"], fit["standard_error"])
+    return NO_VALUE if exponent is None or error is None else power(Fit(exponent, error, 1.0))
 
 
-def _shared(one: dict[str, Any]) -> SharedRow:
-    faster = {name: one["speed_up"].get(name) for name in ("iteration", *PARTS)}
-    return SharedRow(
-        one["dofs"],
-        one["ranks"],
-        _times(faster["iteration"]),
-        NO_VALUE if one["efficiency"] is None else f"{number(100 * one['efficiency'], 2)} %",
-        NO_VALUE if one["serial"].get("iteration") is None else number(one["serial"]["iteration"], 2),
-        tuple(_times(faster[name]) for name in PARTS),
-    )
+def _shared(one: dict[str, Any]) -> tuple[str, ...]:
+    efficiency, serial, faster = one["efficiency"], one["serial"].get("iteration"), one["speed_up"]
+    iteration, *parts = (_text(faster.get(name), " ×") for name in ("iteration", *PARTS))
+    shares = _text(None if efficiency is None else 100 * efficiency, " %"), _text(serial)
+    return (str(one["dofs"]), str(one["ranks"]), iteration, *shares, *parts)
 
 
-def _times(faster: float | None) -> str:
-    return NO_VALUE if faster is None else f"{number(faster, 2)} ×"
+def _text(value: float | None, unit: str = "") -> str:
+    return NO_VALUE if value is None else f"{number(value, 2)}{unit}"
 
 
 def _hard(study: Included, anchor: str) -> dict[str, Any]:

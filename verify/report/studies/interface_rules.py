@@ -64,10 +64,8 @@ def _tractions(study: Study, method: str, ductility: float, key: str) -> Panel:
         for rule, points, ink in DRAWN:
             profile = study.of(method, rule, points, ductility).profile
             if profile is not None:
-                style = {"linewidth": 0.9, "marker": ".", "markersize": 3}
-                axes.plot(
-                    profile.s_q, profile.traction_q / strength, color=colour(ink), label=_name(rule, points), **style
-                )
+                (drawn,) = axes.plot(profile.s_q, profile.traction_q / strength, ".-", label=_name(rule, points))
+                drawn.set(color=colour(ink), linewidth=0.9, markersize=3)
         start = study.scene.specimen.free_length
         axes.set(
             xlabel=axis("position along the specimen", units.length),

@@ -29,7 +29,7 @@ from verify.runs.fingerprint import source
 from verify.scene.effects import simulated
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import STEPS, Scene
-from verify.studies.cost.ladder import MORE_POINTS
+from verify.studies.cost.ladder import LADDER
 from verify.support.checked_files import Damaged, read_json
 from verify.support.progress import duration
 from verify.support.refusal import Refusal
@@ -40,25 +40,33 @@ KNOWN = Path(__file__).with_name("known.csv")
 #: The method that is chosen where only the table is known, and the methods whose meshes can be refined.
 METHOD, REFINED = "nurbs", (*WITH_DOFS, "dolfinx")
 
-#: Unknowns that a scene may have at most.
-LARGEST = 1_000_000
 
-#: A quadratic element through an arm is chosen where it costs at most this part of the accuracy.
-THROUGH = 0.25
+@dataclass(frozen=True)
+class Guess:
+    """What the first guess rests on.
 
-#: For steps "auto": how far off its tangent the load may be, as a part of the accuracy.
-BEND = 1.0
+    finest, coarsest : accuracies that can be asked for
+    safety : elements that are taken over those of the table
+    largest : unknowns that a scene may have at most
+    through : a quadratic element through an arm is chosen where it costs at most this part of the accuracy
+    bend : for steps "auto": how far off its tangent the load may be, as a part of the accuracy
+    iterations : Newton iterations a step of finite kinematics, as long as those of the trial: 3.0 to 4.0 on random
+        scenes, and those after damage begins take longer. A linear bulk takes one
+    trial, trial_steps : a trial goes this part of the way in about so many steps
+    """
 
-#: Accuracies that can be asked for; from the table more elements than it says are taken.
-FINEST, COARSEST, SAFETY = 0.0005, 0.05, 1.2
+    finest: float = 0.0005
+    coarsest: float = 0.05
+    safety: float = 1.2
+    largest: int = 1_000_000
+    through: float = 0.25
+    bend: float = 1.0
+    iterations: float = 4.2
+    trial: float = 0.02
+    trial_steps: int = 10
 
-#: Newton iterations a step, as long as those of the trial: 3.0 to 4.0 on random scenes of finite kinematics, and those
-#: after damage begins take longer; a linear bulk takes one.
-ITERATIONS_PER_STEP = {"finite": 4.2, "linear": 1.0}
 
-#: A trial goes this part of the way in about so many steps.
-TRIAL, TRIAL_STEPS = 0.02, 10
-
+GUESS = Guess()
 
 #: What is read of a study.
 _STUDY = {
@@ -97,8 +105,8 @@ def choose(scene: Scene, accuracy: float, study: Path) -> Choice:
     ------
     Refusal : an accuracy beyond what is known, or a scene of which no mesh is fine enough.
     """
-    if not FINEST <= accuracy <= COARSEST:
-        raise Refusal(f"--accuracy: must be >= {FINEST:.2%} and <= {COARSEST:.0%}, got {100 * accuracy:g}%")
+    if not GUESS.finest <= accuracy <= GUESS.coarsest:
+        raise Refusal(f"--accuracy: must be >= {GUESS.finest:.2%} and <= {GUESS.coarsest:.0%}, got {100 * accuracy:g}%")
     return _from_study(scene, accuracy, study) or _from_table(scene, accuracy)
 
 
@@ -135,12 +143,12 @@ def _same_study(scene: Scene, path: Path) -> Sequence[Mapping[str, Any]]:
 
 
 def _from_table(scene: Scene, accuracy: float) -> Choice:
-    elements = SAFETY * elements_for(accuracy)
-    degree = 2 if thickness_error(scene, 2, 1) <= THROUGH * accuracy else 3
+    elements = GUESS.safety * elements_for(accuracy)
+    degree = 2 if thickness_error(scene, 2, 1) <= GUESS.through * accuracy else 3
     overrides = (*_steps(scene, accuracy), *with_elements(scene, METHOD, degree, elements))
     chosen = parse_scene(scene.model_dump(), overrides)
     require(chosen, METHOD)
-    seconds = run_seconds(chosen, METHOD, iterations(chosen, METHOD))
+    seconds = predicted_seconds(chosen, METHOD, iterations(chosen, METHOD))
     mesh = f"NURBS of degree {degree} with {chosen.discretization.dofs} unknowns"
     zone = f"{expected(chosen, METHOD).elements:.1f} elements in the process zone"
     return Choice(METHOD, overrides, seconds, f"{mesh}, {zone}: about {duration(seconds)}")
@@ -150,13 +158,14 @@ def _steps(scene: Scene, accuracy: float) -> tuple[str, ...]:
     """At least as many steps as the scene asks for, or steps by accuracy that are as short as the scene's."""
     asked = scene.discretization
     if asked.steps == "auto":
-        return (f"discretization.bend={min(asked.bend, max(BEND * accuracy, 1e-5))!r}",)
+        return (f"discretization.bend={min(asked.bend, max(GUESS.bend * accuracy, 1e-5))!r}",)
     return (f"discretization.steps={max(asked.steps, STEPS)}",)
 
 
 def iterations(scene: Scene, method: str) -> float:
     """Newton iterations of a whole run, about."""
-    return ITERATIONS_PER_STEP[simulated(scene, method)["kinematics"]] * steps(scene, method)
+    finite = simulated(scene, method)["kinematics"] == "finite"
+    return (GUESS.iterations if finite else 1.0) * steps(scene, method)
 
 
 def elements_for(accuracy: float) -> float:
@@ -189,10 +198,10 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
     ------
     Refusal : no mesh is fine enough.
     """
-    points = max(degree + MORE_POINTS, scene.discretization.interface_points)
+    points = max(degree + LADDER.more_points, scene.discretization.interface_points)
     of_degree = (f"discretization.degree={degree}", f"discretization.interface_points={points}")
     now = expected(scene, method).elements
-    size = min(round(scene.discretization.dofs * (elements / now if now > 0.0 else 1.0)), LARGEST)
+    size = min(round(scene.discretization.dofs * (elements / now if now > 0.0 else 1.0)), GUESS.largest)
     for _ in range(60):
         overrides = (*of_degree, f"discretization.dofs={size}")
         try:
@@ -206,13 +215,13 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
     raise Refusal(f"--accuracy: no mesh is known with {elements:.1f} elements in the process zone of {scene.name}")
 
 
-def run_seconds(scene: Scene, method: str, iterations: float) -> float:
+def predicted_seconds(scene: Scene, method: str, iterations: float) -> float:
     """Time of a run of so many Newton iterations, from a few steps on the same mesh.
 
     An iteration, with what belongs to it, takes the median over these steps; the rest is for what is done once.
     """
-    begun = max(map(abs, scene.load.opening)) * TRIAL
-    short = (f"load.opening={begun!r}", f"discretization.steps={TRIAL_STEPS}")
+    begun = max(map(abs, scene.load.opening)) * GUESS.trial
+    short = (f"load.opening={begun!r}", f"discretization.steps={GUESS.trial_steps}")
     times, numbers = [perf_counter()], []
 
     def note(row: Mapping[str, float]) -> None:

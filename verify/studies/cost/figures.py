@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,6 +13,7 @@ from verify.pages.parts import phase_bars, plain
 from verify.pages.style import HALF, SHOWN_PHASES, THIRD, Panel, colour, drawing, panel, to_svg
 from verify.studies.cost.findings import LEVELS, by_family, pareto
 from verify.studies.cost.row import Row
+from verify.studies.page import logarithmic
 
 #: method: (name, colour of the palette).
 METHODS: Mapping[str, tuple[str, str]] = {
@@ -25,6 +28,7 @@ METHODS: Mapping[str, tuple[str, str]] = {
 _MARKERS = {0: "*", 1: "v", 2: "s", 3: "o", 4: "D", 5: "P"}
 
 Value = Callable[[Row], float]
+_UNKNOWNS, _SECONDS = attrgetter("dofs"), attrgetter("seconds")
 
 
 def named(row: Row) -> str:
@@ -43,7 +47,7 @@ def work_precision(rows: Sequence[Row], key: str) -> Panel:
         best = pareto(rows)
         axes.plot([r.seconds for r in best], [100 * r.curve_error for r in best], color=colour("muted"), linewidth=0.8)
         _levels(axes, 100.0)
-        _logarithmic(axes, "seconds", "curve error (%)")
+        logarithmic(axes, "seconds", "curve error (%)")
         svg = to_svg(figure, key, "Curve error against time")
     return Panel(svg, "Every run; the line joins those that no other beats in both error and time.", "wide")
 
@@ -58,9 +62,9 @@ def error_and_unknowns(rows: Sequence[Row], orders: Mapping[str, float], key: st
             if ladder[0].dofs:
                 order = orders.get(name, np.nan)
                 label = f"{named(ladder[0])}: {order:.1f}" if np.isfinite(order) else named(ladder[0])
-                _curve(axes, ladder, _unknowns, _percent, label)
+                _curve(axes, ladder, _UNKNOWNS, lambda row: 100.0 * row.curve_error, label)
         _levels(axes, 100.0)
-        _logarithmic(axes, "unknowns", "curve error (%)")
+        logarithmic(axes, "unknowns", "curve error (%)")
         axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
         svg = to_svg(figure, key, "Curve error against unknowns")
     caption = (
@@ -74,9 +78,12 @@ def triple(rows: Sequence[Row], key: str) -> tuple[Panel, ...]:
     """Time, accuracy and size (Chang, Fabien, Knepley, Mills 2018): digits of accuracy against digits of size, the rate
     of unknowns against time, and digits of efficacy, -log10(error x time), against time."""
     parts: tuple[tuple[str, str, str, Value, Value, str], ...] = (
-        ("size", "unknowns", "digits of accuracy", _unknowns, _digits, "What a mesh resolves: -log10(curve error)."),
-        ("rate", "seconds", "unknowns a second", _seconds, _rate, "What the code makes of its unknowns."),
-        ("efficacy", "seconds", "digits of efficacy", _seconds, _efficacy, "Both: -log10(error x seconds)."),
+        ("size", "unknowns", "digits of accuracy", _UNKNOWNS, lambda row: -float(np.log10(row.curve_error)),
+         "What a mesh resolves: -log10(curve error)."),
+        ("rate", "seconds", "unknowns a second", _SECONDS, lambda row: row.dofs / row.seconds,
+         "What the code makes of its unknowns."),
+        ("efficacy", "seconds", "digits of efficacy", _SECONDS,
+         lambda row: -float(np.log10(row.curve_error * row.seconds)), "Both: -log10(error x seconds)."),
     )  # fmt: skip
     panels = []
     for name, across, up, x, y, caption in parts:
@@ -108,44 +115,14 @@ def phases(rows: Sequence[Row], key: str) -> Panel:
 
 
 def _curve(axes: Axes, ladder: Sequence[Row], x: Value, y: Value, label: str) -> None:
-    style = {"marker": _MARKERS[ladder[0].degree], "markersize": 3, "linewidth": 0.9, **_ink(ladder[0])}
+    style: dict[str, Any] = {"marker": _MARKERS[ladder[0].degree], "markersize": 3, "linewidth": 0.9, **_ink(ladder[0])}
     axes.plot([x(row) for row in ladder], [y(row) for row in ladder], label=label, **style)
 
 
-def _ink(row: Row) -> dict[str, str]:
+def _ink(row: Row) -> dict[str, Any]:
     return {"color": colour(METHODS[row.method][1])}
 
 
 def _levels(axes: Axes, scale: float) -> None:
     for level in LEVELS.values():
         axes.axhline(scale * level, color=colour("rule"), linewidth=0.8, zorder=0)
-
-
-def _logarithmic(axes: Axes, x: str, y: str) -> None:
-    axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
-    for part in (axes.xaxis, axes.yaxis):
-        plain(part)
-
-
-def _unknowns(row: Row) -> float:
-    return row.dofs
-
-
-def _seconds(row: Row) -> float:
-    return row.seconds
-
-
-def _percent(row: Row) -> float:
-    return 100.0 * row.curve_error
-
-
-def _digits(row: Row) -> float:
-    return -float(np.log10(row.curve_error))
-
-
-def _rate(row: Row) -> float:
-    return row.dofs / row.seconds
-
-
-def _efficacy(row: Row) -> float:
-    return -float(np.log10(row.curve_error * row.seconds))

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite, nan
+from operator import attrgetter
 
 import numpy as np
 
-from verify.studies.cost.ladder import STEPS
+from verify.studies.cost.ladder import LADDER
 from verify.studies.cost.row import Row
 
 #: Errors of the curve that are asked for, as people write them.
@@ -47,7 +48,9 @@ class Cheapest:
 
 def cheapest(rows: Sequence[Row], level: str) -> Cheapest:
     """Cheapest runs whose curve error is at most that of a level."""
-    enough = sorted((row for row in rows if row.measured and row.curve_error <= LEVELS[level]), key=_seconds)
+    enough = sorted(
+        (row for row in rows if row.measured and row.curve_error <= LEVELS[level]), key=attrgetter("seconds")
+    )
     of_method: dict[str, Row] = {}
     for row in enough:
         of_method.setdefault(row.method, row)
@@ -56,7 +59,7 @@ def cheapest(rows: Sequence[Row], level: str) -> Cheapest:
 
 def of_equal_steps(rows: Sequence[Row]) -> list[Row]:
     """Rows of the runs that were asked for the same number of steps."""
-    return [row for row in rows if row.asked == str(STEPS)]
+    return [row for row in rows if row.asked == str(LADDER.steps)]
 
 
 def pareto(rows: Sequence[Row]) -> list[Row]:
@@ -134,7 +137,3 @@ def table(rows: Sequence[Row]) -> list[str]:
         missed = sorted({row.method for row in rows} - set(found.of_method))
         lines += [f"  not reached: {', '.join(missed)}"] if missed else []
     return lines
-
-
-def _seconds(row: Row) -> float:
-    return row.seconds

@@ -12,14 +12,31 @@ from verify.runs.jobs import Job, left_out
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 
-#: The finer of two rungs has so many times the elements of the other, and a ladder so many rungs.
-RATIO, RUNGS = 1.4, 8
 
-#: Steps asked for in the first place, enough for the sharp peak of ``peel-120``; few ones for every mesh that is
-#: accurate, and others for the best of them. The ``iga`` path chooses its own, few where it is asked to, fewer where
-#: they may leave their tangents further; those of the DOLFINx path are counted, and the front adds to them.
-STEPS, FEW_STEPS, OTHER_STEPS = 80, {"dolfinx": (20,)}, (40, 150)
-FEW_STEPS_OF_IGA = ("auto", "auto-0.02", "auto-0.05", "auto-0.1")
+@dataclass(frozen=True)
+class Ladder:
+    """The runs of a family.
+
+    ratio, rungs : the finer of two rungs has so many times the elements of the other, and a ladder so many rungs
+    steps : asked for in the first place, enough for the sharp peak of ``peel-120``
+    few_steps : for every mesh that is accurate. The ``iga`` path chooses its own, few where it is asked to, fewer where
+        they may leave their tangents further; those of the DOLFINx path are counted, and the front adds to them
+    other_steps : for the best meshes
+    more_points : integration points an element on the interface beyond the degree, for the ``iga`` methods. They cost
+        next to nothing: on ``dcb-czm1`` with 500 unknowns 5 points instead of 2 take the error of cubic NURBS from 0.43
+        to 0.17 %, of T-splines from 0.20 to 0.13 %, of Lagrange elements from 3.3 to 0.6 %. DOLFINx has three more
+    """
+
+    ratio: float = 1.4
+    rungs: int = 8
+    steps: int = 80
+    few_steps: tuple[str, ...] = ("auto", "auto-0.02", "auto-0.05", "auto-0.1")
+    few_steps_dolfinx: tuple[int, ...] = (20,)
+    other_steps: tuple[int, ...] = (40, 150)
+    more_points: int = 2
+
+
+LADDER = Ladder()
 
 
 @dataclass(frozen=True)
@@ -38,11 +55,6 @@ class Family:
     def name(self) -> str:
         return self.method if self.method in ("beam", "tspline-adaptive") else f"{self.method}-p{self.degree}"
 
-
-#: Integration points an element on the interface beyond the degree, for the ``iga`` methods: they cost next to nothing,
-#: and on ``dcb-czm1`` with 500 unknowns 5 points instead of 2 take the error of cubic NURBS from 0.43 to 0.17 %, of
-#: T-splines from 0.20 to 0.13 %, and of Lagrange elements from 3.3 to 0.6 %. DOLFINx has three beyond the degree.
-MORE_POINTS = 2
 
 FAMILIES = (
     Family("tspline", "tspline", 3, 2.0),
@@ -77,21 +89,27 @@ class Try:
     def with_few_steps(self) -> Iterator[Try]:
         """The same mesh with as few steps as the path takes."""
         if self.family is not BEAM:
-            yield from (replace(self, steps=few) for few in FEW_STEPS.get(self.family.solver, FEW_STEPS_OF_IGA))
+            yield from (replace(self, steps=few) for few in self._few_steps)
+
+    @property
+    def _few_steps(self) -> tuple[int | str, ...]:
+        return LADDER.few_steps_dolfinx if self.family.solver == "dolfinx" else LADDER.few_steps
 
     def with_other_steps(self) -> Iterator[Try]:
         """The same mesh with other numbers of steps."""
         if self.family is not BEAM:
-            yield from (replace(self, steps=steps) for steps in OTHER_STEPS)
+            yield from (replace(self, steps=steps) for steps in LADDER.other_steps)
 
 
 def ladder(scene: Scene, family: Family) -> list[Try]:
     """The rungs of a family on a scene, coarse to fine; none where no mesh is possible."""
     if family.solver == "beam":
-        return [Try(family, rung, 0, steps) for rung, steps in enumerate((STEPS, *OTHER_STEPS))]
+        return [Try(family, rung, 0, steps) for rung, steps in enumerate((LADDER.steps, *LADDER.other_steps))]
     each = size_of_an_element(scene, family)
-    sizes = np.unique(np.rint(each * family.first * RATIO ** np.arange(RUNGS))) if np.isfinite(each) else ()
-    return [Try(family, rung, int(size), STEPS) for rung, size in enumerate(sizes)]
+    sizes = (
+        np.unique(np.rint(each * family.first * LADDER.ratio ** np.arange(LADDER.rungs))) if np.isfinite(each) else ()
+    )
+    return [Try(family, rung, int(size), LADDER.steps) for rung, size in enumerate(sizes)]
 
 
 def ladders(source: str, scene: Scene, given: Sequence[str]) -> tuple[dict[Family, list[Try]], list[str]]:
@@ -120,7 +138,7 @@ def _overrides(family: Family, scene: Scene, size: int, steps: int | str) -> tup
         return paced
     if family.solver == "dolfinx":
         return (*paced, f"dolfinx.degree={family.degree}", f"dolfinx.elements={size}")
-    points = max(family.degree + MORE_POINTS, scene.discretization.interface_points)
+    points = max(family.degree + LADDER.more_points, scene.discretization.interface_points)
     return (
         *paced,
         *(("effects.search=auto",) if scene.effects.search is True else ()),
@@ -137,5 +155,5 @@ def size_of_an_element(scene: Scene, family: Family) -> float:
     Both grow in proportion. Of a mesh that follows the zone only the parts around it count: as many as if it stood.
     """
     now = scene.discretization.dofs if family.solver != "dolfinx" else scene.dolfinx.elements
-    given = parse_scene(scene.model_dump(), _overrides(replace(family, method=family.solver), scene, now, STEPS))
+    given = parse_scene(scene.model_dump(), _overrides(replace(family, method=family.solver), scene, now, LADDER.steps))
     return now / expected(given, family.solver).elements

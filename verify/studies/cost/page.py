@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from verify.pages.style import Panel
-from verify.pages.template import rendered
-from verify.pages.text import percent, seconds, sentence
-from verify.runs.environment import environment
+from verify.pages.text import percent, seconds
 from verify.studies.cost.figures import METHODS, error_and_unknowns, named, phases, triple, work_precision
 from verify.studies.cost.findings import LEVELS, Cheapest, cheapest, growth, of_equal_steps, orders
 from verify.studies.cost.row import Row
+from verify.studies.page import write_study
 
 if TYPE_CHECKING:
     from verify.studies.cost.study import Study
@@ -86,25 +85,19 @@ def write(study: Study, path: Path) -> None:
     levels = [Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS]
     found = orders(rows, 2.0 * study.against.uncertainty["curve"])
     typical = list(levels[1].best.of_method.values())
-    page = rendered(
-        "verify.studies.cost",
-        "page.html.j2",
+    write_study(
+        study,
+        path,
         {"percent": percent, "seconds": seconds, "named": named},
-        name=study.scene.name,
-        sentence=sentence(study.scene),
-        against=study.against,
         levels=levels,
-        left_out=study.left_out,
         chart=chart(rows, "chart"),
         figures=[error_and_unknowns(rows, found, "orders")],
         triple=triple(rows, "triple"),
         bars=phases(typical, "phases") if typical else None,
         growth=growth(rows),
         rows=sorted(rows, key=lambda row: (row.method, row.degree, row.dofs, row.asked)),
-        environment=environment(),
         script=script(),
     )
-    path.write_text(page, encoding="utf-8")
 
 
 def _for_script(rows: Sequence[Row]) -> Markup:

@@ -16,14 +16,23 @@ from verify.runs.jobs import Job, Outcome
 from verify.scene.schema import Scene
 from verify.studies.cost.ladder import Family, Try, size_of_an_element
 
-#: Elements that span the process zone on the three meshes of the reference, and the steps asked for.
-ZONE, STEPS = (4.0, 8.0, 16.0), 200
 
-#: And those of the two meshes of the other code, with elements of degree 3.
-OTHER_ZONE = (2.5, 5.0)
+@dataclass(frozen=True)
+class Meshes:
+    """Those of the reference.
 
-#: Where no order is observed, the distance of the two finest meshes is multiplied by this (Roache 1994).
-CAUTION = 3.0
+    zone, other_zone : elements that span the process zone, and those of the other code, of degree 3
+    steps : asked for
+    caution : where no order is observed, the distance of the two finest meshes is multiplied by this (Roache 1994)
+    """
+
+    zone: tuple[float, ...] = (4.0, 8.0, 16.0)
+    other_zone: tuple[float, ...] = (2.5, 5.0)
+    steps: int = 200
+    caution: float = 3.0
+
+
+MESHES = Meshes()
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,46 +72,62 @@ class Reference:
             f"({self.uncertainty['curve']:.3%} and {self.other:.3%})."
         )
 
+    def summary(self) -> dict[str, object]:
+        """The entry ``reference`` of ``cost.json``."""
+        return {
+            "label": self.label,
+            "dofs": self.result.dofs,
+            "uncertainty": dict(self.uncertainty),
+            "order": self.order,
+            "other_code": self.other_label,
+            "other_code_apart": self.apart,
+            "other_code_uncertainty": self.other,
+            "agrees": self.agrees,
+        }
+
 
 def reference_jobs(source: str, scene: Scene, given: Sequence[str]) -> tuple[tuple[Job, ...], tuple[Job, ...]]:
     """Runs of the reference, coarse to fine, and of the other code: none where DOLFINx is missing."""
     one_arm = scene.specimen.kind == "dcb" and scene.discretization.mismatch == 1.0
     halved = ("effects.symmetry=true",) if one_arm else ()
-    own = _jobs(source, scene, Family("nurbs", "nurbs", 3, 0.0), ZONE, (*given, *halved))
-    other = _jobs(source, scene, Family("dolfinx", "dolfinx", 3, 0.0), OTHER_ZONE, given) if dolfinx_installed() else ()
+    own = _jobs(source, scene, Family("nurbs", "nurbs", 3, 0.0), MESHES.zone, (*given, *halved))
+    other = (
+        _jobs(source, scene, Family("dolfinx", "dolfinx", 3, 0.0), MESHES.other_zone, given)
+        if dolfinx_installed()
+        else ()
+    )
     return own, other
 
 
 def _jobs(source: str, scene: Scene, family: Family, zone: Sequence[float], given: Sequence[str]) -> tuple[Job, ...]:
     each = size_of_an_element(scene, family)
-    tries = (Try(family, i, int(round(each * elements)), STEPS) for i, elements in enumerate(zone))
+    tries = (Try(family, i, int(round(each * elements)), MESHES.steps) for i, elements in enumerate(zone))
     jobs = (one.job(source, scene, given) for one in tries)
     return tuple(Job(j.source, j.scene, j.method, j.variant.replace("cost/", "reference/"), j.overrides) for j in jobs)
 
 
 def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | None:
     """What the runs give; None where one of the three of the reference did not come to its end."""
-    results = [outcome.result for outcome in own]
-    if any(result is None or not result.complete for result in results):
+    results, second = _complete(own), _complete(other)
+    if not results:
         return None
     finest, h = results[-1], [1.0 / result.elements for result in results]
-    apart = [distance(cubics(result), finest) for result in results[:2]]
-    order, index = _of_distances(h, apart)
+    order, index = _of_distances(h, [distance(cubics(result), finest) for result in results[:2]])
     values = {"peak": [peak_load(r) for r in results], "energy": [dissipated(r) for r in results]}
     sure = {"curve": index} | {name: _index(h, found) for name, found in values.items()}
-    label = "cubic NURBS" + (", one arm" if results[-1].method == "nurbs" and "symmetry" in str(own[-1].job) else "")
-    second = [outcome.result for outcome in other]
-    if not second or any(result is None or not result.complete for result in second):
+    label = "cubic NURBS" + (", one arm" if finest.method == "nurbs" and "symmetry" in str(own[-1].job) else "")
+    if not second:
         return Reference(label, finest, sure, order)
-    return Reference(
-        label,
-        finest,
-        sure,
-        order,
-        f"DOLFINx of degree 3 with {second[-1].dofs} unknowns",
-        distance(cubics(second[-1]), finest),
-        distance(cubics(second[0]), second[-1]),
-    )
+    coarse, fine = second[0], second[-1]
+    other_label = f"DOLFINx of degree 3 with {fine.dofs} unknowns"
+    apart, unsure = distance(cubics(fine), finest), distance(cubics(coarse), fine)
+    return Reference(label, finest, sure, order, other_label, apart, unsure)
+
+
+def _complete(outcomes: Sequence[Outcome]) -> list[Result]:
+    """The results of runs that all came to their end; empty where one of them did not."""
+    results = [outcome.result for outcome in outcomes if outcome.result is not None and outcome.result.complete]
+    return results if len(results) == len(outcomes) else []
 
 
 def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, float]:
@@ -114,7 +139,7 @@ def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, fl
     ratio = (h[0] ** orders - h[2] ** orders) / (h[1] ** orders - h[2] ** orders)
     wanted = apart[0] / apart[1] if apart[1] > 0.0 else np.inf
     if not ratio[0] <= wanted <= ratio[-1]:
-        return nan, CAUTION * apart[1]
+        return nan, MESHES.caution * apart[1]
     p = float(np.interp(wanted, ratio, orders))
     return p, GCI_SAFETY * apart[1] / ((h[1] / h[2]) ** p - 1.0)
 
@@ -124,4 +149,4 @@ def _index(h: Sequence[float], values: Sequence[float]) -> float:
     found = assess(h, values)
     if np.isfinite(found.gci) and found.asymptotic:
         return found.gci
-    return CAUTION * max(abs(values[-1] - value) for value in values[:2]) / abs(values[-1])
+    return MESHES.caution * max(abs(values[-1] - value) for value in values[:2]) / abs(values[-1])

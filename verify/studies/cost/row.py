@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import isfinite, nan
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,10 +14,19 @@ from verify.curves.curve import oscillation
 from verify.curves.of_run import cubics, dissipated, distance, peak_load
 from verify.result import Result, Snapshot, run_seconds
 from verify.runs.jobs import Outcome
-from verify.studies.cost.ladder import Try
+from verify.studies.cost.ladder import BEAM, FAMILIES, Try
 from verify.studies.cost.reference import Reference
-from verify.support.checked_files import read_table
+from verify.studies.frame import unmeasured
+from verify.support.checked_files import NUMBER, Damaged, Shape, read_table
 from verify.support.timing import PHASES
+
+#: What is read of ``cost.json`` again.
+ABOUT: Shape = {
+    "reference": {
+        **{"label": str, "dofs": int, "uncertainty": {"curve": NUMBER}},
+        **{"other_code": str, "other_code_apart": NUMBER},
+    }
+}
 
 
 @dataclass(frozen=True)
@@ -74,14 +84,17 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int
     """Measure a run and its repetitions, the first of them first; the errors are those of the first."""
     results = [outcome.result for outcome in outcomes if outcome.result is not None]
     family = one.family
-    head = {"method": family.method, "degree": family.degree, "asked": str(one.steps), "run": one.variant}
+    head: dict[str, Any] = {
+        "method": family.method,
+        "degree": family.degree,
+        "asked": str(one.steps),
+        "run": one.variant,
+    }
     if not results or not results[0].complete:
-        status = results[0].status if results else outcomes[0].left_out
-        unknown = {field.name: nan if field.type == "float" else 0 for field in fields(Row)}
-        return Row(**unknown | head | {"status": status})
+        return unmeasured(Row, head | {"status": results[0].status if results else outcomes[0].left_out})
     result = results[0]
     quickest = min(results, key=run_seconds)
-    phases = {name: quickest.seconds[name] for name in (*PHASES, "other")}
+    phases: dict[str, Any] = {name: (quickest.seconds or {})[name] for name in (*PHASES, "other")}
     phases["basis"] -= quickest.jit_seconds
     steps = result.steps
     return Row(
@@ -102,7 +115,7 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int
     )
 
 
-def errors(result: Result, against: Reference) -> dict[str, float]:
+def errors(result: Result, against: Reference) -> dict[str, Any]:
     """All distances of a complete run to the reference."""
     exact = against.result
     known = cubics(exact)
@@ -136,8 +149,17 @@ def traction_error(snapshots: Sequence[Snapshot], exact: Sequence[Snapshot]) -> 
 
 
 def read_csv(path: Path) -> list[Row]:
-    """Rows that were written."""
-    return read_table(path, Row)
+    """Rows that were written.
+
+    Raises
+    ------
+    Damaged : they are not as they were written, or of a method that is not known.
+    """
+    rows = read_table(path, Row)
+    known = {(family.method, family.degree) for family in (*FAMILIES, BEAM)}
+    if strange := [row for row in rows if (row.method, row.degree) not in known]:
+        raise Damaged(path, f"the method {strange[0].method[:30]!r} of degree {strange[0].degree}")
+    return rows
 
 
 def _middle(snapshot: Snapshot) -> float:

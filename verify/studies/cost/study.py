@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -10,76 +9,75 @@ from functools import partial
 from math import inf
 from pathlib import Path
 from time import monotonic
+from typing import ClassVar
 
-from verify.runs.environment import ALL_PACKAGES, THREADS, machine, versions
-from verify.runs.fingerprint import source as source_of
-from verify.runs.folder import write_csv, write_json
-from verify.runs.jobs import Job, Outcome, dry_run, run_all
+from verify.runs.jobs import Job, Outcome, run_all
 from verify.scene.schema import Scene
+from verify.studies import frame
 from verify.studies.cost.findings import LEVELS, cheapest, growth, of_equal_steps, orders, pareto, table
 from verify.studies.cost.ladder import Family, Try, ladders
 from verify.studies.cost.nonzeros import nonzeros
 from verify.studies.cost.reference import Reference, reference, reference_jobs
 from verify.studies.cost.row import Row, row
-from verify.support.say import say, write_page
-
-#: A ladder ends below this part of the finest level, where a rung took so many times as long as the cheapest run that
-#: is accurate enough, where another degree of the method is as accurate in so much less time, or after so many seconds.
-ENOUGH, PATIENCE, BEATEN, LONGEST = 0.7, 12.0, 2.5, 120.0
-
-#: Seconds after which no more of it is begun: the ladders, other numbers of steps, repetitions. What was begun is
-#: remembered, so that a second call goes further.
-CLIMB, VARY, REPEAT = 1200.0, 1700.0, 2000.0
-
-#: Fewer steps are tried on meshes whose error is this close to the coarsest level.
-NEAR = 1.2
-
-#: Runs that are within the first factor of a method's cheapest one for a level, or the second one as long as they were
-#: timed once, and so many seconds, are timed so many times: on a machine that does something else as well any run may
-#: come out late by these seconds, and one that is timed once by half (measured: 0.36 to 0.63 s for one and the same).
-CLOSE, ONCE, LATE, TIMES = 1.25, 1.7, 0.03, 5
+from verify.studies.frame import failure, one_thread
+from verify.support.say import say
 
 
 @dataclass(frozen=True)
-class Study:
-    """What a sweep found.
+class Limits:
+    """What a sweep spends on accuracy.
 
-    left_out : a sentence for every method that cannot solve the scene here
-    how : overrides of the scene with which a run was made, by its name
+    enough, patience, beaten, longest : a ladder ends below this part of the finest level; where a rung took so many
+        times as long as the cheapest run that is accurate enough; where another degree of the method is as accurate in
+        so much less time; after so many seconds
+    climb, vary, repeat : seconds after which no more of ladders, of other numbers of steps, of repetitions is begun;
+        runs are kept, so that a second call goes further
+    near : fewer steps are tried on meshes whose error is this close to the coarsest level
+    close, once, late, times : runs within the factor ``close`` of a method's cheapest one for a level (``once`` where
+        they were timed once) and ``late`` seconds are timed so many times. On a machine that does something else as
+        well a run is late by such seconds, and one that is timed once by half: 0.36 to 0.63 s were measured for equal
+        runs
     """
 
-    scene: Scene
+    enough: float = 0.7
+    patience: float = 12.0
+    beaten: float = 2.5
+    longest: float = 120.0
+    climb: float = 1200.0
+    vary: float = 1700.0
+    repeat: float = 2000.0
+    near: float = 1.2
+    close: float = 1.25
+    once: float = 1.7
+    late: float = 0.03
+    times: int = 5
+
+
+LIMITS = Limits()
+
+
+@dataclass(frozen=True)
+class Study(frame.Study):
+    """What was found against a reference; ``how``: overrides with which a run was made, by its name."""
+
+    NAME: ClassVar[str] = "cost"
+    ROW: ClassVar[type] = Row
+
     against: Reference
-    rows: tuple[Row, ...]
-    left_out: tuple[str, ...]
     how: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
-    def summary(self) -> dict[str, object]:
-        """The content of ``cost.json``."""
+    def lines(self) -> list[str]:
+        return [self.against.sentence, *self.left_out, *table(self.rows)]
+
+    def about(self) -> dict[str, object]:
         equal = of_equal_steps(self.rows)
-        known = self.against
         return {
-            "scene": self.scene.model_dump(),
-            "reference": {
-                "label": known.label,
-                "dofs": known.result.dofs,
-                "uncertainty": dict(known.uncertainty),
-                "order": known.order,
-                "other_code": known.other_label,
-                "other_code_apart": known.apart,
-                "other_code_uncertainty": known.other,
-                "agrees": known.agrees,
-            },
+            "reference": self.against.summary(),
             "cheapest": {level: cheapest(self.rows, level).summary() for level in LEVELS},
             "cheapest_at_equal_steps": {level: cheapest(equal, level).summary() for level in LEVELS},
             "pareto": [self._front(one) for one in pareto(self.rows)],
-            "orders": orders(self.rows, 2.0 * known.uncertainty["curve"]),
+            "orders": orders(self.rows, 2.0 * self.against.uncertainty["curve"]),
             "growth": growth(self.rows),
-            "left_out": list(self.left_out),
-            "source": source_of(ALL_PACKAGES),
-            "versions": versions(),
-            "machine": machine(),
-            "threads": 1,
         }
 
     def _front(self, one: Row) -> dict[str, object]:
@@ -107,7 +105,7 @@ class Runner:
     def __call__(self, tries: Iterable[Try], seconds: float = inf) -> bool:
         """Do what has not been done; whether all of it was begun within so many seconds after the start."""
         jobs = {one.job(self.source, self.scene, self.given): one for one in tries if one not in self.found}
-        for outcome in run_all(list(jobs), self.out, jobs=1):
+        for outcome in run_all(list(jobs), self.out, 1):
             self.found[jobs[outcome.job]] = outcome
             if monotonic() - self.start > seconds:
                 break
@@ -132,32 +130,37 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     given : overrides that ``scene`` has, and that every run repeats
     jobs : runs of the reference at a time; what is timed runs alone
     """
-    os.environ.update(dict.fromkeys(THREADS, "1"))
+    one_thread()
     rungs, reasons = ladders(source, scene, given)
     plans = reference_jobs(source, scene, given)
-    outcomes = {outcome.job: outcome for outcome in run_all([job for plan in plans for job in plan], out, jobs)}
+    outcomes = frame.run([job for plan in plans for job in plan], out, jobs)
     against = reference(*([outcomes[job] for job in plan] for plan in plans))
     if against is None:
-        say(_no_reference([outcomes[job] for job in plans[0]]))
+        why = next(filter(None, (failure(outcomes[job]) for job in plans[0])), "")
+        say(f"no converged reference, so that nothing can be measured: {why}")
         return None
     print(against.sentence, file=sys.stderr, flush=True)
     runner = Runner(source, scene, tuple(given), out, against)
     whole = [
-        climb(rungs, partial(runner, seconds=CLIMB), lambda: runner.rows),
-        runner(_between(runner.rows), VARY),
-        runner([other for one, row in runner.rows.items() if _worth(row) for other in one.with_few_steps()], VARY),
-        runner([other for one in _best(runner.rows) for other in one.with_other_steps()], VARY),
+        climb(rungs, partial(runner, seconds=LIMITS.climb), lambda: runner.rows),
+        runner(_between(runner.rows), LIMITS.vary),
+        runner(
+            [other for one, row in runner.rows.items() if _worth(row) for other in one.with_few_steps()], LIMITS.vary
+        ),
+        runner([other for one in _best(runner.rows) for other in one.with_other_steps()], LIMITS.vary),
     ]
-    for repeat in range(1, TIMES):
-        whole.append(runner([replace(one, repeat=repeat) for one in _best(runner.rows, CLOSE, ONCE, LATE)], REPEAT))
+    for repeat in range(1, LIMITS.times):
+        whole.append(
+            runner(
+                [replace(one, repeat=repeat) for one in _best(runner.rows, LIMITS.close, LIMITS.once, LIMITS.late)],
+                LIMITS.repeat,
+            )
+        )
     if not all(whole):
         reasons.append("The time allowed for a study is over; the same command goes on from here.")
     how = {one.variant: one.job(source, scene).overrides for one in runner.found}
-    study = Study(scene, against, tuple(_counted(runner)), tuple(reasons), how)
-    write_csv(out / "cost.csv", Row, study.rows)
-    write_json(out / "cost.json", study.summary())
-    write_page("verify.studies.cost.page", study, out / "report.html")
-    print("\n".join([against.sentence, *study.left_out, *table(study.rows), f"written: {out / 'cost.csv'}"]))
+    study = Study(scene, tuple(_counted(runner)), tuple(reasons), against, how)
+    study.write(out)
     return study
 
 
@@ -187,17 +190,21 @@ def _high_enough(last: Row, rows: Sequence[Row]) -> bool:
     finest = min(LEVELS.values())
     others = [one for one in rows if one.measured and one.dofs]
     accurate = [one.seconds for one in others if one.curve_error <= finest]
-    too_slow = last.measured and last.seconds > min(LONGEST, PATIENCE * min(accurate, default=LONGEST))
+    too_slow = last.measured and last.seconds > min(
+        LIMITS.longest, LIMITS.patience * min(accurate, default=LIMITS.longest)
+    )
     beaten = any(
-        one.method == last.method and one.curve_error <= last.curve_error and BEATEN * one.seconds <= last.seconds
+        one.method == last.method
+        and one.curve_error <= last.curve_error
+        and LIMITS.beaten * one.seconds <= last.seconds
         for one in others
     )
-    return too_slow or beaten or last.curve_error <= ENOUGH * finest
+    return too_slow or beaten or last.curve_error <= LIMITS.enough * finest
 
 
 def _worth(found: Row) -> bool:
     """Whether a run comes near the coarsest level, so that fewer steps may make it cheaper."""
-    return found.curve_error <= NEAR * max(LEVELS.values())
+    return found.curve_error <= LIMITS.near * max(LEVELS.values())
 
 
 def _best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late: float = 0.0) -> list[Try]:
@@ -241,10 +248,4 @@ def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: 
     plan: list[Job] = [job for jobs_of in reference_jobs(source, scene, given) for job in jobs_of]
     plan += [one.job(source, scene, given) for ones in rungs.values() for one in ones]
     note = "ladders end where they are accurate enough; the best runs are made again with other steps, and repeated"
-    return [*dry_run(plan, out, jobs), note, *reasons]
-
-
-def _no_reference(outcomes: Sequence[Outcome]) -> str:
-    ends = [(o.left_out, o.result) for o in outcomes if o.result is None or not o.result.complete]
-    why = [left_out or (result.status if result is not None else "") for left_out, result in ends]
-    return f"no converged reference, so that nothing can be measured: {why[0]}"
+    return frame.would_run(plan, [note, *reasons], out, jobs)

@@ -1,6 +1,6 @@
 """``debond solve --accuracy``, verified: solutions on ever finer meshes until two of them agree.
 
-Level 0 is the first guess (`verify.studies.cost.accuracy`). Every further level has `RATIO` times the elements along
+Level 0 is the first guess (`verify.studies.cost.accuracy`). Every further level has ``ratio`` times the elements along
 the specimen, a higher degree, so that the thickness of the arms is resolved better, too, and another number of steps.
 What bounds the error of the finer one of two levels is said in `bound`.
 """
@@ -41,26 +41,37 @@ from verify.support.refusal import Refusal
 from verify.support.say import say
 from verify.verdict import Check
 
-#: Elements along the specimen over those of the level before, and levels at most.
-RATIO, LEVELS = 1.5, 4
-
 #: Highest degree of a method.
 HIGHEST = {"nurbs": 5, "lagrange": 5, "tspline": 3, "dolfinx": 4}
 
-#: The error of the straight lines between the steps may be this part of the accuracy; the next level has more steps
-#: where it is larger, and some more in any case, so that they end in other places.
-STRAIGHT, MORE_STEPS, MOST_STEPS = 0.25, 1.1, 3.0
 
-#: Bound of the error of the finer one of two levels over their distance, at least and at most. On random scenes the
-#: error was up to 1.33 times the distance, where the ripple of the integration points on the peak outweighs the rest,
-#: and 0.3 times at the median.
-CAUTION, SLOWEST = 1.5, 5.0
+@dataclass(frozen=True)
+class Refinement:
+    """How levels follow each other, and what their distance says of the error.
 
-#: Largest factor by which the error falls from one level to the next: up to 57 times on random scenes.
-GAIN = 60.0
+    ratio, levels : elements along the specimen over those of the level before, and levels at most
+    straight, more_steps, most_steps : the error of the straight lines between the steps may be this part of the
+        accuracy; the next level has more steps where it is larger, up to the last factor, and some more in any case, so
+        that they end in other places
+    caution, slowest : bound of the error of the finer one of two levels over their distance, at least and at most. On
+        random scenes the error was up to 1.33 times the distance, where the ripple of the integration points on the
+        peak outweighs the rest, and 0.3 times at the median
+    gain : largest factor by which the error falls from one level to the next: up to 57 times on random scenes
+    condensed : power of the unknowns with which the time of a run grows where a linear bulk is condensed
+    """
 
-#: Power of the unknowns with which the time of a run grows where a linear bulk is condensed.
-CONDENSED = 0.3
+    ratio: float = 1.5
+    levels: int = 4
+    straight: float = 0.25
+    more_steps: float = 1.1
+    most_steps: float = 3.0
+    caution: float = 1.5
+    slowest: float = 5.0
+    gain: float = 60.0
+    condensed: float = 0.3
+
+
+REFINEMENT = Refinement()
 
 #: What solves a scene by a method into a folder, the last one, and draws fields where it is asked to.
 Solve = Callable[[Scene, str, Path, bool], tuple[Result, tuple[Check, ...]]]
@@ -102,11 +113,11 @@ class Verified:
     def reached(self) -> tuple[float, float] | None:
         """Interval of the error of the delivered level, None where it is compared with no other level.
 
-        From below: the distance of two levels is at most ``GAIN + 1`` times the error of the finer one, for errors that
-        are opposite and fall by `GAIN`.
+        From below: the distance of two levels is at most ``gain + 1`` times the error of the finer one, for errors that
+        are opposite and fall by ``gain``.
         """
         last = self.delivered
-        return (last.distance / (GAIN + 1.0), last.bound) if isfinite(last.bound) else None
+        return (last.distance / (REFINEMENT.gain + 1.0), last.bound) if isfinite(last.bound) else None
 
     @property
     def close(self) -> bool:
@@ -160,7 +171,7 @@ def verified(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Sol
 def _refined(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Solve) -> Verified:
     overrides = first.overrides
     levels: list[Level] = []
-    for number in range(LEVELS):
+    for number in range(REFINEMENT.levels):
         folder = f"level-{number}"
         chosen = parse_scene(scene.model_dump(), overrides)
         begun = perf_counter()
@@ -176,14 +187,14 @@ def _refined(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Sol
             return replace(found, why=f"{folder} {result.status}")
         if found.holds:
             return found
-        if number + 1 == LEVELS:
+        if number + 1 == REFINEMENT.levels:
             break
         try:
             overrides = finer(chosen, first.method, overrides, _more_steps(result, scene.load.opening, accuracy))
             _announce(level, parse_scene(scene.model_dump(), overrides), number + 1)
         except Refusal as error:
             return replace(found, why=f"no mesh is finer than that of {folder}: {error}")
-    return replace(found, why=f"{LEVELS} levels are the most")
+    return replace(found, why=f"{REFINEMENT.levels} levels are the most")
 
 
 def apart(fine: Result, coarse: Result, programme: Sequence[float]) -> float:
@@ -226,15 +237,15 @@ def _curved(result: Result, programme: Sequence[float]) -> Curve:
 def bound(distance: float, before: float = inf) -> float:
     """Bound of the error of the finer one of two levels from their distance, and from that of the two before them.
 
-    `CAUTION` times the distance is enough where the coarser one is at least 5/3 times as far off: with `RATIO` 1.5 from
-    an order of 1.3 on. Where distances have fallen more slowly, to the part f, the ones to come add up to f / (1 - f)
-    of the last one, as in a geometric series, of which `SLOWEST` is the most that is taken for one.
+    ``caution`` times the distance is enough where the coarser one is at least 5/3 times as far off: with ``ratio`` 1.5
+    from an order of 1.3 on. Where distances have fallen more slowly, to the part f, the ones to come add up to
+    f / (1 - f) of the last one, as in a geometric series; more than ``slowest`` is never taken.
     """
     f = distance / before if before > 0.0 else 0.0
-    return distance * min(max(CAUTION, f / (1.0 - f) if f < 1.0 else inf), SLOWEST)
+    return distance * min(max(REFINEMENT.caution, f / (1.0 - f) if f < 1.0 else inf), REFINEMENT.slowest)
 
 
-def finer(scene: Scene, method: str, overrides: Sequence[str], more: float = MORE_STEPS) -> tuple[str, ...]:
+def finer(scene: Scene, method: str, overrides: Sequence[str], more: float = REFINEMENT.more_steps) -> tuple[str, ...]:
     """Overrides of the next level.
 
     Parameters
@@ -249,12 +260,12 @@ def finer(scene: Scene, method: str, overrides: Sequence[str], more: float = MOR
     asked = scene.discretization
     if method in WITH_DOFS:
         degree = min(asked.degree + 1, HIGHEST[method])
-        mesh = with_elements(scene, method, degree, RATIO * expected(scene, method).elements)
+        mesh = with_elements(scene, method, degree, REFINEMENT.ratio * expected(scene, method).elements)
     else:
         own = reference_mesh(scene)
         degree = min(own.degree + 1, HIGHEST[method])
         layers = own.layers + (degree == own.degree)
-        finest = {"degree": degree, "elements": ceil(RATIO * own.elements), "layers": layers}
+        finest = {"degree": degree, "elements": ceil(REFINEMENT.ratio * own.elements), "layers": layers}
         mesh = tuple(f"dolfinx.{key}={value}" for key, value in finest.items())
     steps = f"discretization.steps={ceil(more * asked.steps)}" if asked.steps != "auto" else ""
     pace = steps or f"discretization.bend={max(asked.bend / more**2, 1e-5)!r}"
@@ -265,8 +276,8 @@ def finer(scene: Scene, method: str, overrides: Sequence[str], more: float = MOR
 def _more_steps(result: Result, programme: Sequence[float], accuracy: float) -> float:
     """So many times the steps that straight lines between them are good enough."""
     straight = apart(result, result, programme)
-    wanted = (straight / (STRAIGHT * accuracy)) ** 0.5 if isfinite(straight) else MOST_STEPS
-    return min(max(wanted, MORE_STEPS), MOST_STEPS)
+    wanted = (straight / (REFINEMENT.straight * accuracy)) ** 0.5 if isfinite(straight) else REFINEMENT.most_steps
+    return min(max(wanted, REFINEMENT.more_steps), REFINEMENT.most_steps)
 
 
 def growth(scene: Scene, following: Scene, method: str) -> float:
@@ -279,7 +290,7 @@ def growth(scene: Scene, following: Scene, method: str) -> float:
     if scene.discretization.steps == "auto":
         steps *= (scene.discretization.bend / following.discretization.bend) ** 0.5
     condensed = method in WITH_DOFS and simulated(scene, method)["kinematics"] == "linear"
-    return steps * unknowns ** (CONDENSED if condensed else 1.0)
+    return steps * unknowns ** (REFINEMENT.condensed if condensed else 1.0)
 
 
 def planned(scene: Scene, first: Choice) -> str:

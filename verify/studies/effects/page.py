@@ -10,10 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from verify.pages.style import WIDE, Panel, colour, drawing, panel, to_svg
-from verify.pages.template import rendered
-from verify.pages.text import sentence
-from verify.runs.environment import environment
 from verify.studies.effects.row import CHANGES, Row, signed
+from verify.studies.page import write_study
 
 if TYPE_CHECKING:
     from verify.studies.effects.study import Study
@@ -34,20 +32,8 @@ LEAST = 1e-5
 def write(study: Study, path: Path) -> None:
     """Write the page."""
     drawn = [one for one in study.rows if one.complete]
-    page = rendered(
-        "verify.studies.effects",
-        "page.html.j2",
-        {"in_cell": in_cell},
-        name=study.scene.name,
-        method=study.method,
-        sentence=sentence(study.scene),
-        rows=study.rows,
-        reasons=study.reasons,
-        columns=BARS,
-        bars=[changed(drawn, "changes"), times(drawn, "times")] if drawn else [],
-        environment=environment(),
-    )
-    path.write_text(page, encoding="utf-8")
+    bars = [changed(drawn, "changes"), times(drawn, "times")] if drawn else []
+    write_study(study, path, {"in_cell": in_cell}, columns=BARS, bars=bars)
 
 
 def in_cell(fraction: float, column: str) -> str:

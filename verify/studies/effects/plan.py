@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from verify.runs.jobs import Job, left_out
 from verify.scene.effects import simulated
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
+from verify.studies.frame import repeated
 from verify.support.refusal import Refusal
 
 #: A run is made once for its curve and so many times for its time, alone.
@@ -52,18 +53,17 @@ class Plan:
 
     base: Job
     pairs: tuple[Pair, ...]
-    reasons: tuple[str, ...]
+    left_out: tuple[str, ...]
 
     @property
-    def jobs(self) -> tuple[Job, ...]:
+    def jobs(self) -> list[Job]:
         """Every run once."""
-        return tuple(dict.fromkeys((self.base, *(job for pair in self.pairs for job in (pair.with_it, pair.without)))))
+        return list(dict.fromkeys((self.base, *(job for pair in self.pairs for job in (pair.with_it, pair.without)))))
 
-    def repeats(self) -> Iterator[Job]:
-        """The runs that are timed: all of them one after the other, and then again, so that what the machine does
-        meanwhile falls upon all."""
-        for repeat in range(1, TIMES + 1):
-            yield from (replace(job, repeat=repeat, variant=f"{job.variant}-again-{repeat}") for job in self.jobs)
+    @property
+    def timed(self) -> list[Job]:
+        """The runs that are made for their times."""
+        return repeated(self.jobs, range(1, TIMES + 1))
 
 
 def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -> Plan:

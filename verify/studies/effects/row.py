@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from math import isfinite, nan
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from verify.curves.curve import Curve, load_at
-from verify.curves.of_run import cubics, dissipated, distance, peak_load
+from verify.curves.of_run import cubics, dissipated, distance, peak_load, work
 from verify.result import Result, run_seconds
 from verify.runs.jobs import Job, Outcome
 from verify.studies.effects.plan import Pair
+from verify.studies.frame import BUSY, failure, unmeasured
+from verify.support.checked_files import Shape, read_table
 
 #: Part of the work, or of the largest load, that counts as none.
 NOTHING = 1e-9
-
-#: Equal runs whose times differ by more than this tell little of small differences.
-BUSY = 1.2
 
 #: Changes by the name of their column, in the words of the table.
 CHANGES: Mapping[str, str] = {
@@ -27,6 +28,10 @@ CHANGES: Mapping[str, str] = {
     "dissipated_change": "dissipated energy",
     "work_change": "work",
 }
+
+
+#: What is read of ``effects.json`` again.
+ABOUT: Shape = {}
 
 
 @dataclass(frozen=True)
@@ -82,38 +87,45 @@ class Row:
         return f"{self.time_ratio:.2g} x time{busy}"
 
 
+def read_csv(path: Path) -> list[Row]:
+    """Rows that were written."""
+    return read_table(path, Row)
+
+
 def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[Outcome]]) -> Row:
-    """Hold the two runs of a pair against each other; times are those of the repetitions ``again``."""
-    head = {
+    """Compare the two runs of a pair; times are those of the repetitions ``again``."""
+    sides = {"with": pair.with_it, "without": pair.without}
+    took = {side: _seconds(again[job]) for side, job in sides.items()}
+    least = {side: min(seconds, default=nan) for side, seconds in took.items()}
+    known: dict[str, Any] = {
         "effect": pair.switch.name,
         "key": pair.switch.key,
         "with_it": pair.switch.on,
         "without": pair.switch.off,
         "scene_has": len(pair.with_it.overrides) < len(pair.without.overrides),
+        "seconds_with": least["with"],
+        "seconds_without": least["without"],
+        "time_ratio": least["with"] / least["without"],
+        "time_spread": max(max(seconds, default=nan) / least[side] for side, seconds in took.items()),
+        "times": min(len(again[job]) for job in sides.values()),
     }
-    times = {f"seconds_{side}": _least(again[job]) for side, job in _sides(pair).items()}
-    times["time_ratio"] = times["seconds_with"] / times["seconds_without"]
-    times["time_spread"] = max(_spread(again[job]) for job in _sides(pair).values())
-    times["times"] = min(len(again[job]) for job in _sides(pair).values())
-    stopped = [f"{side} it: {why}" for side, job in _sides(pair).items() if (why := _failed(first[job]))]
-    if stopped:
-        unknown = {field.name: nan for field in fields(Row) if field.name.endswith("_change")}
-        return Row(**head, **unknown, **times, status="; ".join(stopped))
-    results = (first[job].result for job in _sides(pair).values())
-    found = changes(*results, pair.with_it.scene.load.opening)
-    return Row(**head, **found, **times, status="complete")
+    ours, theirs = first[pair.with_it].result, first[pair.without].result
+    stopped = [f"{side} it: {why}" for side, job in sides.items() if (why := failure(first[job]))]
+    if stopped or ours is None or theirs is None:
+        return unmeasured(Row, known | {"status": "; ".join(stopped)})
+    return Row(**known, **changes(ours, theirs, pair.with_it.scene.load.opening), status="complete")
 
 
-def changes(with_it: Result, without: Result, programme: Sequence[float]) -> dict[str, float]:
+def changes(with_it: Result, without: Result, programme: Sequence[float]) -> dict[str, Any]:
     """What one effect makes of curve, peak, end and energies: with over without, less 1."""
     top = max(abs(peak_load(with_it)), abs(peak_load(without)))
-    most = max(abs(_work(with_it)), abs(_work(without)))
+    most = max(abs(work(with_it)), abs(work(without)))
     return {
         "curve_change": apart(with_it, without, programme),
         "peak_change": change(peak_load(with_it), peak_load(without), top),
         "end_change": change(float(with_it.load[-1]), float(without.load[-1]), top),
         "dissipated_change": change(dissipated(with_it), dissipated(without), most),
-        "work_change": change(_work(with_it), _work(without), most),
+        "work_change": change(work(with_it), work(without), most),
     }
 
 
@@ -162,33 +174,5 @@ def signed(fraction: float) -> str:
     return "0 %" if abs(per_cent) < 1e-5 else f"{float(f'{per_cent:.2g}'):+.6g} %"
 
 
-def table(rows: Sequence[Row], reasons: Sequence[str]) -> list[str]:
-    """A sentence an effect."""
-    return [*(one.sentence for one in rows), *reasons]
-
-
-def _sides(pair: Pair) -> dict[str, Job]:
-    return {"with": pair.with_it, "without": pair.without}
-
-
-def _least(outcomes: Sequence[Outcome]) -> float:
-    return min(_seconds(outcomes), default=nan)
-
-
-def _spread(outcomes: Sequence[Outcome]) -> float:
-    seconds = _seconds(outcomes)
-    return max(seconds, default=nan) / min(seconds, default=nan)
-
-
 def _seconds(outcomes: Sequence[Outcome]) -> list[float]:
     return [run_seconds(one.result) for one in outcomes if one.result is not None and one.result.seconds]
-
-
-def _failed(outcome: Outcome) -> str:
-    if outcome.result is None:
-        return outcome.left_out
-    return "" if outcome.result.complete else outcome.result.status
-
-
-def _work(result: Result) -> float:
-    return float(result.steps["external_work"][-1])

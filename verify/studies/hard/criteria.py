@@ -8,7 +8,8 @@ import numpy as np
 
 from verify.checks.identities import J_TOLERANCE, end_cannot_judge, j_deviation
 from verify.checks.unresolved import too_coarse
-from verify.curves.curve import Curve, curve_error, dense
+from verify.curves.curve import curve_error
+from verify.curves.of_run import cubics
 from verify.methods.zone_resolution import ENOUGH, expected, measured
 from verify.result import Result
 from verify.studies.hard.case import Finding, Number, Trial
@@ -79,17 +80,9 @@ def zone_elements(trial: Trial) -> float:
     return measured(trial.result) / expected(trial.scene, trial.result.method).element
 
 
-def smooth(result: Result) -> Curve:
-    """The path with its exact slopes filled in; as it is where they are not known."""
-    steps = result.steps
-    if not {"load_slope", "heading"} <= set(steps) or result.opening.size < 2:
-        return result.opening, result.load
-    return dense(result.opening, result.load, steps["load_slope"], steps["heading"])
-
-
-def distance(result: Result, reference: Result, end: float | None = None) -> float:
-    """Relative L2 distance of two envelopes, both filled in."""
-    return curve_error(smooth(result), smooth(reference), end)
+def distance(result: Result, reference: Result) -> float:
+    """Relative L2 distance of the envelopes of two runs, on the cubics of their exact slopes."""
+    return curve_error(cubics(result), cubics(reference))
 
 
 def difference(result: Result, reference: Result, lengths: float = 1.0, forces: float = 1.0) -> float:
@@ -102,4 +95,4 @@ def difference(result: Result, reference: Result, lengths: float = 1.0, forces: 
         pairs = ((opening, reference.opening), (load, reference.load))
         return max(float(np.max(np.abs(a - b)) / np.max(np.abs(b))) for a, b in pairs)
     slopes = {"opening": opening, "load": load, "load_slope": result.steps["load_slope"] * forces / lengths}
-    return curve_error(smooth(Result(result.method, {**result.steps, **slopes})), smooth(reference))
+    return curve_error(cubics(Result(result.method, {**result.steps, **slopes})), cubics(reference))

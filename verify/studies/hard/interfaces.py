@@ -7,10 +7,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from verify.curves.curve import oscillation
+from verify.curves.of_run import cubics
 from verify.methods.solve import solve
 from verify.result import Result
 from verify.studies.hard.case import FINE, Case, Finding, Number, Trials, Variant, variant
-from verify.studies.hard.criteria import distance, smooth
+from verify.studies.hard.criteria import distance
 from verify.verdict import Check
 
 
@@ -54,7 +55,7 @@ def _points() -> Sequence[Variant]:
 def _judge_points(trials: Trials) -> Iterator[Finding]:
     beam = solve(next(iter(trials.values())).scene, "beam")
     for name, trial in trials.items():
-        found = oscillation(smooth(trial.result), (beam.opening, beam.load))
+        found = oscillation(cubics(trial.result), (beam.opening, beam.load))
         yield Number(
             "load-oscillation", name, found["rms"], "Wiggle of the load about the beam's on the propagation branch."
         )

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from verify.curves.curve import dense, envelope
+from verify.curves.curve import Curve, envelope
+from verify.curves.of_run import cubics
 from verify.pages.style import METHOD_NAMES, Line, Panel, drawing, line, panel, to_svg
 from verify.pages.template import rendered
 from verify.pages.text import seconds
@@ -108,9 +107,5 @@ def _drawn(cell: Cell, out: Path) -> list[tuple[str, Result]]:
     return [(name, read_result(out / cell.folder / name)) for name in names]
 
 
-def _path(result: Result) -> tuple[np.ndarray, np.ndarray]:
-    steps, d, P = result.steps, result.opening, result.load
-    per_step = max(_POINTS // d.size, 1)
-    if per_step == 1 or not {"load_slope", "heading"} <= set(steps):
-        return d, P
-    return dense(d, P, steps["load_slope"], steps["heading"], per_step)
+def _path(result: Result) -> Curve:
+    return cubics(result, max(_POINTS // result.opening.size, 1))

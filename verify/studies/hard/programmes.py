@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from verify.scene.bodies import Dcb, Isotropic
 from verify.studies.hard.case import FINE, Case, Finding, Trial, Trials, Variant, variant
 from verify.studies.hard.criteria import distance
 from verify.verdict import Check
@@ -87,11 +88,11 @@ def _penetration(trial: Trial) -> Iterator[Finding]:
     pressed and clamped where the bond is whole: the pressed part alone could not balance the moment of its load.
     """
     scene, steps = trial.scene, trial.result.steps
-    if "mouth_opening" not in steps:
+    body, solid = scene.specimen, scene.material
+    if "mouth_opening" not in steps or not isinstance(body, Dcb) or not isinstance(solid, Isotropic):
         return
-    body, young = scene.specimen, scene.material.young
     at = int(np.argmin(steps["opening"]))
-    bending = young * body.width * body.arm_thickness**3 / 12.0
+    bending = solid.young * body.width * body.arm_thickness**3 / 12.0
     k = 2.0 * body.width * scene.interface.penalty
     wanted = 2.0 * pressed_end(abs(steps["load"][at]), steps["damage_front"][at], bending, k)
     found = -float(steps["mouth_opening"][at])
@@ -106,13 +107,13 @@ def pressed_end(load: float, length: float, bending: float, k: float, elements: 
     K = np.zeros((2 * n + 2, 2 * n + 2))  # deflections and, times h, slopes
     for e in range(n):
         K[2 * e : 2 * e + 4, 2 * e : 2 * e + 4] += K_e
-    springs, closed = k * h * np.append(0.5, np.ones(n)), np.ones(n + 1, dtype=bool)
+    springs, closed = k * h * np.append(0.5, np.ones(n)), np.arange(n + 1) >= 0
     while True:
         held = K.copy()
         held[range(0, 2 * n + 2, 2), range(0, 2 * n + 2, 2)] += springs * closed
         deflection = np.linalg.solve(held[:-2, :-2], np.append(load, np.zeros(2 * n - 1)))[::2]
         touching = np.append(deflection > 0.0, False)
-        if (touching == closed).all():
+        if np.array_equal(touching, closed):
             return float(deflection[0])
         closed = touching
 

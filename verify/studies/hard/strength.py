@@ -8,10 +8,10 @@ import numpy as np
 
 from verify.checks.identities import law_of
 from verify.curves.curve import PROPAGATION, load_at, peak
+from verify.curves.of_run import cubics
 from verify.methods.solve import solve
 from verify.methods.zone_resolution import warnings
 from verify.studies.hard.case import FINE, Case, Finding, Number, Trial, Trials, Variant, variant
-from verify.studies.hard.criteria import smooth
 from verify.theory.law import Bilinear
 from verify.verdict import Check
 
@@ -85,7 +85,7 @@ def _judge_toward_lefm(trials: Trials) -> Iterator[Finding]:
     wanted = load_at((limit.opening, limit.load), grid)
     away = []
     for name, trial in trials.items():
-        ratio = load_at(smooth(trial.result), grid) / wanted - 1.0
+        ratio = load_at(cubics(trial.result), grid) / wanted - 1.0
         away.append(float(np.sqrt(np.mean(ratio**2))))
         yield Number("distance", name, away[-1], "Distance to corrected beam theory on the propagation branch (RMS).")
     ratios = np.divide(away[1:], np.maximum(away[:-1], _SAME))

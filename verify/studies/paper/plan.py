@@ -1,37 +1,53 @@
-"""The runs behind Figures 6, 7 and 8, and the fine ones that they are held against."""
+"""The runs behind the figures, and the fine ones that give their converged curves."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.names import WITH_DOFS
+from verify.methods.reference_mesh import reference_mesh
 from verify.runs.jobs import Job
 from verify.scene.schema import Scene
 
-#: Packaged scene -> its law, as the paper calls it.
+#: Packaged scenes of Figures 6 to 8, each with its law as the paper calls it.
 LAWS = {"dcb-czm1": "CZM 1", "dcb-czm2": "CZM 2"}
 
-#: Points and penalty of Figures 6 and 7.
+#: Packaged scenes of Figure 9, the shortest bond first, and the scene with the moduli as they are printed.
+BONDS, PRINTED = ("peel-60", "peel-80", "peel-100", "peel-120"), "peel-as-printed"
+
+#: Interface points and penalty of Figures 6 and 7.
 PAPER_POINTS, PAPER_PENALTY = 2, 1e5
 
-#: Unknowns of the NURBS meshes that stand in where DOLFINx is missing; one arm has half of them.
-STAND_IN = (8000, 16_000)
+#: Without DOLFINx NURBS give the converged curves: unknowns of the two meshes for the beams, where one arm has half of
+#: them, and for the strips as multiples of those of the scene.
+FINE_BEAM, FINE_STRIP = (8000, 16_000), (2, 3)
+
+#: A scene and a penalty: a soft contact is another problem, with its own converged curve. Strips have the scene's own.
+Problem = tuple[str, float | None]
 
 
-#: A law and a penalty: a soft contact is another problem, with a converged curve of its own.
-Problem = tuple[str, float]
+@dataclass(frozen=True)
+class Figures:
+    """Some figures: packaged scenes, and the meshes of their converged curves by method."""
+
+    scenes: tuple[str, ...]
+    fine: Mapping[str, str]
+
+
+BEAMS = Figures(tuple(LAWS), {"dolfinx": "cubic DOLFINx elements", "nurbs": "NURBS on one arm"})
+STRIPS = Figures(BONDS, {"dolfinx": "quadratic DOLFINx elements", "nurbs": "NURBS"})
 
 
 @dataclass(frozen=True)
 class Case:
-    """One run of the figures; ``law`` is the name of its packaged scene, ``dofs`` the unknowns that it aims at."""
+    """One run. With 0 unknowns it is the run of the packaged scene that every verification makes, as for all strips."""
 
     basis: str
-    law: str
-    dofs: int
+    scene: str
+    dofs: int = 0
     points: int = PAPER_POINTS
     penalty: float = PAPER_PENALTY
 
@@ -42,31 +58,31 @@ class Case:
 
     @property
     def problem(self) -> Problem:
-        """What it solves, however well."""
-        return self.law, self.penalty
+        return self.scene, self.penalty if self.dofs else None
 
     @property
     def overrides(self) -> tuple[str, ...]:
-        return (
-            f"discretization.dofs={self.dofs}",
-            f"discretization.interface_points={self.points}",
-            f"interface.penalty={self.penalty!r}",
-        )
+        own = {"discretization.dofs": self.dofs, "discretization.interface_points": self.points}
+        sets = {**own, "interface.penalty": self.penalty} if self.dofs else {}
+        return tuple(f"{key}={value!r}" for key, value in sets.items())
 
     @property
     def variant(self) -> str:
         """Folder of the run in that of its scene."""
+        if not self.dofs:
+            return self.basis
         return f"figures/{self.basis}-{self.dofs}-{self.points}-points-penalty-{self.penalty:g}"
 
     def job(self, scene: Scene) -> Job:
-        return Job(self.law, scene, self.basis, self.variant, self.overrides, fields=False)
+        return Job(self.scene, scene, self.basis, self.variant, self.overrides, fields=not self.dofs)
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Jobs of all cases, and for every problem among them those of two fine meshes, the coarser first."""
+    """Jobs of all cases, and of two fine meshes for every problem, the coarser first."""
 
-    scenes: tuple[tuple[str, Scene], ...]
+    figures: Figures
+    scenes: Mapping[str, Scene]
     cases: tuple[tuple[Case, Job], ...]
     references: tuple[tuple[Problem, Job, Job], ...]
 
@@ -76,48 +92,58 @@ class Plan:
         yield from (job for _, job in self.cases)
 
 
-def planned(
+def beams(
     scenes: Sequence[tuple[str, Scene]],
     bases: Sequence[str] = WITH_DOFS,
     unknowns: Sequence[int] = (280, 1956),
     points: Sequence[int] = tuple(range(2, 9)),
-    penalties: Sequence[float] = (1e3, 1e5),
+    penalties: Sequence[float] = (1e3, PAPER_PENALTY),
 ) -> Plan:
-    """All combinations on those of ``scenes`` (each with the name that it was loaded by) that are the paper's."""
-    known = tuple((source, scene) for source, scene in scenes if source in LAWS)
-    cases = tuple(
-        (case, case.job(scene))
-        for source, scene in known
-        for dofs, penalty, n, basis in product(unknowns, penalties, points, bases)
-        for case in [Case(basis, source, dofs, n, penalty)]
-    )
-    problems = tuple(
-        ((source, penalty), *references(source, scene, penalty)) for source, scene in known for penalty in penalties
-    )
-    return Plan(known, cases, problems)
+    """Figures 6 to 8: all combinations on those of ``scenes`` (name, scene) that are the paper's."""
+    known = {name: scene for name, scene in scenes if name in LAWS}
+    every = product(known, unknowns, penalties, points, bases)
+    cases = [Case(basis, name, dofs, n, penalty) for name, dofs, penalty, n, basis in every]
+    fine = tuple(((name, p), *_fine_beams(name, known[name], p)) for name, p in product(known, penalties))
+    return Plan(BEAMS, known, tuple((case, case.job(known[case.scene])) for case in cases), fine)
 
 
-def references(source: str, scene: Scene, penalty: float) -> tuple[Job, Job]:
-    """Two fine runs, the finer one last: DOLFINx with cubic elements, or else NURBS on one arm."""
-    given = f"interface.penalty={penalty!r}"
-
-    def job(method: str, size: str, *overrides: str) -> Job:
-        return Job(source, scene, method, f"figures/{method}-{size}-penalty-{penalty:g}", overrides, fields=False)
-
-    if dolfinx_installed():
-        n = scene.dolfinx.elements
-        own = cubic(source, scene) if penalty == scene.interface.penalty else None
-        coarse, fine = (
-            job("dolfinx", f"p3-{m}", given, "dolfinx.degree=3", f"dolfinx.elements={m}") for m in (n, 2 * n)
-        )
-        return own or coarse, fine
-    coarse, fine = (
-        job("nurbs", f"one-arm-{dofs}", given, f"discretization.dofs={dofs}", "effects.symmetry=true")
-        for dofs in STAND_IN
-    )
-    return coarse, fine
+def strips(scenes: Sequence[tuple[str, Scene]], bases: Sequence[str] = WITH_DOFS) -> Plan:
+    """Figure 9: those of ``scenes`` (name, scene) that are the paper's, by all bases."""
+    given = dict(scenes)
+    known = {bond: given[bond] for bond in BONDS if bond in given}
+    cases = [Case(basis, bond) for bond, basis in product(known, bases)]
+    fine = tuple(((bond, None), *_fine_strips(bond, scene)) for bond, scene in known.items())
+    return Plan(STRIPS, known, tuple((case, case.job(known[case.scene])) for case in cases), fine)
 
 
 def cubic(source: str, scene: Scene) -> Job:
     """DOLFINx with cubic elements on the scene's own mesh."""
     return Job(source, scene, "dolfinx", "dolfinx-p3", ("dolfinx.degree=3",))
+
+
+def _fine_beams(source: str, scene: Scene, penalty: float) -> tuple[Job, Job]:
+    def job(method: str, size: str, *mesh: str) -> Job:
+        variant = f"figures/{method}-{size}-penalty-{penalty:g}"
+        return Job(source, scene, method, variant, (f"interface.penalty={penalty!r}", *mesh), fields=False)
+
+    if dolfinx_installed():
+        n = scene.dolfinx.elements
+        coarse, fine = (job("dolfinx", f"p3-{m}", "dolfinx.degree=3", f"dolfinx.elements={m}") for m in (n, 2 * n))
+        return (cubic(source, scene) if penalty == scene.interface.penalty else coarse), fine
+    meshes = {f"one-arm-{dofs}": (f"discretization.dofs={dofs}", "effects.symmetry=true") for dofs in FINE_BEAM}
+    coarse, fine = (job("nurbs", size, *mesh) for size, mesh in meshes.items())
+    return coarse, fine
+
+
+def _fine_strips(bond: str, scene: Scene) -> tuple[Job, Job]:
+    if dolfinx_installed():
+        n = 2 * scene.dolfinx.elements
+        variant = f"figures/dolfinx-p{reference_mesh(scene).degree}-{n}"
+        finer = Job(bond, scene, "dolfinx", variant, (f"dolfinx.elements={n}",), fields=False)
+        return Job(bond, scene, "dolfinx", "dolfinx"), finer
+    sizes = [times * scene.discretization.dofs for times in FINE_STRIP]
+    coarse, fine = (
+        Job(bond, scene, "nurbs", f"figures/nurbs-{dofs}", (f"discretization.dofs={dofs}",), fields=False)
+        for dofs in sizes
+    )
+    return coarse, fine

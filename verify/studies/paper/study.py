@@ -1,34 +1,25 @@
-"""What came of the runs behind the figures, measured against a converged curve of the same problem."""
+"""What came of the runs behind the figures, each measured against a converged curve of the same problem."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import isfinite, nan
-from typing import Protocol
+from math import nan
 
 import numpy as np
 
-from verify.curves.curve import Curve, curve_error, oscillation, peak
+from verify.curves.curve import Curve, curve_error, oscillation
+from verify.curves.of_run import peak_load
 from verify.methods.problems import lefm_problem
-from verify.methods.zone_resolution import expected
+from verify.methods.zone_resolution import element_length, expected
+from verify.methods.zone_resolution import measured as zone_length
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
-from verify.studies.paper.plan import LAWS, Plan
+from verify.studies.paper.plan import BEAMS, PRINTED, STRIPS, Case, Figures, Plan, Problem
 from verify.theory import lefm
-
-
-class AnyCase(Protocol):
-    """What a run is meant to show: hashable, with the problem that it solves."""
-
-    @property
-    def basis(self) -> str: ...
-
-    @property
-    def problem(self) -> Hashable: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +42,7 @@ class Trial:
     peak : largest load over that of the reference, minus 1
     """
 
-    case: AnyCase
+    case: Case
     result: Result | None
     status: str
     error: float = nan
@@ -64,109 +55,101 @@ class Trial:
         return self.result is not None and self.result.complete
 
     @property
-    def drawable(self) -> bool:
-        return self.result is not None and self.result.opening.size > 1
-
-    @property
-    def seconds(self) -> float:
-        return float(((self.result and self.result.seconds) or {}).get("total", nan))
-
-    @property
-    def peak_load(self) -> float:
-        return peak_load(self.result) if self.drawable else nan
+    def drawn(self) -> Result | None:
+        """The run, if it has a curve."""
+        return self.result if self.result is not None and self.result.opening.size > 1 else None
 
 
 @dataclass(frozen=True, eq=False)
-class Trials:
-    """All trials of a figure, with what they are held against.
+class Study:
+    """All trials of some figures.
 
-    scenes : by name
-    references : by problem, those that are known
-    limits : LEFM by scene
+    scenes : by name; ``limits`` are their LEFM curves
+    references : converged curves that are known, by problem
+    zones : elements that span the process zone: of beams as expected, of strips as measured
+    printed : of strips with the printed moduli, as expected, by basis
     """
 
+    figures: Figures
     scenes: Mapping[str, Scene]
     trials: tuple[Trial, ...]
-    references: Mapping[Hashable, Reference]
+    references: Mapping[Problem, Reference]
     limits: Mapping[str, Curve]
+    zones: Mapping[Case, float]
+    printed: Mapping[str, float] = field(default_factory=dict)
 
-    def trial(self, case: AnyCase) -> Trial | None:
+    @property
+    def left_out(self) -> str:
+        """Why there are no trials, where there are none."""
+        scenes = ", ".join(self.figures.scenes)
+        return "" if self.trials else f"left out: none of its scenes ({scenes}) is among those given"
+
+    def trial(self, case: Case) -> Trial | None:
         return self._by_case.get(case)
 
     def values(self, name: str) -> tuple:
         """The different values of a field of the cases: ``study.values("points")``."""
         return tuple(dict.fromkeys(getattr(trial.case, name) for trial in self.trials))
 
+    def bond(self, scene: str) -> float:
+        """Length of the bond of a strip."""
+        specimen = self.scenes[scene].specimen
+        return specimen.bond_length if specimen.kind == "peel" else nan
+
+    def complete_runs(self) -> Iterator[tuple[str, str, Result]]:
+        """Basis, scene and result of every complete run, the converged ones last."""
+        for one in self.trials:
+            if one.result is not None and one.result.complete:
+                yield one.case.basis, one.case.scene, one.result
+        yield from (("converged", scene, known.result) for (scene, _), known in self.references.items())
+
     @cached_property
-    def _by_case(self) -> dict[AnyCase, Trial]:
+    def _by_case(self) -> dict[Case, Trial]:
         return {trial.case: trial for trial in self.trials}
-
-
-@dataclass(frozen=True, eq=False)
-class Study(Trials):
-    """Those of Figures 6, 7 and 8; ``zones``: how many elements span the process zone, by basis, law and unknowns."""
-
-    zones: Mapping[tuple[str, str, int], float]
-
-    @property
-    def left_out(self) -> str:
-        """Why there is nothing in it, where there is nothing."""
-        return left_out(self, LAWS)
-
-
-def left_out(study: Trials, scenes: Iterable[str]) -> str:
-    """Why there is nothing in a study, where there is nothing."""
-    return "" if study.trials else f"left out: none of its scenes ({', '.join(scenes)}) is among those given"
 
 
 def measured(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Study:
     """The study of a plan whose jobs are done."""
-    scenes = dict(plan.scenes)
-    names = {"dolfinx": "cubic DOLFINx elements", "nurbs": "NURBS on one arm"}
-    found = {problem: reference(outcomes[coarse], outcomes[fine], names) for problem, coarse, fine in plan.references}
-    references = {problem: one for problem, one in found.items() if one is not None}
-    zones = {
-        (case.basis, case.law, case.dofs): expected(load_scene(case.law, case.overrides), case.basis).elements
-        for case, _ in plan.cases
-        if case.of_the_paper
-    }
-    trials = tuple(trial(case, outcomes[job], references.get(case.problem)) for case, job in plan.cases)
-    return Study(scenes, trials, references, {law: limit(scene) for law, scene in scenes.items()}, zones)
+    pairs = {problem: (outcomes[coarse], outcomes[fine]) for problem, coarse, fine in plan.references}
+    found = {problem: reference(*pair, plan.figures.fine) for problem, pair in pairs.items()}
+    known = {problem: one for problem, one in found.items() if one is not None}
+    trials = tuple(trial(case, outcomes[job], known.get(case.problem)) for case, job in plan.cases)
+    limits = {name: limit(scene) for name, scene in plan.scenes.items()}
+    if plan.figures is BEAMS:
+        zones = {case: expected(job.solved, case.basis).elements for case, job in plan.cases if case.of_the_paper}
+        return Study(BEAMS, plan.scenes, trials, known, limits, zones)
+    zones = {one.case: zone(plan.scenes[one.case.scene], one) for one in trials}
+    bases = dict.fromkeys(case.basis for case, _ in plan.cases)
+    printed = {basis: expected(load_scene(PRINTED), basis).elements for basis in bases}
+    return Study(STRIPS, plan.scenes, trials, known, limits, zones, printed)
 
 
 def reference(coarse: Outcome, fine: Outcome, names: Mapping[str, str]) -> Reference | None:
-    """What the two fine runs of a problem give; nothing where one of them did not come to its end.
-
-    ``names`` says what their mesh is, by method.
-    """
+    """The converged curve of two fine runs; None where one of them did not come to its end."""
     before, result = coarse.result, fine.result
     if before is None or result is None or not (before.complete and result.complete):
         return None
-    return Reference(
-        f"{names[fine.job.method]}, {result.dofs} unknowns",
-        result,
-        curve_error(curve(before), curve(result)),
-        oscillation(curve(before), curve(result))["rms"],
-    )
+    label, pair = f"{names[fine.job.method]}, {result.dofs} unknowns", (curve(before), curve(result))
+    return Reference(label, result, curve_error(*pair), oscillation(*pair)["rms"])
 
 
-def trial(case: AnyCase, outcome: Outcome, against: Reference | None) -> Trial:
-    """Measure one run; one that stopped, or that has nothing to be held against, only keeps its status."""
+def trial(case: Case, outcome: Outcome, against: Reference | None) -> Trial:
+    """Measure one run; one that stopped, or that has no reference, only keeps its status."""
     result = outcome.result
     if result is None:
         return Trial(case, None, outcome.left_out)
     if against is None or not result.complete:
         return Trial(case, result, result.status)
-    wave = oscillation(curve(result), curve(against.result))
-    return Trial(
-        case,
-        result,
-        result.status,
-        error=curve_error(curve(result), curve(against.result)),
-        oscillation=wave["rms"],
-        variation=wave["excess_variation"],
-        peak=peak_load(result) / peak_load(against.result) - 1.0,
-    )
+    pair = (curve(result), curve(against.result))
+    wave, peak = oscillation(*pair), peak_load(result) / peak_load(against.result) - 1.0
+    return Trial(case, result, result.status, curve_error(*pair), wave["rms"], wave["excess_variation"], peak)
+
+
+def zone(scene: Scene, found: Trial) -> float:
+    """Elements in the process zone as the run has it; NaN without one."""
+    if found.result is None or not found.complete:
+        return nan
+    return zone_length(found.result) / element_length(scene, found.case.basis)
 
 
 def curve(result: Result) -> Curve:
@@ -181,18 +164,11 @@ def curve(result: Result) -> Curve:
 def limit(scene: Scene) -> Curve:
     """LEFM by simple beam theory, the curve that the paper draws."""
     rows = lefm.solve(replace(lefm_problem(scene), theory="simple")).rows
-    return tuple(np.array([row[name] for row in rows]) for name in ("opening", "load"))
+    return np.array([row["opening"] for row in rows]), np.array([row["load"] for row in rows])
 
 
-def distance(one: Trial | None, other: Trial | None) -> float:
+def apart(one: Trial | None, other: Trial | None) -> float:
     """Relative L2 distance of the curves of two trials; NaN where one of them did not come to its end."""
-    if one is None or other is None or not (one.complete and other.complete):
+    if one is None or other is None or one.result is None or other.result is None:
         return nan
-    return curve_error(curve(one.result), curve(other.result))
-
-
-def peak_load(result: Result) -> float:
-    """Largest load, between the steps too where their slopes are known."""
-    slope = result.steps.get("load_slope")
-    usable = slope is not None and all(isfinite(value) for value in slope)
-    return peak(curve(result), slope if usable else None)[1]
+    return curve_error(curve(one.result), curve(other.result)) if one.complete and other.complete else nan

@@ -31,19 +31,17 @@ def errors(mesh: Mesh, D: np.ndarray, u_Ai: np.ndarray, exact: PlaneField, up_to
     u_Ai : (n_A, 2) its control displacements.
     up_to_rigid : leave out the rigid motion between both, which tractions alone do not determine.
     """
-    u, miss, X, dV, stress, gap = [], [], [], [], [], []
+    parts: list[tuple[np.ndarray, ...]] = []
     for basis in bulk_bases(mesh, 2):
         sigma_ijeq = small_stress(D, gradient(basis, u_Ai))[0]
         exact_ijeq = np.moveaxis(exact.stress(basis.X_eqI), (2, 3), (0, 1))
         u_eqi = exact.displacement(basis.X_eqI)
-        u.append(u_eqi.reshape(-1, 2))
-        miss.append((np.einsum("eqa,eai->eqi", basis.N_eqa, u_Ai[basis.conn_ea]) - u_eqi).reshape(-1, 2))
-        X.append(basis.X_eqI.reshape(-1, 2))
-        dV.append(basis.dV_eq.ravel())
-        stress.append(exact_ijeq.reshape(4, -1))
-        gap.append((sigma_ijeq - exact_ijeq).reshape(4, -1))
-    u, miss, X, dV = (np.concatenate(part) for part in (u, miss, X, dV))
-    stress, gap = np.concatenate(stress, axis=1), np.concatenate(gap, axis=1)
+        miss_eqi = np.einsum("eqa,eai->eqi", basis.N_eqa, u_Ai[basis.conn_ea]) - u_eqi
+        vectors = (v.reshape(-1, 2) for v in (u_eqi, miss_eqi, basis.X_eqI))
+        tensors = (t.reshape(4, -1).T for t in (exact_ijeq, sigma_ijeq - exact_ijeq))
+        parts.append((*vectors, *tensors, basis.dV_eq.ravel()))
+    u, miss, X, stress_qk, gap_qk, dV = (np.concatenate(part) for part in zip(*parts, strict=True))
+    stress, gap = stress_qk.T, gap_qk.T
     if up_to_rigid:
         u, miss = (_without_rigid_motion(v, X, dV) for v in (u, miss))
     return Errors(

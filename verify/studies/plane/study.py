@@ -7,9 +7,10 @@ it is, the others are its Bezier refinements (`iga.mesh.refinement`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +32,7 @@ from verify.support.refusal import Refusal
 from verify.theory.plane_fields import PlaneField, kirsch, smooth, uniform
 from verify.verdict import Check
 
-SOLID = {"young": 1.0, "poisson": 0.3, "plane": "stress"}
+SOLID: Mapping[str, Any] = {"young": 1.0, "poisson": 0.3, "plane": "stress"}
 CUTS, MOST_UNKNOWNS = 3, 100_000  # refinements of the file, as far as they stay below so many unknowns
 PATCH_TOLERANCE = 1e-10
 ERROR_TOLERANCE = 1e-3
@@ -160,18 +161,17 @@ def _field(plate: Plate) -> tuple[PlaneField, str]:
 
 def _levels(plate: Plate, field: PlaneField) -> Iterator[Level]:
     """The file, its Bezier elements with shared control points, and these halved again and again."""
-    mesh, last = plate.mesh, None
+    mesh, last = plate.mesh, (float("nan"),) * 2
     for cuts in range(-1, CUTS):
         if cuts >= 0:
             mesh = bezier_refined(mesh, 0 if cuts == 0 else 1)
         boundary = replace(plate, mesh=mesh).boundary
         found = _errors(mesh, _solved(mesh, boundary, field), field)
-        rates = [float("nan")] * 2
-        if cuts > 0:
-            rates = [float(np.log2(a / b)) for a, b in zip(_pair(last), _pair(found), strict=True)]
+        here = found.displacement, found.energy
+        rates = [float(np.log2(a / b)) if cuts > 0 else float("nan") for a, b in zip(last, here, strict=True)]
         name = "the file" if cuts < 0 else "Bezier elements" if cuts == 0 else f"each cut into {4**cuts}"
         yield Level(name, mesh.elements, 2 * len(mesh.P_AI), found, *rates)
-        last = found
+        last = here
         p = max(max(block.degrees) for block in mesh.blocks)
         if 2 * (2 if cuts >= 0 else 1) ** 2 * mesh.elements * p**2 > MOST_UNKNOWNS:
             return
@@ -204,10 +204,6 @@ def _solved(mesh: Mesh, boundary: list, field: PlaneField) -> np.ndarray:
 
 def _errors(mesh: Mesh, u_Ai: np.ndarray, field: PlaneField) -> Errors:
     return errors(mesh, isotropic(**SOLID), u_Ai, field, up_to_rigid=True)
-
-
-def _pair(found: Errors) -> tuple[float, float]:
-    return found.displacement, found.energy
 
 
 def _sampled(mesh: Mesh, u_Ai: np.ndarray, field: PlaneField) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

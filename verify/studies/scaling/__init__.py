@@ -1,5 +1,5 @@
-"""How time and memory grow with the unknowns, what more ranks gain here, and what that lets expect of many.
+"""How time and memory grow with the unknowns, and what more ranks gain on this machine.
 
-Read in this order: `plan` (which runs), `ranks` (a run under mpirun), `row` (one run, measured), `growth` (exponents),
-`expect` (many ranks), `study` (the sweep), `page`.
+Read in this order: `plan` (which runs), `ranks` (a run under mpirun), `row` (one run, measured), `growth` (exponents,
+speed-ups), `study` (the sweep), `page`.
 """

@@ -1,43 +1,31 @@
-"""Exponents of growth: value = factor N^exponent, least squares on logarithms."""
+"""Exponents of growth, value = factor N^exponent, least squares on logarithms; and what more ranks gain."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, nan
+from math import inf, isfinite, nan
 
 import numpy as np
 
-#: Standard errors on either side of what a fit says elsewhere.
-WIDTH = 2.0
+from verify.studies.scaling.row import PARTS, Row
 
 
 @dataclass(frozen=True)
 class Fit:
-    """A power law through points (N, value), and how well it is known.
+    """A power law through points (N, value).
 
     exponent, error : of the power, with its standard error; NaN for fewer than three points
     factor : value at N = 1
-    scatter : standard deviation of the logarithms about the line
-    centre, spread : mean of log N, and the sum of squares about it
     """
 
     exponent: float
     error: float
     factor: float
-    scatter: float
-    centre: float
-    spread: float
-    points: int
 
-    def at(self, n: float) -> tuple[float, float]:
-        """Lowest and highest value at ``n``, `WIDTH` standard errors of the line to either side of it.
-
-        The error of a straight line grows with the distance from its points (Draper and Smith 1998, section 3.1).
-        """
-        middle = np.log(self.factor) + self.exponent * np.log(n)
-        off = WIDTH * self.scatter * (1.0 / self.points + (np.log(n) - self.centre) ** 2 / self.spread) ** 0.5
-        return float(np.exp(middle - off)), float(np.exp(middle + off))
+    def __str__(self) -> str:
+        """1.02 +- 0.01"""
+        return f"{self.exponent:.2f} +- {self.error:.2f}" if isfinite(self.exponent) else "?"
 
 
 def fit(n: Sequence[float], value: Sequence[float]) -> Fit:
@@ -47,11 +35,42 @@ def fit(n: Sequence[float], value: Sequence[float]) -> Fit:
     x, y = np.log(x[there]), np.log(y[there])
     spread = float(np.sum((x - x.mean()) ** 2)) if x.size else 0.0
     if x.size < 3 or spread == 0.0:
-        return Fit(nan, nan, nan, nan, nan, nan, int(x.size))
+        return Fit(nan, nan, nan)
     exponent = float(np.sum((x - x.mean()) * y) / spread)
     level = float(y.mean() - exponent * x.mean())
     scatter = float((np.sum((y - level - exponent * x) ** 2) / (x.size - 2)) ** 0.5)
-    return Fit(exponent, scatter / spread**0.5, float(np.exp(level)), scatter, float(x.mean()), spread, int(x.size))
+    return Fit(exponent, scatter / spread**0.5, float(np.exp(level)))
+
+
+@dataclass(frozen=True)
+class Shared:
+    """A size on some ranks against the same on one.
+
+    speed_up, serial : of an iteration ("iteration") and of its parts, with the part of the time that is not shared
+    """
+
+    dofs: int
+    ranks: int
+    speed_up: Mapping[str, float]
+    serial: Mapping[str, float]
+
+    @property
+    def efficiency(self) -> float:
+        return self.speed_up["iteration"] / self.ranks
+
+
+def shared(rows: Sequence[Row]) -> list[Shared]:
+    """Every run on more ranks than one against its like on one."""
+    alone = {one.elements: one for one in rows if one.measured and one.ranks == 1 and one.method == "dolfinx"}
+    found = []
+    for one in rows:
+        if one.measured and one.ranks > 1 and one.elements in alone:
+            base = alone[one.elements]
+            pairs = {name: (getattr(base, name), getattr(one, name)) for name in ("iteration", *PARTS)}
+            faster = {name: before / after if after > 0 else inf for name, (before, after) in pairs.items()}
+            serial = {name: serial_part(value, one.ranks) for name, value in faster.items()}
+            found.append(Shared(one.dofs, one.ranks, faster, serial))
+    return sorted(found, key=lambda one: (one.dofs, one.ranks))
 
 
 def serial_part(speed_up: float, ranks: int) -> float:
@@ -63,8 +82,3 @@ def serial_part(speed_up: float, ranks: int) -> float:
     if not speed_up > 0:
         return inf if speed_up == 0 else nan
     return (1.0 / speed_up - 1.0 / ranks) / (1.0 - 1.0 / ranks)
-
-
-def amdahl(serial: float, ranks: float) -> float:
-    """Speed-up where that part of the time is not shared (Amdahl 1967)."""
-    return 1.0 / (serial + (1.0 - serial) / ranks)

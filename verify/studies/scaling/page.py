@@ -1,4 +1,4 @@
-"""The study as a page: one self-contained HTML file with what was measured, and apart from it what is extrapolated."""
+"""The study as a page: growth of time and memory, and what more ranks gain."""
 
 from __future__ import annotations
 
@@ -11,14 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 
-from verify.pages.parts import phase_bars, plain
+from verify.pages.parts import phase_bars
 from verify.pages.style import HALF, METHOD_NAMES, WIDE, Panel, colour, drawing, panel, to_svg
-from verify.pages.template import rendered
-from verify.pages.text import number, sentence
 from verify.runs.environment import environment
-from verify.studies.scaling.expect import DISSECTED, GHOSTS, WORTH, Range
+from verify.studies.page import logarithmic, write_study
 from verify.studies.scaling.growth import Fit
-from verify.studies.scaling.plan import DEGREES, SHORT, STEPS, most_elements
+from verify.studies.scaling.plan import DEGREES, SIZES
 from verify.studies.scaling.row import PARTS, Row
 
 if TYPE_CHECKING:
@@ -32,45 +30,34 @@ COLUMNS = {
     "model_memory_mb": "less that of the program",
 }
 
-_MARKERS = {"nurbs": "o", "dolfinx": "s"}
+#: Unknowns a rank from which on PETSc's own advice has ranks worth their messages.
+WORTH = 20_000
+
+_MARKS = {"nurbs": "o", "dolfinx": "s"}
 
 
 def write(study: Study, path: Path) -> None:
     """Write the page."""
-    page = rendered(
-        "verify.studies.scaling",
-        "page.html.j2",
-        {"between": between, "power": power, "readable": readable},
-        name=study.scene.name,
-        sentence=sentence(study.scene),
-        study=study,
+    loads = " and ".join(f"{load:.1f}" for load in study.load)
+    write_study(
+        study,
+        path,
+        {"power": power, "readable": readable},
         names=METHOD_NAMES,
         degrees=DEGREES,
         columns=COLUMNS,
         parts=PARTS,
         growth=[time_of_an_iteration(study, "time"), memory(study, "memory")] if study.growth else [],
         bars=strong(_strong(study.rows), "strong") if study.shared else None,
-        expected=study.expected(),
-        larger=study.larger(),
-        programme=(SHORT, STEPS),
-        assumed={"ghosts": GHOSTS, "dissected": DISSECTED, "worth": WORTH, "most_elements": most_elements()},
-        environment={
-            **environment(),
-            "load average at the beginning and at the end": " and ".join(f"{load:.1f}" for load in study.load),
-        },
+        programme=(SIZES.way, SIZES.steps),
+        worth=WORTH,
+        environment=environment() | {"load average at the beginning and at the end": loads},
     )
-    path.write_text(page, encoding="utf-8")
-
-
-def between(ends: Range) -> str:
-    """0.4 to 16: a range to two digits, which it reads the same at both ends only where it is that narrow."""
-    low, high = (number(float(f"{end:.2g}"), 6) for end in ends)
-    return low if low == high else f"{low} to {high}"
 
 
 def power(one: Fit) -> str:
     """1.02 ± 0.01."""
-    return f"{one.exponent:.2f} ± {one.error:.2f}".replace("-", "−") if isfinite(one.exponent) else "–"
+    return str(one).replace("+-", "±").replace("-", "−").replace("?", "–")
 
 
 def readable(text: str) -> str:
@@ -89,7 +76,7 @@ def time_of_an_iteration(study: Study, key: str) -> Panel:
             for part, dashes in (("assembly", (4, 2)), ("factor", (1, 1.5))):
                 value = [getattr(one, part) for one in ladder]
                 axes.plot(n, value, linewidth=0.8, dashes=dashes, color=colour(method), label=f"its {part}")
-        _logarithmic(axes, "unknowns", "seconds")
+        logarithmic(axes, "unknowns", "seconds")
         axes.legend(loc="upper left")
         svg = to_svg(figure, key, "Time of a Newton iteration against unknowns")
     return Panel(svg, "Time of a Newton iteration on one core: measured, with the power law through all sizes.")
@@ -105,7 +92,7 @@ def memory(study: Study, key: str) -> Panel:
             added = np.array([study.value(one, "model_memory_mb") for one in ladder])
             _points(axes, n, added, study.growth[method]["model_memory_mb"], method)
             axes.plot(n, peak, linewidth=0.8, dashes=(4, 2), color=colour(method), label="with the program")
-        _logarithmic(axes, "unknowns", "MB")
+        logarithmic(axes, "unknowns", "MB")
         axes.legend(loc="upper left")
         svg = to_svg(figure, key, "Peak memory against unknowns")
     return Panel(svg, "Peak memory of a run: what the mesh adds to that of the program, and both together.")
@@ -135,13 +122,7 @@ def _strong(rows: Sequence[Row]) -> list[Row]:
 
 
 def _points(axes: Axes, n: np.ndarray, value: np.ndarray, law: Fit, method: str) -> None:
-    axes.plot(n, value, _MARKERS[method], markersize=4, color=colour(method))
+    axes.plot(n, value, _MARKS[method], markersize=4, color=colour(method))
     if isfinite(law.exponent):
         name = f"{METHOD_NAMES[method]}: {law.exponent:.2f}"
         axes.plot(n, law.factor * n**law.exponent, linewidth=1.0, color=colour(method), label=name)
-
-
-def _logarithmic(axes: Axes, x: str, y: str) -> None:
-    axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
-    for part in (axes.xaxis, axes.yaxis):
-        plain(part)

@@ -18,21 +18,34 @@ from verify.scene.parse import parse_scene
 from verify.scene.schema import Dolfinx, Scene
 from verify.studies.scaling.ranks import MPIRUN_MISSING, cores
 
-#: Unknowns of the ladder, and of one more mesh, so small that its memory is that of the program alone.
-SMALLEST, LARGEST, RUNGS, BARE = 2_000, 100_000, 6, 200
-
-#: The programme is this part of the largest opening in so many steps: what counts is the time of an iteration.
-SHORT, STEPS = 0.005, 2
-
 #: Degree of every method's elements.
 DEGREES = {"nurbs": 3, "dolfinx": 2}
 
-#: Ranks that are tried as far as there are cores, on these rungs of the ladder: two sizes tell what every iteration
-#: costs whatever the size from what grows with it.
-RANKS, SHARED = (1, 2, 4, 8, 16), (-3, -1)
 
-#: Every run is made so many times; the least time counts.
-TIMES = 2
+@dataclass(frozen=True)
+class Sizes:
+    """Which runs are made.
+
+    smallest, largest, rungs : unknowns of the ladder
+    bare : of one more mesh, so small that its memory is that of the program alone
+    way, steps : the programme is this part of the largest opening: what counts is the time of an iteration
+    ranks, shared : tried as far as there are cores, on these rungs: two sizes tell what every iteration costs whatever
+        the size from what grows with it
+    times : every run is made so many times; the least time counts
+    """
+
+    smallest: int = 2_000
+    largest: int = 100_000
+    rungs: int = 6
+    bare: int = 200
+    way: float = 0.005
+    steps: int = 2
+    ranks: tuple[int, ...] = (1, 2, 4, 8, 16)
+    shared: tuple[int, ...] = (-3, -1)
+    times: int = 2
+
+
+SIZES = Sizes()
 
 
 @dataclass(frozen=True)
@@ -51,29 +64,13 @@ class Run(Job):
         return replace(alone, key=digest(alone.key, program), program=program)
 
 
-@dataclass(frozen=True)
-class Plan:
-    """Every run once, and a sentence for what is left out."""
-
-    runs: tuple[Run, ...]
-    reasons: tuple[str, ...]
-
-    def again(self) -> list[Run]:
-        """Every run and its repetitions: all of them one after the other, and then again."""
-        return [
-            replace(run, repeat=repeat, variant=f"{run.variant}-again-{repeat}") if repeat else run
-            for repeat in range(TIMES)
-            for run in self.runs
-        ]
-
-
-def planned(source: str, scene: Scene, given: Sequence[str] = ()) -> Plan:
-    """The runs of a scene; ``given`` are the overrides that all of them have."""
+def planned(source: str, scene: Scene, given: Sequence[str] = ()) -> tuple[list[Run], tuple[str, ...]]:
+    """Every run once, with the overrides ``given``, and a sentence for what is left out."""
     runs: list[Run] = []
     reasons: list[str] = []
     for method in DEGREES:
         ladder = [_run(source, scene, method, size, given) for size in sizes()]
-        bare = replace(_run(source, scene, method, BARE, given), bare=True)
+        bare = replace(_run(source, scene, method, SIZES.bare, given), bare=True)
         possible = [run for run in (bare, *ladder) if not left_out(run)]
         if not any(run in possible for run in ladder):
             reasons.append(f"{method}: {left_out(ladder[-1])}")
@@ -83,12 +80,12 @@ def planned(source: str, scene: Scene, given: Sequence[str] = ()) -> Plan:
             more, why = _shared([run for run in possible if not run.bare])
             runs += more
             reasons += why
-    return Plan(tuple(runs), tuple(reasons))
+    return runs, tuple(reasons)
 
 
 def sizes() -> list[int]:
     """Unknowns to aim at, evenly spaced on a logarithmic scale."""
-    return [int(n) for n in np.rint(np.geomspace(SMALLEST, LARGEST, RUNGS))]
+    return [int(n) for n in np.rint(np.geomspace(SIZES.smallest, SIZES.largest, SIZES.rungs))]
 
 
 def _run(source: str, scene: Scene, method: str, size: int, given: Sequence[str]) -> Run:
@@ -103,8 +100,8 @@ def _run(source: str, scene: Scene, method: str, size: int, given: Sequence[str]
             "discretization.adaptive=false",
         )
     )
-    opening = SHORT * max(scene.load.opening, key=abs)
-    paced = (f"load.opening={opening!r}", f"discretization.steps={STEPS}", "published=[]")
+    opening = SIZES.way * max(scene.load.opening, key=abs)
+    paced = (f"load.opening={opening!r}", f"discretization.steps={SIZES.steps}", "published=[]")
     return Run(source, scene, method, f"scaling/{method}-{size}", (*given, *paced, *effects, *mesh), fields=False)
 
 
@@ -134,9 +131,9 @@ def _shared(ladder: Sequence[Run]) -> tuple[list[Run], list[str]]:
     """Two rungs on more ranks than one, as many as there are cores; and why not more."""
     if shutil.which("mpirun") is None:
         return [], [f"more than 1 rank: left out: {MPIRUN_MISSING}"]
-    rungs = dict.fromkeys(ladder[at] for at in SHARED if len(ladder) >= -at)
-    there = [n for n in RANKS if 1 < n <= cores()]
-    beyond = [str(n) for n in RANKS if n > cores()]
+    rungs = dict.fromkeys(ladder[at] for at in SIZES.shared if len(ladder) >= -at)
+    there = [n for n in SIZES.ranks if 1 < n <= cores()]
+    beyond = [str(n) for n in SIZES.ranks if n > cores()]
     runs = [replace(run, ranks=n, variant=f"{run.variant}-{n}-ranks") for run in rungs for n in there]
     plural = "core" if cores() == 1 else "cores"
     return runs, [f"{', '.join(beyond)} ranks: left out: {cores()} {plural} here"] if beyond else []

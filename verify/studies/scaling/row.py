@@ -2,18 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
-from math import isfinite, nan
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from verify.result import Result
 from verify.runs.jobs import Outcome
+from verify.studies.frame import failure, unmeasured
 from verify.studies.scaling.plan import DEGREES, Run
+from verify.support.checked_files import ANY, NUMBER, Shape, read_table
 
 #: Parts of a Newton iteration; "other" is all that belongs to none: step control, energies, the rows that are written.
 PARTS = ("assembly", "factor", "solve", "other")
+
+
+#: What is read of ``scaling.json`` again.
+ABOUT: Shape = {
+    "growth": {ANY: {ANY: {"exponent": NUMBER, "standard_error": NUMBER, "factor": NUMBER}}},
+    "strong_scaling": [
+        {"dofs": int, "ranks": int, "speed_up": {ANY: NUMBER}, "serial": {ANY: NUMBER}, "efficiency": NUMBER}
+    ],
+    "sentences": [str],
+}
 
 
 @dataclass(frozen=True)
@@ -53,19 +67,23 @@ class Row:
         return isfinite(self.iteration)
 
 
+def read_csv(path: Path) -> list[Row]:
+    """Rows that were written."""
+    return read_table(path, Row)
+
+
 def row(run: Run, outcomes: Sequence[Outcome]) -> Row:
     """Measure a run, the first of ``outcomes``, and its repetitions."""
-    head = {"method": run.method, "degree": DEGREES[run.method], "ranks": run.ranks, "bare": run.bare}
+    head: dict[str, Any] = {"method": run.method, "degree": DEGREES[run.method], "ranks": run.ranks, "bare": run.bare}
     head["run"] = run.variant
     results = [o.result for o in outcomes if o.result is not None and o.result.complete and o.result.seconds]
     if not results:
-        first = outcomes[0]
-        unknown = {field.name: nan if field.type == "float" else 0 for field in fields(Row)}
-        return Row(**unknown | head | {"status": first.result.status if first.result else first.left_out})
+        return unmeasured(Row, head | {"status": failure(outcomes[0])})
     each = [seconds(result) for result in results]
     whole = [sum(parts.values()) for parts in each]
     least = int(np.argmin(whole))
     result = results[least]
+    once = result.seconds or {}
     return Row(
         **head,
         **each[least],
@@ -74,7 +92,7 @@ def row(run: Run, outcomes: Sequence[Outcome]) -> Row:
         newton_iterations=iterations(result),
         iteration=whole[least],
         spread=max(whole) / whole[least],
-        set_up=result.seconds["mesh"] + result.seconds["basis"] - result.jit_seconds,
+        set_up=once["mesh"] + once["basis"] - result.jit_seconds,
         peak_memory_mb=max(one.peak_memory_mb for one in results),
         nonzeros=result.nonzeros,
         times=len(results),
@@ -87,6 +105,6 @@ def iterations(result: Result) -> int:
     return int(np.sum(result.steps["newton_iterations"]))
 
 
-def seconds(result: Result) -> Mapping[str, float]:
+def seconds(result: Result) -> dict[str, Any]:
     """Seconds of a Newton iteration by its parts."""
-    return {name: result.seconds[name] / max(iterations(result), 1) for name in PARTS}
+    return {name: (result.seconds or {})[name] / max(iterations(result), 1) for name in PARTS}

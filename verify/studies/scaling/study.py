@@ -6,48 +6,27 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from math import isfinite
 from pathlib import Path
+from typing import ClassVar
 
-from verify.runs.environment import ALL_PACKAGES, THREADS, machine, versions
-from verify.runs.fingerprint import source as source_of
-from verify.runs.folder import write_csv, write_json
-from verify.runs.jobs import dry_run, run_all
 from verify.scene.schema import Scene
-from verify.studies.scaling.expect import (
-    MANY,
-    Expectation,
-    Larger,
-    Shared,
-    expectation,
-    larger,
-    shared,
-    whatever_the_size,
-)
-from verify.studies.scaling.growth import Fit, fit
-from verify.studies.scaling.plan import Plan, planned
+from verify.studies import frame
+from verify.studies.frame import BUSY, one_thread, repeated
+from verify.studies.scaling.growth import Fit, Shared, fit, shared
+from verify.studies.scaling.plan import SIZES, planned
 from verify.studies.scaling.row import PARTS, Row, row
-from verify.support.say import write_page
 
 #: What grows, by the name of the column.
 GROWING = ("iteration", *PARTS, "peak_memory_mb", "model_memory_mb")
 
-#: Equal runs whose times differ by more than this were made on a busy machine.
-BUSY = 1.2
-
 
 @dataclass(frozen=True)
-class Study:
-    """What a sweep found.
+class Study(frame.Study):
+    """What was found; ``load``: load average of the machine when the study began and when it ended."""
 
-    columns : cells along the specimen of the largest DOLFINx mesh
-    load : load average of the machine when the study began and when it ended
-    """
+    NAME: ClassVar[str] = "scaling"
+    ROW: ClassVar[type] = Row
 
-    scene: Scene
-    rows: tuple[Row, ...]
-    reasons: tuple[str, ...]
-    columns: int
     load: tuple[float, float]
 
     @property
@@ -87,30 +66,6 @@ class Study:
     def shared(self) -> list[Shared]:
         return shared(self.rows)
 
-    @cached_property
-    def waiting(self) -> float:
-        """Seconds of an iteration that two ranks need more than one whatever the size; 0 where that cannot be told."""
-        known = whatever_the_size(self.rows)
-        return max(known[2] - known[1], 0.0) if {1, 2} <= known.keys() else 0.0
-
-    def expected(self) -> list[Expectation]:
-        """The largest size on many ranks; nothing where there was one rank alone."""
-        ladder = self.ladder("dolfinx")
-        tried = [one for one in self.shared if ladder and one.dofs == ladder[-1].dofs]
-        if not tried:
-            return []
-        base, program = ladder[-1], self.program_mb("dolfinx")
-        memory = program, base.peak_memory_mb - program
-        return [expectation(n, base, tried[-1], self.columns, self.waiting, memory) for n in MANY]
-
-    def larger(self) -> list[Larger]:
-        """Sizes for many ranks."""
-        if "dolfinx" not in self.growth:
-            return []
-        fits, base = self.growth["dolfinx"], self.ladder("dolfinx")[-1]
-        known = fits["iteration"], fits["model_memory_mb"], self.value(base, "model_memory_mb")
-        return [larger(n, base, self.columns, *known) for n in MANY]
-
     @property
     def sentences(self) -> list[str]:
         """What was found, a sentence each."""
@@ -120,8 +75,8 @@ class Study:
             time, memory = fits["iteration"], fits["model_memory_mb"]
             found.append(
                 f"{method}, degree {large.degree}, {small.dofs} to {large.dofs} unknowns: an iteration takes "
-                f"N^{power(time)} ({large.iteration:.2g} s at the end), the memory beyond the program's "
-                f"{self.program_mb(method):.0f} MB N^{power(memory)} (peak {large.peak_memory_mb:.0f} MB)"
+                f"N^{time} ({large.iteration:.2g} s at the end), the memory beyond the program's "
+                f"{self.program_mb(method):.0f} MB N^{memory} (peak {large.peak_memory_mb:.0f} MB)"
             )
         for one in self.shared:
             found.append(
@@ -138,16 +93,15 @@ class Study:
         if most > BUSY:
             found.append(f"Equal runs differ by up to {most:.2g} x: the machine was busy, and the times say the less")
         if any(one.speed_up["iteration"] < 1.0 for one in self.shared):
-            found.append(
-                "More ranks were slower than one: on cores that other work takes they wait for each other; what is "
-                "extrapolated from that has no lower end to speak of"
-            )
+            found.append("More ranks were slower than one: on cores that other work takes they wait for each other")
         return found
 
-    def summary(self) -> dict[str, object]:
-        """The content of ``scaling.json``."""
+    def lines(self) -> list[str]:
+        stopped = [f"{one.run}: {one.status}" for one in self.rows if not one.measured]
+        return [*self.sentences, *self.left_out, *stopped]
+
+    def about(self) -> dict[str, object]:
         return {
-            "scene": self.scene.model_dump(),
             "growth": {
                 method: {
                     what: {"exponent": one.exponent, "standard_error": one.error, "factor": one.factor}
@@ -158,24 +112,9 @@ class Study:
             "program_memory_mb": {method: self.program_mb(method) for method in self.methods},
             "measured": [asdict(one) for one in self.rows],
             "strong_scaling": [asdict(one) | {"efficiency": one.efficiency} for one in self.shared],
-            "extrapolated": {
-                "largest_on_many_ranks": [asdict(one) for one in self.expected()],
-                "enough_for_many_ranks": [asdict(one) for one in self.larger()],
-                "waiting_seconds": self.waiting,
-            },
             "sentences": self.sentences,
-            "left_out": list(self.reasons),
             "load_average": list(self.load),
-            "source": source_of(ALL_PACKAGES),
-            "versions": versions(),
-            "machine": machine(),
-            "threads": 1,
         }
-
-
-def power(one: Fit) -> str:
-    """1.02 +- 0.01: an exponent with its standard error."""
-    return f"{one.exponent:.2f} +- {one.error:.2f}" if isfinite(one.exponent) else "?"
 
 
 def scaling(source: str, scene: Scene, given: Sequence[str], out: Path) -> Study:
@@ -185,30 +124,22 @@ def scaling(source: str, scene: Scene, given: Sequence[str], out: Path) -> Study
     ----------
     given : overrides that ``scene`` has, and that every run repeats
     """
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    plan, before = planned(source, scene, given), _load()
-    found = {outcome.job: outcome for outcome in run_all(plan.again(), out, jobs=1)}
+    one_thread()
+    (runs, left_out), before = planned(source, scene, given), _load()
+    found = frame.run(repeated(runs, range(SIZES.times)), out)
     rows = tuple(
         row(run, [o for job, o in found.items() if (job.overrides, job.ranks) == (run.overrides, run.ranks)])
-        for run in plan.runs
+        for run in runs
     )
-    study = Study(scene, rows, plan.reasons, _columns(plan), (before, _load()))
-    write_csv(out / "scaling.csv", Row, study.rows)
-    write_json(out / "scaling.json", study.summary())
-    write_page("verify.studies.scaling.page", study, out / "report.html")
-    stopped = [f"{one.run}: {one.status}" for one in rows if not one.measured]
-    print("\n".join([*study.sentences, *study.reasons, *stopped, f"written: {out / 'scaling.csv'}"]))
+    study = Study(scene, rows, left_out, (before, _load()))
+    study.write(out)
     return study
 
 
 def would_run(source: str, scene: Scene, given: Sequence[str], out: Path) -> list[str]:
     """The runs with their times, a line each, and what is left out; nothing is run."""
-    plan = planned(source, scene, given)
-    return [*dry_run(plan.again(), out, 1), *plan.reasons]
-
-
-def _columns(plan: Plan) -> int:
-    return max((run.solved.dolfinx.elements for run in plan.runs if run.method == "dolfinx"), default=0)
+    runs, left_out = planned(source, scene, given)
+    return frame.would_run(repeated(runs, range(SIZES.times)), left_out, out)
 
 
 def _load() -> float:

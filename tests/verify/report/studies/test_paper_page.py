@@ -20,10 +20,9 @@ from tests.verify.studies.paper.test_paper import as_stated, stopped_in, world  
 from verify.curves.curve import envelope  # noqa: E402
 from verify.methods.names import METHODS  # noqa: E402
 from verify.pages.style import METHOD_NAMES, colour, line  # noqa: E402
-from verify.report.studies import paper_figures, paper_section, peel_figures, peel_section  # noqa: E402
+from verify.report.studies import paper, paper_figures  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
-from verify.studies.paper.peel import BONDS, PeelCase  # noqa: E402
-from verify.studies.paper.plan import LAWS, Case  # noqa: E402
+from verify.studies.paper.plan import BEAMS, BONDS, LAWS, Case  # noqa: E402
 from verify.studies.paper.study import Study, Trial  # noqa: E402
 
 STOPPED = Case("nurbs", "dcb-czm2", 280)
@@ -49,17 +48,20 @@ def study() -> Study:
 
 @pytest.mark.parametrize("measure", ["error", "oscillation"])
 def test_a_cell_has_what_its_run_has(study: Study, measure: str) -> None:
-    section = paper_section.section(study, "figures")
-    groups = dict(section.tables)[paper_section.TABLES[measure]]
+    section = paper.section(study, "figures")
+    table = section.tables[list(paper.TABLES).index(measure)]
+    assert table.heading == f"{paper.TABLES[measure]} by number of interface points"
     laws = {f"{LAWS[law]}, {dofs} unknowns": (law, dofs) for law in LAWS for dofs in (280, 1956)}
     seen = set()
-    assert {group.name for group in groups} == set(laws) and section.points == (2, 8)
-    for group in groups:
-        for row in group.rows:
-            (basis,) = [name for name in METHODS if METHOD_NAMES[name] == row.name]
-            assert row.line == line(basis)
-            for points, (text, lost) in zip(section.points, row.cells, strict=True):
-                case = Case(basis, *laws[group.name], points, 1e3 if row.penalty == "1000" else 1e5)
+    assert set(dict(table.groups)) == set(laws)
+    assert [head.name for head in table.heads] == ["Basis", "Penalty", "2 points", "8 points"]
+    for name, rows in table.groups:
+        for row in rows:
+            (basis,) = [name for name in METHODS if METHOD_NAMES[name] == row.head.name]
+            assert row.head.line == line(basis)
+            (penalty, _), *cells = row.cells
+            for points, (text, lost) in zip((2, 8), cells, strict=True):
+                case = Case(basis, *laws[name], points, 1e3 if penalty == "1000" else 1e5)
                 trial, _ = study.trial(case), seen.add(case)
                 if trial is None:
                     assert (case, text, lost) == (NEVER_RUN, "–", False)
@@ -71,14 +73,16 @@ def test_a_cell_has_what_its_run_has(study: Study, measure: str) -> None:
 
 
 def test_a_row_of_all_runs_has_measures_sizes_and_time(study: Study) -> None:
-    section = paper_section.section(study, "figures")
-    assert len(section.runs) == len(study.trials) == 47
+    section = paper.section(study, "figures")
+    ((_, rows),) = section.runs.groups
+    assert len(rows) == len(study.trials) == 47 and len(section.runs.heads) == 10
     assert "45 of 47 runs came to their end" in section.lead and len(section.stopped) == 2
-    for row, trial in zip(section.runs, study.trials, strict=True):
-        assert row.folder == f"{trial.case.law}/{trial.case.variant}" and row.status == trial.status
-        assert row.case.startswith(f"{LAWS[trial.case.law]}, {trial.case.dofs} unknowns")
-        assert (", penalty 1000" in row.case) == (trial.case.penalty == 1e3)
-        *measures, dofs, steps, taken_back, time = row.cells
+    for row, trial in zip(rows, study.trials, strict=True):
+        assert row.head.folder == f"{trial.case.scene}/{trial.case.variant}"
+        assert row.head.name.startswith(f"{LAWS[trial.case.scene]}, {trial.case.dofs} unknowns")
+        assert (", penalty 1000" in row.head.name) == (trial.case.penalty == 1e3)
+        *measures, dofs, steps, taken_back, time, status = (text for text, _ in row.cells)
+        assert status == trial.status
         values = (trial.error, trial.oscillation, trial.variation, trial.peak)
         for text, value in zip(measures, values, strict=True):
             assert text == "–" if np.isnan(value) else told(text) == pytest.approx(value, rel=0.05)
@@ -89,10 +93,10 @@ def test_a_row_of_all_runs_has_measures_sizes_and_time(study: Study) -> None:
 
 
 def test_the_example_repeats_the_first_run(study: Study) -> None:
-    words = paper_section.section(study, "figures").example.split()
+    words = paper.section(study, "figures").example.split()
     case, overrides = study.trials[0].case, [b for a, b in zip(words, words[1:], strict=False) if a == "--set"]
-    assert words[:5] == ["debond", "solve", case.law, "--method", case.basis]
-    scene = load_scene(case.law, overrides)
+    assert words[:5] == ["debond", "solve", case.scene, "--method", case.basis]
+    scene = load_scene(case.scene, overrides)
     assert (scene.discretization.dofs, scene.discretization.interface_points) == (case.dofs, case.points)
     assert scene.interface.penalty == case.penalty
 
@@ -102,7 +106,7 @@ def test_a_problem_without_a_converged_curve_is_told(study: Study) -> None:
     known = {problem: one for problem, one in study.references.items() if problem != ("dcb-czm2", 1e3)}
     unknown = {"error": np.nan, "oscillation": np.nan, "variation": np.nan, "peak": np.nan}
     trials = tuple(t if t.case.problem in known else replace(t, **unknown) for t in study.trials)
-    lines = paper_section.section(replace(study, references=known, trials=trials), "figures").references
+    lines = paper.section(replace(study, references=known, trials=trials), "figures").references
     without = [text for text in lines if "no converged curve" in text]
     assert len(lines) == 4 and len(without) == 1 and without[0].startswith("CZM 2, penalty 1000: ")
     assert all("a coarser mesh is 0.0010\u00a0% from it" in text for text in lines if text not in without)
@@ -212,17 +216,16 @@ def test_what_stands_below_a_panel_is_what_its_run_has(study: Study, monkeypatch
 
 def test_a_table_of_bonds_has_what_the_runs_have() -> None:
     study = nine.world()
-    stopped = Trial(
-        PeelCase("nurbs", "peel-80"), nine.made_up("peel-80", status="stopped: at once"), "stopped: at once"
-    )
+    stopped = Trial(Case("nurbs", "peel-80"), nine.made_up("peel-80", status="stopped: at once"), "stopped: at once")
     trials = [stopped if t.case == stopped.case else t for t in study.trials]
-    trials = [t for t in trials if t.case != PeelCase("lagrange", "peel-60")]
+    trials = [t for t in trials if t.case != Case("lagrange", "peel-60")]
     study = replace(
-        study, trials=tuple(trials), references={b: r for b, r in study.references.items() if b != "peel-100"}
+        study, trials=tuple(trials), references={b: r for b, r in study.references.items() if b != ("peel-100", None)}
     )
-    section = peel_section.section(study, "nine")
-    tables = {title: dict(rows) for title, rows in section.tables}
-    assert [basis.name for basis in section.bases] == [METHOD_NAMES[basis] for basis in nine.BASES]
+    section = paper.section(study, "nine")
+    (table,) = section.tables
+    tables = {title: {row.head.name: row.cells for row in rows} for title, rows in table.groups}
+    assert [head.name for head in table.heads] == ["Bond", *(METHOD_NAMES[b] for b in nine.BASES), "Converged"]
     assert section.stopped == (f"{METHOD_NAMES['nurbs']}, 80\u00a0mm: stopped: at once",)
     assert "10 of 11 runs came to their end" in section.lead
     known = [text for text in section.references if "no converged curve" not in text]
@@ -249,8 +252,8 @@ def test_a_table_of_bonds_has_what_the_runs_have() -> None:
 
 
 def test_figure_9_names_every_bond_at_its_peak(monkeypatch: pytest.MonkeyPatch) -> None:
-    study, drawn = nine.world(), Drawn(monkeypatch, peel_figures)
-    groups = peel_figures.figures(study, "nine")
+    study, drawn = nine.world(), Drawn(monkeypatch, paper_figures)
+    groups = paper_figures.figures(study, "nine")
     assert [len(group.panels) for group in groups] == [3, 4]
     axes = drawn.axes(f"by bond length, {METHOD_NAMES['nurbs']}")
     names = {t.get_text(): t.xy for t in axes.texts}
@@ -270,20 +273,20 @@ def test_figure_9_names_every_bond_at_its_peak(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_without_runs_there_is_nothing_but_the_reason() -> None:
-    empty = Study({}, (), {}, {}, {})
-    found = paper_section.section(empty, "figures")
-    assert found.left_out and found.figures == () == found.runs and found.example == ""
+    empty = Study(BEAMS, {}, (), {}, {}, {})
+    found = paper.section(empty, "figures")
+    assert found.left_out and found.figures == () == found.tables and (found.runs, found.example) == (None, "")
 
 
 def test_below_figure_9_nothing_is_told_of_runs_that_are_none(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = nine.world()
-    Drawn(monkeypatch, peel_figures)
+    Drawn(monkeypatch, paper_figures)
     others = tuple(t for t in whole.trials if t.case.basis != "nurbs")
     unknown = tuple(replace(t, error=np.nan) for t in whole.trials if t.case.basis == "nurbs")
-    case = PeelCase("nurbs", "peel-80")
-    stopped = Trial(case, nine.made_up(case.bond, status="stopped: at once"), "stopped: at once")
+    case = Case("nurbs", "peel-80")
+    stopped = Trial(case, nine.made_up(case.scene, status="stopped: at once"), "stopped: at once")
     for trials in ((*others, stopped), others + unknown):
-        panels = peel_figures.figures(replace(whole, trials=trials), "nine")[0].panels
+        panels = paper_figures.figures(replace(whole, trials=trials), "nine")[0].panels
         told = {panel.caption.split(".")[0]: panel.caption for panel in panels}
         assert told[METHOD_NAMES["nurbs"]] == f"{METHOD_NAMES['nurbs']}. "
         assert "from the converged curves, oscillation" in told[METHOD_NAMES["tspline"]]
@@ -293,8 +296,8 @@ def test_deviations_of_figure_9_are_those_of_its_runs(monkeypatch: pytest.Monkey
     """Over the whole programme, in per cent, of every basis, and about the uncertainty of what is converged."""
     bumps = {"tspline": 0.001, "nurbs": -0.003, "lagrange": 0.006}
     study = nine.world(lambda case: {"bump": bumps[case.basis]})
-    drawn = Drawn(monkeypatch, peel_figures)
-    panels = peel_figures.figures(study, "nine")[1].panels
+    drawn = Drawn(monkeypatch, paper_figures)
+    panels = paper_figures.figures(study, "nine")[1].panels
     assert [panel.caption for panel in panels] == [f"Bond {bond.removeprefix('peel-')}\u00a0mm." for bond in BONDS]
     for bond in BONDS:
         axes = drawn.axes(f"Deviation of the load from the converged curve, {bond}")

@@ -65,14 +65,14 @@ def test_the_mesh_has_its_degree_through_the_arms(degree: int) -> None:
 
 
 def test_a_quadratic_element_is_chosen_where_the_arms_are_slender(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(accuracy, "run_seconds", lambda scene, method, iterations: 1.0)
+    monkeypatch.setattr(accuracy, "predicted_seconds", lambda scene, method, iterations: 1.0)
     for seed, asked, degree in ((118, 0.003, 2), (118, 0.0005, 3), (113, 0.01, 3), (102, 0.05, 2)):
         found = choose(random_scene(seed), asked, NOWHERE)
         assert f"discretization.degree={degree}" in found.overrides, seed
 
 
 def test_the_steps_are_those_of_the_scene_and_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(accuracy, "run_seconds", lambda scene, method, iterations: 1.0)
+    monkeypatch.setattr(accuracy, "predicted_seconds", lambda scene, method, iterations: 1.0)
     for asked, words in (("20", "steps=150"), ("400", "steps=400"), ("auto", "bend=0.003")):
         found = choose(load_scene("dcb-czm1", [f"discretization.steps={asked}"]), 0.003, NOWHERE)
         assert f"discretization.{words}" in found.overrides
@@ -106,7 +106,7 @@ def test_a_study_of_the_same_problem_decides(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("what", ["scene", "machine", "source", "file", "error"])
 def test_another_study_does_not(what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(accuracy, "run_seconds", lambda scene, method, iterations: 0.01 * iterations)
+    monkeypatch.setattr(accuracy, "predicted_seconds", lambda scene, method, iterations: 0.01 * iterations)
     scene = load_scene("dcb-czm1")
     path = a_study(tmp_path, scene, **({what: {}} if what in ("machine", "source") else {}))
     if what == "scene":
@@ -156,13 +156,13 @@ def test_the_time_of_a_run_is_that_of_its_beginning_and_of_its_iterations(monkey
     monkeypatch.setattr(accuracy, "solve", solve)
     monkeypatch.setattr(accuracy, "perf_counter", lambda: now[0])
     scene = load_scene("dcb-czm1", ["load.opening=[1.0, 2.0, 1.5]"])
-    assert accuracy.run_seconds(scene, "nurbs", 100.0) == pytest.approx(18.5 + 0.5 * (100.0 - 13.0))
+    assert accuracy.predicted_seconds(scene, "nurbs", 100.0) == pytest.approx(18.5 + 0.5 * (100.0 - 13.0))
     assert asked == [((0.04,), 10, (), "nurbs")], "a fiftieth of the way in ten steps"
 
 
 def test_what_cannot_be_solved_here_is_passed_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A mesh that the scene does not take, a method that is missing or unknown; then comes the next, however slow."""
-    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.solve.dolfinx_installed", lambda: False)
 
     def one(solver: str, seconds: float, *overrides: str) -> dict:
         about = {"method": solver, "degree": 3, "dofs": 500, "curve_error": 0.001}

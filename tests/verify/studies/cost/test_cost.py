@@ -21,7 +21,7 @@ from verify.studies.cost.ladder import Try
 from verify.studies.cost.nonzeros import nonzeros
 from verify.studies.cost.reference import _index, reference
 from verify.studies.cost.row import Row, errors, read_csv, row, traction_error
-from verify.studies.cost.study import CLOSE, LATE, ONCE, Study, _best
+from verify.studies.cost.study import LIMITS, Study, _best
 
 # --- the reference
 
@@ -160,7 +160,7 @@ def test_the_page_says_it_and_carries_the_rows(tmp_path: Path) -> None:
     pytest.importorskip("jinja2")
     from verify.studies.cost.page import write
 
-    study = Study(SCENE, against(), tuple(ROWS), ("lefm: a <limit>",))
+    study = Study(SCENE, tuple(ROWS), ("lefm: a <limit>",), against())
     write(study, tmp_path / "report.html")
     page = (tmp_path / "report.html").read_text()
     assert "Curve error 0.3%: T-spline, degree 3, 400 unknowns" in page and "DOLFINx 3.8 ×" in page
@@ -175,8 +175,10 @@ def test_runs_that_may_only_have_come_out_late_are_timed_again() -> None:
     """What a machine does besides takes no share of a run but some milliseconds, which short ones are lost in."""
     seconds = {1: 0.020, 2: 0.024, 3: 0.045, 4: 0.056}
     rows = {Try(NURBS, rung, 500, 40): a_row("nurbs", 0.002, each) for rung, each in seconds.items()}
-    assert {one.rung for one in _best(rows, CLOSE, CLOSE, LATE)} == {1, 2, 3}
-    assert {one.rung for one in _best(rows, CLOSE, CLOSE)} == {1, 2} and [one.rung for one in _best(rows)] == [1]
+    assert {one.rung for one in _best(rows, LIMITS.close, LIMITS.close, LIMITS.late)} == {1, 2, 3}
+    assert {one.rung for one in _best(rows, LIMITS.close, LIMITS.close)} == {1, 2} and [
+        one.rung for one in _best(rows)
+    ] == [1]
 
 
 def test_a_run_that_was_timed_once_may_be_half_as_long_again() -> None:
@@ -186,11 +188,11 @@ def test_a_run_that_was_timed_once_may_be_half_as_long_again() -> None:
         Try(NURBS, rung, 500, 40): replace(a_row("nurbs", 0.002, each), times=times)
         for rung, (each, times) in seconds.items()
     }
-    assert {one.rung for one in _best(rows, CLOSE, ONCE)} == {1, 2, 4}
+    assert {one.rung for one in _best(rows, LIMITS.close, LIMITS.once)} == {1, 2, 4}
 
 
 def test_cost_json_names_the_cheapest_and_the_front(tmp_path: Path) -> None:
-    found = Study(SCENE, against(), tuple(ROWS), ()).summary()
+    found = Study(SCENE, tuple(ROWS), (), against()).summary()
     assert list(found["cheapest"]) == ["1%", "0.3%", "0.1%"]
     assert found["cheapest"]["0.3%"]["method"] == "tspline" and found["cheapest"]["0.3%"]["dofs"] == 400
     assert found["cheapest_at_equal_steps"]["0.3%"]["ratio"]["dolfinx"] == pytest.approx(5.0)

@@ -16,11 +16,12 @@ from verify.cli import main
 from verify.methods.zone_resolution import expected
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
+from verify.studies import frame
 from verify.studies.cost import ladder as ladder_of
 from verify.studies.cost import reference as reference_of
 from verify.studies.cost import study as study_of
 from verify.studies.cost.findings import LEVELS, cheapest
-from verify.studies.cost.ladder import BEAM, FAMILIES, RATIO, Family, Try, ladder, ladders
+from verify.studies.cost.ladder import BEAM, FAMILIES, LADDER, Family, Try, ladder, ladders
 from verify.studies.cost.reference import reference_jobs
 from verify.studies.cost.row import Row, read_csv
 from verify.studies.cost.study import climb
@@ -30,9 +31,11 @@ def test_rungs_divide_the_process_zone_as_they_say() -> None:
     for name in ("tspline-p3", "nurbs-p3", "lagrange-p3"):
         family = next(one for one in FAMILIES if one.name == name)
         rungs = ladder(SCENE, family)
-        assert all(b.size / a.size == pytest.approx(RATIO, rel=0.01) for a, b in zip(rungs, rungs[1:], strict=False))
+        assert all(
+            b.size / a.size == pytest.approx(LADDER.ratio, rel=0.01) for a, b in zip(rungs, rungs[1:], strict=False)
+        )
         last = rungs[-1].job("dcb-czm1", SCENE).solved
-        assert expected(last, family.solver).elements == pytest.approx(family.first * RATIO**7, rel=0.15)
+        assert expected(last, family.solver).elements == pytest.approx(family.first * LADDER.ratio**7, rel=0.15)
     assert [one.steps for one in ladder(SCENE, BEAM)] == [80, 40, 150]
 
 
@@ -48,7 +51,7 @@ def test_every_run_repeats_what_the_study_was_given() -> None:
 def test_methods_that_cannot_are_left_out_with_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     few = tuple(f for f in FAMILIES if f.name in ("tspline-adaptive", "nurbs-p2", "dolfinx-p1", "dolfinx-p2"))
     monkeypatch.setattr(ladder_of, "FAMILIES", few)
-    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.solve.dolfinx_installed", lambda: False)
     found, why = ladders("peel-60", load_scene("peel-60"), ())
     assert [family.name for family in found] == ["nurbs-p2", "beam"]
     assert why == [
@@ -99,18 +102,18 @@ def test_a_degree_that_another_beats_by_far_goes_no_further() -> None:
 
 def test_a_ladder_has_patience_with_the_quickest_accurate_run() -> None:
     """Of any method, but with a mesh; and no longer than the longest that a run may take."""
-    finest, patience = min(LEVELS.values()), study_of.PATIENCE
+    finest, patience = min(LEVELS.values()), study_of.LIMITS.patience
     accurate, quick = a_row("nurbs", 0.9 * finest, 3.0), a_row("lagrange", 2.0 * finest, 0.01)
     theory = a_row("beam", 0.1 * finest, 0.001, dofs=0)
     for part, ends in ((0.99, False), (1.01, True)):
         last = a_row("dolfinx", 0.02, part * patience * 3.0)
         assert study_of._high_enough(last, [last, accurate, quick, theory]) == ends
         assert not study_of._high_enough(last, [last, quick, theory])
-        slow = a_row("dolfinx", 0.02, part * study_of.LONGEST)
+        slow = a_row("dolfinx", 0.02, part * study_of.LIMITS.longest)
         assert study_of._high_enough(slow, [slow]) == ends
-    done = a_row("dolfinx", 0.99 * study_of.ENOUGH * finest, 1.0)
+    done = a_row("dolfinx", 0.99 * study_of.LIMITS.enough * finest, 1.0)
     assert study_of._high_enough(done, [done])
-    assert not study_of._high_enough(replace(done, curve_error=1.01 * study_of.ENOUGH * finest), [done])
+    assert not study_of._high_enough(replace(done, curve_error=1.01 * study_of.LIMITS.enough * finest), [done])
 
 
 def test_more_is_tried_where_it_may_pay() -> None:
@@ -145,18 +148,19 @@ def test_a_study_from_ladder_to_files(seconds: float, tmp_path: Path, monkeypatc
     """Runs that need no solver, whose error falls as the third power of the unknowns."""
     monkeypatch.setattr(ladder_of, "FAMILIES", (NURBS,))
     monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
-    for name in ("CLIMB", "VARY", "REPEAT"):
-        monkeypatch.setattr(study_of, name, seconds)
+    limits = replace(study_of.LIMITS, climb=seconds, vary=seconds, repeat=seconds)
+    monkeypatch.setattr(study_of, "LIMITS", limits)
     asked: list[Job] = []
 
-    def run_all(plan, out, jobs):
+    def run_all(plan, out, jobs, scheduler=None):
         for job in plan:
             asked.append(job)
             size = job.solved.discretization.dofs
             yield Outcome(job, made_up(1.0 + (60.0 / size) ** 3, dofs=size, elements=size, n=120))
 
     monkeypatch.setattr(study_of, "run_all", run_all)
-    monkeypatch.setattr(study_of, "write_page", lambda module, study, path: None)
+    monkeypatch.setattr(frame, "run_all", run_all)
+    monkeypatch.setattr(frame, "write_page", lambda module, study, path: None)
     found = study_of.cost("dcb-czm1", SCENE, (), tmp_path, 2)
     rows = read_csv(tmp_path / "cost.csv")
     assert (tmp_path / "cost.json").exists() and "written: " in capsys.readouterr().out
@@ -165,7 +169,7 @@ def test_a_study_from_ladder_to_files(seconds: float, tmp_path: Path, monkeypatc
         return
     assert found.left_out == () and len({job.place for job in asked}) == len(asked)
     best = cheapest(rows, "0.1%").of_method["nurbs"]
-    assert best.times == study_of.TIMES and best.dofs >= 580
+    assert best.times == study_of.LIMITS.times and best.dofs >= 580
     few = {"auto", "auto-0.02", "auto-0.05", "auto-0.1"}
     assert {one.asked for one in rows if one.method == "nurbs"} == {"80", *few, "40", "150"}
 
@@ -175,8 +179,8 @@ def test_a_small_study_for_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     """Two ladders to an opening of 1, and again: the second call runs nothing."""
     few = tuple(replace(f, first=2.0) for f in FAMILIES if f.name in ("nurbs-p2", "tspline-p3"))
     monkeypatch.setattr(ladder_of, "FAMILIES", few)
-    monkeypatch.setattr(ladder_of, "RUNGS", 4)
-    monkeypatch.setattr(reference_of, "ZONE", (3.0, 6.0, 12.0))
+    monkeypatch.setattr(ladder_of, "LADDER", replace(ladder_of.LADDER, rungs=4))
+    monkeypatch.setattr(reference_of, "MESHES", replace(reference_of.MESHES, zone=(3.0, 6.0, 12.0)))
     monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
     command = ["cost", "dcb-czm1-linear", "--set", "load.opening=1.0", "--out", str(tmp_path)]
     assert main(command) == 0
@@ -187,7 +191,7 @@ def test_a_small_study_for_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     assert found["cheapest"]["0.3%"]["method"] in ("nurbs", "tspline")
     assert all(one.nonzeros > 0 for one in rows if one.measured and one.method != "beam")
     best = found["cheapest"]["1%"]["run"]
-    assert next(one.times for one in rows if one.run == best) == study_of.TIMES
+    assert next(one.times for one in rows if one.run == best) == study_of.LIMITS.times
     capsys.readouterr()
     assert main(command) == 0
     assert read_csv(tmp_path / "cost.csv") == rows

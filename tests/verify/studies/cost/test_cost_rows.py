@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import fields, replace
 from math import isnan
 from pathlib import Path
@@ -13,6 +14,7 @@ from tests.verify.studies.cost.test_cost import NURBS, SCENE, a_row, against, ma
 from verify.runs import environment
 from verify.runs.jobs import Outcome
 from verify.scene.load import load_scene
+from verify.studies import frame
 from verify.studies.cost import reference as reference_of
 from verify.studies.cost import study as study_of
 from verify.studies.cost.findings import cheapest
@@ -43,13 +45,14 @@ def test_without_a_reference_nothing_is_measured(last, why: str, tmp_path: Path,
     for name in environment.THREADS:
         monkeypatch.setenv(name, "7")
 
-    def run_all(plan, out, jobs):
-        threads.append([study_of.os.environ[name] for name in environment.THREADS])
+    def run_all(plan, out, jobs, scheduler=None):
+        threads.append([os.environ[name] for name in environment.THREADS])
         for i, job in enumerate(plan):
             whole = i + 1 < len(plan)
             yield Outcome(job, made_up() if whole else last, "" if whole or last is not None else why)
 
     monkeypatch.setattr(study_of, "run_all", run_all)
+    monkeypatch.setattr(frame, "run_all", run_all)
     monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
     assert study_of.cost("dcb-czm1", SCENE, (), tmp_path, 2) is None
     assert f"no converged reference, so that nothing can be measured: {why}" in capsys.readouterr().err
@@ -70,7 +73,7 @@ def test_the_reference_is_one_arm_where_the_arms_are_alike(monkeypatch: pytest.M
 
 
 def test_few_steps_are_tried_where_a_run_comes_near_the_coarsest_level() -> None:
-    near = study_of.NEAR * 0.01
+    near = study_of.LIMITS.near * 0.01
     assert near > 0.01 and [study_of._worth(a_row("nurbs", part * near, 1.0)) for part in (0.99, 1.01)] == [True, False]
 
 
@@ -78,13 +81,14 @@ def test_what_is_timed_runs_alone_and_once(tmp_path: Path, monkeypatch: pytest.M
     """Until the time is over: what has begun comes to its end, nothing else is begun."""
     asked, now = [], [0.0]
 
-    def run_all(plan, out, jobs):
+    def run_all(plan, out, jobs, scheduler=None):
         for job in plan:
             asked.append((job.variant, jobs, out))
             now[0] += 10.0
             yield Outcome(job, made_up())
 
     monkeypatch.setattr(study_of, "run_all", run_all)
+    monkeypatch.setattr(frame, "run_all", run_all)
     monkeypatch.setattr(study_of, "monotonic", lambda: now[0])
     tries = [Try(NURBS, i, size, 80) for i, size in enumerate((300, 420, 590, 830))]
     runner = study_of.Runner("dcb-czm1", SCENE, (), tmp_path, against(), start=0.0)

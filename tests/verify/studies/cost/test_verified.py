@@ -22,7 +22,7 @@ from verify.scene.parse import parse_scene
 from verify.scene.random_scenes import random_scene
 from verify.studies.cost import accuracy
 from verify.studies.cost.accuracy import Choice
-from verify.studies.cost.verified import LEVELS, apart, bound, finer, verified
+from verify.studies.cost.verified import REFINEMENT, apart, bound, finer, verified
 from verify.verdict import Check
 
 FIRST = Choice("nurbs", ("discretization.dofs=300", "discretization.degree=2"), 1.0, "a guess")
@@ -93,11 +93,11 @@ def test_levels_go_on_until_two_agree(solving, tmp_path: Path) -> None:
 
 
 def test_an_error_that_does_not_fall_is_not_accepted(solving, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    solving([0.01, -0.01] * LEVELS)
+    solving([0.01, -0.01] * REFINEMENT.levels)
     code, found = solved(tmp_path)
     about = found["accuracy"]
     assert code == FAILED and not about["holds"] and found["status"] == "complete"
-    assert len(about["levels"]) == LEVELS and 0.02 < about["reached"][1] < 0.11
+    assert len(about["levels"]) == REFINEMENT.levels and 0.02 < about["reached"][1] < 0.11
     said = capsys.readouterr().err
     assert "--accuracy: 0.3 % has not been reached: 4 levels are the most; curve and peak load within " in said
 
@@ -146,13 +146,13 @@ def test_a_level_with_a_broken_identity_is_refined(tmp_path: Path) -> None:
     scene = load_scene("dcb-czm1", ["load.opening=1.0"])
     found = verified(scene, FIRST, 0.003, tmp_path, by([True, True, False]))
     assert found.holds and len(found.levels) == 3
-    found = verified(scene, FIRST, 0.003, tmp_path, by([True] * LEVELS))
-    assert found.close and not found.holds and len(found.levels) == LEVELS
+    found = verified(scene, FIRST, 0.003, tmp_path, by([True] * REFINEMENT.levels))
+    assert found.close and not found.holds and len(found.levels) == REFINEMENT.levels
 
 
 def test_where_there_is_no_finer_mesh_it_says_so(solving, tmp_path: Path, monkeypatch, capsys) -> None:
     solving([0.02, 0.01])
-    monkeypatch.setattr(accuracy, "LARGEST", 500)
+    monkeypatch.setattr(accuracy, "GUESS", replace(accuracy.GUESS, largest=500))
     real = accuracy.with_elements
     tries = iter([real, real])  # one to plan, one for level 1
 

@@ -16,7 +16,7 @@ from verify.curves.of_run import cubics, distance
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
-from verify.studies.effects import study as study_of
+from verify.studies import frame
 from verify.studies.effects.plan import TIMES, Plan, planned
 from verify.studies.effects.row import Row, apart, change, changes, legs, row, signed
 from verify.studies.effects.study import effects
@@ -56,8 +56,8 @@ def test_every_effect_is_switched_from_what_the_scene_has() -> None:
         "symmetry": ("effects.symmetry=true", "as it is"),
         "search": ("as it is", "effects.search=false"),
     }
-    assert plan.reasons == () and len(plan.jobs) == 6 and len(set(job.place for job in plan.jobs)) == 6
-    again = list(plan.repeats())
+    assert plan.left_out == () and len(plan.jobs) == 6 and len(set(job.place for job in plan.jobs)) == 6
+    again = plan.timed
     assert len(again) == 6 * TIMES and len({job.task().key for job in (*plan.jobs, *again)}) == 6 * (TIMES + 1)
     assert [job.repeat for job in again[:5]] == [1] * 5, "all of them one after the other, and then again"
 
@@ -84,8 +84,8 @@ def test_what_is_automatic_is_switched_from_what_it_stands_for() -> None:
 )
 def test_what_a_scene_does_not_admit_is_left_out_in_words(name: str, method: str, reason: str) -> None:
     plan = planned(name, load_scene(name), method)
-    assert any(text.startswith(reason) for text in plan.reasons)
-    assert len(plan.pairs) + len(plan.reasons) == 5
+    assert any(text.startswith(reason) for text in plan.left_out)
+    assert len(plan.pairs) + len(plan.left_out) == 5
 
 
 # --- two runs
@@ -175,7 +175,7 @@ def test_a_study_from_runs_to_files(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             linear = "effects.kinematics=linear" in job.overrides
             yield Outcome(job, made_up(0.99 if linear else 1.0, seconds=1.0 if linear else 3.0 + 0.1 * job.repeat))
 
-    monkeypatch.setattr(study_of, "run_all", run_all)
+    monkeypatch.setattr(frame, "run_all", run_all)
     found = effects("dcb-czm1", SCENE, "nurbs", (), tmp_path, 2, "tcp://here:1")
     assert found.complete and "finite kinematics: curve 1 %, +1 % peak load" in capsys.readouterr().out
     assert {(jobs, scheduler) for job, jobs, scheduler in asked if job.repeat == 0} == {(2, "tcp://here:1")}
@@ -232,5 +232,5 @@ def test_a_small_study_for_real(tmp_path: Path, capsys: pytest.CaptureFixture) -
 def test_what_cannot_be_run_here_is_left_out_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("verify.studies.effects.plan.left_out", lambda job: "not run: too large")
     plan = planned("dcb-czm1", SCENE, "nurbs")
-    assert plan.pairs == () and len(plan.reasons) == 5
-    assert all(reason.endswith(": left out: not run: too large") for reason in plan.reasons)
+    assert plan.pairs == () and len(plan.left_out) == 5
+    assert all(reason.endswith(": left out: not run: too large") for reason in plan.left_out)

@@ -14,11 +14,10 @@ from verify.result import Result
 from verify.runs.jobs import Outcome
 from verify.scene.load import load_scene
 from verify.studies import one_scene
-from verify.studies.paper import peel
-from verify.studies.paper.comparison import lines
-from verify.studies.paper.peel import BONDS, PeelCase, PeelStudy, branch_distance, measured, planned
-from verify.studies.paper.peel_statements import statements
-from verify.studies.paper.study import Reference, Trial, limit, trial
+from verify.studies.paper import plan as plans
+from verify.studies.paper.plan import BONDS, STRIPS, Case, strips
+from verify.studies.paper.statements import branch_distance, lines, statements
+from verify.studies.paper.study import Reference, Study, Trial, limit, measured, trial, zone
 
 BASES = ("tspline", "nurbs", "lagrange")
 SCENES = {bond: load_scene(bond) for bond in BONDS}
@@ -49,32 +48,35 @@ def made_up(bond: str, bump: float = 0.0, status: str = "complete") -> Result:
     return Result("nurbs", columns, status=status, dofs=3700, elements=700, seconds={"total": 25.0})
 
 
-def world(change: Callable[[PeelCase], dict[str, float]] = lambda case: {}, **parts: object) -> PeelStudy:
+def world(change: Callable[[Case], dict[str, float]] = lambda case: {}, **parts: object) -> Study:
     """A study in which every statement holds, but for what is changed."""
     trials = []
-    for case in (PeelCase(basis, bond) for bond in BONDS for basis in BASES):
+    for case in (Case(basis, bond) for bond in BONDS for basis in BASES):
         found = {"error": SIZE[case.basis], "oscillation": SIZE[case.basis], "bump": 0.0, **change(case)}
-        trials.append(Trial(case, made_up(case.bond, found.pop("bump")), "complete", variation=0.1, peak=0.01, **found))
+        trials.append(
+            Trial(case, made_up(case.scene, found.pop("bump")), "complete", variation=0.1, peak=0.01, **found)
+        )
     whole = {
+        "figures": STRIPS,
         "scenes": SCENES,
         "trials": tuple(trials),
-        "references": {bond: Reference("a fine run", made_up(bond), 1e-5, 1e-5) for bond in BONDS},
+        "references": {(bond, None): Reference("a fine run", made_up(bond), 1e-5, 1e-5) for bond in BONDS},
         "limits": {bond: limit(scene) for bond, scene in SCENES.items()},
-        "zones": {(basis, bond): 4.0 for basis in BASES for bond in BONDS},
+        "zones": {Case(basis, bond): 4.0 for basis in BASES for bond in BONDS},
         "printed": dict.fromkeys(BASES, 0.02),
     }
-    return PeelStudy(**{**whole, **parts})
+    return Study(**{**whole, **parts})
 
 
-def times(factor: float, measure: str, basis: str) -> Callable[[PeelCase], dict[str, float]]:
+def times(factor: float, measure: str, basis: str) -> Callable[[Case], dict[str, float]]:
     return lambda case: {measure: factor * SIZE[case.basis]} if case.basis == basis else {}
 
 
-def off(bump: float, *bonds: str) -> Callable[[PeelCase], dict[str, float]]:
-    return lambda case: {"bump": bump} if case.bond in bonds else {}
+def off(bump: float, *bonds: str) -> Callable[[Case], dict[str, float]]:
+    return lambda case: {"bump": bump} if case.scene in bonds else {}
 
 
-def verdict(study: PeelStudy, words: str) -> str:
+def verdict(study: Study, words: str) -> str:
     (found,) = [s for s in statements(study) if words in s.text]
     return found.verdict
 
@@ -93,7 +95,7 @@ def test_all_are_confirmed_where_all_hold():
         ("T-splines are smoother", world(times(100, "oscillation", "tspline"))),
         ("NURBS are closer", world(times(100, "error", "nurbs"))),
         ("NURBS are smoother", world(times(100, "oscillation", "nurbs"))),
-        ("meshes resolve the process zone", world(zones={(b, s): 2.0 for b in BASES for s in BONDS})),
+        ("meshes resolve the process zone", world(zones={Case(b, s): 2.0 for b in BASES for s in BONDS})),
         ("as printed", world(printed=dict.fromkeys(BASES, 5.0))),
     ],
 )
@@ -139,12 +141,12 @@ def test_what_the_reference_cannot_tell_is_undecided():
 def test_the_runs_are_those_that_are_made_anyway(monkeypatch):
     scenes = list(SCENES.items())
     usual = {job for source, scene in scenes for job in one_scene.planned(source, scene)}
-    monkeypatch.setattr(peel, "dolfinx_installed", lambda: True)
-    more = set(planned(scenes).jobs) - usual
+    monkeypatch.setattr(plans, "dolfinx_installed", lambda: True)
+    more = set(strips(scenes).jobs) - usual
     assert {job.method for job in more} == {"dolfinx"} and len(more) == len(BONDS)
     assert {load_scene(job.source, job.overrides).dolfinx.elements for job in more} == {300}
-    monkeypatch.setattr(peel, "dolfinx_installed", lambda: False)
-    more = set(planned(scenes).jobs) - usual
+    monkeypatch.setattr(plans, "dolfinx_installed", lambda: False)
+    more = set(strips(scenes).jobs) - usual
     assert {job.method for job in more} == {"nurbs"} and len(more) == 2 * len(BONDS)
     assert {load_scene(job.source, job.overrides).discretization.dofs for job in more} == {7400, 11100}
     every = [job.folder(Path()) for job in {*usual, *more}]
@@ -163,9 +165,9 @@ def test_the_page_shows_every_basis_bond_and_statement(tmp_path):
     from verify import report
 
     study = world()
-    case = PeelCase("nurbs", "peel-80")
+    case = Case("nurbs", "peel-80")
     stopped = made_up("peel-80", status="stopped: no step is small enough")
-    lost = trial(case, Outcome(case.job(SCENES["peel-80"]), stopped), study.references["peel-80"])
+    lost = trial(case, Outcome(case.job(SCENES["peel-80"]), stopped), study.references["peel-80", None])
     study = replace(study, trials=tuple(lost if t.case == case else t for t in study.trials))
     report.write(report.Findings((), {}, peels=study), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text()
@@ -178,8 +180,8 @@ def test_the_page_shows_every_basis_bond_and_statement(tmp_path):
 
 
 def test_without_a_scene_of_the_paper_it_says_so(tmp_path):
-    study = measured(planned([("mine.toml", load_scene("peel-60"))]), {})
-    (said,) = lines("Figure 9", study.left_out, statements(study))
+    study = measured(strips([("mine.toml", load_scene("peel-60"))]), {})
+    (said,) = lines("Figure 9", study)
     assert said == f"Figure 9 of the paper: left out: none of its scenes ({', '.join(BONDS)}) is among those given"
     pytest.importorskip("jinja2")
     from verify import report
@@ -191,15 +193,15 @@ def test_without_a_scene_of_the_paper_it_says_so(tmp_path):
 @pytest.mark.slow
 def test_a_small_study_for_real(monkeypatch):
     """Two bonds by NURBS, held against finer NURBS, up to where the crack of the shorter one runs."""
-    monkeypatch.setattr(peel, "dolfinx_installed", lambda: False)
+    monkeypatch.setattr(plans, "dolfinx_installed", lambda: False)
     small = ["discretization.dofs=1300", "load.opening=2.2", "discretization.steps=40"]
-    plan = planned([(bond, load_scene(bond, small)) for bond in BONDS[2:]], ("nurbs",))
+    plan = strips([(bond, load_scene(bond, small)) for bond in BONDS[2:]], ("nurbs",))
     runs = {
         job: Outcome(job, solve(load_scene(job.source, [*small, *job.overrides]), job.method))
         for job in dict.fromkeys(plan.jobs)
     }
     study = measured(plan, runs)
-    assert all(t.complete for t in study.trials) and "NURBS, " in study.references["peel-120"].label
+    assert all(t.complete for t in study.trials) and "NURBS, " in study.references["peel-120", None].label
     assert all(0.0 < t.error < 0.02 for t in study.trials)
     for words in ("A longer bond", "clamped plate", "one propagation branch", "never falls below", "as printed"):
         assert verdict(study, words) == "confirmed", words
@@ -207,6 +209,6 @@ def test_a_small_study_for_real(monkeypatch):
 
 
 def test_of_a_run_that_stopped_no_zone_is_counted() -> None:
-    case = PeelCase("nurbs", "peel-60")
+    case = Case("nurbs", "peel-60")
     stopped = Trial(case, made_up("peel-60", status="stopped: here"), "stopped: here")
-    assert np.isnan(peel.zone(SCENES["peel-60"], stopped))
+    assert np.isnan(zone(SCENES["peel-60"], stopped))

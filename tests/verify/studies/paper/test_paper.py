@@ -17,10 +17,9 @@ from verify.runs.folder import read_columns
 from verify.runs.jobs import Job, Outcome, run_all
 from verify.scene.load import load_scene
 from verify.studies.paper import plan as plans
-from verify.studies.paper import statements
-from verify.studies.paper.comparison import lines
-from verify.studies.paper.plan import LAWS, Case, planned
-from verify.studies.paper.study import Reference, Study, Trial, distance, limit, measured, trial
+from verify.studies.paper.plan import BEAMS, LAWS, Case, beams
+from verify.studies.paper.statements import lines, statements
+from verify.studies.paper.study import Reference, Study, Trial, apart, limit, measured, trial
 
 SHARED = Path(__file__).parents[5] / "shared" / "reference"
 BASES, MESHES, POINTS, PENALTIES = ("tspline", "nurbs", "lagrange"), (280, 1956), (2, 8), (1e3, 1e5)
@@ -42,7 +41,7 @@ def as_stated(case: Case) -> Measures:
     """A world in which every statement holds: error and oscillation of a case."""
     size = {"tspline": 0.01, "nurbs": 0.03, "lagrange": 0.1}[case.basis]
     size *= {280: 1.0, 1956: 0.03}[case.dofs]
-    size *= 2.0 if case.law == "dcb-czm2" else 1.0
+    size *= 2.0 if case.scene == "dcb-czm2" else 1.0
     size *= 1.0 if case.basis == "tspline" or case.points == 2 else 0.5
     return {"error": size, "oscillation": 0.8 * size, "bump": size}
 
@@ -58,16 +57,17 @@ def world(measures: Callable[[Case], Measures] = as_stated, zones: Mapping[str, 
     references = {problem: Reference("a fine run", made_up(bump), 1e-5, 1e-5) for problem, bump in finest.items()}
     elements = zones or {"tspline": 2.0, "nurbs": 1.5, "lagrange": 1.1}
     return Study(
+        BEAMS,
         scenes,
         tuple(trials),
         references,
         {law: limit(scene) for law, scene in scenes.items()},
-        {(b, law, d): n for (b, n), law, d in product(elements.items(), LAWS, MESHES)},
+        {Case(b, law, d): n for (b, n), law, d in product(elements.items(), LAWS, MESHES)},
     )
 
 
 def verdict(study: Study, words: str) -> str:
-    (found,) = [s for s in statements.statements(study) if words in s.text]
+    (found,) = [s for s in statements(study) if words in s.text]
     return found.verdict
 
 
@@ -82,10 +82,8 @@ def times(factor: float, *names: str, **where: object) -> Callable[[Case], Measu
 
 
 def test_all_are_confirmed_where_all_hold():
-    assert {s.text: s.verdict for s in statements.statements(world())} == {
-        s.text: "confirmed" for s in statements.statements(world())
-    }
-    assert len(statements.statements(world())) == 19
+    assert {s.text: s.verdict for s in statements(world())} == {s.text: "confirmed" for s in statements(world())}
+    assert len(statements(world())) == 19
 
 
 @pytest.mark.parametrize(
@@ -99,7 +97,7 @@ def test_all_are_confirmed_where_all_hold():
         ("T-splines stay smoother", times(100, "oscillation", basis="tspline")),
         ("NURBS stay closer", times(100, "error", basis="nurbs")),
         ("NURBS stay smoother", times(100, "oscillation", basis="nurbs")),
-        ("More strength", times(0.1, "oscillation", law="dcb-czm2")),
+        ("More strength", times(0.1, "oscillation", scene="dcb-czm2")),
         ("points make NURBS closer", times(10, "error", basis="nurbs", points=8)),
         ("points make NURBS smoother", times(10, "oscillation", basis="nurbs", points=8)),
         ("points make Lagrange elements closer", times(10, "error", basis="lagrange", points=8)),
@@ -117,8 +115,8 @@ def test_a_statement_flips_with_its_numbers(words, measures):
 
 
 def test_one_comparison_of_four_makes_it_in_part_and_is_counted():
-    off = times(100, "error", basis="nurbs", law="dcb-czm1", dofs=280)
-    (found,) = [s for s in statements.statements(world(off)) if "NURBS are closer" in s.text]
+    off = times(100, "error", basis="nurbs", scene="dcb-czm1", dofs=280)
+    (found,) = [s for s in statements(world(off)) if "NURBS are closer" in s.text]
     assert found.verdict == "confirmed in part" and found.extent.startswith("3 of 4; ")
     assert [c.subject for c in found.comparisons if not c.holds] == ["CZM 1, 280 unknowns"]
     assert "from 0.0333 to 3.33" in found.extent and "3.33," in found.extent
@@ -146,7 +144,7 @@ def test_what_the_reference_cannot_tell_is_undecided():
 
 def stopped_in(study: Study, case: Case) -> Study:
     """The study with one run that stopped, measured as the study does."""
-    scene = study.scenes[case.law]
+    scene = study.scenes[case.scene]
     outcome = Outcome(case.job(scene), made_up(0.5, "stopped: no step is small enough"))
     lost = trial(case, outcome, study.references[case.problem])
     return replace(study, trials=tuple(lost if t.case == case else t for t in study.trials))
@@ -156,8 +154,9 @@ def test_a_run_that_stops_keeps_its_row_and_takes_part_in_no_comparison(tmp_path
     case = Case("nurbs", "dcb-czm2", 280)
     study = stopped_in(world(), case)
     found = study.trial(case)
-    assert found.status.startswith("stopped") and np.isnan(found.error) and not found.complete and found.drawable
-    (ranking,) = [s for s in statements.statements(study) if "NURBS are closer" in s.text]
+    assert found.status.startswith("stopped") and np.isnan(found.error) and not found.complete
+    assert found.drawn is not None
+    (ranking,) = [s for s in statements(study) if "NURBS are closer" in s.text]
     assert ranking.verdict == "confirmed" and ranking.extent.startswith("3 of 3, 1 undecided")
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
@@ -181,17 +180,17 @@ def test_the_page_shows_every_run_statement_and_figure(tmp_path):
     for n, title in ((6, "with 280 unknowns"), (7, "with 1956 unknowns"), (8, "2 to 8 interface points")):
         assert f"Figure {n}: " in text and title in text
     assert text.count('<svg class="plot"') == 3 * 6 + 2 + 4
-    assert all(f"{t.case.law}/{t.case.variant}" in text for t in study.trials)
-    assert all(s.text in text and s.extent in text for s in statements.statements(study))
+    assert all(f"{t.case.scene}/{t.case.variant}" in text for t in study.trials)
+    assert all(s.text in text and s.extent in text for s in statements(study))
     assert "Of 19 statements 19 confirmed; 48 of 48 runs came to their end" in text
     assert text.count('<a href="#figures">') == 1 and "Runs that stopped" not in text
 
 
 def test_without_a_scene_of_the_paper_it_says_so(tmp_path):
-    plan = planned([("dcb-czm1-linear", load_scene("dcb-czm1-linear")), ("mine.toml", load_scene("dcb-czm1"))])
+    plan = beams([("dcb-czm1-linear", load_scene("dcb-czm1-linear")), ("mine.toml", load_scene("dcb-czm1"))])
     assert list(plan.jobs) == []
     study = measured(plan, {})
-    assert lines("Figures 6 to 8", study.left_out, statements.statements(study)) == [
+    assert lines("Figures 6 to 8", study) == [
         "Figures 6 to 8 of the paper: left out: none of its scenes (dcb-czm1, dcb-czm2) is among those given"
     ]
     pytest.importorskip("jinja2")
@@ -203,7 +202,7 @@ def test_without_a_scene_of_the_paper_it_says_so(tmp_path):
 
 def test_the_plan_is_what_the_figures_need(monkeypatch):
     scenes = [(law, load_scene(law)) for law in LAWS]
-    plan = planned(scenes)
+    plan = beams(scenes)
     each = len(WITH_DOFS) * len(LAWS) * 2 * 7 * 2
     assert len({case for case, _ in plan.cases}) == each == len({job.folder(Path()) for _, job in plan.cases})
     case, job = plan.cases[0]
@@ -212,7 +211,7 @@ def test_the_plan_is_what_the_figures_need(monkeypatch):
     assert found.interface.penalty == case.penalty and "--fields" not in job.command(Path())
     for installed, method in ((True, "dolfinx"), (False, "nurbs")):
         monkeypatch.setattr(plans, "dolfinx_installed", lambda installed=installed: installed)
-        references = planned(scenes).references
+        references = beams(scenes).references
         assert [problem for problem, *_ in references] == list(product(LAWS, PENALTIES))
         assert all(job.method == method for _, *pair in references for job in pair)
         for (_, penalty), coarse, fine in references:
@@ -231,9 +230,9 @@ def small(tmp_path_factory) -> tuple[Study, dict[Job, Outcome]]:
     """NURBS on the coarse mesh with 2 and 8 points, held against one-arm runs that are just fine enough."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(plans, "dolfinx_installed", lambda: False)
-        patch.setattr(plans, "STAND_IN", (700, 1400))
+        patch.setattr(plans, "FINE_BEAM", (700, 1400))
         scene = load_scene("dcb-czm2")
-        plan = planned([("dcb-czm2", scene)], ("nurbs",), (280,), (2, 8), (1e5,))
+        plan = beams([("dcb-czm2", scene)], ("nurbs",), (280,), (2, 8), (1e5,))
         outcomes = {o.job: o for o in run_all(list(plan.jobs), tmp_path_factory.mktemp("paper"), 2)}
         return measured(plan, outcomes), outcomes
 
@@ -245,8 +244,8 @@ def test_a_small_study_for_real(small):
     known = study.references["dcb-czm2", 1e5]
     assert 0.0 < known.error < 0.02 and "NURBS on one arm" in known.label
     assert 0.002 < eight.error < two.error < 0.1 and eight.oscillation < two.oscillation
-    assert abs(eight.peak) < 0.02 and two.seconds > 0.0
-    assert 0.5 < study.zones["nurbs", "dcb-czm2", 280] < 3.0, "the mesh hardly resolves the zone of CZM 2"
+    assert abs(eight.peak) < 0.02 and two.result.seconds["total"] > 0.0
+    assert 0.5 < study.zones[Case("nurbs", "dcb-czm2", 280)] < 3.0, "the mesh hardly resolves the zone of CZM 2"
     assert verdict(study, "points make NURBS closer") == "confirmed"
     assert verdict(study, "T-splines are closer") == verdict(study, "More strength") == "not tested"
 
@@ -274,17 +273,17 @@ def test_lefm_is_that_of_simple_beam_theory():
 def test_a_run_is_drawn_from_its_first_step_on(rows, drawable):
     whole = world().trials[0]
     short = replace(whole.result, steps={name: column[:rows] for name, column in whole.result.steps.items()})
-    assert replace(whole, result=short).drawable == drawable
-    assert not replace(whole, result=None).drawable and not replace(whole, result=None).complete
-    assert np.isfinite(replace(whole, result=short).peak_load) == drawable
-    assert distance(whole, whole) == 0.0 and np.isnan(distance(whole, None)) and np.isnan(distance(None, whole))
-    assert np.isnan(distance(whole, replace(whole, result=replace(whole.result, status="stopped: here"))))
+    assert (replace(whole, result=short).drawn is not None) == drawable
+    assert replace(whole, result=None).drawn is None and not replace(whole, result=None).complete
+    assert apart(whole, whole) == 0.0 and np.isnan(apart(whole, None)) and np.isnan(apart(None, whole))
+    assert np.isnan(apart(whole, replace(whole, result=replace(whole.result, status="stopped: here"))))
 
 
 def test_zones_that_count_are_those_of_the_first_law_on_the_coarse_mesh() -> None:
     """Those of the stronger law and of the fine mesh are other ones."""
     study = world()
-    elsewhere = {(b, law, d): 2.0 if (law, d) == ("dcb-czm1", 280) else 99.0 for b, law, d in study.zones}
-    known = statements.statements(replace(study, zones=elsewhere))
+    first = ("dcb-czm1", 280)
+    elsewhere = {case: 2.0 if (case.scene, case.dofs) == first else 99.0 for case in study.zones}
+    known = statements(replace(study, zones=elsewhere))
     (found,) = [one for one in known if "resolve the process zone" in one.text]
     assert found.verdict == "confirmed" and [one.value for one in found.comparisons] == [2.0, 2.0, 2.0]

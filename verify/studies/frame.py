@@ -1,0 +1,101 @@
+"""What the studies of one scene have in common: their runs, rows, and files.
+
+A study plans its jobs, does them (`run`), makes a row of every run and its repetitions, and writes its `Study`. Runs
+that an earlier call has done are taken from its folder (`verify.runs.sweep`); `would_run` lists the others.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, fields, replace
+from math import nan
+from pathlib import Path
+from typing import Any, ClassVar, TypeVar, cast
+
+from verify.runs.environment import ALL_PACKAGES, THREADS, machine, versions
+from verify.runs.fingerprint import source
+from verify.runs.folder import write_csv, write_json
+from verify.runs.jobs import Job, Outcome, dry_run, run_all
+from verify.scene.schema import Scene
+from verify.support.say import write_page
+
+J = TypeVar("J", bound=Job)
+
+#: Equal runs whose times differ by more than this factor were made on a busy machine.
+BUSY = 1.2
+
+
+@dataclass(frozen=True)
+class Study:
+    """What was found about a scene: ``rows``, and a sentence for everything that is ``left_out``."""
+
+    #: Of the command and its files, the type of its rows, and the packages whose source the rows depend on.
+    NAME: ClassVar[str]
+    ROW: ClassVar[type]
+    PACKAGES: ClassVar[tuple[str, ...]] = ALL_PACKAGES
+
+    scene: Scene
+    rows: tuple[Any, ...]
+    left_out: tuple[str, ...]
+
+    def about(self) -> dict[str, object]:
+        """Entries of ``NAME.json`` beside those of all studies."""
+        raise NotImplementedError
+
+    def lines(self) -> list[str]:
+        """What is printed."""
+        raise NotImplementedError
+
+    def summary(self) -> dict[str, object]:
+        """The content of ``NAME.json``."""
+        return {
+            "scene": self.scene.model_dump(),
+            **self.about(),
+            "left_out": list(self.left_out),
+            "source": source(self.PACKAGES),
+            "versions": versions(),
+            "machine": machine(),
+            "threads": 1,
+        }
+
+    def write(self, out: Path) -> None:
+        """Write ``NAME.csv``, ``NAME.json`` and report.html, and print `lines`."""
+        table = out / f"{self.NAME}.csv"
+        write_csv(table, self.ROW, self.rows)
+        write_json(out / f"{self.NAME}.json", self.summary())
+        write_page(f"verify.studies.{self.NAME}.page", self, out / "report.html")
+        print("\n".join([*self.lines(), f"written: {table}"]))
+
+
+def one_thread() -> None:
+    """BLAS and OpenMP on one thread, for comparable times."""
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+
+
+def run(plan: Sequence[J], out: Path, jobs: int = 1, scheduler: str | None = None) -> dict[J, Outcome]:
+    """Do all jobs, ``jobs`` at a time or by those of a dask ``scheduler``."""
+    return {cast(J, outcome.job): outcome for outcome in run_all(plan, out, jobs, scheduler)}
+
+
+def would_run(plan: Sequence[Job], left_out: Iterable[str], out: Path, jobs: int = 1) -> list[str]:
+    """The runs with their times, a line each, and what is left out; nothing is run."""
+    return [*dry_run(plan, out, jobs), *left_out]
+
+
+def repeated(jobs: Iterable[J], repeats: Iterable[int]) -> list[J]:
+    """All jobs one after the other, and then again, so that whatever slows the machine down falls upon all."""
+    every = list(jobs)
+    return [replace(job, repeat=n, variant=f"{job.variant}-again-{n}") if n else job for n in repeats for job in every]
+
+
+def failure(outcome: Outcome) -> str:
+    """Why a run did not come to its end, or nothing."""
+    if outcome.result is None:
+        return outcome.left_out
+    return "" if outcome.result.complete else outcome.result.status
+
+
+def unmeasured(kind: type, known: dict[str, Any]) -> Any:
+    """A row of which some fields are known: numbers are NaN, counts are 0."""
+    return kind(**{field.name: nan if field.type == "float" else 0 for field in fields(kind)} | known)

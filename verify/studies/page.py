@@ -1,0 +1,28 @@
+"""Pages of studies: one self-contained HTML file each, on the template ``studies/base.html.j2``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from matplotlib.axes import Axes
+
+from verify.pages.parts import plain
+from verify.pages.template import rendered
+from verify.pages.text import sentence
+from verify.runs.environment import environment
+from verify.studies.frame import Study
+
+
+def write_study(study: Study, path: Path, filters: Mapping[str, Callable], **content: object) -> None:
+    """Write the page that ``page.html.j2`` in the package of the study makes of it and of ``content``."""
+    about = {"study": study, "name": study.scene.name, "sentence": sentence(study.scene), "environment": environment()}
+    page = rendered(f"verify.studies.{study.NAME}", "page.html.j2", filters, **about | content)
+    path.write_text(page, encoding="utf-8")
+
+
+def logarithmic(axes: Axes, x: str, y: str) -> None:
+    """Logarithmic axes with plain numbers."""
+    axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
+    for part in (axes.xaxis, axes.yaxis):
+        plain(part)
