@@ -13,6 +13,7 @@ from iga.output.snapshots import snapshot
 from iga.path.condensation import condensed
 from iga.path.follow import follow
 from iga.path.point import End, Point
+from iga.path.solver import Solver
 from iga.specimen.problem import Debonding
 from iga.specimen.specimen import Specimen
 from iga.system.state import State
@@ -73,7 +74,7 @@ def run(
         small = condensed(specimen.system) if adapt is None else None
     system = specimen.system if small is None else small.system
     programme = by_way_of(problem.opening, wanted)
-    for item in follow(system, programme, problem.steps, phase=phase, renew=renew, bend=problem.bend):
+    for item in follow(Solver(system, phase=phase), programme, problem.steps, renew, problem.bend):
         if isinstance(item, End):
             end = item
             continue

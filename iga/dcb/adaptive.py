@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from iga.dcb.meshes import PRESSED, arm_tmeshes, zone_length
-from iga.path.control import opening_control
-from iga.path.newton import PATIENT, equilibrium
+from iga.path.control import Prescribed, opening_control
+from iga.path.newton import equilibrium
 from iga.path.point import Point
+from iga.path.solver import PATIENT, Solver
 from iga.specimen.grading import largest
 from iga.specimen.problem import presses
 from iga.specimen.tmesh_strip import Strip
@@ -107,7 +108,7 @@ def adapted_tmeshes(problem: Problem, window: Window) -> tuple[TMesh, ...]:
 
 def followed(problem: Problem, roots: int, specimen: Specimen, point: Point) -> Window | None:
     """The window for a converged point, or None where the mesh at hand goes on beyond the damage front by enough."""
-    zone, law, end = zone_length(problem), specimen.system.interface.law, specimen.path[1]
+    zone, law, end = zone_length(problem), specimen.system.interface.law, specimen.layout.path_end
     s_q, k_q = specimen.distance(specimen.system.interface.X_qi), point.state.k_q
     damaged, broken = s_q[k_q > law.g_max], s_q[k_q >= law.g_u]
     front = float(damaged.max(initial=problem.precrack))
@@ -128,7 +129,7 @@ def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State |
         u_new = np.concatenate(
             [
                 transfer(before, after) @ u_old[body.points]
-                for before, after, body in zip(old.tmeshes, new.tmeshes, old.bodies, strict=True)
+                for before, after, body in zip(old.layout.tmeshes, new.layout.tmeshes, old.bodies, strict=True)
             ]
         )
     k_q = _history(old, new, point.state.k_q)
@@ -137,8 +138,8 @@ def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State |
     u_d = (u_new @ new.pose.axes_kI).ravel()
     start = new.system.start()
     trial = replace(start, u_d=u_d, load=point.state.load, k_q=k_q, scale=point.state.scale)
-    control = opening_control(new.system)
-    found = equilibrium(new.system, trial, control, point.opening, 1e-3 * point.opening, PATIENT, phase)
+    goal = Prescribed(opening_control(new.system), point.opening, 1e-3 * point.opening)
+    found = equilibrium(Solver(new.system, PATIENT, phase), trial, goal)
     if found is None:
         return None
     return replace(found.state, k_q=found.response.k_q, scale=max(trial.scale, found.response.scale))

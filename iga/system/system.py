@@ -69,6 +69,11 @@ class System:
     def n_dof(self) -> int:
         return self.load_d.size
 
+    @property
+    def linear(self) -> bool:
+        """Whether kinematics and bulk are linear."""
+        return self.kinematics == "linear"
+
     def start(self) -> State:
         """The unloaded state."""
         n_q = self.interface.points
@@ -165,7 +170,7 @@ class System:
         """
         kept = self.__dict__.get("_pattern")
         if kept is None or not (kept.dof_qd is dof_qd or np.array_equal(kept.dof_qd, dof_qd)):
-            conns = () if self.kinematics == "linear" else self.connectivity
+            conns = () if self.linear else self.connectivity
             kept = pattern_of(self.band, dof_qd, self.spring_entries[:2], self.loaded, conns, kept)
             self.__dict__["_pattern"] = kept
         return kept
@@ -177,8 +182,7 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     Unless asked to ``decide`` anew by the sign of the gap, every point stays in contact or out of it as it is in
     ``trial``.
     """
-    linear = system.kinematics == "linear"
-    bulk = _finite_bulk if not linear else _linear_bulk if system.bulk_dd is None else _condensed_bulk
+    bulk = _finite_bulk if not system.linear else _linear_bulk if system.bulk_dd is None else _condensed_bulk
     internal_d, scale, bulk_energy, gradients = bulk(system, trial.u_d)
     touch = contact(system.interface, trial.u_d, trial.pairing)
     scale = max(scale, UNLOADED * trial.scale)
