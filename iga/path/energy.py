@@ -84,8 +84,8 @@ def slid_off(system: System, start: Point, end: Point, away: float, back: float)
         return 0.0
     ends, lengths = (start, end), (away, back)
     g = _hermite([touch.g_q[q] for touch in touches], [point.tangent.rate_q[q] for point in ends], lengths)
-    left = [0.5 - np.sin(np.arcsin(1.0 - 2.0 * touch.share_q[q]) / 3.0) for touch in touches]
-    left = _hermite(left, [_left_rate(point, q, v) for point, v in zip(ends, left, strict=True)], lengths)
+    at_ends = [0.5 - np.sin(np.arcsin(1.0 - 2.0 * touch.share_q[q]) / 3.0) for touch in touches]
+    left = _hermite(at_ends, [_left_rate(point, q, v) for point, v in zip(ends, at_ends, strict=True)], lengths)
     share = left**2 * (3.0 - 2.0 * left)  # as `iga.interface.interface` has it
     k = np.maximum(g, start.state.k_q[q])
     cohesive, touching, dissipated = interface.law.energies(g, k)
@@ -100,7 +100,7 @@ def slid_off(system: System, start: Point, end: Point, away: float, back: float)
 def _left_rate(point: Point, q: np.ndarray, left_q: np.ndarray) -> np.ndarray:
     """Rate along the tangent of what is ``left`` of a point's way off the master, from that of its share."""
     touch, du_d = point.response.contact, point.tangent.du_d
-    if touch.m_q is None:
+    if touch.m_q is None or touch.fading_q is None:
         return np.zeros(q.size)
     T, Nb = np.sum(touch.V_qrd[q, 1:] * du_d[touch.dof_qd[q]][:, None], axis=2).T
     d_share = touch.share_q[q] * touch.fading_q[q] * (T + touch.g_q[q] * Nb) / touch.m_q[q]

@@ -17,7 +17,7 @@ from iga.path.energy import leaks
 from iga.path.newton import Equilibrium, equilibrium
 from iga.path.point import End, Point
 from iga.path.polyline import Kept, Largest, judged
-from iga.path.solver import PATIENT, Solver
+from iga.path.solver import MANY_DECIDE, Solver
 from iga.path.step import advance
 from iga.path.step_length import LENGTHS, Step, StepLength, next_step, step_length
 from iga.path.tangent import tangent
@@ -98,7 +98,7 @@ def follow(
             renewed = renew(point) if renew is not None else None
             if renewed is not None:
                 solver.drop()
-                solver = replace(solver, system=renewed[0])
+                solver = solver.of(renewed[0])
                 departed = _departing(solver, renewed[1], direction, point.external_work)
                 if departed is None:
                     yield End(f"stopped: the new mesh at opening {goal:.6g} has a singular tangent", rejected)
@@ -178,14 +178,14 @@ def _touching(solver: Solver, trial: State, opening: float, change: float) -> Eq
     """
     system = solver.system
     goal = Prescribed(opening_control(system), opening, change)
-    found = equilibrium(solver, trial, goal, PATIENT)
+    found = equilibrium(solver, trial, goal, MANY_DECIDE)
     if found is not None:
         return found
     solver.drop()
     law = system.interface.law
     for part in PATH.softer:
         soft = replace(system, interface=replace(system.interface, law=replace(law, penalty=part * law.penalty)))
-        found = equilibrium(replace(solver, system=soft), trial, goal, PATIENT)
+        found = equilibrium(solver.of(soft), trial, goal, MANY_DECIDE)
         if found is not None:
             trial = replace(found.state, k_q=trial.k_q)
     return found

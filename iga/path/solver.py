@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from iga.algebra.factors import Inverse
 from iga.system.state import Response, State
@@ -47,7 +47,7 @@ class Newton:
 DEFAULT = Newton()
 
 #: For a state at which hundreds of points decide at once.
-PATIENT = Newton(iterations=100, patience=20)
+MANY_DECIDE = Newton(iterations=100, patience=20)
 
 
 @dataclass(frozen=True)
@@ -58,17 +58,19 @@ class Linearised:
     inverse: Inverse
 
 
-@dataclass
 class Solver:
-    """A system, the settings of Newton, the clock, and the factors of one tangent at a time.
+    """A system, the settings of Newton, the clock ``phase``, and the factors of one tangent at a time.
 
     Factors are the largest object of a run. They are kept here and nowhere else, and dropped before others are made.
     """
 
-    system: System
-    newton: Newton = DEFAULT
-    phase: Phase = untimed
-    linearised: Linearised | None = field(default=None, init=False, repr=False)
+    def __init__(self, system: System, newton: Newton = DEFAULT, phase: Phase = untimed) -> None:
+        self.system, self.newton, self.phase = system, newton, phase
+        self.linearised: Linearised | None = None
+
+    def of(self, system: System) -> Solver:
+        """The same for another system."""
+        return Solver(system, self.newton, self.phase)
 
     def respond(self, trial: State, decide: bool = True) -> Response:
         """Response to a trial state (see `iga.system.system.respond`)."""

@@ -90,7 +90,8 @@ PAIRS = {"cubic": BEAM, "quadratic": replace(BEAM, degree=2, dofs=504), "peel": 
 @pytest.mark.parametrize("problem", PAIRS.values(), ids=PAIRS)
 def test_an_opening_that_a_gap_tells_already_is_not_condensed(problem, narrow, monkeypatch):
     """Two rows say the same, exactly or but for rounding: then the stiffness of what is kept has no bound."""
-    monkeypatch.setattr(iga.path.condensation, "NARROW", narrow)
+    limits = iga.path.condensation.CondensationLimits(narrow=narrow)
+    monkeypatch.setattr(iga.path.condensation, "CONDENSATION", limits)
     system = solver(problem).build(problem).system
     rows, small = _rows(system, system.interface.at_rest)[0].tocsr(), condensed(system)
     stiffest = max(np.abs(K).max() for K in system.linear_matrices)
@@ -174,7 +175,8 @@ def test_dense_equations_pay_where_they_are_less_work_than_the_band(kept, pays, 
 def test_a_banded_and_a_sparse_factorisation_give_one_stiffness(name, monkeypatch):
     system, found = solver(CASES[name]).build(CASES[name]).system, []
     for narrow in (np.inf, 0.0):
-        monkeypatch.setattr(iga.path.condensation, "NARROW", narrow)
+        limits = iga.path.condensation.CondensationLimits(narrow=narrow)
+        monkeypatch.setattr(iga.path.condensation, "CONDENSATION", limits)
         found.append(condensed(system))
     banded, sparse = (one.system.bulk_dd for one in found)
     assert np.abs(banded - sparse).max() < 1e-11 * np.abs(sparse).max()
