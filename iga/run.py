@@ -29,8 +29,8 @@ class Solution:
     """What a run leaves: a row a converged step (see `iga.output.rows`), snapshots (see `iga.output.snapshots`), and
     how it ended.
 
-    ``ending`` tells a specimen that came apart; ``condition`` is the larger condition number of the tangents at the
-    first and at the last converged point.
+    ``ending`` is the opening at which a specimen came apart, if it did; ``condition`` is the larger condition number of
+    the tangents at the first and at the last converged point.
     """
 
     rows: tuple[Mapping[str, float], ...]

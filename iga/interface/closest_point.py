@@ -70,7 +70,7 @@ def closest_points(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: 
 
     A point that runs off a side goes on from the end of the neighbour; at the two ends of the chain it is held there
     and marked as off. At a kink between two sides, where it would jump for ever, it stays on the kink. Points that have
-    lost their partner (that are free of the ends, have crossed many sides, lie deeper in the body than a side is long,
+    got lost (that are free of the ends, have crossed many sides, lie deeper in the body than a side is long,
     or stand where the distance is not least) are searched for on the whole surface. Only sides that are met are looked
     at.
 

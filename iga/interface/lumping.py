@@ -25,8 +25,8 @@ def lumped(interface: Interface) -> Interface:
 
     Point A has the area ``w_A = int R_A dGamma`` and the gap ``g_A = (u_A^s - u_A^m) . n_A``, the jump of the control
     variables along the normal of the reference configuration (the weighted mean of it where the surface is curved), in
-    finite kinematics as well: partners stay partners. Since the functions add up to one, a uniform gap gives the exact
-    forces and energies. ``X_qi`` are the control points, which lie on straight surfaces only.
+    finite kinematics as well: each point keeps the one that it faces. Since the functions add up to one, a uniform gap
+    gives the exact forces and energies. ``X_qi`` are the control points, which lie on straight surfaces only.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def lumped(interface: Interface) -> Interface:
 
 
 def paired(interface: Interface) -> Interface:
-    """The interface at its own points, whose partners are the control points that face theirs, for good.
+    """The interface at its own points, which meet the control points that face theirs, for good.
 
     Parameters and errors as those of `lumped`, beside which it has places that are not bonded.
     """
@@ -70,7 +70,7 @@ def paired(interface: Interface) -> Interface:
 
 
 def chained(parts: Sequence[Interface]) -> Interface:
-    """One interface from parts whose partners are known; a lumped point takes functions that are zero there as well."""
+    """One interface from parts without a search; a lumped point takes functions that are zero there as well."""
     first, *others = parts
     if not others:
         return first

@@ -9,12 +9,12 @@ import numpy as np
 from iga.interface.closest_point import PROJECTION, Pairing
 from iga.interface.surface import Surface
 
-#: Part of a side beyond its end that is none.
+#: Points beyond an end by less than this part of the side count as on it.
 AT_END = 1e-9
 
 
 @dataclass(frozen=True)
-class Partner:
+class MasterPoints:
     """Places on the master, for points beyond its ends or on a kink on the straight continuation of a side.
 
     ``c_q`` sides; ``M_qb`` and ``dM_qb`` (n_q, n_b) functions there and their derivatives; ``t_qi`` and ``t_xi_qi``
@@ -31,7 +31,7 @@ class Partner:
     fading_q: np.ndarray
 
 
-def partner(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarray) -> Partner:
+def master_points(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarray) -> MasterPoints:
     """Where the points x_qi (n_q, 2) meet the master with the control points y_AI (n_A, 2).
 
     Beyond the ends of a side, at ``eta`` from there, the surface goes on along its tangent, ``y + eta y'``: the gap is
@@ -55,7 +55,7 @@ def partner(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarra
         share, rate = _share(np.where(at_end, way * eta, 0.0))
         share_q[edge], fading_q[edge] = share, way * rate
     M_qb, dM_qb = (master.functions(c_q, r) for r in (r0, r1))
-    return Partner(c_q, M_qb, dM_qb, t_qi, t_xi_qi, share_q, fading_q)
+    return MasterPoints(c_q, M_qb, dM_qb, t_qi, t_xi_qi, share_q, fading_q)
 
 
 def _share(over: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,7 @@ import numpy as np
 from iga.mesh.bernstein import bernstein_jet
 from iga.mesh.extraction import SIDES, Chain, Mesh, on_side
 
-#: A coefficient of an extraction operator below this is none.
+#: Coefficients of an extraction operator below this count as zero.
 EXTRACTED = 1e-13
 
 
@@ -48,7 +48,7 @@ class Surface:
     def bezier_points(self, x_AI: np.ndarray, c_q: np.ndarray | None = None) -> np.ndarray:
         """Homogeneous Bezier points (n_c, p + 1, 2) of a configuration x_AI (n_A, 2) of the control points.
 
-        Of the sides c_q (n_q,) alone where they are told: (n_q, p + 1, 2).
+        Of the sides c_q (n_q,) alone where they are given: (n_q, p + 1, 2).
         """
         if c_q is None:
             return self.C_cab.swapaxes(1, 2) @ x_AI.take(self.conn_ca, axis=0)

@@ -1,6 +1,6 @@
 """What is read from a converged state: one row of numbers, by integrals over faces and interface.
 
-Everything is told in the specimen's own terms: components along and across it, wherever it lies.
+Components are along and across the specimen, wherever it lies.
 """
 
 from __future__ import annotations

@@ -149,7 +149,7 @@ def _balanced(system: System, B_rd: coo_array, U_dr: np.ndarray, S_rr: np.ndarra
 
 
 def _pays(system: System, n_r: int) -> bool:
-    """Whether n_r dense equations are less work than a band, of which a look at one element may tell enough."""
+    """Whether n_r dense equations are less work than a band, by its elements alone if they suffice."""
 
     def less(n: int, k: int) -> bool:
         return CONDENSATION.dense * n_r**3 <= CONDENSATION.banded * n * k**2

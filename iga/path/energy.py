@@ -121,8 +121,8 @@ def leaks(system: System, start: Point, end: Point, most: float) -> bool:
     """Whether the work of a step differs from the change of its energies: it did not go along the path.
 
     ``most`` is the largest work so far. What the forces that balance leaves over have done, where rounding leaves more
-    than the tolerance, is no leak. On the step on which damage begins nothing tells yet how much is going to be
-    dissipated, and a reversible law dissipates nothing.
+    than the tolerance, is no leak. On the step on which damage begins it is not known yet how much is going to
+    be dissipated, and a reversible law dissipates nothing.
     """
     most = max(most, abs(end.external_work))
     leak = abs(end.external_work - start.external_work - (end.energies.total - start.energies.total))

@@ -2,7 +2,7 @@
 
 While damage grows the opening of the cohesive front is prescribed, so that the path is followed through snap-backs;
 otherwise the opening of the specimen is. Where a step fails, the next one ends at the next kink of the law: from kink
-to kink a path has few surprises, and with a law that is linear between them none.
+to kink a path is nearly straight, and is straight where bulk and law are linear.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from iga.path.point import End, Point
 from iga.path.polyline import Kept, Largest, judged
 from iga.path.solver import MANY_DECIDE, Solver
 from iga.path.step import advance
-from iga.path.step_length import LENGTHS, Step, StepLength, next_step, step_length
+from iga.path.step_length import LENGTHS, ByAccuracy, Step, StepLength, next_step, step_length
 from iga.path.tangent import tangent
 from iga.system.state import State
 from iga.system.system import System, energies
@@ -86,7 +86,9 @@ def follow(
                     yield End(_advice(point, leapt=reached is not None), rejected)
                     return
                 lengths = shorter
-                if lengths.by_kinks:  # a shorter step is predicted with the same factors, for less than they save
+                if isinstance(
+                    lengths, ByAccuracy
+                ):  # a shorter step is predicted with the same factors, for less than they save
                     tangent(solver, point.state, point.response, direction)
                 continue
             largest = largest.with_point(reached)

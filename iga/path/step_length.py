@@ -1,12 +1,16 @@
 """How long the next step is, and by what it is controlled.
 
-Steps are `Counted`, all of one length, or chosen `ByAccuracy`; those that follow on a failed one are `Careful`.
+Steps are `Counted`, all of one length, or chosen `ByAccuracy`; those that follow on a failed one are `Careful`. Each
+kind has a ``length``, the change of the opening, and ``front``, the largest step of the front in parts of g_u, and says
+what follows a step: one that has ``failed``, that is, has not converged; one that went for a change ``moved`` of the
+opening and was not accurate (``cut``); and one from ``start`` to ``end`` (``after``), where the load has been at most
+``peak`` so far. Where the path has chosen the steps they are as accurate as ``bend`` asks for (see
+`iga.path.polyline`), and shortened until they are, at most `Lengths.cuts` times (``cuts``).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
 
 import numpy as np
 
@@ -76,34 +80,24 @@ class Step:
 
 @dataclass(frozen=True)
 class Counted:
-    """Steps that change the opening by ``length``, and the front by no more than an eighth of g_u.
-
-    Where the path has chosen the number itself steps are as accurate as ``bend`` asks for (see `iga.path.polyline`):
-    those that are not are shortened, at most `Lengths.cuts` times (``cuts``), and grow again up to ``largest``.
-    """
+    """Steps of one length; those that have been shortened grow again up to ``largest``."""
 
     largest: float
     length: float
     bend: float | None = None
     cuts: int = 0
-    by_kinks: ClassVar[bool] = False
-    every_kink: ClassVar[bool] = False
 
     @property
     def front(self) -> float:
-        """Largest step of the front, in parts of g_u."""
         return LENGTHS.front
 
     def failed(self) -> Careful:
-        """What follows a step that has not converged."""
         return Careful(replace(self, cuts=0))
 
     def cut(self, kept: Kept, moved: float) -> Counted:
-        """What follows a step that went for a change ``moved`` of the opening and was not accurate."""
         return replace(self, length=min(kept.part * abs(moved), self.length), cuts=self.cuts + 1)
 
     def after(self, start: Point, end: Point, peak: float, kept: Kept) -> Counted:
-        """What follows a step from ``start`` to ``end``; ``peak`` is the largest load so far."""
         return replace(self, length=min(2.0 * self.length, self.largest), cuts=0)
 
 
@@ -112,8 +106,8 @@ class ByAccuracy:
     """Steps as long as the curve allows that end where a point breaks; the load leaves their tangent by ``bend``.
 
     One that fails is halved, and the front goes half as far until as many have converged; where no failures are
-    ``left`` they are ``counted`` from then on. One that is not accurate is shortened as `Counted` ones are; after a
-    single arc of the load that is not, ``at_kinks`` steps end at kinks of any kind.
+    ``left`` they are ``counted`` from then on. After a single arc of the load that is not accurate, ``at_kinks`` steps
+    end at kinks of any kind.
     """
 
     largest: float
@@ -123,11 +117,6 @@ class ByAccuracy:
     left: int = LENGTHS.failures
     cuts: int = 0
     at_kinks: int = 0
-    by_kinks: ClassVar[bool] = True
-
-    @property
-    def every_kink(self) -> bool:
-        return self.at_kinks > 0
 
     @property
     def front(self) -> float:
@@ -136,18 +125,15 @@ class ByAccuracy:
         return halved * LENGTHS.front_by_accuracy * (self.bend / LENGTHS.bend) ** 0.5
 
     def failed(self) -> ByAccuracy | Counted:
-        """What follows a step that has not converged."""
         if self.left == 0:
             return self.counted
         return replace(self, length=0.5 * self.length, left=self.left - 1, cuts=0)
 
     def cut(self, kept: Kept, moved: float) -> ByAccuracy:
-        """What follows a step that went for a change ``moved`` of the opening and was not accurate."""
         length, at_kinks = min(kept.part * abs(moved), self.length), LENGTHS.at_kinks if kept.few else self.at_kinks
         return replace(self, length=length, cuts=self.cuts + 1, at_kinks=at_kinks)
 
     def after(self, start: Point, end: Point, peak: float, kept: Kept) -> ByAccuracy:
-        """What follows a step from ``start`` to ``end``; ``peak`` is the largest load so far."""
         moved, rough = end.opening - start.opening, start.tangent.rough
         slope = start.tangent.departure if rough and not kept.broken else start.slope
         bend = abs(end.state.load - start.state.load - slope * moved) / (self.bend * peak)
@@ -171,8 +157,6 @@ class Careful:
     usual: Counted | ByAccuracy
     halvings: int = 0
     number: int = 0
-    by_kinks: ClassVar[bool] = False
-    every_kink: ClassVar[bool] = False
 
     @property
     def length(self) -> float:
@@ -180,7 +164,6 @@ class Careful:
 
     @property
     def front(self) -> float:
-        """Largest step of the front, in parts of g_u."""
         return 0.5**self.halvings * self.usual.front
 
     @property
@@ -200,11 +183,9 @@ class Careful:
         return None if 0.5**shorter.halvings < LENGTHS.smallest else shorter
 
     def cut(self, kept: Kept, moved: float) -> Careful:
-        """What follows a step that went for a change ``moved`` of the opening and was not accurate."""
         return replace(self, usual=self.usual.cut(kept, moved / 0.5**self.halvings))
 
     def after(self, start: Point, end: Point, peak: float, kept: Kept) -> StepLength:
-        """What follows a step that has converged: one twice as long."""
         usual = replace(self.usual, cuts=0)
         return Careful(usual, self.halvings - 1) if self.halvings else usual
 
@@ -235,7 +216,9 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
     step. Otherwise the opening is, up to where damage begins.
     """
     law, path, careful = system.interface.law, point.tangent, isinstance(lengths, Careful)
-    left, opening_rate, by_kinks = goal - point.opening, float(system.load_d @ path.du_d), lengths.by_kinks
+    left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
+    by_kinks = isinstance(lengths, ByAccuracy)
+    every_kink = isinstance(lengths, ByAccuracy) and lengths.at_kinks > 0
     grows, q, past = bool(path.growing_q.any()), point.front, None
     if away_from_zero(direction, point.opening) and (careful or not grows):
         past = _past_kink(system, point)
@@ -244,7 +227,7 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
         away = (left if exact else np.copysign(lengths.length, left)) / opening_rate
         if past is not None and past[1] < away:
             return Step(gap_control(system, past[0]), past[2], by_kinks=by_kinks)
-        return Step(opening_control(system), away, exact, by_kinks, lengths.every_kink)
+        return Step(opening_control(system), away, exact, by_kinks, every_kink)
     if 0.0 < direction * left < lengths.length and not careful and path.heading == direction:
         return Step(opening_control(system), left / opening_rate, True, by_kinks)
     away = min(lengths.front * law.g_u / abs(path.rate_q[q]), lengths.length / abs(opening_rate))
@@ -256,7 +239,7 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
         "dissipation": lambda: dissipation_control(system),
         "arc length": lambda: arc_length_control(system, point.response, path.du_d),
     }
-    return Step(controls[name](), away, by_kinks=by_kinks, every_kink=lengths.every_kink)
+    return Step(controls[name](), away, by_kinks=by_kinks, every_kink=every_kink)
 
 
 def _past_kink(system: System, point: Point) -> tuple[int, float, float] | None:

@@ -152,7 +152,7 @@ def _ahead(problem: Problem, length: float, path: int, layers: int = 0) -> int:
 
 
 def _beyond(problem: Problem, length: float, path: int, layers: int = 0) -> int:
-    """Longer elements beyond the short ones; none of a body that ends with the bond."""
+    """Longer elements beyond the short ones; 0 for a body that ends with the bond."""
     rest = length - problem.bond_length
     short = problem.bond_length / path
     return (

@@ -24,7 +24,7 @@ MOVED_ALIKE = 1e-14
 class Body:
     """A mesh in place whose control points are numbered from ``first`` on in the whole model.
 
-    A body that is another one moved tells this one as its ``original``, whose bases it takes over.
+    A body that is another one moved has that as its ``original``, whose bases it takes over.
     """
 
     mesh: Mesh
@@ -49,7 +49,7 @@ class Body:
     def face(self, name: str) -> tuple[BlockBasis, ...]:
         """Basis on the sides of one of the mesh's chains, made when it is first asked for.
 
-        The ends "left" and "right" are told as they were before the specimen was put in place.
+        The ends "left" and "right" are named as they were before the specimen was put in place.
         """
         made = self.__dict__.setdefault("_faces", {})
         if name not in made and self.original is not None:

@@ -40,7 +40,7 @@ def bond(
     """Interface over the ``extent`` (from, to) in the specimen's own coordinate along it; one body meets its mirror.
 
     Beyond the bond the bodies may touch from end to end of ``touching``, which holds the extent, at p + 1 points a
-    side, at which lumped ones keep their partners.
+    side, which in lumped interfaces meet the same control points for good.
     """
     found = _bonded(problem, bodies, extent, touching)
     return settled(found) if stays(problem) else found
@@ -70,7 +70,7 @@ def _bonded(
 
 
 def stays(problem: Debonding) -> bool:
-    """Whether partners and normals stay what they are before anything moves."""
+    """Whether closest points and normals stay what they are before anything moves."""
     return problem.kinematics == "linear" or not problem.search
 
 

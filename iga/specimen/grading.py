@@ -76,9 +76,9 @@ def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:
 
 
 def elements_within(length: float, most: float, short: float, layers: int) -> int:
-    """Elements ``short`` that fill a length, within ``most`` of which one is left; none if longer than it.
+    """Elements of length ``short`` that fill a length, and leave one of those within ``most``; 0 if they are longer.
 
-    That is said of what ``layers`` leave of them, each of which halves them.
+    They are compared with the length as halved by each of ``layers``.
     """
     if short / 2**layers > length * (1.0 + GRADING.rounding):
         return 0

@@ -59,8 +59,8 @@ class System:
     ``springs_rd @ u`` (n_r,), in any direction and of any group of points; where they are as many as the motions of the
     whole, balance itself says that they carry no force. ``free_d`` is False where a degree of freedom is fixed.
 
-    A linear bulk may be told by its stiffness ``bulk_dd`` (n_dof, n_dof) in place of solids: the unknowns are then what
-    it has been condensed to (see `iga.path.condensation`).
+    A linear bulk may be given by its stiffness ``bulk_dd`` (n_dof, n_dof) in place of solids: the unknowns are then
+    those that it has been condensed to (see `iga.path.condensation`).
     """
 
     solids: tuple[Solid, ...]
@@ -224,7 +224,7 @@ def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, fl
 
 
 def _condensed_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
-    """A force that rounding hides is none: the scale is at least that for which `Newton` would ask no more."""
+    """Forces below rounding count as zero: the scale is at least that at which these are below Newton's tolerance."""
     internal_d = system.bulk_dd @ u_d
     scale = max(float(internal_d @ internal_d) ** 0.5, SCALES.hidden * _held(system, u_d))
     return internal_d, scale, 0.5 * float(u_d @ internal_d), ()
@@ -287,14 +287,14 @@ def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np
 def _pattern(system: System, response: Response) -> Pattern:
     """An open crack asks for no entries in the matrix, however far it has moved."""
     touched_qd, reference_qd = response.contact.dof_qd, system.reference_dof_qd
-    if touched_qd is reference_qd:  # partners stay
+    if touched_qd is reference_qd:  # no point has moved along the master
         return system.pattern(reference_qd)
     carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
     return system.pattern(np.where(carries_q[:, None], touched_qd, reference_qd))
 
 
 def _bulk_stiffness(system: System, gradients: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Element stiffness of the blocks whose gradients are told; none of a bulk that is linear and in place already."""
+    """Element stiffness of the blocks with these gradients; no block of a bulk that is linear and assembled already."""
     moduli = KINEMATICS[system.kinematics].moduli
     return [
         element_stiffness(solid.basis, moduli(solid.D, H)) for solid, H in zip(system.solids, gradients, strict=False)

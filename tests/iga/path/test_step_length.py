@@ -15,7 +15,7 @@ from iga.path.step_length import CONTROLS, LENGTHS, ByAccuracy, Careful, Counted
 @pytest.mark.parametrize(("programme", "whole"), [((3.0,), 3.0), ((1.5, -0.5, 1.0), 5.0), ((-2.0,), 2.0)])
 def test_steps_that_are_counted_divide_the_whole_way(programme: tuple[float, ...], whole: float) -> None:
     lengths = step_length(np.array(programme), 100)
-    assert lengths == Counted(whole / 100, whole / 100) and not lengths.by_kinks and lengths.front == 0.125
+    assert lengths == Counted(whole / 100, whole / 100) and lengths.front == 0.125
 
 
 def test_few_steps_or_none_are_chosen_by_accuracy() -> None:
@@ -23,7 +23,7 @@ def test_few_steps_or_none_are_chosen_by_accuracy() -> None:
     whole = np.array([3.0])
     for steps, first, largest in ((None, 0.1, 0.75), (2, 0.1, 0.75), (10, 0.1, 0.3), (39, 3 / 39, 3 / 39)):
         lengths = step_length(whole, steps)
-        assert isinstance(lengths, ByAccuracy) and lengths.by_kinks
+        assert isinstance(lengths, ByAccuracy)
         assert (lengths.length, lengths.largest) == pytest.approx((first, largest))
         assert lengths.counted.length == pytest.approx(0.02) and lengths.bend == 0.005
         assert step_length(whole, steps, linear=True).length == pytest.approx(largest), "nothing bends before damage"
@@ -73,7 +73,7 @@ def test_every_step_by_accuracy_that_converged_makes_up_for_one_that_failed() ->
     lengths = start = step_length(np.array([10.0]), None)
     for _ in range(20):
         lengths = lengths.failed().failed()
-        assert lengths.by_kinks and lengths.front == 0.25
+        assert isinstance(lengths, ByAccuracy) and lengths.front == 0.25
         for front in (0.5, 1.0, 1.0):
             lengths = lengths.after(*ends(1.0, 0.1, 0.0), 4.0, Kept())
             assert lengths.front == front
@@ -125,13 +125,13 @@ def test_teeth_do_not_shorten_a_step_whose_straight_line_is_near(kept: Kept, gro
 def test_a_step_that_is_not_accurate_is_cut_and_a_cornered_arc_ends_at_every_kink() -> None:
     lengths = replace(step_length(np.array([10.0]), None), length=0.3)
     cut = lengths.cut(Kept(part=0.5, away=4.0), -0.2)
-    assert (cut.length, cut.cuts, cut.every_kink) == (pytest.approx(0.1), 1, False)
+    assert (cut.length, cut.cuts, cut.at_kinks) == (pytest.approx(0.1), 1, 0)
     cornered = lengths.cut(Kept(part=0.5, away=4.0, few=True), 0.2)
-    assert cornered.every_kink and cornered.left == lengths.left
+    assert cornered.at_kinks == LENGTHS.at_kinks and cornered.left == lengths.left
     for _ in range(LENGTHS.at_kinks):
-        assert cornered.every_kink
+        assert cornered.at_kinks > 0
         cornered = cornered.after(*ends(1.0, 0.1, 0.0), 4.0, Kept())
-    assert not cornered.every_kink and cornered.cuts == 0
+    assert cornered.at_kinks == 0 and cornered.cuts == 0
 
 
 def test_steps_that_are_counted_after_failures_are_accurate_and_those_of_the_user_as_they_are() -> None:

@@ -219,7 +219,7 @@ def test_one_arm_has_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     half, whole = build(one), build(both)
     assert len(half.bodies) == 1 and 2 * half.system.n_dof == whole.system.n_dof
     assert half.system.interface.master is None and whole.system.interface.mirror_i is None
-    for name in ("closest_points", "nearest_samples", "partner"):
+    for name in ("closest_points", "nearest_samples", "master_points"):
         monkeypatch.setattr(interface_of, name, never)
     assert solved(one).status == "complete"
     monkeypatch.undo()
