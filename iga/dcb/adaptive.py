@@ -46,7 +46,7 @@ class Refinement:
     same: float = 1e-9
 
 
-ADAPTIVE = Refinement()
+ADAPTIVITY = Refinement()
 
 
 @dataclass(frozen=True)
@@ -69,10 +69,10 @@ def first_window(problem: Problem) -> Window:
 
     def most(roots: int) -> int:
         starts = np.linspace(problem.precrack, problem.length, 50)
-        return max(4 * strip(problem, Window(x - zone, x + ADAPTIVE.ahead * zone, roots)).functions for x in starts)
+        return max(4 * strip(problem, Window(x - zone, x + ADAPTIVITY.ahead * zone, roots)).functions for x in starts)
 
     roots = largest(most, 1, problem.dofs)
-    return Window(problem.precrack, problem.precrack + ADAPTIVE.ahead * zone, roots)
+    return Window(problem.precrack, problem.precrack + ADAPTIVITY.ahead * zone, roots)
 
 
 def strip(problem: Problem, window: Window) -> Strip:
@@ -87,10 +87,10 @@ def strip(problem: Problem, window: Window) -> Strip:
     for start, length, roots in ((0.0, problem.precrack, before), (problem.precrack, bond, window.roots)):
         x = start + length * np.arange(roots) / roots
         size: np.ndarray = np.full(roots, length / roots)
-        finest = bond / window.roots / 2**ADAPTIVE.halvings
-        for _ in range(ADAPTIVE.halvings):
+        finest = bond / window.roots / 2**ADAPTIVITY.halvings
+        for _ in range(ADAPTIVITY.halvings):
             away = np.maximum(np.maximum(window.start - (x + size), x - window.end), 0.0)
-            long = size > np.maximum(1.5 * finest, np.minimum(ADAPTIVE.growth * away, most_at(problem, x)))
+            long = size > np.maximum(1.5 * finest, np.minimum(ADAPTIVITY.growth * away, most_at(problem, x)))
             half = 0.5 * size[long]
             x = np.concatenate([x[~long], x[long], x[long] + half])
             size = np.concatenate([size[~long], half, half])
@@ -107,7 +107,9 @@ def strip(problem: Problem, window: Window) -> Strip:
 def most_at(problem: Problem, x: np.ndarray) -> np.ndarray:
     """How long (n,) cells at x (n,) may be, where arms are pressed together at the loaded end; infinite elsewhere."""
     return (
-        GRADING.pressed * problem.arm_thickness + ADAPTIVE.growth * x if presses(problem) else np.full(x.shape, np.inf)
+        GRADING.pressed * problem.arm_thickness + ADAPTIVITY.growth * x
+        if presses(problem)
+        else np.full(x.shape, np.inf)
     )
 
 
@@ -123,10 +125,10 @@ def followed(problem: Problem, roots: int, specimen: Specimen, point: Point) -> 
     s_q, k_q = specimen.distance(specimen.system.interface.X_qi), point.state.k_q
     damaged, broken = s_q[k_q > law.g_max], s_q[k_q >= law.g_u]
     front = float(damaged.max(initial=problem.precrack))
-    if end >= problem.length or front < end - ADAPTIVE.left * zone:
+    if end >= problem.length or front < end - ADAPTIVITY.left * zone:
         return None
     tip = float(broken.max(initial=problem.precrack))
-    return Window(tip - ADAPTIVE.left * zone, front + ADAPTIVE.ahead * zone, roots)
+    return Window(tip - ADAPTIVITY.left * zone, front + ADAPTIVITY.ahead * zone, roots)
 
 
 def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State | None:
@@ -163,7 +165,7 @@ def _history(old: Specimen, new: Specimen, k_q: np.ndarray) -> np.ndarray | None
     s, k = s_old[order], k_q[order]
     right = np.clip(np.searchsorted(s, s_new), 1, len(s) - 1)
     nearest = np.where(s_new - s[right - 1] < s[right] - s_new, right - 1, right)
-    same = np.abs(s[nearest] - s_new) < ADAPTIVE.same * s[-1]
+    same = np.abs(s[nearest] - s_new) < ADAPTIVITY.same * s[-1]
     law = new.system.interface.law
     active = (k > law.g_max) & (k < law.g_u)
     kept = np.zeros(len(s), dtype=bool)

@@ -99,7 +99,6 @@ def follow(
                 return
             renewed = renew(point) if renew is not None else None
             if renewed is not None:
-                solver.drop()
                 solver = solver.of(renewed[0])
                 departed = _departing(solver, renewed[1], direction, point.external_work)
                 if departed is None:
@@ -183,7 +182,6 @@ def _touching(solver: Solver, trial: State, opening: float, change: float) -> Eq
     found = equilibrium(solver, trial, goal, MANY_DECIDE)
     if found is not None:
         return found
-    solver.drop()
     law = system.interface.law
     for part in PATH.softer:
         soft = replace(system, interface=replace(system.interface, law=replace(law, penalty=part * law.penalty)))

@@ -69,7 +69,8 @@ class Solver:
         self.linearised: Linearised | None = None
 
     def of(self, system: System) -> Solver:
-        """The same for another system."""
+        """The same for another system; the factors of this one are dropped."""
+        self.drop()
         return Solver(system, self.newton, self.phase)
 
     def respond(self, trial: State, decide: bool = True) -> Response:
