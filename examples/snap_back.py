@@ -11,9 +11,10 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from iga.path.control import dissipation_control, load_control, opening_control
-from iga.path.newton import DEFAULT, equilibrium
-from iga.system.system import energies, respond, untimed
+from iga.path.control import Prescribed, dissipation_control, load_control, opening_control
+from iga.path.newton import equilibrium
+from iga.path.solver import Solver
+from iga.system.system import energies, respond
 from verify.curves.curve import envelope
 from verify.methods.problems import iga_problem
 from verify.methods.solve import solve
@@ -76,7 +77,7 @@ def ask(state, name, change):
     """The state where a control has changed by so much, its history committed; None where Newton finds none."""
     control = controls[name]
     value = control(state, respond(system, state, decide=False))[0]
-    found = equilibrium(system, state, control, value + change, change, DEFAULT, untimed)
+    found = equilibrium(Solver(system), state, Prescribed(control, value + change, change))
     if found is None:
         return None
     return replace(found.state, k_q=found.response.k_q, scale=max(state.scale, found.response.scale))

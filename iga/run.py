@@ -13,6 +13,7 @@ from iga.output.snapshots import snapshot
 from iga.path.condensation import condensed
 from iga.path.follow import follow
 from iga.path.point import End, Point
+from iga.path.solver import Solver
 from iga.specimen.problem import Debonding
 from iga.specimen.specimen import Specimen
 from iga.system.state import State
@@ -28,8 +29,8 @@ class Solution:
     """What a run leaves: a row a converged step (see `iga.output.rows`), snapshots (see `iga.output.snapshots`), and
     how it ended.
 
-    ``ending`` tells a specimen that came apart; ``condition`` is the larger condition number of the tangents at the
-    first and at the last converged point.
+    ``ending`` is the opening at which a specimen came apart, if it did; ``condition`` is the larger condition number of
+    the tangents at the first and at the last converged point.
     """
 
     rows: tuple[Mapping[str, float], ...]
@@ -57,28 +58,26 @@ def run(
     rows: list[dict[str, float]] = []
     snapshots: list[dict[str, object]] = []
     wanted = sorted(problem.snapshot_openings)
-    worst, point, end, most = 0.0, None, End("complete", 0), specimen
+    first, last, end, most = None, None, End("complete", 0), specimen
 
     def renewed(point: Point) -> tuple[System, State] | None:
         nonlocal specimen, most
-        found = adapt(specimen, point)
+        found = adapt(specimen, point) if adapt is not None else None
         if found is None:
             return None
         specimen, state = found
         most = max(most, specimen, key=lambda one: one.system.n_dof)
         return specimen.system, state
 
-    renew = renewed if adapt is not None else None
     with phase("basis"):
         small = condensed(specimen.system) if adapt is None else None
     system = specimen.system if small is None else small.system
     programme = by_way_of(problem.opening, wanted)
-    for item in follow(system, programme, problem.steps, phase=phase, renew=renew, bend=problem.bend):
+    for item in follow(Solver(system, phase=phase), programme, problem.steps, renewed, problem.bend):
         if isinstance(item, End):
             end = item
             continue
-        if point is None:
-            worst = _condition(system, item, phase)
+        first = _condition(system, item, phase) if first is None else first
         last, point = item, item if small is None else small.expanded(item)
         rows.append(row(specimen, point))
         if on_step is not None:
@@ -88,6 +87,7 @@ def run(
         if wanted and point.opening >= wanted[0]:
             wanted = [opening for opening in wanted if opening > point.opening]
             snapshots.append(snapshot(specimen, point))
+    assert first is not None and last is not None
     return Solution(
         rows=tuple(rows),
         dofs=most.system.n_dof,
@@ -95,8 +95,8 @@ def run(
         rejected_steps=end.rejected,
         status=end.status,
         snapshots=tuple(snapshots),
-        ending=f"separated at opening {point.opening:.6g}" if end.separated else "",
-        condition=max(worst, _condition(specimen.system if small is None else system, last, phase)),
+        ending=f"separated at opening {last.opening:.6g}" if end.separated else "",
+        condition=max(first, _condition(specimen.system if small is None else system, last, phase)),
     )
 
 

@@ -1,6 +1,6 @@
 """Banded direct solvers: slender specimens, numbered along their length, have narrow bands.
 
-A symmetric matrix is told by its lower half: entries in LAPACK's lower band storage, Fortran order.
+A symmetric matrix is given by its lower half: entries in LAPACK's lower band storage, Fortran order.
 """
 
 from __future__ import annotations

@@ -7,16 +7,23 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg.lapack import dgecon, dgetrf, dgetrs, dpotrf, dpotrs
 
+from iga.algebra.banded import Skew
+
 
 @dataclass(frozen=True)
 class Dense:
     """A full symmetric matrix of ``n`` equations, numbered as the unknowns are; the counterpart of
     `iga.algebra.banded.Band`.
 
-    It is told by its lower half, in Fortran order; what stands in the upper one is none of its entries.
+    Matrices are given by their lower half, in Fortran order; the upper one is not read.
     """
 
     n: int
+
+    @property
+    def k(self) -> int:
+        """Half bandwidth."""
+        return self.n - 1
 
     @property
     def size(self) -> int:
@@ -36,21 +43,24 @@ class Dense:
         factor, info = dpotrf(half.reshape(self.n, self.n).T, lower=True, clean=False)
         return DenseCholesky(factor) if info == 0 else None
 
-    def lu(self, half: np.ndarray, skew: None = None) -> DenseLU | None:
-        """LU of the matrix with this lower half; None where a pivot is exactly zero."""
-        lu, pivots, info = dgetrf(self._whole(half), overwrite_a=True)
+    def lu(self, half: np.ndarray, skew: Skew | None = None) -> DenseLU | None:
+        """LU of the matrix with this lower half and a skew part; None where a pivot is exactly zero."""
+        lu, pivots, info = dgetrf(self._whole(half, skew), overwrite_a=True)
         return DenseLU(lu, pivots) if info == 0 else None
 
-    def condition(self, half: np.ndarray, skew: None = None) -> float:
+    def condition(self, half: np.ndarray, skew: Skew | None = None) -> float:
         """Estimate of the condition number in the 1-norm, infinite where the matrix is singular."""
-        norm = float(np.abs(self._whole(half)).sum(0).max())
-        factors = self.lu(half)
+        norm = float(np.abs(self._whole(half, skew)).sum(0).max())
+        factors = self.lu(half, skew)
         reciprocal = 0.0 if factors is None else float(dgecon(factors.lu, norm)[0])
         return 1.0 / reciprocal if reciprocal > 0.0 else float("inf")
 
-    def _whole(self, half: np.ndarray) -> np.ndarray:
+    def _whole(self, half: np.ndarray, skew: Skew | None) -> np.ndarray:
         lower = np.tril(half.reshape(self.n, self.n).T)
-        return np.asfortranarray(lower + np.tril(lower, -1).T)
+        whole = np.asfortranarray(lower + np.tril(lower, -1).T)
+        if skew is not None:
+            np.add.at(whole, (skew.row, skew.column), skew.value)
+        return whole
 
 
 @dataclass(frozen=True)

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from iga.dcb.meshes import PRESSED, arm_tmeshes, zone_length
-from iga.path.control import opening_control
-from iga.path.newton import PATIENT, equilibrium
+from iga.dcb.meshes import arm_tmeshes, zone_length
+from iga.path.control import Prescribed, opening_control
+from iga.path.newton import equilibrium
 from iga.path.point import Point
-from iga.specimen.grading import largest
+from iga.path.solver import MANY_DECIDE, Solver
+from iga.specimen.grading import GRADING, largest
 from iga.specimen.problem import presses
 from iga.specimen.tmesh_strip import Strip
 from iga.system.state import State
@@ -29,14 +30,23 @@ if TYPE_CHECKING:
     from iga.dcb.problem import Problem
     from iga.specimen.specimen import Specimen
 
-#: The fine part goes on beyond the damage front by so many process zones, and is moved on when less than this is left.
-AHEAD, LEFT = 0.75, 0.25
 
-#: How often a cell can be halved, and how long one may be in parts of its distance from the fine part.
-HALVINGS, GROWTH = 4, 0.7
+@dataclass(frozen=True)
+class Refinement:
+    """How the fine part follows the damage front: it goes on ``ahead`` process zones, and moves with ``left``.
 
-#: Part of the length of a specimen within which two points are the same.
-SAME = 1e-9
+    A cell can be halved ``halvings`` times, and may be as long as the part ``growth`` of its distance from the fine
+    part. Two points are the same within the part ``same`` of the length of a specimen.
+    """
+
+    ahead: float = 0.75
+    left: float = 0.25
+    halvings: int = 4
+    growth: float = 0.7
+    same: float = 1e-9
+
+
+ADAPTIVITY = Refinement()
 
 
 @dataclass(frozen=True)
@@ -59,10 +69,10 @@ def first_window(problem: Problem) -> Window:
 
     def most(roots: int) -> int:
         starts = np.linspace(problem.precrack, problem.length, 50)
-        return max(4 * strip(problem, Window(x - zone, x + AHEAD * zone, roots)).functions for x in starts)
+        return max(4 * strip(problem, Window(x - zone, x + ADAPTIVITY.ahead * zone, roots)).functions for x in starts)
 
     roots = largest(most, 1, problem.dofs)
-    return Window(problem.precrack, problem.precrack + AHEAD * zone, roots)
+    return Window(problem.precrack, problem.precrack + ADAPTIVITY.ahead * zone, roots)
 
 
 def strip(problem: Problem, window: Window) -> Strip:
@@ -77,10 +87,10 @@ def strip(problem: Problem, window: Window) -> Strip:
     for start, length, roots in ((0.0, problem.precrack, before), (problem.precrack, bond, window.roots)):
         x = start + length * np.arange(roots) / roots
         size: np.ndarray = np.full(roots, length / roots)
-        finest = bond / window.roots / 2**HALVINGS
-        for _ in range(HALVINGS):
+        finest = bond / window.roots / 2**ADAPTIVITY.halvings
+        for _ in range(ADAPTIVITY.halvings):
             away = np.maximum(np.maximum(window.start - (x + size), x - window.end), 0.0)
-            long = size > np.maximum(1.5 * finest, np.minimum(GROWTH * away, most_at(problem, x)))
+            long = size > np.maximum(1.5 * finest, np.minimum(ADAPTIVITY.growth * away, most_at(problem, x)))
             half = 0.5 * size[long]
             x = np.concatenate([x[~long], x[long], x[long] + half])
             size = np.concatenate([size[~long], half, half])
@@ -96,7 +106,11 @@ def strip(problem: Problem, window: Window) -> Strip:
 
 def most_at(problem: Problem, x: np.ndarray) -> np.ndarray:
     """How long (n,) cells at x (n,) may be, where arms are pressed together at the loaded end; infinite elsewhere."""
-    return PRESSED * problem.arm_thickness + GROWTH * x if presses(problem) else np.full(x.shape, np.inf)
+    return (
+        GRADING.pressed * problem.arm_thickness + ADAPTIVITY.growth * x
+        if presses(problem)
+        else np.full(x.shape, np.inf)
+    )
 
 
 def adapted_tmeshes(problem: Problem, window: Window) -> tuple[TMesh, ...]:
@@ -107,14 +121,14 @@ def adapted_tmeshes(problem: Problem, window: Window) -> tuple[TMesh, ...]:
 
 def followed(problem: Problem, roots: int, specimen: Specimen, point: Point) -> Window | None:
     """The window for a converged point, or None where the mesh at hand goes on beyond the damage front by enough."""
-    zone, law, end = zone_length(problem), specimen.system.interface.law, specimen.path[1]
+    zone, law, end = zone_length(problem), specimen.system.interface.law, specimen.layout.path_end
     s_q, k_q = specimen.distance(specimen.system.interface.X_qi), point.state.k_q
     damaged, broken = s_q[k_q > law.g_max], s_q[k_q >= law.g_u]
     front = float(damaged.max(initial=problem.precrack))
-    if end >= problem.length or front < end - LEFT * zone:
+    if end >= problem.length or front < end - ADAPTIVITY.left * zone:
         return None
     tip = float(broken.max(initial=problem.precrack))
-    return Window(tip - LEFT * zone, front + AHEAD * zone, roots)
+    return Window(tip - ADAPTIVITY.left * zone, front + ADAPTIVITY.ahead * zone, roots)
 
 
 def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State | None:
@@ -128,7 +142,7 @@ def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State |
         u_new = np.concatenate(
             [
                 transfer(before, after) @ u_old[body.points]
-                for before, after, body in zip(old.tmeshes, new.tmeshes, old.bodies, strict=True)
+                for before, after, body in zip(old.layout.tmeshes, new.layout.tmeshes, old.bodies, strict=True)
             ]
         )
     k_q = _history(old, new, point.state.k_q)
@@ -137,8 +151,8 @@ def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State |
     u_d = (u_new @ new.pose.axes_kI).ravel()
     start = new.system.start()
     trial = replace(start, u_d=u_d, load=point.state.load, k_q=k_q, scale=point.state.scale)
-    control = opening_control(new.system)
-    found = equilibrium(new.system, trial, control, point.opening, 1e-3 * point.opening, PATIENT, phase)
+    goal = Prescribed(opening_control(new.system), point.opening, 1e-3 * point.opening)
+    found = equilibrium(Solver(new.system, MANY_DECIDE, phase), trial, goal)
     if found is None:
         return None
     return replace(found.state, k_q=found.response.k_q, scale=max(trial.scale, found.response.scale))
@@ -151,7 +165,7 @@ def _history(old: Specimen, new: Specimen, k_q: np.ndarray) -> np.ndarray | None
     s, k = s_old[order], k_q[order]
     right = np.clip(np.searchsorted(s, s_new), 1, len(s) - 1)
     nearest = np.where(s_new - s[right - 1] < s[right] - s_new, right - 1, right)
-    same = np.abs(s[nearest] - s_new) < SAME * s[-1]
+    same = np.abs(s[nearest] - s_new) < ADAPTIVITY.same * s[-1]
     law = new.system.interface.law
     active = (k > law.g_max) & (k < law.g_u)
     kept = np.zeros(len(s), dtype=bool)

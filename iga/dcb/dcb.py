@@ -9,20 +9,15 @@ import numpy as np
 from iga.dcb.adaptive import Window, adapted_tmeshes, carried, first_window, followed
 from iga.dcb.meshes import arm_meshes, crack_path, tmeshes
 from iga.dcb.problem import Problem
-from iga.elements.bulk import joined
 from iga.elements.elasticity import orthotropic
 from iga.path.point import Point
 from iga.run import OnFrame, Solution, run
-from iga.specimen.body import Body, bodies, edge_row, mean_row, point_row
-from iga.specimen.bond import bond, control_points, faces, probe, slave_number
-from iga.specimen.load import pulled_row
-from iga.specimen.pose import Pose
-from iga.specimen.problem import presses, smooth
-from iga.specimen.specimen import Specimen
+from iga.specimen.body import Body, edge_row, mean_row, point_row
+from iga.specimen.bond import control_points
+from iga.specimen.delamination import Delamination, Supports, meshes_of
+from iga.specimen.specimen import Specimen, discretised
 from iga.system.state import State
-from iga.system.system import Phase, System, untimed
-from iga.tsplines.tmesh import TMesh
-from iga.tsplines.tspline import tspline_rectangle
+from iga.system.system import Phase, untimed
 
 #: Stiffness of a tie that hardly gives, relative to the modulus times the width: that of the stiffest elements.
 TIE = 10.0
@@ -35,46 +30,27 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
     """
     with phase("mesh"):
         window = window or (first_window(problem) if follows(problem) else None)
-        drawn = _tmeshes(problem, window)
-        meshes = problem.meshes or tuple(tspline_rectangle(mesh) for mesh in drawn) or arm_meshes(problem)
-        meshes = meshes[:1] if problem.symmetry else meshes
+        drawn, meshes = meshes_of(
+            problem,
+            lambda: tmeshes(problem) if window is None else adapted_tmeshes(problem, window),
+            lambda: arm_meshes(problem),
+        )
+    arms = slice(1 if problem.symmetry else 2)
     with phase("basis"):
-        pose, extent = problem.pose, (problem.precrack, problem.length)
         D = orthotropic(problem.E1, problem.E2, problem.G12, problem.nu12, problem.plane)
-        # a mirror image that is not modelled counts in the width, so that forces and energies are those of the whole
-        copies = 2.0 if problem.symmetry else 1.0
-        arms = bodies(meshes, (D,) * len(meshes), pose, copies * problem.width, smooth(problem))
-        P_AI = control_points(arms)
-        across = [pulled_row(arm, "left", problem.load_at, pose, 1, P_AI.size) for arm in arms]
-        springs_rd, spring_r = _supports(problem, arms, pose)
-        system = System(
-            solids=joined([solid for arm in arms for solid in arm.solids]),
-            interface=bond(problem, arms, extent, (0.0, problem.length) if presses(problem) else None),
-            kinematics=problem.kinematics,
-            load_d=2.0 * across[0] if problem.symmetry else across[0] - across[1],
-            free_d=np.ones(P_AI.size, dtype=bool),
-            x_d=np.repeat(pose.own(P_AI)[:, 0], 2),
-            springs_rd=springs_rd,
-            spring_r=spring_r,
-        )
-        return Specimen(
-            system=system,
-            bodies=arms,
-            pose=pose,
-            loaded=("left",) * len(arms),
+        layout = Delamination(
+            meshes=meshes[arms],
+            tmeshes=drawn[arms],
+            elasticity=(D,) * len(meshes[arms]),
+            bonded=(problem.precrack, problem.length),
+            face=(0.0, problem.length),
+            loads=(("left", 2.0),) if problem.symmetry else (("left", 1.0), ("left", -1.0)),
             loaded_at=0.0,
-            load_at=problem.load_at,
-            free_length=problem.precrack,
-            energy_faces=tuple(
-                (n, end, sign) for n in range(len(arms)) for end, sign in (("left", 1.0), ("right", -1.0))
-            ),
-            upper_is_slave=slave_number(problem, arms) == 0,
-            copies=copies,
-            probe=probe(problem, arms, extent, system.interface),
-            path=(problem.precrack, _end_of_path(problem, window)),
-            tmeshes=drawn,
-            faces=faces(problem, arms, (0.0, problem.length)),
+            path_end=problem.length if problem.meshes else window.end if window else crack_path(problem),
+            supports=lambda bodies: _supports(problem, bodies),
+            copies=2.0 if problem.symmetry else 1.0,
         )
+        return discretised(problem, layout)
 
 
 def solve(
@@ -120,23 +96,8 @@ def follows(problem: Problem) -> bool:
     return problem.adaptive and problem.basis == "tspline" and not problem.meshes
 
 
-def _end_of_path(problem: Problem, window: Window | None) -> float:
-    """Where the mesh for the crack ends."""
-    if problem.meshes:
-        return problem.length
-    return crack_path(problem) if window is None else window.end
-
-
-def _tmeshes(problem: Problem, window: Window | None) -> tuple[TMesh, ...]:
-    """T-meshes of the arms, none where the basis is another."""
-    if problem.basis != "tspline" or problem.meshes:
-        return ()
-    drawn = tmeshes(problem) if window is None else adapted_tmeshes(problem, window)
-    return drawn[:1] if problem.symmetry else drawn
-
-
-def _supports(problem: Problem, arms: tuple[Body, ...], pose: Pose) -> tuple[np.ndarray, np.ndarray]:
-    """Rows (n_r, n_dof) of the displacements that are held, and by how stiff a spring (n_r,).
+def _supports(problem: Problem, arms: tuple[Body, ...]) -> Supports:
+    """The rigid motions of the whole, held by springs, and the arms tied together at their far ends.
 
     The lower arm's corner of interface and far end is held along and across the specimen, and how far the two loaded
     faces are out of line takes the rotation: the rigid motions of the whole, so that these springs carry no force. An
@@ -144,14 +105,15 @@ def _supports(problem: Problem, arms: tuple[Body, ...], pose: Pose) -> tuple[np.
     the tractions of a bent interface amount to lengthwise, at the interface, but spread over the faces: in a corner it
     would hold energy without bound. One arm alone is held along the specimen.
     """
-    P_AI, (along_i, across_i) = control_points(arms), pose.axes_kI
+    P_AI, pose = control_points(arms), problem.pose
+    (along_i, across_i), free_d = pose.axes_kI, np.ones(P_AI.size, dtype=bool)
     corner = pose.place(np.array([problem.length, 0.0]))
     at = [arm.first + int(np.argmin(np.linalg.norm(arm.mesh.P_AI - corner, axis=1))) for arm in arms]
     soft = problem.E1 * problem.width * problem.arm_thickness / problem.length
     along_rd = [point_row(A, along_i, P_AI.size) for A in at]
     if len(arms) == 1:
-        return np.array(along_rd), np.array([soft])
+        return Supports(np.array(along_rd), np.array([soft]), free_d)
     upper_d, lower_d = (mean_row(arm.face("left"), along_i, P_AI.size) for arm in arms)
     ends_d = [edge_row(arm.face("right"), lambda X: np.abs(pose.own(X)[..., 1]), along_i, P_AI.size) for arm in arms]
     rows = [along_rd[1], point_row(at[1], across_i, P_AI.size), upper_d - lower_d, ends_d[0] - ends_d[1]]
-    return np.array(rows), np.array([soft, soft, soft, TIE * problem.E1 * problem.width])
+    return Supports(np.array(rows), np.array([soft, soft, soft, TIE * problem.E1 * problem.width]), free_d)

@@ -6,7 +6,7 @@ that it divides the process zone as often as possible; elements up to `coarsenin
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from iga.elements.elasticity import orthotropic
 from iga.mesh.extraction import Mesh
-from iga.specimen.grading import ROUNDING, columns, elements_within, largest, pieces, rectangle, unequal
+from iga.specimen.grading import GRADING, columns, elements_within, largest, most_halvings, pieces, rectangle, unequal
 from iga.specimen.problem import presses
 from iga.specimen.tmesh_strip import Strip, functions_of_halves, strip_tmesh
 from iga.tsplines.tmesh import DEGREE, TMesh
@@ -23,21 +23,23 @@ from iga.tsplines.tspline import tspline_rectangle
 if TYPE_CHECKING:
     from iga.dcb.problem import Problem
 
-#: How much longer than those on the crack path elements off it may be: where Poisson's ratio is zero, and where the
-#: material is incompressible (measured: with equal elements those on the path become too few).
-COARSENING, LEAST_COARSENING = 4.0, 1.25
 
-#: Part of a process zone that the crack path goes on beyond the crack of beam theory, which is ahead of the true one.
-MARGIN = 0.4
+@dataclass(frozen=True)
+class CrackPath:
+    """How the crack path of an arm is divided.
 
-#: Part of the unknowns by which a mesh may miss those aimed at.
-NEAR = 0.02
+    Elements off it may be ``coarsening`` times longer where the material is incompressible (measured: with equal
+    elements those on the path become too few), and `Grading.coarsening` times where Poisson's ratio is zero. The path
+    goes on beyond the crack of beam theory, which is ahead of the true one, by the part ``margin`` of a process zone.
+    A mesh may miss the unknowns aimed at by the part ``missed`` of them.
+    """
 
-#: Elements on the crack path that are so few that each counts; and no more halvings than these in any case.
-FEW, MOST = 7, 60
+    coarsening: float = 1.25
+    margin: float = 0.4
+    missed: float = 0.02
 
-#: Where the arms are pressed together, the element at the loaded end is no longer than this part of their thickness.
-PRESSED = 0.125
+
+CRACK_PATH = CrackPath()
 
 #: Elements (before, on, beyond) the crack path.
 Division = tuple[int, int, int]
@@ -50,11 +52,11 @@ def arm_meshes(problem: Problem) -> tuple[Mesh, ...]:
     """The arms, upper first: equal elements on the crack path, longer ones before and beyond it.
 
     An element boundary lies at the end of the precrack. The model of one arm gets half of ``dofs``. NURBS and
-    Lagrange meshes are one element thick; one with `FEW` elements on the path is quadratic through the arms, all that
-    bending needs, and spends the rest along them. Where two equal arms would miss ``dofs`` by more than `NEAR`, the
-    lower one has one element more, or there are more elements before the path. T-splines halve the elements towards
-    the interface (see `iga.specimen.tmesh_strip`). Arms that are pressed together have shorter elements at the loaded
-    end.
+    Lagrange meshes are one element thick; one with few elements on the path (`Grading.few`) is quadratic through the
+    arms, all that bending needs, and spends the rest along them. Where two equal arms would miss ``dofs`` by more than
+    `CrackPath.missed`, the lower one has one element more, or there are more elements before the path. T-splines halve
+    the elements towards the interface (see `iga.specimen.tmesh_strip`). Arms that are pressed together have shorter
+    elements at the loaded end.
 
     Raises
     ------
@@ -93,7 +95,7 @@ def crack_path(problem: Problem) -> float:
     h, opening = problem.arm_thickness, max(0.0, *problem.opening)
     crack = (1.5 * opening * (problem.E1 * h**3 / (12.0 * problem.toughness)) ** 0.5) ** 0.5
     soft = (problem.E1 * h**3 / (3.0 * problem.penalty)) ** 0.25
-    ahead = max(MARGIN * zone_length(problem), soft if problem.contact else 0.0)
+    ahead = max(CRACK_PATH.margin * zone_length(problem), soft if problem.contact else 0.0)
     return min(max(np.hypot(crack, 0.5 * opening), problem.precrack) + ahead, problem.length)
 
 
@@ -109,7 +111,7 @@ def lead(problem: Problem) -> float:
     distance, Flamant), as far as an arm is thick. Long elements there smooth it over: J comes out 3 to 10 % off until
     the tip is open, with a strong bond of thick arms.
     """
-    return min(problem.arm_thickness, MARGIN * zone_length(problem))
+    return min(problem.arm_thickness, CRACK_PATH.margin * zone_length(problem))
 
 
 def coarsening(problem: Problem) -> float:
@@ -120,7 +122,7 @@ def coarsening(problem: Problem) -> float:
     of bending: an arm that is nearly incompressible locks in long elements.
     """
     D = orthotropic(problem.E1, problem.E2, problem.G12, problem.nu12, problem.plane)
-    return max(LEAST_COARSENING, COARSENING * (1.0 - D[0, 1] ** 2 / (D[0, 0] * D[1, 1])) ** (1.0 / 3.0))
+    return max(CRACK_PATH.coarsening, GRADING.coarsening * (1.0 - D[0, 1] ** 2 / (D[0, 0] * D[1, 1])) ** (1.0 / 3.0))
 
 
 def division(
@@ -141,8 +143,8 @@ def division(
     ahead = elements_within(lead(problem), problem.precrack, short, layers)
     start = problem.precrack - ahead * short
     longest = coarsening(problem) * short
-    before, beyond = (int(np.ceil(length / longest - ROUNDING)) for length in (start, problem.length - end))
-    if path <= FEW:
+    before, beyond = (int(np.ceil(length / longest - GRADING.rounding)) for length in (start, problem.length - end))
+    if path <= GRADING.few:
         before, beyond = min(before, path), min(beyond, path)
     if before == 2 and problem.degree >= 3:
         before = 1
@@ -153,14 +155,14 @@ def lines(problem: Problem, path: int, spare: int = 0, layers: int = 0) -> np.nd
     """Element boundaries along an arm that is divided like this; parameters as those of `division`.
 
     Where arms are pressed together the first element is halved towards the loaded end, again and again, down to
-    `PRESSED`: load and contact balance each other within about the thickness of an arm from there.
+    `Grading.pressed`: load and contact balance each other within about the thickness of an arm from there.
     """
     parts, x = division(problem, path, spare, layers)
     breaks = pieces(*((start, end, n) for start, end, n in zip(x[:-1], x[1:], parts, strict=True)))
     if not presses(problem):
         return breaks
-    halvings = np.log2(x[1] / (parts[0] - spare) / (PRESSED * problem.arm_thickness)) - ROUNDING
-    number = min(max(0, int(np.ceil(halvings))), path if path <= FEW else MOST)
+    halvings = np.log2(x[1] / (parts[0] - spare) / (GRADING.pressed * problem.arm_thickness)) - GRADING.rounding
+    number = min(max(0, int(np.ceil(halvings))), most_halvings(path))
     return np.concatenate([breaks[:1], breaks[1] * 0.5 ** np.arange(number, 0, -1), breaks[1:]])
 
 
@@ -188,12 +190,14 @@ def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
             options[2:2] = [((n, 0), (n + 1, 0))] if alike else []
             options += [arms(n, spare, spare + 1)] if alike else []
         missed = [abs(unknowns(option, q) - problem.dofs) for option in options]
-        near = [option for option, by in zip(options[:2], missed, strict=False) if by <= NEAR * problem.dofs]
+        near = [
+            option for option, by in zip(options[:2], missed, strict=False) if by <= CRACK_PATH.missed * problem.dofs
+        ]
         return near[0] if near else options[int(np.argmin(missed))]
 
     q = p
     both = chosen(q)
-    if q > 2 and min(path for path, _ in both) <= FEW:
+    if q > 2 and min(path for path, _ in both) <= GRADING.few:
         q = 2
         both = chosen(q)
     through = problem.arm_thickness * np.linspace(0.0, 1.0, 2)
@@ -206,7 +210,7 @@ def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
     return upper, replace(lower, P_AI=lower.P_AI - [0.0, lower.P_AI[-1, 1]])  # its top on Y = 0, to the last digit
 
 
-def arm_tmeshes(problem: Problem, strips: tuple[Strip, ...]) -> tuple[TMesh, ...]:
+def arm_tmeshes(problem: Problem, strips: tuple[Strip, Strip]) -> tuple[TMesh, TMesh]:
     """T-meshes of the upper and the lower arm."""
     h = problem.arm_thickness
     upper, lower = strips
@@ -235,7 +239,7 @@ def _strips(problem: Problem, layers: int) -> tuple[Strip, Strip]:
     path = largest(lambda n: unknowns(n, n), 1, problem.dofs)
     missing = (problem.dofs - unknowns(path, path)) // 4
     options = [(path, path, 0)]
-    if 4 * missing > NEAR * problem.dofs:
+    if 4 * missing > CRACK_PATH.missed * problem.dofs:
         spare, fewer = missing // column, -(-(column - missing % column) // halves)
         longer = (problem.dofs - unknowns(path + 1, 0)) // (4 * halves)
         options += [(path + 1, longer, 0), (path, path, spare), (path, path - fewer, spare + 1)]

@@ -2,22 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from iga.interface.surface import Surface
 
-#: Sample points of the broad phase: so many on a side, and no more than this on the whole surface.
-SAMPLES, MOST = 8, 1024
-#: Newton steps within which a point that stays on its side arrives.
-STROLL = 5
-#: A point that crosses more sides than this from its last pairing has lost it.
-CROSSINGS = 8
-#: Parts of the side at an end by which a point may be beyond it: up to the first it is held as if the surface went on
-#: straight, from the second on it is free.
-HELD, FREE = 0.1, 0.3
+
+@dataclass(frozen=True)
+class ProjectionLimits:
+    """How far and how long a closest point is searched for.
+
+    The broad phase has ``samples`` on a side and no more than ``most`` on the whole surface. Points that stay near
+    their side arrive within ``near`` Newton steps; others walk along the chain for ``iterations``, and one that crosses
+    more sides than ``crossings`` from its last pairing has lost it. ``tolerance`` is on the last change of xi; Newton
+    doubles the digits, so the result is good to its square. At an end of the chain a point may be beyond the side by
+    the part ``held`` of it, as if the surface went on straight; from ``free`` on it meets nothing.
+    """
+
+    samples: int = 8
+    most: int = 1024
+    near: int = 5
+    crossings: int = 8
+    iterations: int = 60
+    tolerance: float = 1e-6
+    held: float = 0.1
+    free: float = 0.3
+
+
+PROJECTION = ProjectionLimits()
 
 
 @dataclass(frozen=True)
@@ -39,9 +53,9 @@ class Pairing:
 def nearest_samples(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray) -> Pairing:
     """Broad phase: the nearest of some sample points spread over the sides, by a k-d tree.
 
-    They are no more than `MOST`, so that the cost of a point has a bound, however many sides there are.
+    There are no more than `ProjectionLimits.most`: the cost of a point has a bound, however many sides there are.
     """
-    number = min(SAMPLES * surface.sides, MOST)
+    number = min(PROJECTION.samples * surface.sides, PROJECTION.most)
     along = (np.arange(number) + 0.5) * (surface.sides / number)
     c = along.astype(int)
     xi = along - c
@@ -51,14 +65,12 @@ def nearest_samples(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray) -> Pai
     return Pairing(c[nearest], xi[nearest], np.ones(len(x_qi), dtype=bool))
 
 
-def closest_points(
-    surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing, tolerance: float = 1e-6, iterations: int = 60
-) -> Pairing:
+def closest_points(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing) -> Pairing:
     """Project points on the surface: ``(x - y(xi)) . y'(xi) = 0`` by Newton, from the pairing before.
 
     A point that runs off a side goes on from the end of the neighbour; at the two ends of the chain it is held there
     and marked as off. At a kink between two sides, where it would jump for ever, it stays on the kink. Points that have
-    lost their partner (that are free of the ends, have crossed many sides, lie deeper in the body than a side is long,
+    got lost (that are free of the ends, have crossed many sides, lie deeper in the body than a side is long,
     or stand where the distance is not least) are searched for on the whole surface. Only sides that are met are looked
     at.
 
@@ -68,33 +80,33 @@ def closest_points(
     x_qi : (n_q, 2) points.
     y_AI : (n_A, 2) current control points.
     guess : start, usually the pairing of the step before.
-    tolerance : on the last change of xi; Newton doubles the digits, so the result is good to its square.
 
     Returns
     -------
     Pairing of all points.
     """
-    found = _stroll(surface, x_qi, y_AI, guess, tolerance)
+    found, limits = _nearby(surface, x_qi, y_AI, guess), PROJECTION
     q = np.flatnonzero(~found.on_q)
     if q.size == 0:
         return found
-    rest, apart_q, lost_q = _walk(surface, x_qi[q], y_AI, guess[q], CROSSINGS, tolerance, iterations)
+    rest, apart_q, lost_q = _along_chain(surface, x_qi[q], y_AI, guess[q], limits.crossings, limits.iterations)
     found.set(q, rest)
     if not np.any(lost_q):
         return found
     q, apart_q = q[lost_q], apart_q[lost_q]
-    start, crossings = nearest_samples(surface, x_qi[q], y_AI), CROSSINGS + 2 * surface.sides // MOST
-    again, apart, _ = _walk(surface, x_qi[q], y_AI, start, crossings, tolerance, iterations + crossings)
+    start, crossings = nearest_samples(surface, x_qi[q], y_AI), limits.crossings + 2 * surface.sides // limits.most
+    again, apart, _ = _along_chain(surface, x_qi[q], y_AI, start, crossings, limits.iterations + crossings)
     nearer = apart < apart_q
     found.set(q[nearer], again[nearer])
     return found
 
 
-def _stroll(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing, tolerance: float) -> Pairing:
-    """Plain Newton for the points that stay near, on their side or the next ones: ``on_q`` tells which have arrived."""
+def _nearby(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing) -> Pairing:
+    """Newton for the points that stay on their side or the next ones; ``on_q`` is True for those that have arrived."""
+    tolerance = PROJECTION.tolerance
     c_q, xi_q = guess.c_q.copy(), guess.xi_q.copy()
     Q_qbi, on_q = surface.bezier_points(y_AI, c_q), (xi_q > 0.0) & (xi_q < 1.0)
-    for _ in range(STROLL):
+    for _ in range(PROJECTION.near):
         jet_qki = np.stack(surface.coefficients(c_q, xi_q, 2), 1) @ Q_qbi
         d_qi, t_qi = x_qi - jet_qki[:, 0], jet_qki[:, 1]
         m_q, pull_q = (t_qi * t_qi).sum(-1), (d_qi * t_qi).sum(-1)
@@ -119,62 +131,73 @@ def _stroll(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing
     return Pairing(np.where(on_q, c_q, guess.c_q), np.where(on_q, xi_q, guess.xi_q), on_q)
 
 
-def _walk(
-    surface: Surface,
-    x_qi: np.ndarray,
-    y_AI: np.ndarray,
-    guess: Pairing,
-    crossings: int,
-    tolerance: float,
-    iterations: int,
+@dataclass(frozen=True)
+class Moving:
+    """Points under way along the chain: their numbers q, places x, sides c with Bezier points Q, parameters xi there.
+
+    The distance is least between ``low`` and ``high``, off the side where nothing is known yet. They have ``crossed``
+    so many sides and ``came`` over the last end forwards (1) or backwards (-1), by ``aside`` along its tangent.
+    """
+
+    q: np.ndarray
+    x: np.ndarray
+    c: np.ndarray
+    xi: np.ndarray
+    Q: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    crossed: np.ndarray
+    came: np.ndarray
+    aside: np.ndarray
+
+    def those(self, going: np.ndarray) -> Moving:
+        return Moving(*(getattr(self, field.name)[going] for field in fields(self)))
+
+
+def _along_chain(
+    surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing, crossings: int, iterations: int
 ) -> tuple[Pairing, np.ndarray, np.ndarray]:
-    """Pairing next to a guess, how far apart it is (infinite where there is none), and which points have lost theirs.
+    """Where each point comes to, how far apart it is (infinite where it has not arrived), and which ones have got lost.
 
     On a side Newton is kept between the places where the distance is known to fall and to rise. Where the curvature
     makes its denominator useless, ``|y'|^2`` alone takes its place (Gauss-Newton).
     """
-    c_q, xi_q, on_q = guess.c_q.copy(), guess.xi_q.copy(), np.ones(len(x_qi), dtype=bool)
-    apart_q, lost_q = np.full(len(x_qi), np.inf), np.ones(len(x_qi), dtype=bool)
-    # the points under way: where they are, between which places the distance is least, and how they came to their side
-    q, x, c, xi, Q = np.arange(len(x_qi)), x_qi, c_q, xi_q, surface.bezier_points(y_AI, c_q)
-    low: np.ndarray = np.full(len(q), -1.0)  # off the side, as high is: nothing is known
-    high: np.ndarray = np.full(len(q), 2.0)
-    came: np.ndarray = np.zeros(len(q), dtype=int)
-    crossed, aside = np.zeros(len(q), dtype=int), np.zeros(len(q))
+    n, tolerance = len(x_qi), PROJECTION.tolerance
+    c_q, xi_q, on_q = guess.c_q.copy(), guess.xi_q.copy(), np.ones(n, dtype=bool)
+    apart_q, lost_q, none_q = np.full(n, np.inf), np.ones(n, dtype=bool), np.zeros(n, dtype=int)
+    Q_qbi, low_q, high_q = surface.bezier_points(y_AI, c_q), np.full(n, -1.0), np.full(n, 2.0)
+    now = Moving(np.arange(n), x_qi, c_q, xi_q, Q_qbi, low_q, high_q, none_q, none_q, np.zeros(n))
     for _ in range(iterations):
-        r0, r1, r2 = surface.coefficients(c, xi, 2)
-        y, t, t_xi = ((r[:, None] @ Q)[:, 0] for r in (r0, r1, r2))
-        d = x - y
+        y, t, t_xi = ((r[:, None] @ now.Q)[:, 0] for r in surface.coefficients(now.c, now.xi, 2))
+        d = now.x - y
         m, pull = np.sum(t * t, -1), np.sum(d * t, -1)
-        a = m - np.sum(d * t_xi, -1)
-        step = ((xi == 1.0) & (pull > 0.0)).astype(int) - ((xi == 0.0) & (pull < 0.0))
-        low, high = np.where(pull > 0.0, xi, low), np.where(pull < 0.0, xi, high)
-        goal = xi + pull / np.where(a > 0.1 * m, a, m)
+        a, aside = m - np.sum(d * t_xi, -1), np.abs(pull) / np.sqrt(m)
+        step = ((now.xi == 1.0) & (pull > 0.0)).astype(int) - ((now.xi == 0.0) & (pull < 0.0))
+        low, high = np.where(pull > 0.0, now.xi, now.low), np.where(pull < 0.0, now.xi, now.high)
+        goal = now.xi + pull / np.where(a > 0.1 * m, a, m)
         goal = np.where((goal >= low) & (goal <= high), goal, 0.5 * (low + high))
-        at_end = (step != 0) & (surface.following(c, step) == c)
+        at_end = (step != 0) & (surface.following(now.c, step) == now.c)
         # on a kink, seen from both sides: the side whose normal is nearer keeps the point
-        on_kink = (step != 0) & (step == -came)
-        steps_back = on_kink & (aside < np.abs(pull) / np.sqrt(m))
-        stays = at_end | on_kink | ((step == 0) & (np.abs(goal - xi) <= tolerance))  # a goal beyond the side is no end
+        on_kink = (step != 0) & (step == -now.came)
+        rests = at_end | (on_kink & ~(now.aside < aside))
+        stays = at_end | on_kink | ((step == 0) & (np.abs(goal - now.xi) <= tolerance))  # not with a goal off the side
         over = np.where(step != 0, np.abs(pull) / m, 0.0)
         leaps = (step != 0) & ~stays & (over > 2.0)
         entry = np.where(leaps, 0.5, (step < 0).astype(float))
-        xi_next = np.where(step == 0, np.clip(goal, 0.0, 1.0), np.where(at_end | (on_kink & ~steps_back), xi, entry))
-        further = surface.following(c, step * np.where(leaps, over, 1.0).astype(int))
-        c_next = np.where(at_end | (on_kink & ~steps_back), c, further)
-        c_q[q], xi_q[q], on_q[q] = c_next, xi_next, ~at_end | (over <= tolerance)
+        xi = np.where(step == 0, np.clip(goal, 0.0, 1.0), np.where(rests, now.xi, entry))
+        further = surface.following(now.c, step * np.where(leaps, over, 1.0).astype(int))
+        c = np.where(rests, now.c, further)
         within = surface.outward * (t[:, 1] * d[:, 0] - t[:, 0] * d[:, 1]) < -m
-        lost_q[q] = ~stays | within | (at_end & (over > FREE)) | ((step == 0) & (a <= 0.0))
-        apart_q[q] = np.where(stays & ((step != 0) | (a > 0.0)), np.sqrt(np.sum(d * d, -1)), np.inf)
+        c_q[now.q], xi_q[now.q], on_q[now.q] = c, xi, ~at_end | (over <= tolerance)
+        lost_q[now.q] = ~stays | within | (at_end & (over > PROJECTION.free)) | ((step == 0) & (a <= 0.0))
+        apart_q[now.q] = np.where(stays & ((step != 0) | (a > 0.0)), np.sqrt(np.sum(d * d, -1)), np.inf)
         crosses = (step != 0) & ~stays
-        going = ~stays & (crossed + crosses <= crossings)
+        crossed, came = now.crossed + crosses, np.where(crosses & ~leaps, step, 0)
+        going = ~stays & (crossed <= crossings)
         if not np.any(going):
             break
         low, high = np.where(crosses, -1.0, low), np.where(crosses, 2.0, high)
-        came, aside = np.where(crosses & ~leaps, step, 0), np.abs(pull) / np.sqrt(m)
-        q, x, c, xi, Q, low, high, crossed, came, aside, moved = (
-            v[going] for v in (q, x, c_next, xi_next, Q, low, high, crossed + crosses, came, aside, crosses)
-        )
+        now, moved = Moving(now.q, now.x, c, xi, now.Q, low, high, crossed, came, aside).those(going), crosses[going]
         if np.any(moved):
-            Q[moved] = surface.bezier_points(y_AI, c[moved])
+            now.Q[moved] = surface.bezier_points(y_AI, now.c[moved])
     return Pairing(c_q, xi_q, on_q), apart_q, lost_q

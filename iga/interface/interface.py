@@ -14,11 +14,11 @@ import numpy as np
 
 from iga.interface.closest_point import Pairing, closest_points, nearest_samples
 from iga.interface.laws import TractionLaw
-from iga.interface.master_point import Partner, partner
+from iga.interface.master_point import MasterPoints, master_points
 from iga.interface.surface import Surface, normal
 
 #: Part of the model's size within which surfaces count as touching where nothing has moved.
-TOUCHING = 1e-9
+FACES_TOUCH = 1e-9
 
 
 @dataclass(frozen=True)
@@ -43,12 +43,12 @@ class Interface:
     (length x width) of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the
     whole model.
 
-    Nothing is searched where ``master`` is None: ``mirror_i`` (2,) or (n_q, 2) is the unit normal and partners
-    are known, the control points ``twin_qa`` that take the same functions and lie at the same places, or, without
+    There is no search where ``master`` is None: ``mirror_i`` (2,) or (n_q, 2) is the unit normal, and each point meets
+    the control points ``twin_qa`` that take the same functions and lie at the same places, or, without
     these, the mirror image of the slave in the straight line that it lies on: then the gap is twice the distance to it.
 
-    Where the contact ``at_rest``, before anything moves, is told, partners and normals stay what they are there and no
-    search is done (linear kinematics, see `settled`): its rows hold for good, and gaps change in proportion.
+    Where the contact ``at_rest``, before anything moves, is given, points meet the master there for good, along the
+    normals there, without a search (linear kinematics, see `settled`): gaps change in proportion to displacements.
 
     ``bonded_q`` (n_q,) is False for points that only touch: nothing holds them, and they have no history. All are
     bonded where it is left out. ``near`` is where its points nearly meet the master in the reference configuration, if
@@ -82,6 +82,12 @@ class Interface:
         """Control points seen from one of them: wherever the specimen lies, its coordinates are no larger than it."""
         return self.P_AI - self.P_AI[0]
 
+    @property
+    def surface(self) -> Surface:
+        """The master; only where there is one."""
+        assert self.master is not None
+        return self.master
+
     @cached_property
     def pairing(self) -> Pairing | None:
         """Where its points meet the master in the reference configuration; None where nothing is searched."""
@@ -94,17 +100,18 @@ class Interface:
         return closest_points(self.master, X_qi, self.local_AI, start)
 
     @cached_property
-    def partner(self) -> Partner:
+    def reference(self) -> MasterPoints:
         """The master where it is met in the reference configuration; only where there is one."""
-        return partner(self.master, self.pairing, self.at_slave(self.local_AI), self.local_AI)
+        assert self.pairing is not None
+        return master_points(self.surface, self.pairing, self.at_slave(self.local_AI), self.local_AI)
 
     @cached_property
     def home(self) -> Home:
         """Reference places on the master; only where there is one."""
-        there = self.partner
-        Y_qi = (there.M_qb[:, None] @ self.local_AI[self.master.conn_ca[there.c_q]])[:, 0]
+        there = self.reference
+        Y_qi = (there.M_qb[:, None] @ self.local_AI[self.surface.conn_ca[there.c_q]])[:, 0]
         apart_qi = self.at_slave(self.local_AI) - Y_qi
-        touching = np.linalg.norm(apart_qi, axis=1) < TOUCHING * np.ptp(self.local_AI, axis=0).max()
+        touching = np.linalg.norm(apart_qi, axis=1) < FACES_TOUCH * np.ptp(self.local_AI, axis=0).max()
         return Home(there.c_q, there.M_qb, Y_qi, np.where(touching[:, None], 0.0, apart_qi))
 
     def beside(self, X_mi: np.ndarray) -> np.ndarray:
@@ -122,7 +129,7 @@ class Contact:
 
     ``g_q`` (n_q,), ``n_qi`` (n_q, 2) master normals, ``share_q`` (n_q,) part of each point's area that faces the
     master. ``dof_qd`` (n_q, n_d) lists the unknowns of slave and master side that a point touches; ``V_qrd``
-    (n_q, r, n_d) holds the row of the first variation, ``dg = V_0 du``, and, where partners and normals move, the rows
+    (n_q, r, n_d) holds the row of the first variation, ``dg = V_0 du``, and, where these move, the rows
     T and Nb of the second (see `stiffness`) with ``m_q``, ``kappa_q`` and ``fading_q``. Of few unknowns ``full_qd``
     (n_q, n_dof) are the rows of the first over all of them.
     """
@@ -176,13 +183,13 @@ def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Con
     """Gaps in the configuration u_d (2 n_A,), searching from the pairing ``guess``."""
     if interface.at_rest is not None:
         return replace(interface.at_rest, g_q=interface.at_rest.gaps(u_d))
-    if interface.master is None:
+    if interface.master is None or guess is None:
         return _known(interface, u_d)
     master, u_Ai = interface.master, u_d.reshape(-1, 2)
     y_AI = interface.local_AI + u_Ai
     x_qi = interface.at_slave(y_AI)
     pairing = closest_points(master, x_qi, y_AI, guess)
-    there = partner(master, pairing, x_qi, y_AI)
+    there = master_points(master, pairing, x_qi, y_AI)
     conn_qa, D_qa, n_qi = _between(interface, there)
     g_q = np.sum((_slid(interface, there.c_q, there.M_qb) + _jump(D_qa, u_Ai.take(conn_qa, axis=0))) * n_qi, -1)
     moving_qa = np.concatenate([np.zeros_like(interface.N_qa), there.dM_qb], axis=1)
@@ -192,14 +199,18 @@ def contact(interface: Interface, u_d: np.ndarray, guess: Pairing | None) -> Con
 
 
 def settled(interface: Interface) -> Interface:
-    """The same where partners and normals stay what they are before anything moves."""
+    """The same with closest points and normals for good as they are before anything moves."""
+    return replace(interface, at_rest=resting(interface))
+
+
+def resting(interface: Interface) -> Contact:
+    """The contact before anything moves."""
     if interface.master is None:
-        return replace(interface, at_rest=_known(interface, np.zeros(interface.P_AI.size)))
-    there = interface.partner
+        return _known(interface, np.zeros(interface.P_AI.size))
+    there = interface.reference
     conn_qa, D_qa, n_qi = _between(interface, there)
     g_q, G_qd = np.sum(interface.home.apart_qi * n_qi, -1), _along(D_qa, n_qi)
-    rest = Contact(interface.pairing, g_q, n_qi, there.share_q, dofs(conn_qa), G_qd[:, None])
-    return replace(interface, at_rest=rest)
+    return Contact(interface.pairing, g_q, n_qi, there.share_q, dofs(conn_qa), G_qd[:, None])
 
 
 def traction(
@@ -277,16 +288,17 @@ def dofs(conn_qa: np.ndarray) -> np.ndarray:
 def _known(interface: Interface, u_d: np.ndarray) -> Contact:
     N_qa, conn_qa = interface.N_qa, interface.known_conn_qa
     D_qa = 2.0 * N_qa if interface.twin_qa is None else np.concatenate([N_qa, -N_qa], axis=1)
+    assert interface.mirror_i is not None
     n_qi = np.broadcast_to(interface.mirror_i, interface.X_qi.shape)
     g_q = np.sum((D_qa[:, None] @ u_d.reshape(-1, 2)[conn_qa])[:, 0] * n_qi, -1)
     return Contact(None, g_q, n_qi, np.ones(interface.points), dofs(conn_qa), _along(D_qa, n_qi)[:, None])
 
 
-def _between(interface: Interface, there: Partner) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _between(interface: Interface, there: MasterPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Control points of both sides, their functions, slave minus master (n_q, n_a + n_b), and the master's normals."""
-    conn_qa = np.concatenate([interface.conn_qa, interface.master.conn_ca.take(there.c_q, axis=0)], axis=1)
+    conn_qa = np.concatenate([interface.conn_qa, interface.surface.conn_ca.take(there.c_q, axis=0)], axis=1)
     D_qa = np.concatenate([interface.N_qa, -there.M_qb], axis=1)
-    return conn_qa, D_qa, normal(there.t_qi, interface.master.outward)
+    return conn_qa, D_qa, normal(there.t_qi, interface.surface.outward)
 
 
 def _jump(D_qa: np.ndarray, u_qai: np.ndarray) -> np.ndarray:
@@ -302,7 +314,7 @@ def _slid(interface: Interface, c_q: np.ndarray, M_qb: np.ndarray) -> np.ndarray
 
     That it is nothing at home is no matter of rounding: bodies that touch before anything moves have no gap.
     """
-    home, X_qbi = interface.home, interface.local_AI.take(interface.master.conn_ca.take(c_q, axis=0), axis=0)
+    home, X_qbi = interface.home, interface.local_AI.take(interface.surface.conn_ca.take(c_q, axis=0), axis=0)
     origin_qi, same = X_qbi[:, -1], c_q == home.c_q
     moved_qi = (np.where(same[:, None], home.N_qb - M_qb, -M_qb)[:, None] @ (X_qbi - origin_qi[:, None]))[:, 0]
     return moved_qi + np.where(same[:, None], 0.0, home.Y_qi - origin_qi) + home.apart_qi

@@ -14,10 +14,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from iga.interface.interface import Contact, Interface, settled
+from iga.interface.interface import Contact, Interface, resting
 
 #: Part of the specimen's size, or of one, within which control points and functions are the same.
-SAME = 1e-9
+SAME_POINT = 1e-9
 
 
 def lumped(interface: Interface) -> Interface:
@@ -25,8 +25,8 @@ def lumped(interface: Interface) -> Interface:
 
     Point A has the area ``w_A = int R_A dGamma`` and the gap ``g_A = (u_A^s - u_A^m) . n_A``, the jump of the control
     variables along the normal of the reference configuration (the weighted mean of it where the surface is curved), in
-    finite kinematics as well: partners stay partners. Since the functions add up to one, a uniform gap gives the exact
-    forces and energies. ``X_qi`` are the control points, which lie on straight surfaces only.
+    finite kinematics as well: each point keeps the one that it faces. Since the functions add up to one, a uniform gap
+    gives the exact forces and energies. ``X_qi`` are the control points, which lie on straight surfaces only.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def lumped(interface: Interface) -> Interface:
     ------
     ValueError : the meshes of the two bodies do not match along the interface, or a control point has no area.
     """
-    start = settled(interface).at_rest
+    start = resting(interface)
     w_A, n_Ai = _areas(interface, start.n_qi)
     A = _in_order(interface.conn_qa)
     if np.any(w_A[A] <= 0.0):
@@ -56,11 +56,11 @@ def lumped(interface: Interface) -> Interface:
 
 
 def paired(interface: Interface) -> Interface:
-    """The interface at its own points, whose partners are the control points that face theirs, for good.
+    """The interface at its own points, which meet the control points that face theirs, for good.
 
     Parameters and errors as those of `lumped`, beside which it has places that are not bonded.
     """
-    start = settled(interface).at_rest
+    start = resting(interface)
     if interface.master is None:
         return replace(interface, mirror_i=start.n_qi)
     A = _in_order(interface.conn_qa)
@@ -70,7 +70,7 @@ def paired(interface: Interface) -> Interface:
 
 
 def chained(parts: Sequence[Interface]) -> Interface:
-    """One interface from parts whose partners are known; a lumped point takes functions that are zero there as well."""
+    """One interface from parts without a search; a lumped point takes functions that are zero there as well."""
     first, *others = parts
     if not others:
         return first
@@ -105,13 +105,14 @@ def _twins(interface: Interface, start: Contact, A: np.ndarray) -> np.ndarray:
     B = _in_order(master_qb)
     distance, nearest = cKDTree(interface.local_AI[B]).query(interface.local_AI[A])
     twin = B[nearest]
-    same = len(B) == len(A) and np.all(distance < SAME * np.ptp(interface.local_AI, axis=0).max())
+    rounding = SAME_POINT * np.ptp(interface.local_AI, axis=0).max()
+    same = len(B) == len(A) and bool(np.all(distance < rounding))
     if same:
         slave_qA, master_qA = (
             _dense(conn, N, points)
             for conn, N, points in ((interface.conn_qa, interface.N_qa, A), (master_qb, D_qb, twin))
         )
-        same = np.allclose(slave_qA, master_qA, rtol=0.0, atol=SAME)
+        same = np.allclose(slave_qA, master_qA, rtol=0.0, atol=SAME_POINT)
     if not same:
         raise ValueError(
             'interface_rule must be "gauss" or "lobatto" on meshes that do not match along the interface '
@@ -122,8 +123,9 @@ def _twins(interface: Interface, start: Contact, A: np.ndarray) -> np.ndarray:
 
 def _functions(interface: Interface, start: Contact) -> np.ndarray:
     """Functions (n_q, n_b) of the master where the points meet it."""
-    (r,) = interface.master.coefficients(start.pairing.c_q, start.pairing.xi_q, 0)
-    return interface.master.functions(start.pairing.c_q, r)
+    assert start.pairing is not None
+    (r,) = interface.surface.coefficients(start.pairing.c_q, start.pairing.xi_q, 0)
+    return interface.surface.functions(start.pairing.c_q, r)
 
 
 def _dense(conn_qa: np.ndarray, N_qa: np.ndarray, A: np.ndarray) -> np.ndarray:

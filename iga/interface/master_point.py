@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.interface.closest_point import FREE, HELD, Pairing
+from iga.interface.closest_point import PROJECTION, Pairing
 from iga.interface.surface import Surface
 
-#: Part of a side beyond its end that is none.
+#: Points beyond an end by less than this part of the side count as on it.
 AT_END = 1e-9
 
 
 @dataclass(frozen=True)
-class Partner:
+class MasterPoints:
     """Places on the master, for points beyond its ends or on a kink on the straight continuation of a side.
 
     ``c_q`` sides; ``M_qb`` and ``dM_qb`` (n_q, n_b) functions there and their derivatives; ``t_qi`` and ``t_xi_qi``
@@ -31,13 +31,13 @@ class Partner:
     fading_q: np.ndarray
 
 
-def partner(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarray) -> Partner:
+def master_points(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarray) -> MasterPoints:
     """Where the points x_qi (n_q, 2) meet the master with the control points y_AI (n_A, 2).
 
     Beyond the ends of a side, at ``eta`` from there, the surface goes on along its tangent, ``y + eta y'``: the gap is
-    then as smooth as the motion, its variation complete, and the forces are in balance. Up to `HELD` a point beyond an
-    end of the chain carries all its traction, from `FREE` on nothing, and in between its share falls smoothly: what it
-    stands for slides off the master little by little.
+    then as smooth as the motion, its variation complete, and the forces are in balance. Up to
+    `ProjectionLimits.held` a point beyond an end of the chain carries all its traction, from ``free`` on nothing, and
+    in between its share falls smoothly: what it stands for slides off the master little by little.
     """
     c_q, xi_q = pairing.c_q, pairing.xi_q
     r0, r1, r2 = master.coefficients(c_q, xi_q, 2)
@@ -55,14 +55,15 @@ def partner(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarra
         share, rate = _share(np.where(at_end, way * eta, 0.0))
         share_q[edge], fading_q[edge] = share, way * rate
     M_qb, dM_qb = (master.functions(c_q, r) for r in (r0, r1))
-    return Partner(c_q, M_qb, dM_qb, t_qi, t_xi_qi, share_q, fading_q)
+    return MasterPoints(c_q, M_qb, dM_qb, t_qi, t_xi_qi, share_q, fading_q)
 
 
 def _share(over: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Share of a point beyond an end by ``over``, in parts of the side, and its logarithmic derivative.
 
-    ``(1 - s)^2 (1 + 2 s)``, s from 0 at `HELD` to 1 at `FREE`.
+    ``(1 - s)^2 (1 + 2 s)``, s from 0 where it is still held to 1 where it is free.
     """
-    s = np.clip((over - HELD) / (FREE - HELD), 0.0, 1.0)
+    held, free = PROJECTION.held, PROJECTION.free
+    s = np.clip((over - held) / (free - held), 0.0, 1.0)
     left = np.where(s < 1.0, 1.0 - s, 1.0)
-    return (1.0 - s) ** 2 * (1.0 + 2.0 * s), -6.0 * np.where(s < 1.0, s, 0.0) / (left * (1.0 + 2.0 * s) * (FREE - HELD))
+    return (1.0 - s) ** 2 * (1.0 + 2.0 * s), -6.0 * np.where(s < 1.0, s, 0.0) / (left * (1.0 + 2.0 * s) * (free - held))

@@ -10,8 +10,8 @@ import numpy as np
 from iga.mesh.bernstein import bernstein_jet
 from iga.mesh.extraction import SIDES, Chain, Mesh, on_side
 
-#: A coefficient of an extraction operator below this is none.
-NOTHING = 1e-13
+#: Coefficients of an extraction operator below this count as zero.
+EXTRACTED = 1e-13
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Surface:
     def closed(self) -> bool:
         """The last side ends where the first one begins, in the same functions."""
         end, start = self.C_cab[-1][:, -1], self.C_cab[0][:, 0]
-        ends, starts = np.abs(end) > NOTHING, np.abs(start) > NOTHING
+        ends, starts = np.abs(end) > EXTRACTED, np.abs(start) > EXTRACTED
         return self.sides > 1 and set(self.conn_ca[-1][ends]) == set(self.conn_ca[0][starts])
 
     @cached_property
@@ -48,7 +48,7 @@ class Surface:
     def bezier_points(self, x_AI: np.ndarray, c_q: np.ndarray | None = None) -> np.ndarray:
         """Homogeneous Bezier points (n_c, p + 1, 2) of a configuration x_AI (n_A, 2) of the control points.
 
-        Of the sides c_q (n_q,) alone where they are told: (n_q, p + 1, 2).
+        Of the sides c_q (n_q,) alone where they are given: (n_q, p + 1, 2).
         """
         if c_q is None:
             return self.C_cab.swapaxes(1, 2) @ x_AI.take(self.conn_ca, axis=0)
@@ -98,7 +98,7 @@ def surface(mesh: Mesh, chain: Chain, first: int) -> Surface:
     for here, number, side in chain.parts():
         block, e = mesh.blocks[number], chain.element_c[here]
         trace_cab = block.C_eab[e][:, :, on_side(block.degrees, side)]
-        alive = np.any(np.abs(trace_cab) > NOTHING, axis=2)  # files have rounding where nothing should be
+        alive = np.any(np.abs(trace_cab) > EXTRACTED, axis=2)  # files have rounding where nothing should be
         if not np.all(alive.sum(1) == p + 1):
             raise ValueError(f"a side of degree {p} must carry {p + 1} functions, got {sorted(set(alive.sum(1)))}")
         row, a = np.nonzero(alive)

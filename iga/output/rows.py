@@ -1,6 +1,6 @@
 """What is read from a converged state: one row of numbers, by integrals over faces and interface.
 
-Everything is told in the specimen's own terms: components along and across it, wherever it lies.
+Components are along and across the specimen, wherever it lies.
 """
 
 from __future__ import annotations
@@ -57,11 +57,11 @@ def reach(specimen: Specimen, k_q: np.ndarray, limit: float) -> float:
     k = k_q[order]
     beyond = np.flatnonzero(k >= limit)
     if beyond.size == 0:
-        return specimen.free_length
+        return specimen.layout.free_length
     last = beyond[-1]
     onward = 0.0 if last == len(k) - 1 else (s[last + 1] - s[last]) * (k[last] - limit) / (k[last] - k[last + 1])
     # control points as points: those of splines reach back over the tip of the bond
-    return max(float(s[last] + onward), specimen.free_length)
+    return max(float(s[last] + onward), specimen.layout.free_length)
 
 
 def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
@@ -122,7 +122,7 @@ def _balance(specimen: Specimen, point: Point, support_Ai: np.ndarray) -> dict[s
     pull_qi = (point.response.p_q * interface.dA_q)[:, None] * n_qi  # on the master
     if not specimen.upper_is_slave:
         x_qi, pull_qi = x_qi - moved * touch.g_q[:, None] * n_qi, -pull_qi
-    x_face = specimen.loaded_at + moved * float(specimen.face_row @ state.u_d)
+    x_face = specimen.layout.loaded_at + moved * float(specimen.face_row @ state.u_d)
     R_Ai = pose.components(support_Ai[upper.points])
     return {
         "interface_force": float(pull_qi[:, 1].sum()),

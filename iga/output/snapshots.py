@@ -7,7 +7,7 @@ import numpy as np
 from iga.elements.bulk import Solid, gradient
 from iga.elements.kinematics import cauchy_stress
 from iga.path.point import Point
-from iga.specimen.body import SAMPLES
+from iga.specimen.body import ELEMENT_SAMPLES
 from iga.specimen.specimen import Specimen
 
 
@@ -15,7 +15,7 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
     """Interface profile, ordered along the specimen, and one grid of samples an element, in the specimen's own frame.
 
     Keys: opening, load; s_q, gap_q, traction_q, damage_q (n_q,); X_euvi, u_euvi (n_e, k+1, k+1, 2) and stress_euv
-    (n_e, k+1, k+1), the Cauchy stress along it, with k = `SAMPLES`; of T-splines the edges line_nki (n, 2, 2)
+    (n_e, k+1, k+1), the Cauchy stress along it, with k = `ELEMENT_SAMPLES`; of T-splines the edges line_nki (n, 2, 2)
     and T-junctions junction_ni (n, 2) of the T-meshes.
     """
     system, state, response = specimen.system, point.state, point.response
@@ -40,12 +40,16 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
 
 def _tmesh(specimen: Specimen) -> dict[str, np.ndarray]:
     """Edges and T-junctions of the T-meshes, where there are some."""
-    if not specimen.tmeshes:
+    meshes = specimen.layout.tmeshes
+    if not meshes:
         return {}
     return {
-        "line_nki": np.concatenate([mesh.edges() for mesh in specimen.tmeshes]),
+        "line_nki": np.concatenate([mesh.edges() for mesh in meshes]),
         "junction_ni": np.concatenate(
-            [np.stack([m.knots_i[m.junctions[:, 0]], m.knots_j[m.junctions[:, 1]]], -1) for m in specimen.tmeshes]
+            [
+                np.stack([m.knots_i[m.junctions[:, 0]], m.knots_j[m.junctions[:, 1]]], -1)
+                for m in specimen.layout.tmeshes
+            ]
         ),
     }
 
@@ -53,7 +57,7 @@ def _tmesh(specimen: Specimen) -> dict[str, np.ndarray]:
 def _grid(
     specimen: Specimen, solid: Solid, X_eqi: np.ndarray, u_Ai: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    basis, pose, shape = solid.basis, specimen.pose, (-1, SAMPLES + 1, SAMPLES + 1)
+    basis, pose, shape = solid.basis, specimen.pose, (-1, ELEMENT_SAMPLES + 1, ELEMENT_SAMPLES + 1)
     u_eqi = pose.components(basis.N_eqa @ u_Ai.take(basis.conn_ea, axis=0))
     sigma = cauchy_stress(solid.D, gradient(basis, u_Ai), specimen.system.kinematics)
     stress = np.outer(pose.axes_kI[0], pose.axes_kI[0]).ravel() @ sigma.reshape(4, -1)

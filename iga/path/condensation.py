@@ -26,19 +26,31 @@ from iga.system.system import System
 
 #: Rows, columns and values of a matrix.
 Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
-#: Normals that differ by less than this are one.
-STRAIGHT = 1e-12
-#: Part of the largest function by which those of two control points that face each other may differ, by rounding.
-ALIKE = 1e-12
-#: Part of a rigid motion below which a spring or a row does not feel it.
-RESISTED = 1e-9
-#: Times as stiff as the stiffest element no specimen is: rows say the same twice but for rounding.
-TWICE = 1e9
-#: Equations times half bandwidth squared up to which a banded LU takes less time than a sparse one (measured: half the
-#: time at 500 equations, two thirds of it or all at 2,000 to 4,000, twice at 6,000, of splines and Lagrange elements).
-NARROW = 1e7
-#: Work of a dense LU over that of a banded one, for matrices of equal size: n^3 2/3 against 4 n k^2.
-DENSE, BANDED = 2.0 / 3.0, 4.0
+
+
+@dataclass(frozen=True)
+class CondensationLimits:
+    """When a bulk is condensed, and what counts as rounding.
+
+    ``straight``: normals that differ by less are one. ``alike``: part of the largest function by which those of two
+    control points that face each other may differ. ``felt``: part of a rigid motion below which a spring or a row does
+    not feel it. ``stiffest``: times the stiffest element of a specimen; a larger stiffness is that of rows which are
+    linearly dependent up to rounding. ``narrow``: equations times half bandwidth squared up to which a banded LU takes
+    less time than a sparse one (measured: half the time at 500 equations, two thirds of it or all at 2,000 to 4,000,
+    twice at 6,000, of splines and Lagrange elements). Work of a ``dense`` LU over that of a ``banded`` one, for
+    matrices of equal size: n^3 2/3 against 4 n k^2.
+    """
+
+    straight: float = 1e-12
+    alike: float = 1e-12
+    felt: float = 1e-9
+    stiffest: float = 1e9
+    narrow: float = 1e7
+    dense: float = 2.0 / 3.0
+    banded: float = 4.0
+
+
+CONDENSATION = CondensationLimits()
 
 
 @dataclass(frozen=True)
@@ -57,7 +69,7 @@ class Condensed:
     rest: Contact
 
     def expanded(self, point: Point) -> Point:
-        """The same point of the path, told in all displacements."""
+        """The same point of the path in all displacements."""
         whole, state, found = self.whole, point.state, point.response
         u_d, touch = self.U_dr @ state.u_d, replace(self.rest, g_q=found.contact.g_q)
         internal_d = state.load * whole.load_d
@@ -75,33 +87,16 @@ def condensed(system: System) -> Condensed | None:
     It pays as long as a dense matrix of the interface is less work than a banded one of the whole.
     """
     interface, rest = system.interface, system.interface.at_rest
-    if system.kinematics != "linear" or rest is None:
+    if not system.linear or rest is None:
         return None
     B_rd, kept_qd, weight_qd = _rows(system, rest)
     n_r = B_rd.shape[0]
     if not _pays(system, n_r):
         return None
-    free = np.flatnonzero(system.free_d)
-    # rows as large as the stiffness: else the forces lose half of their digits to it
-    size = max(float(np.abs(K).max()) for K in system.linear_matrices)
-    saddle, place = _saddle(system, size * B_rd)
-    held, given_r, U_dr = place[system.n_dof :], np.zeros((free.size + n_r, n_r)), np.zeros((system.n_dof, n_r))
-    given_r[held, np.arange(n_r)] = size
-    found = _solved(saddle, given_r)
-    if found is None:  # rows that say the same twice
+    found = _constrained(system, B_rd)
+    if found is None:
         return None
-    U_dr[free], S_rr = found[place[free]], -size * found[held]
-    if not np.abs(S_rr).max() < TWICE * size:  # the same, but for rounding
-        return None
-    # rigid motions ask for no force: said once more, rounding of the solution does not come into the balance of forces,
-    # neither by those that no spring resists nor by those that no row feels
-    motions_dm = _rigid_motions(system)
-    rigid_dm = _without(system.springs_rd, motions_dm)
-    U_dr -= _resting(system, _without(B_rd, motions_dm), U_dr)
-    y_rm, triangle = np.linalg.qr(B_rd @ rigid_dm)
-    U_dr += (np.linalg.solve(triangle.T, rigid_dm.T).T - U_dr @ y_rm) @ y_rm.T
-    S_rr -= y_rm @ (y_rm.T @ S_rr)
-    S_rr -= (S_rr @ y_rm) @ y_rm.T
+    U_dr, S_rr = _balanced(system, B_rd, *found)
     at_rest = replace(rest, pairing=None, dof_qd=kept_qd, V_qrd=weight_qd[:, None])
     at_rest = replace(at_rest, full_qd=at_rest.rows(np.arange(interface.points), n_r).T)
     small = System(
@@ -120,11 +115,44 @@ def condensed(system: System) -> Condensed | None:
     return Condensed(small, system, U_dr, held_fr, fixed, rest)
 
 
+def _constrained(system: System, B_rd: coo_array) -> tuple[np.ndarray, np.ndarray] | None:
+    """Displacements U_dr (n_dof, n_r) with a unit of each row ``B u``, and the stiffness S_rr of these.
+
+    None where rows are linearly dependent, be it up to rounding.
+    """
+    free, n_r = np.flatnonzero(system.free_d), B_rd.shape[0]
+    # rows as large as the stiffness: else the forces lose half of their digits to it
+    size = max(float(np.abs(K).max()) for K in system.linear_matrices)
+    saddle, place = _saddle(system, size * B_rd)
+    held, given_r, U_dr = place[system.n_dof :], np.zeros((free.size + n_r, n_r)), np.zeros((system.n_dof, n_r))
+    given_r[held, np.arange(n_r)] = size
+    found = _solved(saddle, given_r)
+    if found is None:
+        return None
+    U_dr[free], S_rr = found[place[free]], -size * found[held]
+    return (U_dr, S_rr) if np.abs(S_rr).max() < CONDENSATION.stiffest * size else None
+
+
+def _balanced(system: System, B_rd: coo_array, U_dr: np.ndarray, S_rr: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same, mended in place: a rigid motion causes no force, to the last digit, and the forces stay in balance.
+
+    That holds for the motions that no spring resists and for those that no row feels.
+    """
+    motions_dm = _rigid_motions(system)
+    rigid_dm = _without(system.springs_rd, motions_dm)
+    U_dr -= _resting(system, _without(B_rd, motions_dm), U_dr)
+    y_rm, triangle = np.linalg.qr(B_rd @ rigid_dm)
+    U_dr += (np.linalg.solve(triangle.T, rigid_dm.T).T - U_dr @ y_rm) @ y_rm.T
+    S_rr -= y_rm @ (y_rm.T @ S_rr)
+    S_rr -= (S_rr @ y_rm) @ y_rm.T
+    return U_dr, S_rr
+
+
 def _pays(system: System, n_r: int) -> bool:
-    """Whether n_r dense equations are less work than a band, of which a look at one element may tell enough."""
+    """Whether n_r dense equations are less work than a band, by its elements alone if they suffice."""
 
     def less(n: int, k: int) -> bool:
-        return DENSE * n_r**3 <= BANDED * n * k**2
+        return CONDENSATION.dense * n_r**3 <= CONDENSATION.banded * n * k**2
 
     least = max(d.shape[1] for d in system.element_dofs) - 1
     return less(int(system.free_d.sum()), least) or less(system.band.n, system.band.k)
@@ -138,9 +166,9 @@ def _rows(system: System, rest: Contact) -> tuple[coo_array, np.ndarray, np.ndar
     """
     interface = system.interface
     n_i, V_qd = rest.n_qi[0], rest.V_qrd[:, 0]
-    if np.abs(rest.n_qi - n_i).max() > STRAIGHT:
+    if np.abs(rest.n_qi - n_i).max() > CONDENSATION.straight:
         kept, kept_qd = _numbered(rest.dof_qd)
-        entries = [(np.arange(kept.size), kept, np.ones(kept.size))]
+        entries: list[Entries] = [(np.arange(kept.size), kept, np.ones(kept.size))]
         weight_qd = V_qd
     else:
         A_qd, weight_qd = rest.dof_qd[:, ::2] // 2, V_qd[:, ::2] * n_i[0] + V_qd[:, 1::2] * n_i[1]
@@ -172,7 +200,10 @@ def _facing(interface: Interface, A_qd: np.ndarray, weight_qd: np.ndarray) -> tu
         twin_qa = A_qd[:, n_a:][:, ::way]
         twin[slave_qa] = twin_qa
         sum_qa = weight_qd[:, :n_a] + weight_qd[:, n_a:][:, ::way]
-        if np.array_equal(twin[slave_qa], twin_qa) and np.abs(sum_qa).max() <= ALIKE * np.abs(weight_qd).max():
+        if (
+            np.array_equal(twin[slave_qa], twin_qa)
+            and np.abs(sum_qa).max() <= CONDENSATION.alike * np.abs(weight_qd).max()
+        ):
             return slave_qa, twin_qa
     return None
 
@@ -182,7 +213,7 @@ def _numbered(name_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return names, number.reshape(name_qd.shape)
 
 
-def _along(A: np.ndarray, n_i: np.ndarray) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def _along(A: np.ndarray, n_i: np.ndarray) -> list[Entries]:
     """Entries of the rows ``n . u_A``."""
     row = np.arange(A.size)
     return [(row, 2 * A + i, np.full(A.size, n_i[i])) for i in range(2)]
@@ -190,14 +221,14 @@ def _along(A: np.ndarray, n_i: np.ndarray) -> list[tuple[np.ndarray, np.ndarray,
 
 def _without(rows_rd: np.ndarray | coo_array, motions_dm: np.ndarray) -> np.ndarray:
     """Of some motions (n_dof, n_m) those that rows (n_r, n_dof) do not feel."""
-    return motions_dm @ null_space(rows_rd @ motions_dm, rcond=RESISTED)
+    return motions_dm @ null_space(rows_rd @ motions_dm, rcond=CONDENSATION.felt)
 
 
 def _resting(system: System, unfelt_dm: np.ndarray, U_dr: np.ndarray) -> np.ndarray:
     """Motions (n_dof, n_r) that the springs resist although no row feels them: nothing is there to hold against."""
     stretched_rm = system.spring_r[:, None] ** 0.5 * (system.springs_rd @ unfelt_dm)
     stretch_rr = system.spring_r[:, None] ** 0.5 * (system.springs_rd @ U_dr)
-    return unfelt_dm @ np.linalg.lstsq(stretched_rm, stretch_rr, rcond=RESISTED)[0]
+    return unfelt_dm @ np.linalg.lstsq(stretched_rm, stretch_rr, rcond=CONDENSATION.felt)[0]
 
 
 def _rigid_motions(system: System) -> np.ndarray:
@@ -253,10 +284,11 @@ def _saddle(system: System, B_rd: coo_array) -> tuple[Entries, np.ndarray]:
         held = np.flatnonzero(a_d)
         blocks.append((held[None], spring * np.outer(a_d[held], a_d[held])[None]))
     row, column = place[n_dof + row], place[column]
-    entries = [(row, column, B_rd.data), (column, row, B_rd.data)]
+    entries: list[Entries] = [(row, column, B_rd.data), (column, row, B_rd.data)]
     for d, K in blocks:
         at = place[d]
-        entries.append((*(np.broadcast_to(v, K.shape).ravel() for v in (at[:, :, None], at[:, None])), K.ravel()))
+        rows, columns = (np.broadcast_to(v, K.shape).ravel() for v in (at[:, :, None], at[:, None]))
+        entries.append((rows, columns, K.ravel()))
     i, j, values = (np.concatenate(parts) for parts in zip(*entries, strict=True))
     if there.size < x_m.size:
         free = (i >= 0) & (j >= 0)
@@ -268,7 +300,7 @@ def _solved(saddle: Entries, given_r: np.ndarray) -> np.ndarray | None:
     """Solutions (n, n_r), by a band where it is narrow, else by what spares the zeros in it; None where singular."""
     (i, j, values), n = saddle, len(given_r)
     k = int(np.abs(i - j).max())
-    if n * k**2 <= NARROW:
+    if n * k**2 <= CONDENSATION.narrow:
         width = 3 * k + 1
         band = np.bincount(2 * k + i - j + width * j, values, width * n).reshape(n, width).T
         lu, pivots, info = dgbtrf(band, k, k, overwrite_ab=True)

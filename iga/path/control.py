@@ -7,6 +7,7 @@ by any one of them.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,6 +17,20 @@ from iga.system.system import System
 
 #: Value at a state with its response, gradient by the displacements (n_dof,), derivative by the load.
 Control = Callable[[State, Response], tuple[float, np.ndarray, float]]
+
+
+@dataclass(frozen=True)
+class Prescribed:
+    """A control, the value that it is to have, and by how much it changes in this step, for the tolerance on it."""
+
+    control: Control
+    value: float
+    change: float
+
+    def met(self, state: State, response: Response) -> bool:
+        """Whether the control is within a millionth of its change, or within rounding of its value."""
+        off = abs(self.control(state, response)[0] - self.value)
+        return off <= max(1e-6 * abs(self.change), 1e-12 * abs(self.value))
 
 
 def opening_control(system: System) -> Control:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,14 +11,25 @@ from iga.mesh.quadrature import gauss
 from iga.path.point import Point
 from iga.system.system import System
 
-#: Parts of a step over which it is told what slides off the master.
-SLIDING = 16
-#: How far a step may leave the balance of energy open, in parts of the largest work so far: one that leaps over a part
-#: of the path does by more. As long as less than that is dissipated it is no measure; then a part of what is, or, where
-#: that is next to nothing, of the work.
-LEAK, LEAK_OF_DISSIPATED, LEAK_OF_ELASTIC = 1e-3, 1e-3, 1e-7
-#: Part of the work below which nothing is dissipated: rounding alone leaves points without damage some.
-ROUNDED = 1e-13
+
+@dataclass(frozen=True)
+class Balance:
+    """How far a step may leave the balance of energy open: one that leaps over a part of the path does by more.
+
+    ``leak`` is in parts of the largest work so far. As long as less than that is dissipated it is no measure; then
+    ``of_dissipated`` is a part of what is, or, where that is next to nothing, ``of_elastic`` one of the work.
+    Less than ``rounding`` of the work is not dissipated: rounding alone leaves points without damage some.
+    What slides off the master is added up over so many parts of a step (``sliding``).
+    """
+
+    leak: float = 1e-3
+    of_dissipated: float = 1e-3
+    of_elastic: float = 1e-7
+    rounding: float = 1e-13
+    sliding: int = 16
+
+
+BALANCE = Balance()
 
 
 def _cubics(s: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -30,8 +42,8 @@ def _cubics(s: np.ndarray) -> tuple[np.ndarray, ...]:
     )
 
 
-_PLACES, WEIGHTS = gauss(3)
-VALUES, SLOPES, D_VALUES, D_SLOPES = _cubics(_PLACES)
+_PLACES, _WEIGHTS = gauss(3)
+_VALUES, _SLOPES, _D_VALUES, _D_SLOPES = _cubics(_PLACES)
 
 
 def step_work(system: System, start: Point, end: Point, away: float, back: float) -> float:
@@ -43,9 +55,9 @@ def step_work(system: System, start: Point, end: Point, away: float, back: float
     """
     loads = np.array([away * start.tangent.d_load, back * end.tangent.d_load])
     openings = np.array([away * (system.load_d @ start.tangent.du_d), back * (system.load_d @ end.tangent.du_d)])
-    load = np.array([start.state.load, end.state.load]) @ VALUES + loads @ SLOPES
-    d_opening = np.array([start.opening, end.opening]) @ D_VALUES + openings @ D_SLOPES
-    return float(WEIGHTS @ (load * d_opening))
+    load = np.array([start.state.load, end.state.load]) @ _VALUES + loads @ _SLOPES
+    d_opening = np.array([start.opening, end.opening]) @ _D_VALUES + openings @ _D_SLOPES
+    return float(_WEIGHTS @ (load * d_opening))
 
 
 def straight_work(start: Point, end: Point, several: bool) -> float:
@@ -72,8 +84,8 @@ def slid_off(system: System, start: Point, end: Point, away: float, back: float)
         return 0.0
     ends, lengths = (start, end), (away, back)
     g = _hermite([touch.g_q[q] for touch in touches], [point.tangent.rate_q[q] for point in ends], lengths)
-    left = [0.5 - np.sin(np.arcsin(1.0 - 2.0 * touch.share_q[q]) / 3.0) for touch in touches]
-    left = _hermite(left, [_left_rate(point, q, v) for point, v in zip(ends, left, strict=True)], lengths)
+    at_ends = [0.5 - np.sin(np.arcsin(1.0 - 2.0 * touch.share_q[q]) / 3.0) for touch in touches]
+    left = _hermite(at_ends, [_left_rate(point, q, v) for point, v in zip(ends, at_ends, strict=True)], lengths)
     share = left**2 * (3.0 - 2.0 * left)  # as `iga.interface.interface` has it
     k = np.maximum(g, start.state.k_q[q])
     cohesive, touching, dissipated = interface.law.energies(g, k)
@@ -88,7 +100,7 @@ def slid_off(system: System, start: Point, end: Point, away: float, back: float)
 def _left_rate(point: Point, q: np.ndarray, left_q: np.ndarray) -> np.ndarray:
     """Rate along the tangent of what is ``left`` of a point's way off the master, from that of its share."""
     touch, du_d = point.response.contact, point.tangent.du_d
-    if touch.m_q is None:
+    if touch.m_q is None or touch.fading_q is None:
         return np.zeros(q.size)
     T, Nb = np.sum(touch.V_qrd[q, 1:] * du_d[touch.dof_qd[q]][:, None], axis=2).T
     d_share = touch.share_q[q] * touch.fading_q[q] * (T + touch.g_q[q] * Nb) / touch.m_q[q]
@@ -98,7 +110,7 @@ def _left_rate(point: Point, q: np.ndarray, left_q: np.ndarray) -> np.ndarray:
 
 def _hermite(ends: Sequence[np.ndarray], rates: Sequence[np.ndarray], lengths: Sequence[float]) -> np.ndarray:
     """Cubics (n_s, n_q) between both ends, within them."""
-    values, slopes, _, _ = _cubics(np.linspace(0.0, 1.0, SLIDING + 1))
+    values, slopes, _, _ = _cubics(np.linspace(0.0, 1.0, BALANCE.sliding + 1))
     v0, v1 = ends
     rates = [length * rate for rate, length in zip(rates, lengths, strict=True)]
     v = values.T @ np.stack(ends) + slopes.T @ np.stack(rates)
@@ -106,11 +118,11 @@ def _hermite(ends: Sequence[np.ndarray], rates: Sequence[np.ndarray], lengths: S
 
 
 def leaks(system: System, start: Point, end: Point, most: float) -> bool:
-    """Whether the work of a step is not what its energies say: it did not go along the path.
+    """Whether the work of a step differs from the change of its energies: it did not go along the path.
 
     ``most`` is the largest work so far. What the forces that balance leaves over have done, where rounding leaves more
-    than the tolerance, is no leak. On the step on which damage begins nothing tells yet how much is going to be
-    dissipated, and a reversible law dissipates nothing.
+    than the tolerance, is no leak. On the step on which damage begins it is not known yet how much is going to
+    be dissipated, and a reversible law dissipates nothing.
     """
     most = max(most, abs(end.external_work))
     leak = abs(end.external_work - start.external_work - (end.energies.total - start.energies.total))
@@ -118,7 +130,7 @@ def leaks(system: System, start: Point, end: Point, most: float) -> bool:
     moved_d = end.state.u_d - start.state.u_d
     leak -= left_over * float(moved_d @ moved_d) ** 0.5
     before, after = start.energies.dissipated, end.energies.dissipated
-    begun = before <= ROUNDED * most < after
-    if after >= LEAK * most or begun or not system.interface.law.irreversible:
-        return leak > LEAK * most
-    return leak > max(LEAK_OF_DISSIPATED * after, LEAK_OF_ELASTIC * most)
+    begun = before <= BALANCE.rounding * most < after
+    if after >= BALANCE.leak * most or begun or not system.interface.law.irreversible:
+        return leak > BALANCE.leak * most
+    return leak > max(BALANCE.of_dissipated * after, BALANCE.of_elastic * most)

@@ -2,43 +2,52 @@
 
 While damage grows the opening of the cohesive front is prescribed, so that the path is followed through snap-backs;
 otherwise the opening of the specimen is. Where a step fails, the next one ends at the next kink of the law: from kink
-to kink a path has few surprises, and with a law that is linear between them none.
+to kink a path is nearly straight, and is straight where bulk and law are linear.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from iga.path.control import opening_control
+from iga.path.control import Prescribed, opening_control
 from iga.path.energy import leaks
-from iga.path.newton import DEFAULT, PATIENT, Equilibrium, Newton, equilibrium
+from iga.path.newton import Equilibrium, equilibrium
 from iga.path.point import End, Point
-from iga.path.polyline import KEPT, Largest, judged
-from iga.path.step import advance, foresee
-from iga.path.step_length import BEND, CUTS, Step, next_step, paced
-from iga.path.tangent import Linearised, tangent
+from iga.path.polyline import Kept, Largest, judged
+from iga.path.solver import MANY_DECIDE, Solver
+from iga.path.step import advance
+from iga.path.step_length import LENGTHS, ByAccuracy, Step, StepLength, next_step, step_length
+from iga.path.tangent import tangent
 from iga.system.state import State
-from iga.system.system import Phase, System, energies, respond, untimed
+from iga.system.system import System, energies
 
-#: A specimen has separated when its load, and all that the path could bring back, is below this part of the peak.
-SEPARATED = 1e-3
-#: A state as good as the one where the path departs is this part of the opening, or of g_max, ahead.
-TRIFLE = 1e-6
-#: Parts of the penalty with which contact is searched for, one after the other, where it is too stiff to be found.
-SOFTER = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+
+@dataclass(frozen=True)
+class PathLimits:
+    """Where a path departs and where it ends.
+
+    A specimen has ``separated`` when its load, and all that the path could bring back, is below this part of the peak.
+    A state as good as the one where the path departs is ``ahead`` by this part of the opening, or of g_max. Where
+    contact is too stiff to be found it is searched for with the parts ``softer`` of the penalty, one after the other.
+    """
+
+    separated: float = 1e-3
+    ahead: float = 1e-6
+    softer: tuple[float, ...] = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+
+
+PATH = PathLimits()
 
 
 def follow(
-    system: System,
+    solver: Solver,
     programme: Sequence[float],
     steps: int | None,
-    newton: Newton = DEFAULT,
-    phase: Phase = untimed,
     renew: Callable[[Point], tuple[System, State] | None] | None = None,
-    bend: float = BEND,
+    bend: float = LENGTHS.bend,
 ) -> Iterator[Point | End]:
     """Walk through a programme of openings; yields every converged `Point` and, last, the `End`.
 
@@ -48,68 +57,70 @@ def follow(
     steps : number of steps asked for over the whole programme; None lets the path choose them, few and by accuracy,
         and so does a number too small to draw the curve. A step that fails is made to end at the next kink of the law,
         then tried with other controls, then halved, down to 1/4096, and grows again afterwards.
-    bend : by how much of the peak the load may leave the tangent of a step that the path chooses; what such a step
-        keeps (see `iga.path.polyline`) follows from it.
     renew : may answer a converged point with another system, and its state in equilibrium at the same opening.
+    bend : by how much of the peak the load may leave the tangent of a step that the path chooses; how accurate such a
+        step is (see `iga.path.polyline`) follows from it.
     """
-    pace = paced(np.array(programme), steps, bend, system.kinematics == "linear")
-    reach = float(np.max(np.abs(programme)))
-    rejected, largest = 0, Largest()
+    lengths: StepLength = step_length(np.array(programme), steps, bend, solver.system.linear)
+    reach, rejected, largest = float(np.max(np.abs(programme))), 0, Largest()
     direction = float(np.sign(programme[0]))
-    departed = _departing(system, system.start(), direction, 0.0, phase)
+    departed = _departing(solver, solver.system.start(), direction, 0.0)
     if departed is None:
         raise ValueError("the system is singular: the supports or the interface do not hold the bodies")
-    known: Linearised | None
-    point, known = departed
-    yield point
+    yield (point := departed)
     for goal in by_way_of_zero(programme):
         if direction * (goal - point.opening) < 0.0 or (point.opening == 0.0 and point.iterations > 0):
             direction = float(np.sign(goal - point.opening))
-            point, known = _departing(system, point.state, direction, point.external_work, phase) or (point, None)
+            point = _departing(solver, point.state, direction, point.external_work) or point
         while point.opening != goal:
-            asked = next_step(system, point, goal, pace, direction)
-            length = asked.away * float(system.load_d @ point.tangent.du_d)
-            foreseen, known = (
-                foresee(system, point, asked, pace.by_kinks and not asked.exact, known, phase),
-                None,
-            )  # of all that is held the largest
-            reached, known = advance(system, point, asked, foreseen, direction, pace, newton, phase)
-            if reached is not None and direction * (reached.opening - goal) > 0.0 and not asked.exact:
-                asked, known = _onto(system, point, goal), None
-                foreseen = foresee(system, point, asked, False, None, phase)
-                reached, known = advance(system, point, asked, foreseen, direction, pace, newton, phase)
-            kept = KEPT
-            if reached is not None and pace.promised:
-                kept = judged(system, point, reached, largest, pace.bend)
-            if kept.part < 1.0 and pace.cuts < CUTS:
-                known, rejected = None, rejected + 1  # before the next one is made
-                pace = pace.cut(kept, length)
-                known = _once_more(system, point, direction, phase) if pace.by_kinks else None
-                continue
-            if reached is None or leaks(system, point, reached, largest.work):
-                known = None  # before the next one is made
-                rejected, pace = rejected + 1, pace.slower()
-                known = _once_more(system, point, direction, phase) if pace.by_kinks else None
-                if pace.exhausted:
+            asked, moved, reached = _tried(solver, point, goal, lengths, direction)
+            kept = Kept()
+            if reached is not None and lengths.bend is not None:
+                kept = judged(solver.system, point, reached, largest, lengths.bend)
+            inaccurate = kept.part < 1.0 and lengths.cuts < LENGTHS.cuts
+            if inaccurate or reached is None or leaks(solver.system, point, reached, largest.work):
+                solver.drop()
+                shorter = lengths.cut(kept, moved) if inaccurate else lengths.failed()
+                rejected += 1
+                if shorter is None:
                     yield End(_advice(point, leapt=reached is not None), rejected)
                     return
+                lengths = shorter
+                if isinstance(
+                    lengths, ByAccuracy
+                ):  # a shorter step is predicted with the same factors, for less than they save
+                    tangent(solver, point.state, point.response, direction)
                 continue
             largest = largest.with_point(reached)
-            pace = pace.after(point, reached, largest.load, kept)
-            point = replace(reached, opening=goal) if asked.exact else reached
-            yield point
-            if direction * point.opening > 0.0 and _separated(system, point, reach, largest.load, direction):
+            lengths = lengths.after(point, reached, largest.load, kept)
+            yield (point := replace(reached, opening=goal) if asked.exact else reached)
+            if direction * point.opening > 0.0 and _separated(solver.system, point, reach, largest.load, direction):
                 yield End("complete", rejected, separated=True)
                 return
             renewed = renew(point) if renew is not None else None
             if renewed is not None:
-                system, state = renewed
-                departed = _departing(system, state, direction, point.external_work, phase)
+                solver = solver.of(renewed[0])
+                departed = _departing(solver, renewed[1], direction, point.external_work)
                 if departed is None:
                     yield End(f"stopped: the new mesh at opening {goal:.6g} has a singular tangent", rejected)
                     return
-                point, known = departed
+                point = departed
     yield End("complete", rejected)
+
+
+def _tried(
+    solver: Solver, point: Point, goal: float, lengths: StepLength, direction: float
+) -> tuple[Step, float, Point | None]:
+    """A step, by how much it was to change the opening, and where it ends: on the goal where it went beyond that."""
+    asked = next_step(solver.system, point, goal, lengths, direction)
+    opening_rate = float(solver.system.load_d @ point.tangent.du_d)
+    moved, reached = asked.away * opening_rate, advance(solver, point, asked, direction)
+    if reached is not None and direction * (reached.opening - goal) > 0.0 and not asked.exact:
+        solver.drop()
+        away = (goal - point.opening) / opening_rate
+        asked = Step(opening_control(solver.system), away, exact=True, by_kinks=asked.by_kinks)
+        reached = advance(solver, point, asked, direction)
+    return asked, moved, reached
 
 
 def by_way_of_zero(programme: Sequence[float]) -> tuple[float, ...]:
@@ -122,86 +133,62 @@ def by_way_of_zero(programme: Sequence[float]) -> tuple[float, ...]:
 
 
 def _separated(system: System, point: Point, reach: float, peak: float, direction: float) -> bool:
-    """Most of the bond is broken, and nothing is left that carries: no load, and none that the path is to bring.
+    """Whether most of the bond is broken and carries no load, now or later on the path.
 
     Pressing may pry a bond open as pulling does.
     """
     interface = system.interface
     area_q = interface.dA_q if interface.bonded_q is None else interface.dA_q * interface.bonded_q
     broken = float(area_q @ (point.state.k_q >= interface.law.g_u)) / float(area_q.sum())
-    small = SEPARATED * peak
+    small = PATH.separated * peak
     falling = direction * point.tangent.d_load < 0.0 or abs(point.slope) * reach <= small
     return broken > 0.5 and abs(point.state.load) <= small and falling
 
 
-def _departing(
-    system: System, state: State, direction: float, work: float, phase: Phase
-) -> tuple[Point, Linearised] | None:
-    """A converged state at which the programme sets out or turns round.
+def _departing(solver: Solver, state: State, direction: float, work: float) -> Point | None:
+    """A converged state at which the programme sets out or turns round; None where its tangent is singular.
 
-    Where many points touch at once their rates alone may not sort them out. Then a state a trifle ahead does, which
+    Where many points touch at once their rates alone may not sort them out. Then a state a little ahead does, which
     a patient search finds.
     """
+    system = solver.system
     opening = float(system.load_d @ state.u_d)
     for ahead in (False, True):
-        with phase("assembly"):
-            response = respond(system, state, decide=False)
-        answer = tangent(system, state, response, direction, phase, turning=not ahead)
-        if answer is None:
+        response = solver.respond(state, decide=False)
+        found = tangent(solver, state, response, direction, turning=not ahead)
+        if found is None:
             return None
-        found, known = answer
-        start = Point(
-            replace(state, closed_q=found.closed_q),
-            response,
-            opening,
-            found,
-            work,
-            energies(system, state, response),
-            (),
-        )
+        now = replace(state, closed_q=found.closed_q)
+        start = Point(now, response, opening, found, work, energies(system, state, response), ())
         if found.agreed or ahead:
             break
-        trifle = direction * TRIFLE * max(abs(opening), system.interface.law.g_max)
+        change = direction * PATH.ahead * max(abs(opening), system.interface.law.g_max)
         rate = float(system.load_d @ found.du_d)
-        moved = replace(
-            start.state,
-            u_d=state.u_d + trifle / rate * found.du_d,
-            load=state.load + trifle / rate * found.d_load,
-        )
-        tried = _touching(system, moved, opening + trifle, trifle, phase)
+        moved = replace(now, u_d=state.u_d + change / rate * found.du_d, load=state.load + change / rate * found.d_load)
+        tried = _touching(solver, moved, opening + change, change)
         if tried is not None:
             state = replace(state, closed_q=tried.state.closed_q)
-    return start, known
+    return start
 
 
-def _once_more(system: System, point: Point, direction: float, phase: Phase) -> Linearised | None:
-    """What the tangent at a point was read from: a shorter step is foreseen with it, for less than it saves."""
-    answer = tangent(system, point.state, point.response, direction, phase)
-    return None if answer is None else answer[1]
-
-
-def _touching(system: System, trial: State, opening: float, change: float, phase: Phase) -> Equilibrium | None:
+def _touching(solver: Solver, trial: State, opening: float, change: float) -> Equilibrium | None:
     """Equilibrium at an opening where it is not known what touches.
 
     Where a search with the contact as it is fails, softer contact shows most of what touches, and ever stiffer one the
     rest.
     """
-    control = opening_control(system)
-    found = equilibrium(system, trial, control, opening, change, PATIENT, phase)
+    system = solver.system
+    goal = Prescribed(opening_control(system), opening, change)
+    found = equilibrium(solver, trial, goal, MANY_DECIDE)
     if found is not None:
         return found
     law = system.interface.law
-    for part in SOFTER:
+    for part in PATH.softer:
         soft = replace(system, interface=replace(system.interface, law=replace(law, penalty=part * law.penalty)))
-        found = equilibrium(soft, trial, control, opening, change, PATIENT, phase)
+        found = equilibrium(solver.of(soft), trial, goal, MANY_DECIDE)
         if found is not None:
             trial = replace(found.state, k_q=trial.k_q)
     return found
-
-
-def _onto(system: System, point: Point, goal: float) -> Step:
-    """The step that ends on the goal."""
-    return Step(opening_control(system), (goal - point.opening) / float(system.load_d @ point.tangent.du_d), exact=True)
 
 
 def _advice(point: Point, leapt: bool) -> str:

@@ -1,12 +1,12 @@
-"""Steps that end at a kink of the law, and the slope they tell there, so that few of them draw a smooth curve.
+"""Kinks of the law on the way of a step, and the slope where a step ends at one, so that few steps draw a smooth curve.
 
 The load over the opening is a chain of short arcs, one for every quadrature point that breaks, and the slope jumps
 between them by as much as it is itself: the exact slope somewhere on an arc says little of the curve. A step that ends
 where a point breaks is always at the same place of the chain, and so is one that ends half way to where the next one
 does: there the load is neither at the top nor at the foot of an arc, and such steps lie on one curve.
 
-Steps that pass over several arcs end half way and tell the slope of the parabola through the last three of them; those
-that go along a single one end at the kink and tell the mean of the exact slopes before and after.
+Steps that pass over several arcs end half way and have the slope of the parabola through the last three of them; those
+that go along a single one end at the kink and have the mean of the exact slopes before and after.
 """
 
 from __future__ import annotations
@@ -20,8 +20,23 @@ from iga.interface.laws import TractionLaw
 from iga.system.state import State
 from iga.system.system import System
 
-#: How far beyond the kink a step ends, in parts of its gap, and how many points break on one that passes over arcs.
-BEYOND, SEVERAL = 1e-9, 2
+
+@dataclass(frozen=True)
+class Distances:
+    """How far beyond a kink a step ends: far enough that rounding does not undo it, and near enough to be on it.
+
+    ``on`` is in parts of the kink's gap, for a step that ends on it; ``past`` in parts of the shortest branch of the
+    law, for a step that passes it along the tangent, which leaves the path.
+    """
+
+    on: float = 1e-9
+    past: float = 1e-3
+
+
+DISTANCES = Distances()
+
+#: How many points break on a step that passes over arcs.
+SEVERAL = 2
 
 #: Opening and load.
 Place = tuple[float, float]
@@ -29,30 +44,64 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class Kink:
-    """Point ``q`` stands on a kink of its law: the slope of the traction has just changed by ``jump``."""
+    """Point ``q`` of the interface at the ``gap`` where the slope of its traction jumps."""
 
     q: int
-    jump: float
+    gap: float
 
 
 @dataclass(frozen=True)
-class Landing:
-    """Where a step is to end: with the gap ``target`` at point ``q``, on a ``kink`` or, without one, half an arc on.
+class StepEnd:
+    """Where a step ends: with the gap ``target`` at the point of a ``kink``, ``on`` the kink or half an arc beyond."""
 
-    ``least`` is the gap of the kink, below which it has not been reached.
-    """
-
-    q: int
+    kink: Kink
     target: float
-    least: float
-    kink: Kink | None
+    on: bool = True
 
 
-def landing(system: System, old: State, touch: Contact, g_q: np.ndarray, follows_on: bool = False) -> Landing | None:
-    """The kink nearest to the gaps g_q (n_q,): where a point breaks or, as long as none has, passes its strength.
+def on_kink(kink: Kink) -> StepEnd:
+    """A step that ends on a kink, just beyond it."""
+    return StepEnd(kink, kink.gap * (1.0 + DISTANCES.on))
 
-    ``old`` is the state before the step, and ``touch`` tells which points face the master. None where there is no such
-    kink. A step over several arcs that ``follows_on`` one on which points broke, too, ends half an arc on from there.
+
+def first_kink(
+    law: TractionLaw, g_q: np.ndarray, k_q: np.ndarray, change_q: np.ndarray, reloading: bool = True
+) -> tuple[Kink, float] | None:
+    """The first kink that a point reaches while the gaps g_q (n_q,) open by ``change_q``, and the part of the change.
+
+    Kinks of the envelope are ahead of points on it. With ``reloading`` points off it have one where they return to it,
+    at their history k_q (n_q,).
+    """
+    kinks = np.array(law.kinks)
+    kink_q = kinks[np.minimum(np.searchsorted(kinks, k_q, side="right"), kinks.size - 1)]
+    if reloading:
+        soft_q = (k_q > law.g_max) & (g_q >= (1.0 - 1e-9) * k_q)
+        kink_q = np.where(soft_q, kink_q, np.maximum(k_q, law.g_max))
+    coming_q = (k_q < law.g_u) & (change_q > 0.0)
+    if not np.any(coming_q):
+        return None
+    part_q = np.where(coming_q, (kink_q - g_q) / np.where(coming_q, change_q, 1.0), np.inf)
+    q = int(np.argmin(part_q))
+    return Kink(q, float(kink_q[q])), float(part_q[q])
+
+
+def first_end(system: System, old: State, start: Contact, touch: Contact, g_q: np.ndarray) -> StepEnd | None:
+    """A step's end on the first kink of the envelope between the gaps at its ``start`` and g_q (n_q,), if there is one.
+
+    ``old`` is the state before the step, and ``touch`` says which points face the master.
+    """
+    change_q = np.where(holding(system.interface, touch), g_q - start.g_q, 0.0)
+    found = first_kink(system.interface.law, start.g_q, old.k_q, change_q, reloading=False)
+    return on_kink(found[0]) if found is not None and found[1] <= 1.0 else None
+
+
+def nearest_end(
+    system: System, old: State, touch: Contact, g_q: np.ndarray, follows_on: bool = False
+) -> StepEnd | None:
+    """A step's end at the kink nearest to the gaps g_q (n_q,): where a point breaks or, before any has, softens.
+
+    ``old`` and ``touch`` as for `first_end`. None where there is no such kink. A step over several arcs that
+    ``follows_on`` one on which points broke, too, ends half an arc on from there.
     """
     law = system.interface.law
     g_q = np.where(holding(system.interface, touch), g_q, 0.0)
@@ -61,26 +110,10 @@ def landing(system: System, old: State, touch: Contact, g_q: np.ndarray, follows
     q = int(np.argmin(np.where(g_q > old.k_q, np.abs(g_q - gap), np.inf)))
     passed_q = (g_q >= g_q[q]) & (old.k_q < gap)
     ahead_q = g_q[g_q > g_q[q]]
-    half = follows_on and broken and np.count_nonzero(passed_q) >= SEVERAL and ahead_q.size > 0
-    target = gap + 0.5 * (np.min(ahead_q) - g_q[q]) if half else gap * (1.0 + BEYOND)
-    if not np.any(g_q >= gap) or old.k_q[q] >= gap or g_q[q] == target:
-        return None
-    return Landing(q, target, gap, None if half else Kink(q, law.jump(gap)))
-
-
-def next_kink(system: System, old: State, start: Contact, touch: Contact, g_q: np.ndarray) -> Landing | None:
-    """The first kink of any kind on the way from the gaps at the ``start`` of a step to g_q (n_q,), if there is one."""
-    law, g0_q = system.interface.law, start.g_q
-    g_q = np.where(holding(system.interface, touch), g_q, 0.0)
-    part_qk = np.full((g_q.size, len(law.kinks)), np.inf)
-    for column, kink in enumerate(law.kinks):
-        passes_q = (old.k_q < kink) & (g_q >= kink) & (g0_q < kink)
-        part_qk[passes_q, column] = (kink - g0_q[passes_q]) / (g_q - g0_q)[passes_q]
-    q, which = (int(i) for i in np.unravel_index(int(np.argmin(part_qk)), part_qk.shape))
-    if not np.isfinite(part_qk[q, which]):
-        return None
-    kink = law.kinks[which]
-    return Landing(q, kink * (1.0 + BEYOND), kink, Kink(q, law.jump(kink)))
+    end = on_kink(Kink(q, gap))
+    if follows_on and broken and np.count_nonzero(passed_q) >= SEVERAL and ahead_q.size > 0:
+        end = StepEnd(end.kink, gap + 0.5 * (np.min(ahead_q) - g_q[q]), on=False)
+    return end if np.any(g_q >= gap) and old.k_q[q] < gap and g_q[q] != end.target else None
 
 
 def travelled(interface: Interface, g_q: np.ndarray, q: int, target: float) -> np.ndarray | None:
@@ -119,31 +152,3 @@ def slope_over_arcs(first: Place, middle: Place, last: Place) -> float | None:
         return None
     early, late = (at_b - at_a) / (b - a), (at_c - at_b) / (c - b)
     return late + (late - early) * (c - b) / (c - a)
-
-
-#: How far beyond a kink a step that ends at one goes, in parts of the shortest branch of the law.
-HAIR = 1e-3
-
-
-@dataclass(frozen=True)
-class Event:
-    """Point ``q`` reaches its next kink ``away`` lengths of the tangent on, and is just beyond it at ``beyond``."""
-
-    q: int
-    away: float
-    beyond: float
-
-
-def next_event(law: TractionLaw, g_q: np.ndarray, k_q: np.ndarray, rate_q: np.ndarray) -> Event | None:
-    """The first kink on opening: at the strength, at the return to the envelope, on it, at the end of softening."""
-    soft_q = (k_q > law.g_max) & (g_q >= (1.0 - 1e-9) * k_q)
-    kinks = np.array(law.kinks)
-    next_q = kinks[np.minimum(np.searchsorted(kinks, k_q, side="right"), kinks.size - 1)]
-    kink_q = np.where(soft_q, next_q, np.maximum(k_q, law.g_max))
-    coming_q = (k_q < law.g_u) & (rate_q > 0.0)
-    if not np.any(coming_q):
-        return None
-    away_q = np.where(coming_q, (kink_q - g_q) / np.where(coming_q, rate_q, 1.0), np.inf)
-    q = int(np.argmin(away_q))
-    hair = HAIR * float(np.min(np.diff(kinks, prepend=0.0)))
-    return Event(q, float(away_q[q]), float(away_q[q] + hair / rate_q[q]))

@@ -1,4 +1,4 @@
-"""What a step that the path chooses keeps: the straight line to its end, the largest load, and the ledger of energy.
+"""How accurate a step is that the path chooses: the straight line to its end, the largest load, the ledger of energy.
 
 The true path between two converged points is not known, but two things of it are: the slopes at its ends, and the work
 of the load along it, which is what its energies change by. The area between path and straight line follows from that
@@ -15,18 +15,30 @@ from iga.path.kinks import SEVERAL, broken_between
 from iga.path.point import Point
 from iga.system.system import System
 
-#: The largest load of the path lies above that of its points by at most this part of ``bend`` times it.
-PEAK = 0.2
-#: Part of the largest work so far by which the ledger of a path may be open: half of what is held to be closed.
-LEDGER = 2.5e-3
-#: Height of a triangle over its mean height: of all that bulges to one side nothing has a higher tip.
-TIP = 2.0
-#: Part of the height of teeth by which they may leave their mean: both ends stand anywhere on theirs.
-PHASE = 1.0
-#: Part of the promised distance that a step may use: the height of teeth is an estimate, of some wider than others.
-WITHIN = 0.8
-#: Step that is tried after one that has failed to keep its promise, in parts of it: least, largest, and of what is due.
-SHORTEST, LONGEST, SAFELY = 0.25, 0.75, 0.9
+
+@dataclass(frozen=True)
+class Accuracy:
+    """How accurate steps are that the path chooses, and how much shorter the next attempt is at one that is not.
+
+    The largest load of the path lies above that of its points by at most ``peak`` times ``bend`` of it. ``ledger`` is
+    the part of the largest work so far by which the ledger of a path may be open: half of what counts as closed.
+    ``tip``: height of a triangle over its mean height: of all that bulges to one side nothing has a higher tip.
+    ``teeth``: part of the height of teeth by which they may leave their mean: both ends stand anywhere on theirs.
+    ``within``: part of the allowed distance that a step may use: the height of teeth is an estimate, of some wider than
+    others. The next attempt is between ``shortest`` and ``longest`` as long, by the part ``safely`` of what is due.
+    """
+
+    peak: float = 0.2
+    ledger: float = 2.5e-3
+    tip: float = 2.0
+    teeth: float = 1.0
+    within: float = 0.8
+    shortest: float = 0.25
+    longest: float = 0.75
+    safely: float = 0.9
+
+
+ACCURACY = Accuracy()
 
 _S = np.linspace(0.0, 1.0, 17)
 
@@ -46,7 +58,7 @@ class Largest:
 
 @dataclass(frozen=True)
 class Kept:
-    """Part of a step that keeps what is promised, 1 for one that does, and ``away``: distance over the one promised.
+    """Part of a step that would be accurate, 1 for one that is, and ``away``: its distance over the one allowed.
 
     ``broken``: points of the interface have broken on the step; ``few``: no more than one of them has, and no more than
     one has begun to soften.
@@ -58,27 +70,24 @@ class Kept:
     broken: bool = False
 
 
-KEPT = Kept()
-
-
 def judged(system: System, start: Point, end: Point, before: Largest, bend: float) -> Kept:
-    """What a step keeps of the following.
+    """Whether all of the following holds of a step.
 
     - No point of the path is further from the straight line between both ends than ``bend``, with loads in parts of the
       largest one and openings in parts of the opening at that load.
-    - No load between them is larger than those of the points so far by more than ``PEAK bend`` of it.
-    - The ledger stays closed to ``LEDGER`` of the largest work, or the step leaves no more than that part of its own.
+    - No load between them is larger than those of the points so far by more than ``peak bend`` of it (`Accuracy`).
+    - The ledger stays closed to ``ledger`` of the largest work, or the step leaves no more than that of its own.
     """
     largest = before.with_point(end)
     size = np.array([largest.opening, largest.load])
     if not np.all(size > 0.0):
-        return KEPT
+        return Kept()
     size = size * [1.0, np.sign(end.state.load) or 1.0]
     ends = np.array([[point.opening, point.state.load] for point in (start, end)]) / size
     chord = ends[1] - ends[0]
     length = float(np.hypot(*chord))
     if length == 0.0:
-        return KEPT
+        return Kept()
     spent, work = (
         b - a for a, b in ((start.energies.total, end.energies.total), (start.external_work, end.external_work))
     )
@@ -86,14 +95,14 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
     unseen = spent / float(np.prod(size)) - ends[0, 1] * chord[0] - float(np.trapezoid(y, x))
     tooth = _tooth(system, start, end, size, chord)
     away = float(np.abs(x * chord[1] - y * chord[0]).max()) + max(
-        TIP * abs(unseen), abs(unseen) + PHASE * tooth * abs(chord[0])
+        ACCURACY.tip * abs(unseen), abs(unseen) + ACCURACY.teeth * tooth * abs(chord[0])
     )
     above = max(unseen * np.sign(chord[0]), 0.0) / length
-    over = ends[0, 1] + float(y.max()) - 1.0 + max(TIP * above, above + PHASE * tooth)
-    open_ = abs(end.external_work - end.energies.total) > LEDGER * largest.work
-    leak = abs(work - spent) / (LEDGER * abs(work)) if open_ and work != 0.0 else 0.0
-    excess = max(away / length / (WITHIN * bend), over / (PEAK * bend), leak)
-    part = 1.0 if excess <= 1.0 else float(np.clip(SAFELY * excess**-0.5, SHORTEST, LONGEST))
+    over = ends[0, 1] + float(y.max()) - 1.0 + max(ACCURACY.tip * above, above + ACCURACY.teeth * tooth)
+    open_ = abs(end.external_work - end.energies.total) > ACCURACY.ledger * largest.work
+    leak = abs(work - spent) / (ACCURACY.ledger * abs(work)) if open_ and work != 0.0 else 0.0
+    excess = max(away / length / (ACCURACY.within * bend), over / (ACCURACY.peak * bend), leak)
+    part = 1.0 if excess <= 1.0 else float(np.clip(ACCURACY.safely * excess**-0.5, ACCURACY.shortest, ACCURACY.longest))
     g_max = system.interface.law.g_max
     begun = np.count_nonzero((end.state.k_q > g_max) & (start.state.k_q <= g_max))
     broken = broken_between(system, start.state, end.state)

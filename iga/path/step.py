@@ -1,4 +1,4 @@
-"""One step of the path: what is foreseen, the equilibrium, and what the step has cost in energy."""
+"""One step of the path: its prediction, the equilibrium, and what the step has cost in energy."""
 
 from __future__ import annotations
 
@@ -7,159 +7,184 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.interface.interface import Contact
-from iga.path.control import gap_control
+from iga.path.control import Prescribed, gap_control
 from iga.path.energy import slid_off, step_work, straight_work
-from iga.path.kinks import SEVERAL, Kink, Landing, broken_between, landing, next_kink, slope_over_arcs, travelled
-from iga.path.newton import Equilibrium, Newton, correction, equilibrium, roughly
+from iga.path.kinks import (
+    SEVERAL,
+    Kink,
+    StepEnd,
+    broken_between,
+    first_end,
+    nearest_end,
+    slope_over_arcs,
+    travelled,
+)
+from iga.path.newton import Equilibrium, correction, equilibrium
 from iga.path.point import Point
-from iga.path.step_length import Pace, Step
-from iga.path.tangent import Linearised, tangent
-from iga.system.state import State
-from iga.system.system import Phase, System, energies, respond
+from iga.path.solver import Solver
+from iga.path.step_length import Step
+from iga.path.tangent import Tangent, tangent
+from iga.system.state import Response, State
+from iga.system.system import System, energies
 
-#: An opening that is this part of the one before is none.
-HOME = 1e-9
+#: Openings below this part of the one before count as zero.
+CLOSED = 1e-9
 #: The front leaps where it opens by more than this part of g_u: gaps then travel rather than grow along the tangent.
 LEAP = 0.1
 
 
 @dataclass(frozen=True)
-class Foreseen:
-    """Where a step sets out for equilibrium, and the kink it is to end at, if any; ``settled``: with the law as it is.
+class Prediction:
+    """Where the search for equilibrium begins, and the kink at which the step is to end, if any.
 
-    ``spent`` are the residuals of the iterations that this has taken.
+    ``settled``: all tractions are on the law there, as far as the linearised bulk knows. ``spent`` are the residuals of
+    the iterations that this has taken.
     """
 
     state: State
     settled: bool = False
-    place: Landing | None = None
+    end: StepEnd | None = None
     spent: tuple[float, ...] = ()
 
 
-def foresee(
-    system: System,
-    point: Point,
-    asked: Step,
-    by_kinks: bool,
-    known: Linearised | None,
-    phase: Phase,
-) -> Foreseen:
-    """Along the tangent; where its inverse is still known, with what the law makes of the step, the bulk as it is."""
-    old, path = point.state, point.tangent
+def predicted(solver: Solver, point: Point, asked: Step) -> Prediction:
+    """Along the tangent; with the factors that this was read from, if they are there, all tractions on the law as well.
+
+    The factors are dropped.
+    """
+    system, old, path, known = solver.system, point.state, point.tangent, solver.linearised
     along_d = asked.away * np.append(path.du_d, path.d_load)
     if known is None:
-        return Foreseen(old.moved(along_d))
-    response, touch, control = known.response, known.response.contact, asked.control
-    value, a_d, a_load = control(old, response)
+        return Prediction(old.moved(along_d))
+    response, touch, lands = known.response, known.response.contact, asked.lands
+    value, a_d, a_load = asked.control(old, response)
     target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
-    guess_q, place = None, None
-    linear = system.kinematics == "linear"
-    with phase("solve"):
-        q = point.front
-        opens = asked.away * path.rate_q[q] if path.growing_q[q] else 0.0
-        if opens > LEAP * system.interface.law.g_u:
-            guess_q = travelled(system.interface, touch.g_q, q, touch.g_q[q] + opens)
-        # one kink is as good as the next one; of a linear bulk the step onto it is exact, and no other is made
-        ahead_q = touch.g_q + asked.away * path.rate_q if guess_q is None and linear else guess_q
-        if by_kinks and ahead_q is not None:
-            place = _place(system, point, touch, ahead_q, asked.every_kink)
-        if place is not None:
-            control, target = gap_control(system, place.q), place.target
-        found = correction(system, old, response, known.inverse, control, target, True, guess_q)
-    if found is None or not found[1]:
-        return Foreseen(old.moved(along_d))
-    if by_kinks and place is None:
+    goal, end, guess_q = Prescribed(asked.control, target, target - value), None, _leaping(system, point, asked, touch)
+    # one kink is as good as the next one; of a linear bulk the step onto it is exact, and no other is made
+    ahead_q = touch.g_q + asked.away * path.rate_q if guess_q is None and system.linear else guess_q
+    if lands and ahead_q is not None:
+        end = _end(system, point, asked, touch, ahead_q)
+    if end is not None:
+        goal = _onto(system, point, end)
+    found = correction(solver, old, response, goal, True, guess_q)
+    if found is not None and found[1] and lands and end is None:
         guess_q = touch.g_q + touch.rates(found[0][:-1])
-        place = _place(system, point, touch, guess_q, asked.every_kink)
-        if place is not None and linear:  # this is exact then; else Newton is needed anyway
-            control = gap_control(system, place.q)
-            with phase("solve"):
-                onto = correction(system, old, response, known.inverse, control, place.target, True, guess_q)
+        end = _end(system, point, asked, touch, guess_q)
+        if end is not None and system.linear:  # this is exact then; else Newton is needed anyway
+            onto = correction(solver, old, response, _onto(system, point, end), True, guess_q)
             found = onto if onto is not None and onto[1] else found
-    return Foreseen(old.moved(found[0]), True, place)
+    solver.drop()
+    if found is None or not found[1]:
+        return Prediction(old.moved(along_d))
+    return Prediction(old.moved(found[0]), True, end)
 
 
-def advance(
-    system: System,
-    point: Point,
-    asked: Step,
-    foreseen: Foreseen,
-    direction: float,
-    pace: Pace,
-    newton: Newton,
-    phase: Phase,
-) -> tuple[Point, Linearised] | tuple[None, None]:
-    """The point where a step ends, and its tangent's inverse; nothing is committed before it converged."""
-    old, path, control = point.state, point.tangent, asked.control
+def advance(solver: Solver, point: Point, asked: Step, direction: float) -> Point | None:
+    """The point where a step ends; nothing is committed before it converged.
+
+    The solver keeps the factors of its tangent.
+    """
+    system, old, path, control = solver.system, point.state, point.tangent, asked.control
     value, a_d, a_load = control(old, point.response)
     rate = float(a_d @ path.du_d) + a_load * path.d_load
-    if rate == 0.0:  # what stands still leads nowhere
-        return None, None
+    if rate == 0.0:  # the control does not change along the tangent
+        return None
     change = rate * asked.away
-    found, kink = None, None
-    if pace.by_kinks and not asked.exact:
-        if not foreseen.settled:
-            nearly = equilibrium(system, foreseen.state, control, value + change, change, roughly(newton), phase)
-            if nearly is None:
-                return None, None
-            touch = nearly.response.contact
-            place = _place(system, point, touch, touch.g_q, asked.every_kink)
-            foreseen = Foreseen(nearly.state, True, place, nearly.residuals)
-        if foreseen.place is not None:
-            found, kink = _landed(system, point, foreseen.state, foreseen.place, newton, phase)
-    if found is None:
-        found = equilibrium(system, foreseen.state, control, value + change, change, newton, phase)
-    if found is None:
-        return None, None
-    state, response = found.state, found.response
+    converged = _converged(solver, point, asked, Prescribed(control, value + change, change))
+    if converged is None:
+        return None
+    found, kink = converged
+    state, response = _committed(solver, point, asked, found)
+    leaving = tangent(solver, state, response, direction, kink=kink)
+    if leaving is None:
+        return None
     opening = float(system.load_d @ state.u_d)
-    if asked.exact and abs(opening) <= HOME * abs(point.opening):
-        # nothing has a gap here whose sign means anything: contact is what it was on the way
-        state = replace(state, closed_q=old.closed_q)
-        response = respond(system, replace(state, k_q=old.k_q), decide=False)
-    state = replace(state, k_q=response.k_q, scale=max(old.scale, response.scale))
-    left = tangent(system, state, response, direction, phase, kink=kink)
-    if left is None:
-        return None, None
-    leaving, known = left
-    broken = broken_between(system, old, state) if pace.by_kinks else 0
-    if leaving.arrival * leaving.departure < 0.0 and leaving.came == leaving.heading:
-        leaving = replace(leaving, slope=0.0)  # a top or a foot, where any other slope would overshoot on one side
+    broken = broken_between(system, old, state) if asked.by_kinks else 0
+    leaving = _smoothed(point, asked, leaving, broken, (opening, state.load))
     before = (point.opening, old.load) if broken else None
-    if (broken >= SEVERAL or (broken and leaving.rough and not asked.every_kink)) and point.before is not None:
-        slope = slope_over_arcs(point.before, (point.opening, old.load), (opening, state.load))
-        leaving = leaving if slope is None else replace(leaving, slope=slope)
-    residuals = foreseen.spent + found.residuals
-    reached = Point(state, response, opening, leaving, 0.0, energies(system, state, response), residuals, before)
+    spent = energies(system, state, response)
+    reached = Point(state, response, opening, leaving, 0.0, spent, found.residuals, before)
     there, b_d, b_load = control(state, response)
     end_rate = float(b_d @ leaving.du_d) + b_load * leaving.d_load
     if end_rate == 0.0:
-        return None, None
+        return None
     away, back = (there - value) / rate, (there - value) / end_rate
-    if pace.by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
+    if asked.by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
         work = straight_work(point, reached, broken >= SEVERAL)
     else:
         work = step_work(system, point, reached, away, back)
     slid = slid_off(system, point, reached, away, back)
     if slid:
-        spent = replace(reached.energies, dissipated=reached.energies.dissipated + slid)
+        spent = replace(spent, dissipated=spent.dissipated + slid)
         reached = replace(reached, state=replace(state, slid=old.slid + slid), energies=spent)
-    return replace(reached, external_work=point.external_work + work), known
+    return replace(reached, external_work=point.external_work + work)
 
 
-def _place(system: System, point: Point, touch: Contact, g_q: np.ndarray, every: bool) -> Landing | None:
-    """Where a step from a point to the gaps g_q (n_q,) is to end."""
-    if every:
-        return next_kink(system, point.state, point.response.contact, touch, g_q)
-    return landing(system, point.state, touch, g_q, follows_on=point.before is not None)
+def _converged(solver: Solver, point: Point, asked: Step, goal: Prescribed) -> tuple[Equilibrium, Kink | None] | None:
+    """Equilibrium where the step ends, and the kink on which that is, if it is on one."""
+    ahead = predicted(solver, point, asked)
+    if asked.lands and not ahead.settled:
+        nearly = equilibrium(solver, ahead.state, goal, solver.newton.predicting)
+        if nearly is None:
+            return None
+        touch = nearly.response.contact
+        ahead = Prediction(nearly.state, True, _end(solver.system, point, asked, touch, touch.g_q), nearly.residuals)
+    found, kink = None, None
+    if ahead.end is not None:
+        found = _at_kink(solver, point, ahead.state, ahead.end)
+        kink = ahead.end.kink if found is not None and ahead.end.on else None
+    if found is None:
+        found = equilibrium(solver, ahead.state, goal)
+    return None if found is None else (replace(found, residuals=ahead.spent + found.residuals), kink)
 
 
-def _landed(
-    system: System, point: Point, trial: State, place: Landing, newton: Newton, phase: Phase
-) -> tuple[Equilibrium | None, Kink | None]:
-    """Equilibrium at a kink; None where there is none."""
-    change = place.target - point.response.contact.g_q[place.q]
-    there = equilibrium(system, trial, gap_control(system, place.q), place.target, change, newton, phase)
-    if there is None or there.response.contact.g_q[place.q] < place.least:
-        return None, None
-    return there, place.kink
+def _at_kink(solver: Solver, point: Point, trial: State, end: StepEnd) -> Equilibrium | None:
+    """Equilibrium at the end of a step; None where there is none, or where it has not reached the kink."""
+    found = equilibrium(solver, trial, _onto(solver.system, point, end))
+    return None if found is None or found.response.contact.g_q[end.kink.q] < end.kink.gap else found
+
+
+def _onto(system: System, point: Point, end: StepEnd) -> Prescribed:
+    """The gap at the kink as the control of a step from a point."""
+    change = end.target - float(point.response.contact.g_q[end.kink.q])
+    return Prescribed(gap_control(system, end.kink.q), end.target, change)
+
+
+def _end(system: System, point: Point, asked: Step, touch: Contact, g_q: np.ndarray) -> StepEnd | None:
+    """The kink at which a step from a point to the gaps g_q (n_q,) is to end."""
+    if asked.every_kink:
+        return first_end(system, point.state, point.response.contact, touch, g_q)
+    return nearest_end(system, point.state, touch, g_q, follows_on=point.before is not None)
+
+
+def _leaping(system: System, point: Point, asked: Step, touch: Contact) -> np.ndarray | None:
+    """Gaps (n_q,) after a leap of the front; None where it does not leap."""
+    q, path = point.front, point.tangent
+    opens = asked.away * path.rate_q[q] if path.growing_q[q] else 0.0
+    if opens <= LEAP * system.interface.law.g_u:
+        return None
+    return travelled(system.interface, touch.g_q, q, touch.g_q[q] + opens)
+
+
+def _committed(solver: Solver, point: Point, asked: Step, found: Equilibrium) -> tuple[State, Response]:
+    """The state with the history that it leaves, and the response to it."""
+    old, state, response = point.state, found.state, found.response
+    if asked.exact and abs(float(solver.system.load_d @ state.u_d)) <= CLOSED * abs(point.opening):
+        # nothing has a gap here whose sign means anything: contact is what it was on the way
+        state = replace(state, closed_q=old.closed_q)
+        response = solver.respond(replace(state, k_q=old.k_q), decide=False)
+    return replace(state, k_q=response.k_q, scale=max(old.scale, response.scale)), response
+
+
+def _smoothed(point: Point, asked: Step, leaving: Tangent, broken: int, end: tuple[float, float]) -> Tangent:
+    """The tangent with a slope that draws a smooth curve through opening and load at the ``end`` of a step.
+
+    ``broken`` points have broken on the step.
+    """
+    if leaving.arrival * leaving.departure < 0.0 and leaving.came == leaving.heading:
+        leaving = replace(leaving, slope=0.0)  # a top or a foot, where any other slope would overshoot on one side
+    over_arcs = broken >= SEVERAL or (broken and leaving.rough and not asked.every_kink)
+    if over_arcs and point.before is not None:
+        slope = slope_over_arcs(point.before, (point.opening, point.state.load), end)
+        leaving = leaving if slope is None else replace(leaving, slope=slope)
+    return leaving

@@ -1,4 +1,12 @@
-"""How long the next step is, and by what it is controlled."""
+"""How long the next step is, and by what it is controlled.
+
+Steps are `Counted`, all of one length, or chosen `ByAccuracy`; those that follow on a failed one are `Careful`. Each
+kind has a ``length``, the change of the opening, and ``front``, the largest step of the front in parts of g_u, and says
+what follows a step: one that has ``failed``, that is, has not converged; one that went for a change ``moved`` of the
+opening and was not accurate (``cut``); and one from ``start`` to ``end`` (``after``), where the load has been at most
+``peak`` so far. Where the path has chosen the steps they are as accurate as ``bend`` asks for (see
+`iga.path.polyline`), and shortened until they are, at most `Lengths.cuts` times (``cuts``).
+"""
 
 from __future__ import annotations
 
@@ -8,180 +16,239 @@ import numpy as np
 
 from iga.interface.interface import holding
 from iga.path.control import Control, arc_length_control, dissipation_control, gap_control, opening_control
-from iga.path.kinks import next_event
+from iga.path.kinks import DISTANCES, first_kink
 from iga.path.point import Point
-from iga.path.polyline import KEPT, Kept
+from iga.path.polyline import Kept
 from iga.path.tangent import away_from_zero
 from iga.system.system import System
 
-#: Largest step of the front in parts of g_u, where steps are counted and where they are chosen by accuracy; smallest
-#: step in parts of the one asked for.
-FRONT, FRONT_BY_ACCURACY, SMALLEST = 0.125, 1.0, 1.0 / 4096
-#: Steps chosen by accuracy: the first and the largest one in parts of the programme, and by how much of the peak the
-#: load may leave the tangent of a step, if nothing else is asked for.
-FIRST, LARGEST, BEND = 1.0 / 30.0, 0.25, 0.005
-#: How often steps chosen by accuracy may fail; every one that converges makes up for one that has failed.
-SPARED = 3
-#: Fewer steps than these would not draw the curve: what is asked for is then a least number of steps. How long they are
-#: once one that was chosen by accuracy has failed, in such parts of the programme.
-FEWEST, SAFE = 40, 150
-#: How often a step is shortened because it does not keep its promise.
-CUTS = 6
-#: How many steps end at kinks of any kind once a single arc has turned out to have a corner.
-CORNERED = 8
-#: Of a parabola what it leaves its tangent by over what it leaves the straight line by, as it is measured.
-OF_TANGENT = 3.0
-#: What a step that has failed is tried with, in this order, before it is halved.
-CAREFUL = ("front", "dissipation", "arc length")
+
+@dataclass(frozen=True)
+class Lengths:
+    """Bounds on steps: shorter ones seldom fail and draw more of the curve, longer ones take less time.
+
+    ``front`` and ``front_by_accuracy`` are the largest steps of the front in parts of g_u, of counted steps and of
+    those by accuracy; ``smallest`` is the smallest step in parts of the one asked for.
+    Steps by accuracy: ``first`` and ``largest`` in parts of the programme; ``bend`` by how much of the peak the load
+    may leave the tangent of a step, if nothing else is asked for; ``failures`` that they are allowed, each converged
+    step making up for one, and ``safe``, the number of counted steps for the whole programme that are made after those.
+    ``fewest``: fewer counted steps than these do not draw the curve, and the number is then a least number of steps.
+    ``cuts``: how often a step is shortened because it is not accurate. ``at_kinks``: how many steps end at kinks of any
+    kind once a single arc of the load has turned out to have a corner. ``parabola``: distance of a parabola from its
+    tangent over that from its chord, as it is measured.
+    """
+
+    front: float = 0.125
+    front_by_accuracy: float = 1.0
+    smallest: float = 1.0 / 4096
+    first: float = 1.0 / 30.0
+    largest: float = 0.25
+    bend: float = 0.005
+    failures: int = 3
+    safe: int = 150
+    fewest: int = 40
+    cuts: int = 6
+    at_kinks: int = 8
+    parabola: float = 3.0
+
+
+LENGTHS = Lengths()
+
+#: Controls of careful steps while damage grows, in the order in which they are tried before the step is halved.
+CONTROLS = ("front", "dissipation", "arc length")
 
 
 @dataclass(frozen=True)
 class Step:
-    """What is asked of a step: the control, the length of the tangent it goes, and whether it ends on the goal.
+    """What is asked of a step: the control, the length of the tangent it goes, and where it ends.
 
-    ``every_kink``: where it ends at a kink, that is the first one of any kind.
+    ``exact``: on the goal. ``by_kinks``: any other step, where a point breaks; ``every_kink``: at the first kink of any
+    kind.
     """
 
     control: Control
     away: float
     exact: bool = False
+    by_kinks: bool = False
     every_kink: bool = False
+
+    @property
+    def lands(self) -> bool:
+        """Whether it is to end at a kink."""
+        return self.by_kinks and not self.exact
 
 
 @dataclass(frozen=True)
-class Pace:
-    """Step length: ``step`` of the opening, at most ``largest``, and a part of g_u at the cohesive front.
-
-    ``by_accuracy``: the steps are not counted but as long as the curve allows, and end where a point breaks. One that
-    fails is halved, and the front goes half as far until as many have converged; where that is ``spared`` no more they
-    are ``counted``, each of this length.
-    ``bend`` is by how much of the peak the load may leave the tangent of such a step; the front may go as much further
-    as steps are longer for it.
-    ``promised``: steps keep what `iga.path.polyline` states. One that does not is shortened, up to ``CUTS`` times
-    (``cuts``); after a single arc of the load that does not, ``cornered`` steps end at kinks of any kind.
-    ``attempt`` counts how often the next one has failed: careful steps end at the kinks of the law; they change the
-    control, and then their length.
-    """
+class Counted:
+    """Steps of one length; those that have been shortened grow again up to ``largest``."""
 
     largest: float
-    step: float
-    by_accuracy: bool = False
-    attempt: int = 0
-    counted: float = 0.0
-    bend: float = BEND
-    spared: int = SPARED
-    promised: bool = False
+    length: float
+    bend: float | None = None
     cuts: int = 0
-    cornered: int = 0
-
-    @property
-    def careful(self) -> bool:
-        return self.attempt > 0
-
-    @property
-    def by_kinks(self) -> bool:
-        """Whether steps end where a point breaks, that do not end on a goal."""
-        return self.by_accuracy and not self.careful
-
-    @property
-    def level(self) -> int:
-        """How often the step has been halved."""
-        return max(self.attempt - 1, 0) // len(CAREFUL)
-
-    @property
-    def control(self) -> str:
-        return CAREFUL[max(self.attempt - 1, 0) % len(CAREFUL)]
-
-    @property
-    def exhausted(self) -> bool:
-        return 0.5**self.level < SMALLEST
-
-    @property
-    def length(self) -> float:
-        return 0.5**self.level * self.step
 
     @property
     def front(self) -> float:
-        if not self.by_accuracy:
-            return 0.5**self.level * FRONT
-        return 0.5 ** (SPARED - self.spared) * FRONT_BY_ACCURACY * (self.bend / BEND) ** 0.5
+        return LENGTHS.front
 
-    def slower(self) -> Pace:
-        if not self.by_accuracy:
-            return replace(self, attempt=self.attempt + 1, cuts=0)
-        if self.spared == 0:
-            return Pace(self.counted, self.counted, bend=self.bend, promised=self.promised)
-        return replace(self, step=0.5 * self.step, spared=self.spared - 1, cuts=0)
+    def failed(self) -> Careful:
+        return Careful(replace(self, cuts=0))
 
-    def cut(self, kept: Kept, moved: float) -> Pace:
-        """Where a step that went for a change ``moved`` of the opening has not kept its promise."""
-        step = min(kept.part * abs(moved) / 0.5**self.level, self.step)
-        return replace(self, step=step, cuts=self.cuts + 1, cornered=CORNERED if kept.few else self.cornered)
+    def cut(self, kept: Kept, moved: float) -> Counted:
+        return replace(self, length=min(kept.part * abs(moved), self.length), cuts=self.cuts + 1)
+
+    def after(self, start: Point, end: Point, peak: float, kept: Kept) -> Counted:
+        return replace(self, length=min(2.0 * self.length, self.largest), cuts=0)
+
+
+@dataclass(frozen=True)
+class ByAccuracy:
+    """Steps as long as the curve allows that end where a point breaks; the load leaves their tangent by ``bend``.
+
+    One that fails is halved, and the front goes half as far until as many have converged; where no failures are
+    ``left`` they are ``counted`` from then on. After a single arc of the load that is not accurate, ``at_kinks`` steps
+    end at kinks of any kind.
+    """
+
+    largest: float
+    length: float
+    counted: Counted
+    bend: float
+    left: int = LENGTHS.failures
+    cuts: int = 0
+    at_kinks: int = 0
 
     @property
-    def every_kink(self) -> bool:
-        """Whether steps end at the next kink of any kind."""
-        return self.by_kinks and self.cornered > 0
+    def front(self) -> float:
+        """Largest step of the front, in parts of g_u: longer where the load may bend more."""
+        halved = 0.5 ** (LENGTHS.failures - self.left)
+        return halved * LENGTHS.front_by_accuracy * (self.bend / LENGTHS.bend) ** 0.5
 
-    def after(self, start: Point, end: Point, peak: float, kept: Kept = KEPT) -> Pace:
-        """The next step where one from ``start`` to ``end`` has converged."""
-        if self.careful:
-            return replace(self, attempt=1 + len(CAREFUL) * (self.level - 1) if self.level else 0, cuts=0)
-        if not self.by_accuracy:
-            return replace(self, step=min(2.0 * self.step, self.largest), cuts=0) if self.promised else self
+    def failed(self) -> ByAccuracy | Counted:
+        if self.left == 0:
+            return self.counted
+        return replace(self, length=0.5 * self.length, left=self.left - 1, cuts=0)
+
+    def cut(self, kept: Kept, moved: float) -> ByAccuracy:
+        length, at_kinks = min(kept.part * abs(moved), self.length), LENGTHS.at_kinks if kept.few else self.at_kinks
+        return replace(self, length=length, cuts=self.cuts + 1, at_kinks=at_kinks)
+
+    def after(self, start: Point, end: Point, peak: float, kept: Kept) -> ByAccuracy:
         moved, rough = end.opening - start.opening, start.tangent.rough
         slope = start.tangent.departure if rough and not kept.broken else start.slope
         bend = abs(end.state.load - start.state.load - slope * moved) / (self.bend * peak)
         if kept.broken:  # teeth are no reason for shorter steps as long as the straight line is near
-            bend = min(bend, 0.25 if kept.few and kept.away <= 0.5 else OF_TANGENT * kept.away)
-        gone = max(abs(moved), self.step) if rough else abs(moved)  # behind a kink a step goes less far than asked
+            bend = min(bend, 0.25 if kept.few and kept.away <= 0.5 else LENGTHS.parabola * kept.away)
+        gone = max(abs(moved), self.length) if rough else abs(moved)  # behind a kink a step goes less far than asked
         grown = gone * max(min(bend**-0.5, 2.0), 0.5) if bend > 0.0 else 2.0 * gone
-        step = min(max(grown, SMALLEST * self.largest), self.largest)
-        return replace(self, step=step, spared=min(self.spared + 1, SPARED), cuts=0, cornered=max(self.cornered - 1, 0))
+        length = min(max(grown, LENGTHS.smallest * self.largest), self.largest)
+        left, at_kinks = min(self.left + 1, LENGTHS.failures), max(self.at_kinks - 1, 0)
+        return replace(self, length=length, left=left, cuts=0, at_kinks=at_kinks)
 
 
-def paced(programme: np.ndarray, steps: int | None, bend: float = BEND, linear: bool = False) -> Pace:
-    """The pace at which a programme begins; ``bend`` as in `follow`.
+@dataclass(frozen=True)
+class Careful:
+    """Steps that end at the next kink of the law: from kink to kink a path has few surprises.
+
+    One that fails is tried with another of the `CONTROLS` (``number``), then half as long; ``halvings`` are taken back
+    one by one where steps converge. ``usual`` are the steps to which the path then returns.
+    """
+
+    usual: Counted | ByAccuracy
+    halvings: int = 0
+    number: int = 0
+
+    @property
+    def length(self) -> float:
+        return 0.5**self.halvings * self.usual.length
+
+    @property
+    def front(self) -> float:
+        return 0.5**self.halvings * self.usual.front
+
+    @property
+    def bend(self) -> float | None:
+        return self.usual.bend
+
+    @property
+    def cuts(self) -> int:
+        return self.usual.cuts
+
+    def failed(self) -> Careful | None:
+        """What follows a step that has not converged; None where it cannot be any shorter."""
+        usual, number = replace(self.usual, cuts=0), self.number + 1
+        if number < len(CONTROLS):
+            return Careful(usual, self.halvings, number)
+        shorter = Careful(usual, self.halvings + 1)
+        return None if 0.5**shorter.halvings < LENGTHS.smallest else shorter
+
+    def cut(self, kept: Kept, moved: float) -> Careful:
+        return replace(self, usual=self.usual.cut(kept, moved / 0.5**self.halvings))
+
+    def after(self, start: Point, end: Point, peak: float, kept: Kept) -> StepLength:
+        usual = replace(self.usual, cuts=0)
+        return Careful(usual, self.halvings - 1) if self.halvings else usual
+
+
+StepLength = Counted | ByAccuracy | Careful
+
+
+def step_length(
+    programme: np.ndarray, steps: int | None, bend: float = LENGTHS.bend, linear: bool = False
+) -> Counted | ByAccuracy:
+    """The step length at which a programme begins; ``steps`` and ``bend`` as in `iga.path.follow.follow`.
 
     Where kinematics and bulk are ``linear`` nothing bends before damage begins, and the first step goes that far.
     """
     whole = float(np.sum(np.abs(np.diff(programme, prepend=0.0))))
     asked = whole / steps if steps else np.inf
-    if steps and steps >= FEWEST:
-        return Pace(asked, asked)
-    largest = min(LARGEST * whole, asked)
-    first = largest if linear else min(FIRST * whole, asked)
-    return Pace(largest, first, by_accuracy=True, counted=whole / SAFE, bend=bend, promised=True)
+    if steps and steps >= LENGTHS.fewest:
+        return Counted(asked, asked)
+    largest, safe = min(LENGTHS.largest * whole, asked), whole / LENGTHS.safe
+    first = largest if linear else min(LENGTHS.first * whole, asked)
+    return ByAccuracy(largest, first, Counted(safe, safe, bend), bend)
 
 
-def next_step(system: System, point: Point, goal: float, pace: Pace, direction: float) -> Step:
+def next_step(system: System, point: Point, goal: float, lengths: StepLength, direction: float) -> Step:
     """Control and length of the next step.
 
     While damage grows the front is led: it moves on by a part of g_u, and by no more than changes the opening by a
     step. Otherwise the opening is, up to where damage begins.
     """
-    law, path = system.interface.law, point.tangent
+    law, path, careful = system.interface.law, point.tangent, isinstance(lengths, Careful)
     left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
-    grows, event = bool(path.growing_q.any()), None
-    if away_from_zero(direction, point.opening) and (pace.careful or not grows):
-        touch = point.response.contact
-        k_q = np.where(holding(system.interface, touch), point.state.k_q, law.g_u)  # no kink for the others
-        event = next_event(law, touch.g_q, k_q, path.rate_q)
+    by_kinks = isinstance(lengths, ByAccuracy)
+    every_kink = isinstance(lengths, ByAccuracy) and lengths.at_kinks > 0
+    grows, q, past = bool(path.growing_q.any()), point.front, None
+    if away_from_zero(direction, point.opening) and (careful or not grows):
+        past = _past_kink(system, point)
     if not grows:
-        exact = abs(left) < 1.001 * pace.length
-        away = (left if exact else np.copysign(pace.length, left)) / opening_rate
-        if event is not None and event.away < away:
-            return Step(gap_control(system, event.q), event.beyond)
-        return Step(opening_control(system), away, exact, pace.every_kink)
-    if 0.0 < direction * left < pace.step and not pace.careful and path.heading == direction:
-        return Step(opening_control(system), left / opening_rate, exact=True)
-    q = point.front
-    away = min(pace.front * law.g_u / abs(path.rate_q[q]), pace.length / abs(opening_rate))
-    if event is not None and event.away < away:
-        q, away = event.q, event.beyond
+        exact = abs(left) < 1.001 * lengths.length
+        away = (left if exact else np.copysign(lengths.length, left)) / opening_rate
+        if past is not None and past[1] < away:
+            return Step(gap_control(system, past[0]), past[2], by_kinks=by_kinks)
+        return Step(opening_control(system), away, exact, by_kinks, every_kink)
+    if 0.0 < direction * left < lengths.length and not careful and path.heading == direction:
+        return Step(opening_control(system), left / opening_rate, True, by_kinks)
+    away = min(lengths.front * law.g_u / abs(path.rate_q[q]), lengths.length / abs(opening_rate))
+    if past is not None and past[1] < away:
+        q, _, away = past
+    name = CONTROLS[lengths.number] if isinstance(lengths, Careful) else CONTROLS[0]
     controls = {
         "front": lambda: gap_control(system, q),
         "dissipation": lambda: dissipation_control(system),
         "arc length": lambda: arc_length_control(system, point.response, path.du_d),
     }
-    return Step(controls[pace.control](), away, every_kink=pace.every_kink)
+    return Step(controls[name](), away, by_kinks=by_kinks, every_kink=every_kink)
+
+
+def _past_kink(system: System, point: Point) -> tuple[int, float, float] | None:
+    """The point that reaches a kink first along the tangent, and the lengths that lead onto the kink and past it."""
+    law, touch, rate_q = system.interface.law, point.response.contact, point.tangent.rate_q
+    k_q = np.where(holding(system.interface, touch), point.state.k_q, law.g_u)  # no kink for the others
+    found = first_kink(law, touch.g_q, k_q, rate_q)
+    if found is None:
+        return None
+    kink, away = found
+    shortest = float(np.min(np.diff(np.array(law.kinks), prepend=0.0)))
+    return kink.q, away, float(away + DISTANCES.past * shortest / rate_q[kink.q])

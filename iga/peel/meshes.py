@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from iga.mesh.extraction import Mesh
-from iga.specimen.grading import columns, elements_within, finer_towards, largest, part, pieces, rectangle, unequal
+from iga.specimen.grading import (
+    GRADING,
+    columns,
+    elements_within,
+    finer_towards,
+    largest,
+    most_halvings,
+    part,
+    pieces,
+    rectangle,
+    unequal,
+)
 from iga.specimen.problem import presses
 from iga.specimen.tmesh_strip import Strip, strip_tmesh
 from iga.tsplines.tmesh import DEGREE, TMesh
@@ -15,16 +27,20 @@ from iga.tsplines.tmesh import DEGREE, TMesh
 if TYPE_CHECKING:
     from iga.peel.problem import Problem
 
-#: Elements away from the bond only bend; they may be this much longer than those on it.
-COARSENING = 4.0
 
-#: Where a strip is pressed on the end of the substrate, elements are no longer than this part of its thickness; and
-#: elements on the bond that are so few that there are no more halvings than these, and never more than the last.
-PRESSED, FEW, MOST = 0.125, 7, 60
+@dataclass(frozen=True)
+class Layers:
+    """Layers of the substrate: at most ``most``, each ``thickening`` times as thick as the one above.
 
-#: Layers of the substrate: at most so many, each this much thicker than the one above, and the top one no thinner than
-#: such a part of the length of its elements.
-LAYERS, THICKENING, FLATTEST = 3, 2.0, 0.5
+    The top one is no thinner than the part ``flattest`` of the length of its elements.
+    """
+
+    most: int = 3
+    thickening: float = 2.0
+    flattest: float = 0.5
+
+
+LAYERS_BELOW = Layers()
 
 
 def meshes(problem: Problem) -> tuple[Mesh, Mesh]:
@@ -36,15 +52,15 @@ def meshes(problem: Problem) -> tuple[Mesh, Mesh]:
     """
     _require_bodies(problem)
     end, depth = problem.bond_length, problem.substrate_thickness
-    for layers in range(LAYERS, 0, -1):
-        tops = np.concatenate([[0.0], np.cumsum(THICKENING ** np.arange(layers))])
+    for layers in range(LAYERS_BELOW.most, 0, -1):
+        tops = np.concatenate([[0.0], np.cumsum(LAYERS_BELOW.thickening ** np.arange(layers))])
         try:
             (bonded, beyond), (below, rest) = _elements(problem, layers)
         except ValueError:
             if layers == 1:
                 raise
             continue
-        if tops[1] / tops[-1] * depth >= FLATTEST * end / below:
+        if tops[1] / tops[-1] * depth >= LAYERS_BELOW.flattest * end / below:
             break
     strip = _breaks(problem, problem.strip_length, bonded, beyond)
     substrate = _breaks(problem, problem.substrate_length, below, rest)
@@ -114,7 +130,7 @@ def _strips(problem: Problem, layers: tuple[int, int]) -> tuple[Strip, Strip]:
             breaks_c = _breaks(problem, length, path, _beyond(problem, length, path, k) + spare, k)
             made.append(Strip(breaks_c, np.arange(len(breaks_c) - 1) < path + _ahead(problem, length, path, k), k))
             spare = 0
-        return tuple(made)
+        return made[0], made[1]
 
     def unknowns(both: tuple[Strip, Strip]) -> int:
         return 2 * sum(strip.functions for strip in both)
@@ -136,10 +152,12 @@ def _ahead(problem: Problem, length: float, path: int, layers: int = 0) -> int:
 
 
 def _beyond(problem: Problem, length: float, path: int, layers: int = 0) -> int:
-    """Longer elements beyond the short ones; none of a body that ends with the bond."""
+    """Longer elements beyond the short ones; 0 for a body that ends with the bond."""
     rest = length - problem.bond_length
     short = problem.bond_length / path
-    return part((rest - _ahead(problem, length, path, layers) * short) / (COARSENING * short)) if rest > 0.0 else 0
+    return (
+        part((rest - _ahead(problem, length, path, layers) * short) / (GRADING.coarsening * short)) if rest > 0.0 else 0
+    )
 
 
 def _breaks(problem: Problem, length: float, path: int, beyond: int, layers: int = 0) -> np.ndarray:
@@ -153,7 +171,7 @@ def _breaks(problem: Problem, length: float, path: int, beyond: int, layers: int
     face = min(problem.strip_length, problem.substrate_length)
     if not presses(problem) or face <= bond:
         return breaks
-    return finer_towards(breaks, face, PRESSED * problem.strip_thickness, path if path <= FEW else MOST)
+    return finer_towards(breaks, face, GRADING.pressed * problem.strip_thickness, most_halvings(path))
 
 
 def _require_bodies(problem: Problem) -> None:

@@ -15,16 +15,16 @@ from iga.mesh.quadrature import gauss, square
 from iga.specimen.pose import Pose
 
 #: Intervals between samples along each direction of an element.
-SAMPLES = 3
+ELEMENT_SAMPLES = 3
 #: Part of a body's size by which it may differ from another one moved, by rounding.
-ALIKE = 1e-14
+MOVED_ALIKE = 1e-14
 
 
 @dataclass(frozen=True)
 class Body:
     """A mesh in place whose control points are numbered from ``first`` on in the whole model.
 
-    A body that is another one moved tells this one as its ``original``, whose bases it takes over.
+    A body that is another one moved has that as its ``original``, whose bases it takes over.
     """
 
     mesh: Mesh
@@ -41,7 +41,7 @@ class Body:
     @property
     def sampled(self) -> tuple[Solid, ...]:
         """The blocks on a grid of points an element, for pictures."""
-        t, s = np.meshgrid(*[np.linspace(0.0, 1.0, SAMPLES + 1)] * 2, indexing="ij")
+        t, s = np.meshgrid(*[np.linspace(0.0, 1.0, ELEMENT_SAMPLES + 1)] * 2, indexing="ij")
         points_q = np.stack([s.ravel(), t.ravel()], -1)
         grids = (block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)
         return tuple(Solid(_numbered(basis, self.first), self.D) for basis in grids)
@@ -49,7 +49,7 @@ class Body:
     def face(self, name: str) -> tuple[BlockBasis, ...]:
         """Basis on the sides of one of the mesh's chains, made when it is first asked for.
 
-        The ends "left" and "right" are told as they were before the specimen was put in place.
+        The ends "left" and "right" are named as they were before the specimen was put in place.
         """
         made = self.__dict__.setdefault("_faces", {})
         if name not in made and self.original is not None:
@@ -100,7 +100,7 @@ def _alike(a: Mesh, b: Mesh) -> bool:
     if a.blocks is not b.blocks or a.chains is not b.chains or a.w_A is not b.w_A:
         return False
     apart_AI = b.P_AI - a.P_AI
-    return bool(np.abs(apart_AI - apart_AI[0]).max() <= ALIKE * np.ptp(a.P_AI, axis=0).max())
+    return bool(np.abs(apart_AI - apart_AI[0]).max() <= MOVED_ALIKE * np.ptp(a.P_AI, axis=0).max())
 
 
 def _body(mesh: Mesh, first: int, D: np.ndarray, width: float, smooth: bool) -> Body:

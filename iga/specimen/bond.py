@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,13 +15,17 @@ from iga.mesh.quadrature import gauss, lobatto
 from iga.specimen.body import Body
 from iga.specimen.problem import Debonding, unloads
 
-RULES = {"gauss": gauss, "lobatto": lobatto}
+#: Points (n,) and weights (n,) of a rule on [0, 1].
+Rule = tuple[np.ndarray, np.ndarray]
+
+#: Name in a scene -> rule of so many points.
+QUADRATURE: dict[str, Callable[[int], Rule]] = {"gauss": gauss, "lobatto": lobatto}
 
 #: Surface by which each body, upper and lower, meets the other.
 FACING = ("bottom", "top")
 
 #: Samples of the gap on each side, where it is looked at whether faces pass through each other.
-SAMPLES = 5
+FACE_SAMPLES = 5
 
 #: Part of a side that is too little to touch.
 SLIVER = 1e-6
@@ -35,7 +40,7 @@ def bond(
     """Interface over the ``extent`` (from, to) in the specimen's own coordinate along it; one body meets its mirror.
 
     Beyond the bond the bodies may touch from end to end of ``touching``, which holds the extent, at p + 1 points a
-    side, at which lumped ones keep their partners.
+    side, which in lumped interfaces meet the same control points for good.
     """
     found = _bonded(problem, bodies, extent, touching)
     return settled(found) if stays(problem) else found
@@ -46,7 +51,7 @@ def _bonded(
 ) -> Interface:
     lumps, free = problem.interface_rule == "lumped", gauss(problem.degree + 1)
     held = _everywhere(
-        problem, bodies, extent, free if lumps else RULES[problem.interface_rule](problem.interface_points)
+        problem, bodies, extent, free if lumps else QUADRATURE[problem.interface_rule](problem.interface_points)
     )
     parts = [held]
     if touching is not None:
@@ -65,7 +70,7 @@ def _bonded(
 
 
 def stays(problem: Debonding) -> bool:
-    """Whether partners and normals stay what they are before anything moves."""
+    """Whether closest points and normals stay what they are before anything moves."""
     return problem.kinematics == "linear" or not problem.search
 
 
@@ -87,13 +92,13 @@ def faces(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, flo
     """
     if not unloads(problem):
         return None
-    even = np.linspace(0.0, 1.0, SAMPLES), np.full(SAMPLES, 1.0 / SAMPLES)
+    even = np.linspace(0.0, 1.0, FACE_SAMPLES), np.full(FACE_SAMPLES, 1.0 / FACE_SAMPLES)
     found = _interface(problem, bodies, *_between(problem, bodies, (min(extent), max(extent)), even))
     return settled(found) if stays(problem) else found
 
 
 def _everywhere(
-    problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float], rule: tuple[np.ndarray, np.ndarray]
+    problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float], rule: Rule
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sides c_q, parameters xi_q and weights w_q (n_q,) of a rule on every bonded side of the slave."""
     return everywhere(_bonded_sides(problem, bodies, extent), rule)
@@ -115,7 +120,7 @@ def _ends(problem: Debonding, bodies: tuple[Body, ...]) -> np.ndarray:
 
 
 def _between(
-    problem: Debonding, bodies: tuple[Body, ...], part: tuple[float, float], rule: tuple[np.ndarray, np.ndarray]
+    problem: Debonding, bodies: tuple[Body, ...], part: tuple[float, float], rule: Rule
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The same on what lies of each side in a ``part`` of the specimen, as if its parameter ran evenly."""
     X_ck = _ends(problem, bodies)
@@ -158,7 +163,7 @@ def between(
     return Interface(slave.functions(c_q, r0), slave.conn_ca[c_q], dA_q, X_qi, P_AI, law, master)
 
 
-def everywhere(c: np.ndarray, rule: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def everywhere(c: np.ndarray, rule: Rule) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sides, parameters and weights (n_q,) of the points of a rule on every one of some sides."""
     xi, w = rule
     return np.repeat(c, len(xi)), np.tile(xi, len(c)), np.tile(w, len(c))

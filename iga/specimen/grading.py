@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,8 +12,30 @@ from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_rectangle
 from iga.mesh.extraction import Mesh
 
-#: Part of an element that rounding may add or take: numbers of elements do not turn on it.
-ROUNDING = 1e-9
+
+@dataclass(frozen=True)
+class Grading:
+    """How much the elements of a body may differ.
+
+    Those off the crack path may be ``coarsening`` times longer than those on it: they only bend. Where bodies are
+    pressed together, elements next to the load are no longer than the part ``pressed`` of the thickness; they are
+    halved for that no more often than there are elements on the path where these are ``few``, and never more often
+    than ``halvings``. Rounding adds or takes less than the part ``rounding`` of an element.
+    """
+
+    coarsening: float = 4.0
+    pressed: float = 0.125
+    few: int = 7
+    halvings: int = 60
+    rounding: float = 1e-9
+
+
+GRADING = Grading()
+
+
+def most_halvings(path: int) -> int:
+    """How often an element is halved at most where bodies are pressed together, with so many elements on the path."""
+    return path if path <= GRADING.few else GRADING.halvings
 
 
 def columns(basis: str, degree: int, elements: int) -> int:
@@ -53,13 +76,13 @@ def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:
 
 
 def elements_within(length: float, most: float, short: float, layers: int) -> int:
-    """Elements ``short`` that fill a length, within ``most`` of which one is left; none if longer than it.
+    """Elements of length ``short`` that fill a length, and leave one of those within ``most``; 0 if they are longer.
 
-    That is said of what ``layers`` leave of them, each of which halves them.
+    They are compared with the length as halved by each of ``layers``.
     """
-    if short / 2**layers > length * (1.0 + ROUNDING):
+    if short / 2**layers > length * (1.0 + GRADING.rounding):
         return 0
-    return max(0, min(int(np.ceil(length / short - ROUNDING)), int(most / short - 1.0 + ROUNDING)))
+    return max(0, min(int(np.ceil(length / short - GRADING.rounding)), int(most / short - 1.0 + GRADING.rounding)))
 
 
 def part(elements: float) -> int:
@@ -80,13 +103,13 @@ def finer_towards(breaks: np.ndarray, place: float, most: float, times: int) -> 
 
     That ends where those at the place are no longer than ``most``, or have been halved so many ``times``.
     """
-    near = np.abs(breaks - place) < ROUNDING * breaks[-1]
+    near = np.abs(breaks - place) < GRADING.rounding * breaks[-1]
     breaks = np.where(near, place, breaks) if near.any() else np.sort(np.append(breaks, place))
     at, parts = int(np.argmin(np.abs(breaks - place))), [breaks]
     for beside in (at - 1, at + 1):
         if 0 <= beside < len(breaks):
             away = breaks[beside] - place
-            halvings = min(max(0, int(np.ceil(np.log2(abs(away) / most) - ROUNDING))), times)
+            halvings = min(max(0, int(np.ceil(np.log2(abs(away) / most) - GRADING.rounding))), times)
             parts.append(place + away * 0.5 ** np.arange(1, halvings + 1))
     return np.sort(np.concatenate(parts))
 

@@ -24,7 +24,7 @@ class Debonding:
     gaps are measured along the normal there for good. Steps that the path chooses leave the tangent by ``bend`` of the
     peak load. The specimen is reflected X -> -X where ``mirror`` is set,
     then turned by ``angle`` degrees counter-clockwise, then moved by ``shift``, with its supports and its load; what is
-    read from it is told in its own terms, wherever it lies.
+    read from it is in its own frame, wherever it lies.
     """
 
     strength: float
@@ -57,7 +57,7 @@ class Debonding:
 
     @property
     def law(self) -> TractionLaw:
-        """The traction law. Raises ValueError where there is none of that name."""
+        """The traction law. Raises ValueError where the name is unknown."""
         if self.law_name not in LAWS:
             raise ValueError(f"law_name: must be one of {', '.join(LAWS)}, got {self.law_name!r}")
         shape = LAWS[self.law_name]

@@ -12,41 +12,32 @@ from iga.elements.kinematics import KINEMATICS
 from iga.interface.interface import Interface
 from iga.interface.surface import Surface, surface
 from iga.mesh.extraction import Mesh
-from iga.specimen.body import Body, slope_row
+from iga.specimen.body import Body, bodies, slope_row
+from iga.specimen.bond import bond, control_points, faces, probe, slave_number
+from iga.specimen.delamination import Delamination
 from iga.specimen.load import pulled_row
 from iga.specimen.pose import Pose
+from iga.specimen.problem import Debonding, presses, smooth
 from iga.system.system import System
-from iga.tsplines.tmesh import TMesh
 
 
 @dataclass(frozen=True)
 class Specimen:
-    """A system and what it takes to read it: bodies (upper first), pose, and which ends count for what.
+    """A system and what it takes to read it: bodies (upper first), pose, and its layout.
 
-    ``loaded`` names the end, "left" or "right", at which the dead load pulls each body; "" where it does not. Where on
-    it is ``load_at``, see `iga.specimen.load`.
-    Distances along the specimen are counted from the plane ``loaded_at`` of the first of them; the bond begins at the
-    distance ``free_length``. ``energy_faces`` (body, end, sign) are those whose strain energy enters the J-integral.
-    ``path`` are the distances between which the mesh is made for the crack to run.
-    ``probe`` has two points, on the tip of the bond and on its far end. ``copies`` is 2 where one body stands for both.
-    ``tmeshes`` are the T-meshes of the bodies in the specimen's own frame, none where the basis is another. ``faces``
-    are samples of all that the bodies face of each other, bonded or not, where the programme may close it.
+    ``load_at`` is where on its end the load acts (see `iga.specimen.load`). ``probe`` has two points, on the tip of the
+    bond and on its far end. ``faces`` are samples of all that the bodies face of each other, bonded or not, where the
+    programme may close it.
     """
 
     system: System
     bodies: tuple[Body, ...]
     pose: Pose
-    loaded: tuple[str, ...]
-    loaded_at: float
-    free_length: float
-    energy_faces: tuple[tuple[int, str, float], ...]
+    layout: Delamination
+    load_at: str
     upper_is_slave: bool
-    copies: float
     probe: Interface
-    path: tuple[float, float]
-    tmeshes: tuple[TMesh, ...] = ()
-    load_at: str = "face"
-    faces: Interface | None = None
+    faces: Interface | None
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:
@@ -58,17 +49,20 @@ class Specimen:
         n, axes_kI = self.system.n_dof, self.pose.axes_kI
         return tuple(
             slope_row(body.face(end), axes_kI[0], axes_kI[1], n) if end else np.zeros(n)
-            for body, end in zip(self.bodies, self.loaded, strict=True)
+            for body, (end, _) in zip(self.bodies, self.layout.loads, strict=True)
         )
 
     @cached_property
     def energy_sides(self) -> tuple[Solid, ...]:
         """The ends whose strain energy enters the J-integral, its sign in what each point stands for."""
+        ends, copies = ("left", "right"), self.layout.copies
+        ends = ends if self.layout.bonded[0] < self.layout.bonded[1] else ends[::-1]
         return joined(
             [
-                Solid(replace(basis, dV_eq=sign * self.copies * basis.dV_eq), self.bodies[number].D)
-                for number, end, sign in self.energy_faces
-                for basis in self.bodies[number].face(end)
+                Solid(replace(basis, dV_eq=sign * copies * basis.dV_eq), body.D)
+                for body in self.bodies
+                for end, sign in zip(ends, (1.0, -1.0), strict=True)
+                for basis in body.face(end)
             ]
         )
 
@@ -94,7 +88,7 @@ class Specimen:
     @cached_property
     def face_row(self) -> np.ndarray:
         """Row (n_dof,) of the displacement along the specimen of where the load acts on the upper body."""
-        return pulled_row(self.bodies[0], self.loaded[0], self.load_at, self.pose, 0, self.system.n_dof)
+        return pulled_row(self.bodies[0], self.layout.loads[0][0], self.load_at, self.pose, 0, self.system.n_dof)
 
     @cached_property
     def beside_probe(self) -> np.ndarray:
@@ -116,7 +110,34 @@ class Specimen:
 
     def distance(self, X: np.ndarray) -> np.ndarray:
         """Distance (...,) of places (..., 2) from the loaded end, along the specimen."""
-        return np.abs(self.pose.own(X)[..., 0] - self.loaded_at)
+        return np.abs(self.pose.own(X)[..., 0] - self.layout.loaded_at)
+
+
+def discretised(problem: Debonding, layout: Delamination) -> Specimen:
+    """Discrete system of a specimen with all that is needed to read results from its states."""
+    pose = problem.pose
+    # a mirror image that is not modelled counts in the width, so that forces and energies are those of the whole
+    parts = bodies(layout.meshes, layout.elasticity, pose, layout.copies * problem.width, smooth(problem))
+    P_AI, supports = control_points(parts), layout.supports(parts)
+    pulled = [
+        times * pulled_row(body, end, problem.load_at, pose, 1, P_AI.size)
+        for body, (end, times) in zip(parts, layout.loads, strict=True)
+        if end
+    ]
+    touching = layout.face if presses(problem) and layout.face != layout.bonded else None
+    system = System(
+        solids=joined([solid for body in parts for solid in body.solids]),
+        interface=bond(problem, parts, layout.bonded, touching),
+        kinematics=problem.kinematics,
+        load_d=np.sum(pulled, axis=0),
+        free_d=supports.free_d,
+        x_d=np.repeat(pose.own(P_AI)[:, 0], 2),
+        springs_rd=supports.springs_rd,
+        spring_r=supports.spring_r,
+    )
+    ends, opposite = probe(problem, parts, layout.bonded, system.interface), faces(problem, parts, layout.face)
+    upper_is_slave = slave_number(problem, parts) == 0
+    return Specimen(system, parts, pose, layout, problem.load_at, upper_is_slave, ends, opposite)
 
 
 def element_length(specimen: Specimen) -> float:
@@ -125,7 +146,7 @@ def element_length(specimen: Specimen) -> float:
     for mesh, side in zip(specimen.meshes, ("bottom", "top"), strict=False):
         start_ci, end_ci = _ends(surface(mesh, mesh.chains[side], first), P_AI)
         middle_c = specimen.distance(0.5 * (start_ci + end_ci))
-        met = (middle_c > specimen.path[0]) & (middle_c < specimen.path[1])
+        met = (middle_c > specimen.layout.free_length) & (middle_c < specimen.layout.path_end)
         longest = max(longest, float(np.linalg.norm(end_ci - start_ci, axis=1)[met].max(initial=0.0)))
         first += len(mesh.P_AI)
     return longest

@@ -56,7 +56,7 @@ class Energies:
 
 @dataclass(frozen=True)
 class Response:
-    """What a configuration answers.
+    """Forces, energies and contact in a configuration.
 
     ``internal_d`` (n_dof,) forces of bulk and interface; ``scale`` the norm of the forces that the elements hold
     against each other, by which a residual is judged; ``bulk_energy``; the interface with traction p_q, slope dp_q and

@@ -27,17 +27,25 @@ def untimed(_name: str) -> AbstractContextManager:
     return nullcontext()
 
 
-#: Part of the largest forces met so far by which a residual is judged where the present ones are smaller yet.
-UNLOADED = 1e-3
-#: What rounding leaves of a sum of forces of a condensed bulk, and the part of these that it would hide at a relative
-#: residual of 5e-12.
-LOST = 10.0 * np.finfo(float).eps
-HIDDEN = LOST / 5e-12
-#: Stiffness of the spring that holds the opening while a tangent is factorised, in parts of that of the unloaded
-#: specimen: more than any load falls by, and little that rounding could take from what it is taken away from again.
-HOLD = 100.0
-#: Part of the forces in play below which a point of the interface neither opens nor closes.
-NOTHING = 1e-13
+@dataclass(frozen=True)
+class Scales:
+    """What forces are compared with.
+
+    A residual is judged by the forces in play, at least by the part ``unloaded`` of the largest so far. Rounding leaves
+    the part ``lost`` of a sum of forces of a condensed bulk, and Newton would see the part ``hidden`` of these at a
+    relative residual of 5e-12. The spring that holds the opening while a tangent is factorised is ``hold`` times as
+    stiff as the unloaded specimen: more than any load falls by, and little that rounding could take from what it is
+    taken away from again. Points with less than the part ``still`` of the forces neither open nor close.
+    """
+
+    unloaded: float = 1e-3
+    lost: float = 10.0 * float(np.finfo(float).eps)
+    hidden: float = 10.0 * float(np.finfo(float).eps) / 5e-12
+    hold: float = 100.0
+    still: float = 1e-13
+
+
+SCALES = Scales()
 
 
 @dataclass(frozen=True)
@@ -51,8 +59,8 @@ class System:
     ``springs_rd @ u`` (n_r,), in any direction and of any group of points; where they are as many as the motions of the
     whole, balance itself says that they carry no force. ``free_d`` is False where a degree of freedom is fixed.
 
-    A linear bulk may be told by its stiffness ``bulk_dd`` (n_dof, n_dof) in place of solids: the unknowns are then what
-    it has been condensed to (see `iga.path.condensation`).
+    A linear bulk may be given by its stiffness ``bulk_dd`` (n_dof, n_dof) in place of solids: the unknowns are then
+    those that it has been condensed to (see `iga.path.condensation`).
     """
 
     solids: tuple[Solid, ...]
@@ -68,6 +76,11 @@ class System:
     @property
     def n_dof(self) -> int:
         return self.load_d.size
+
+    @property
+    def linear(self) -> bool:
+        """Whether kinematics and bulk are linear."""
+        return self.kinematics == "linear"
 
     def start(self) -> State:
         """The unloaded state."""
@@ -156,7 +169,7 @@ class System:
         """Stiffness of the spring that holds the opening while a tangent is factorised; 0 where none is known."""
         found = inverse(*tangent_matrix(self, respond(self, self.start(), decide=False)), self.load_d)
         compliance = 0.0 if found is None else abs(float(self.load_d @ found.under_load_d))
-        return HOLD / compliance if compliance > 0.0 else 0.0
+        return SCALES.hold / compliance if compliance > 0.0 else 0.0
 
     def pattern(self, dof_qd: np.ndarray) -> Pattern:
         """Where all entries go when the points touch dof_qd; wider than `band` where one has slid too far for it.
@@ -165,7 +178,7 @@ class System:
         """
         kept = self.__dict__.get("_pattern")
         if kept is None or not (kept.dof_qd is dof_qd or np.array_equal(kept.dof_qd, dof_qd)):
-            conns = () if self.kinematics == "linear" else self.connectivity
+            conns = () if self.linear else self.connectivity
             kept = pattern_of(self.band, dof_qd, self.spring_entries[:2], self.loaded, conns, kept)
             self.__dict__["_pattern"] = kept
         return kept
@@ -177,11 +190,10 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     Unless asked to ``decide`` anew by the sign of the gap, every point stays in contact or out of it as it is in
     ``trial``.
     """
-    linear = system.kinematics == "linear"
-    bulk = _finite_bulk if not linear else _linear_bulk if system.bulk_dd is None else _condensed_bulk
+    bulk = _finite_bulk if not system.linear else _linear_bulk if system.bulk_dd is None else _condensed_bulk
     internal_d, scale, bulk_energy, gradients = bulk(system, trial.u_d)
     touch = contact(system.interface, trial.u_d, trial.pairing)
-    scale = max(scale, UNLOADED * trial.scale)
+    scale = max(scale, SCALES.unloaded * trial.scale)
     closed_q = _closed(system, touch, trial, scale) if decide else trial.closed_q
     p_q, dp_q, k_q = traction(system.interface, touch, trial.k_q, closed_q)
     internal_d += forces(system.interface, touch, p_q, system.n_dof)
@@ -212,9 +224,9 @@ def _linear_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, fl
 
 
 def _condensed_bulk(system: System, u_d: np.ndarray) -> tuple[np.ndarray, float, float, tuple[np.ndarray, ...]]:
-    """A force that rounding hides is none: the scale is at least that for which `Newton` would ask no more."""
+    """Forces below rounding count as zero: the scale is at least that at which these are below Newton's tolerance."""
     internal_d = system.bulk_dd @ u_d
-    scale = max(float(internal_d @ internal_d) ** 0.5, HIDDEN * _held(system, u_d))
+    scale = max(float(internal_d @ internal_d) ** 0.5, SCALES.hidden * _held(system, u_d))
     return internal_d, scale, 0.5 * float(u_d @ internal_d), ()
 
 
@@ -227,7 +239,7 @@ def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.nd
     """Points with a negative gap; where the gap is worth no force, as they were: its sign is rounding."""
     interface = system.interface
     stiffest = max(interface.law.penalty, interface.law.stiffness)
-    nothing_q = np.abs(touch.g_q) * stiffest * interface.dA_q <= NOTHING * scale
+    nothing_q = np.abs(touch.g_q) * stiffest * interface.dA_q <= SCALES.still * scale
     return np.where(nothing_q, trial.closed_q, touch.g_q < 0.0)
 
 
@@ -247,7 +259,7 @@ def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
     Long thin elements are stiff across, and so is contact.
     """
     if system.bulk_dd is not None:
-        return LOST * _held(system, u_d)
+        return SCALES.lost * _held(system, u_d)
     squares = (
         np.sum((size_e * np.abs(relative(solid.basis.conn_ea, u_d.reshape(-1, 2))).max((1, 2))) ** 2)
         for size_e, solid in zip(system.stiffest, system.solids, strict=True)
@@ -275,14 +287,14 @@ def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np
 def _pattern(system: System, response: Response) -> Pattern:
     """An open crack asks for no entries in the matrix, however far it has moved."""
     touched_qd, reference_qd = response.contact.dof_qd, system.reference_dof_qd
-    if touched_qd is reference_qd:  # partners stay
+    if touched_qd is reference_qd:  # no point has moved along the master
         return system.pattern(reference_qd)
     carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
     return system.pattern(np.where(carries_q[:, None], touched_qd, reference_qd))
 
 
 def _bulk_stiffness(system: System, gradients: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Element stiffness of the blocks whose gradients are told; none of a bulk that is linear and in place already."""
+    """Element stiffness of the blocks with these gradients; no block of a bulk that is linear and assembled already."""
     moduli = KINEMATICS[system.kinematics].moduli
     return [
         element_stiffness(solid.basis, moduli(solid.D, H)) for solid, H in zip(system.solids, gradients, strict=False)

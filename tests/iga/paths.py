@@ -9,16 +9,17 @@ from specimens import PAPER
 from iga.dcb.dcb import build
 from iga.path.follow import follow
 from iga.path.newton import residual_norm
+from iga.path.solver import DEFAULT, Solver
 from iga.system.system import respond
 
 CZM1 = replace(PAPER, opening=(3.0,))
 BOTH = [("nurbs", "finite"), ("lagrange", "linear")]
 
 
-def run(problem, steps=150, **limits):
+def run(problem, steps=150, newton=DEFAULT):
     """System, points and end of a problem's path."""
     system = build(problem).system
-    *points, end = follow(system, problem.opening, steps, **limits)
+    *points, end = follow(Solver(system, newton), problem.opening, steps)
     return system, points, end
 
 

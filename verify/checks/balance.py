@@ -62,7 +62,7 @@ def _residual(scene: Scene, result: Result) -> float:
         law = scene.interface
         closed = CONTACT * law.penalty * length * body.width * 2.0 * law.toughness / law.strength
         return whole + float(np.sqrt(result.dofs)) * eps * closed / load
-    from iga.path.newton import DEFAULT
+    from iga.path.solver import DEFAULT
 
     slope = min(1.0, 0.75 * moved / body.free_length)  # of one of two arms at its end, 3/2 of its mean
     relative = float(np.sqrt(result.elements)) * ROUNDING * eps * stiffness * slope * length / load

@@ -11,6 +11,7 @@ from iga.algebra.dense import Dense, DenseCholesky, DenseLU
 from iga.dcb.dcb import build
 from iga.path.follow import follow
 from iga.path.point import Point
+from iga.path.solver import Solver
 from iga.system.system import factorise, respond, tangent_matrix, untimed
 
 CZM1 = replace(PAPER, opening=(1.5,), dofs=400)
@@ -56,7 +57,7 @@ def solved(system, state, rng) -> tuple[object, float]:
 def test_before_and_behind_the_peak_a_held_tangent_is_positive_definite(kinematics, rng):
     """Behind it the load falls: without the spring across the opening Cholesky finds no factor, and LU takes over."""
     system = build(replace(CZM1, kinematics=kinematics)).system
-    points = [p for p in follow(system, (1.5,), 40) if isinstance(p, Point)]
+    points = [p for p in follow(Solver(system), (1.5,), 40) if isinstance(p, Point)]
     top = int(np.argmax([p.state.load for p in points]))
     falling = min(points, key=lambda point: point.slope)
     for point in (points[top // 2], points[-1], falling):
@@ -74,7 +75,7 @@ def test_where_the_path_snaps_back_another_factor_takes_over(rng):
     """Elements so long that the load falls faster than any opening could hold."""
     system = build(replace(PAPER, strength=6.0, opening=(3.0,), basis="lagrange")).system
     kinds = set()
-    for point in follow(system, (1.0,), 60):
+    for point in follow(Solver(system), (1.0,), 60):
         if isinstance(point, Point) and point.heading < 0.0:
             inverse, wrong = solved(system, growing(point.state), rng)
             kinds.add(type(inverse.factors))

@@ -13,6 +13,7 @@ from iga.interface.surface import surface
 from iga.path.follow import follow
 from iga.path.point import End, Point
 from iga.path.point import Point as Converged
+from iga.path.solver import Solver
 from iga.specimen.specimen import Specimen
 from iga.system.state import State
 from iga.system.system import untimed
@@ -54,7 +55,7 @@ def changes(problem) -> tuple[list[Change], list[Converged], End]:
         patch.setattr(
             iga.dcb.adaptive, "equilibrium", lambda s, trial, *rest: sought.append(trial) or search(s, trial, *rest)
         )
-        *points, end = follow(specimen.system, problem.opening, problem.steps, renew=renew)
+        *points, end = follow(Solver(specimen.system), problem.opening, problem.steps, renew=renew)
     return made, points, end
 
 

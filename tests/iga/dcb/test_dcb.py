@@ -12,11 +12,11 @@ import iga.path.step_length
 from iga.dcb.dcb import build, solve
 from iga.interface.laws import BilinearLaw
 from iga.output.rows import reach
-from iga.path.control import opening_control
+from iga.path.control import Prescribed, opening_control
 from iga.path.follow import follow
-from iga.path.newton import DEFAULT, Newton, equilibrium
+from iga.path.newton import equilibrium
 from iga.path.point import Point
-from iga.system.system import untimed
+from iga.path.solver import Newton, Solver
 
 CZM1 = replace(PAPER, opening=(3.0,), dofs=1956)
 SHORT = replace(CZM1, opening=(1.0,), dofs=800, steps=40)
@@ -73,7 +73,7 @@ def test_j_integral_equals_the_work_of_the_tractions_at_the_tip(nurbs):
 
 def test_slopes_are_those_of_the_curve():
     """d load / d opening from the tangent against a difference of two converged loads."""
-    points = [p for p in follow(build(SHORT).system, (0.3, 0.3 + 1e-5), 4) if isinstance(p, Point)]
+    points = [p for p in follow(Solver(build(SHORT).system), (0.3, 0.3 + 1e-5), 4) if isinstance(p, Point)]
     at = next(i for i, p in enumerate(points) if p.opening == 0.3)
     difference = (points[-1].state.load - points[at].state.load) / 1e-5
     assert points[at].slope == pytest.approx(difference, rel=1e-4)
@@ -168,7 +168,8 @@ def test_closing_altogether_and_opening_again(kinematics):
 
 def test_external_work_is_integrated_to_fourth_order(monkeypatch):
     """Nothing is lost while the interface stays elastic: twice the steps, a sixteenth of the gap in the ledger."""
-    monkeypatch.setattr(iga.path.step_length, "FEWEST", 1)  # steps of equal length,
+    counted = iga.path.step_length.Lengths(fewest=1)
+    monkeypatch.setattr(iga.path.step_length, "LENGTHS", counted)  # steps of equal length,
     monkeypatch.setattr(iga.path.follow, "leaks", lambda *_: False)  # however long
 
     def gap(steps: int) -> float:
@@ -196,7 +197,7 @@ def test_a_stiff_penalty_does_not_set_contact_against_cohesion_for_ever():
 
 
 def test_no_row_comes_from_a_step_that_has_not_converged():
-    points = [p for p in follow(build(SHORT).system, (0.8,), 30) if isinstance(p, Point)]
+    points = [p for p in follow(Solver(build(SHORT).system), (0.8,), 30) if isinstance(p, Point)]
     assert all(p.residuals[-1] <= Newton().tolerance for p in points[1:])
 
 
@@ -204,11 +205,11 @@ def test_newton_converges_quadratically_away_from_kinks():
     """One large step of an interface that stays elastic: digits nearly double from norm to norm."""
     problem = replace(SHORT, contact=False, ductility=1.01, strength=1e3, toughness=1e2, opening=(0.3,), dofs=400)
     system = build(problem).system
-    start = next(follow(system, problem.opening, 1))
+    start = next(follow(Solver(system), problem.opening, 1))
     away = problem.opening[0] / float(system.load_d @ start.tangent.du_d)
     trial = replace(start.state, u_d=away * start.tangent.du_d, load=away * start.tangent.d_load)
     control = opening_control(system)
-    found = equilibrium(system, trial, control, problem.opening[0], problem.opening[0], DEFAULT, untimed)
+    found = equilibrium(Solver(system), trial, Prescribed(control, problem.opening[0], problem.opening[0]))
     print(f"residual norms {found.residuals}")
     start = next(i for i, norm in enumerate(found.residuals) if norm < 0.1)
     first, second, third = found.residuals[start : start + 3]
@@ -218,7 +219,7 @@ def test_newton_converges_quadratically_away_from_kinks():
 
 def test_a_linear_system_is_solved_at_once():
     problem = replace(SHORT, kinematics="linear", contact=False, strength=1e3, toughness=1e2, opening=(0.3,))
-    point = [p for p in follow(build(problem).system, problem.opening, 1) if isinstance(p, Point)][-1]
+    point = [p for p in follow(Solver(build(problem).system), problem.opening, 1) if isinstance(p, Point)][-1]
     assert len(point.residuals) == 1
 
 
@@ -272,7 +273,7 @@ def test_the_foremost_place_of_an_opening_lies_between_points(k, place):
     order = np.array([2, 0, 3, 1])
     k_q = np.empty(4)
     k_q[order] = k
-    specimen = SimpleNamespace(ordered=(np.array([4.1, 4.3, 4.5, 4.7]), order), free_length=4.0)
+    specimen = SimpleNamespace(ordered=(np.array([4.1, 4.3, 4.5, 4.7]), order), layout=SimpleNamespace(free_length=4.0))
     assert reach(specimen, k_q, 1.0) == pytest.approx(place)
-    specimen.free_length = 4.6
+    specimen.layout.free_length = 4.6
     assert reach(specimen, k_q, 1.0) == pytest.approx(max(place, 4.6)), "never behind the tip"

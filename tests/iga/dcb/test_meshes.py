@@ -11,9 +11,7 @@ from specimens import PAPER, E
 
 from iga.dcb.dcb import build, solve
 from iga.dcb.meshes import (
-    COARSENING,
-    FEW,
-    LEAST_COARSENING,
+    CRACK_PATH,
     arm_meshes,
     coarsening,
     crack_path,
@@ -24,6 +22,7 @@ from iga.dcb.meshes import (
 )
 from iga.interface.surface import surface
 from iga.peel.meshes import tmeshes as peel_tmeshes
+from iga.specimen.grading import GRADING
 from iga.tsplines.tspline import tspline_rectangle
 from tests.iga.peel.test_peel import PEEL
 
@@ -89,7 +88,7 @@ def test_the_specimens_of_the_paper_have_the_same_size_with_every_basis(basis, p
 
 def coarsest(problem, before: int, path: int) -> float:
     """One cubic element before the path may stand for two; few on the path ask for no more of them elsewhere."""
-    if path <= FEW:
+    if path <= GRADING.few:
         return np.inf
     return coarsening(problem) * (2.0 if before == 1 and problem.degree >= 3 else 1.0)
 
@@ -100,9 +99,11 @@ def test_nearly_incompressible_arms_have_no_long_elements():
         nu: coarsening(replace(PAPER, plane="strain", nu12=nu, G12=E / (2 * (1 + nu))))
         for nu in (0.0, 0.3, 0.45, 0.4999)
     }
-    assert strain[0.0] == COARSENING and strain[0.4999] == LEAST_COARSENING
+    assert strain[0.0] == GRADING.coarsening and strain[0.4999] == CRACK_PATH.coarsening
     assert strain[0.0] > strain[0.3] > strain[0.45] > strain[0.4999]
-    assert coarsening(replace(PAPER, plane="stress", nu12=0.4999, G12=E / (2 * (1 + 0.4999)))) > 0.9 * COARSENING
+    assert (
+        coarsening(replace(PAPER, plane="stress", nu12=0.4999, G12=E / (2 * (1 + 0.4999)))) > 0.9 * GRADING.coarsening
+    )
 
 
 @some

@@ -13,7 +13,7 @@ from iga.bases.bspline import open_knots
 from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_rectangle
 from iga.interface import closest_point
-from iga.interface.closest_point import MOST, Pairing, closest_points, nearest_samples
+from iga.interface.closest_point import PROJECTION, Pairing, closest_points, nearest_samples
 from iga.interface.interface import Interface, contact
 from iga.interface.laws import BilinearLaw
 from iga.interface.surface import Surface, surface
@@ -47,7 +47,7 @@ def test_a_stale_pairing_is_as_good_as_a_fresh_one(sides, rng):
     top, y = wavy(sides)
     x = np.stack([rng.uniform(0.0, sides, 200), rng.uniform(0.4, 0.9, 200)], -1)
     fresh = closest_points(top, x, y, nearest_samples(top, x, y))
-    if sides * 8 > MOST:  # the samples alone do not see every wave
+    if sides * 8 > PROJECTION.most:  # the samples alone do not see every wave
         near = np.clip(x[:, 0].astype(int), 0, sides - 1)
         fresh = closest_points(top, x, y, Pairing(near, x[:, 0] - near, np.ones(200, dtype=bool)))
     for start in (at(0, 0.0, 200), at(sides - 1, 1.0, 200), at(sides // 2, 0.4, 200)):
@@ -75,7 +75,7 @@ def test_points_that_cross_to_the_next_side_are_followed_with_all_others(monkeyp
     points = [np.stack([here + slid, np.full(here.size, 0.9)], -1) for slid in (0.0, 0.3, -0.3)]
     start = closest_points(top, points[0], y, nearest_samples(top, points[0], y))
     wanted = [closest_points(top, x, y, nearest_samples(top, x, y)) for x in points[1:]]
-    monkeypatch.setattr(closest_point, "_walk", None)
+    monkeypatch.setattr(closest_point, "_along_chain", None)
     for x, far in zip(points[1:], wanted, strict=True):
         near = closest_points(top, x, y, start)
         assert np.count_nonzero(near.c_q != start.c_q) > 8
@@ -212,7 +212,7 @@ def test_a_pairing_takes_as_many_looks_at_a_surface_however_many_sides_it_has(mo
         interface = strips(sides)
         looks.clear()
         pairing = interface.pairing
-        assert sum(looks) / interface.points - min(8 * sides, MOST) / interface.points < first
+        assert sum(looks) / interface.points - min(8 * sides, PROJECTION.most) / interface.points < first
         pairing = contact(interface, bent(interface, 2.0), pairing).pairing
         looks.clear()
         found = contact(interface, bent(interface, 2.0 + 0.3 * LENGTH / sides), pairing)
@@ -229,7 +229,7 @@ def test_the_gap_of_a_point_costs_the_same_on_100_and_on_10_000_sides():
     """What Newton calls, on an open, bent interface that has slid: at the place before, and a part of a side further.
 
     Told but not judged, since they take more looks on shorter sides (see above): the first pairing, from no more than
-    `MOST` samples, and a move as long on both, over ten sides of the many.
+    `ProjectionLimits.most` samples, and a move as long on both, over ten sides of the many.
     """
     calls = {}
     for sides in (100, 10_000):

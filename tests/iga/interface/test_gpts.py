@@ -13,7 +13,7 @@ from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_rectangle
 from iga.files.cad_body import body_mesh
 from iga.files.iga_format import write_iga
-from iga.interface.closest_point import FREE, HELD
+from iga.interface.closest_point import PROJECTION
 from iga.interface.interface import Interface, contact, forces, stiffness, traction
 from iga.interface.laws import BilinearLaw
 from iga.interface.surface import surface
@@ -146,7 +146,10 @@ def test_tangent_in_any_state(name, slave, state, slide, bend, angle, seed):
 
 @pytest.mark.parametrize("slave", ["upper", "lower"])
 @given(
-    over=st.floats(0.0, FREE + 0.05), angle=st.sampled_from([0.0, 70.0]), pull=st.booleans(), seed=st.integers(0, 2**31)
+    over=st.floats(0.0, PROJECTION.free + 0.05),
+    angle=st.sampled_from([0.0, 70.0]),
+    pull=st.booleans(),
+    seed=st.integers(0, 2**31),
 )
 def test_tangent_past_the_end(slave, over, angle, pull, seed):
     """One point after the other slides off the end of a bent master; in the fading part the matrix is not symmetric."""
@@ -237,7 +240,7 @@ def test_forces_and_moments_are_in_balance_past_the_end(slave, rng):
 def test_flush_ends_keep_their_points_whatever_rounding_does(rng):
     """Ends that move by 1e-3 of an element past each other carry as if they did not."""
     one = rig(nurbs(9, 3, UPPER), nurbs(9, 3, LOWER), "upper", points=8)
-    for slide in (-1e-3, 1e-15, 1e-3, HELD * 6.0 / 9.0):
+    for slide in (-1e-3, 1e-15, 1e-3, PROJECTION.held * 6.0 / 9.0):
         u_d = bent(one, 0.5 * LAW.g_max, slide, 0.0, 37.0, np.random.default_rng(1))
         touch = contact(one.interface, u_d, one.interface.pairing)
         assert np.all(touch.share_q == 1.0)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from iga.bases.lagrange import lagrange_rectangle
 from iga.dcb.dcb import build
 from iga.dcb.problem import Problem
-from iga.interface.closest_point import FREE, closest_points, nearest_samples
+from iga.interface.closest_point import PROJECTION, closest_points, nearest_samples
 from iga.interface.interface import contact, forces, rounding, settled, stiffness, traction
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
@@ -199,7 +199,7 @@ def test_a_point_off_the_master_is_free():
     touch = contact(interface, u.ravel(), system.start().pairing)
     X = interface.master.bezier_points(interface.P_AI)[-1, :, 0]
     beyond = interface.X_qi[:, 0] + 1.0 - PROBLEM.length
-    gone = beyond > FREE * (X[-1] - X[0])
+    gone = beyond > PROJECTION.free * (X[-1] - X[0])
     assert np.array_equal(~touch.on_q, gone) and gone.any()
     assert np.array_equal(~touch.pairing.on_q, beyond > 0.0)
     p, dp, k = traction(interface, touch, np.zeros(interface.points), touch.g_q < 0)

@@ -13,6 +13,7 @@ from iga import dcb, peel
 from iga.path.condensation import _rigid_motions, _rows, _without, condensed
 from iga.path.follow import follow
 from iga.path.point import End
+from iga.path.solver import Solver
 from iga.system.system import respond
 from tests.iga.peel.test_peel import PEEL
 
@@ -72,7 +73,7 @@ def test_the_whole_is_in_equilibrium_where_the_condensed_system_is(name):
     problem = CASES[name]
     whole = solver(problem).build(problem).system
     small = condensed(whole)
-    points = [item for item in follow(small.system, problem.opening, 40) if not isinstance(item, End)]
+    points = [item for item in follow(Solver(small.system), problem.opening, 40) if not isinstance(item, End)]
     for point in points[1::8]:
         found = small.expanded(point)
         answer = respond(whole, found.state, decide=False)
@@ -89,7 +90,8 @@ PAIRS = {"cubic": BEAM, "quadratic": replace(BEAM, degree=2, dofs=504), "peel": 
 @pytest.mark.parametrize("problem", PAIRS.values(), ids=PAIRS)
 def test_an_opening_that_a_gap_tells_already_is_not_condensed(problem, narrow, monkeypatch):
     """Two rows say the same, exactly or but for rounding: then the stiffness of what is kept has no bound."""
-    monkeypatch.setattr(iga.path.condensation, "NARROW", narrow)
+    limits = iga.path.condensation.CondensationLimits(narrow=narrow)
+    monkeypatch.setattr(iga.path.condensation, "CONDENSATION", limits)
     system = solver(problem).build(problem).system
     rows, small = _rows(system, system.interface.at_rest)[0].tocsr(), condensed(system)
     stiffest = max(np.abs(K).max() for K in system.linear_matrices)
@@ -132,7 +134,7 @@ def test_the_stiffness_of_the_interface_does_not_depend_on_units(name):
 def test_a_step_to_a_kink_takes_one_look_at_the_forces():
     """With a linear bulk the law is settled on the way to where a step is to end: nothing is left to Newton."""
     problem = replace(BEAM, steps=None, interface_points=4)
-    points = [*follow(condensed(dcb.build(problem).system).system, problem.opening, None, bend=0.05)]
+    points = [*follow(Solver(condensed(dcb.build(problem).system).system), problem.opening, None, bend=0.05)]
     looks = [point.iterations for point in points[1:] if not isinstance(point, End)]
     assert len(looks) > 5 and max(looks) == 1, looks
 
@@ -141,7 +143,7 @@ def test_without_damage_nothing_bends_and_one_step_goes_to_its_begin():
     """There the load has worked along a line, and all of that work is stored."""
     system = condensed(dcb.build(BEAM).system).system
     law = system.interface.law
-    first = next(item for item in follow(system, BEAM.opening, None) if item.opening > 0.0)
+    first = next(item for item in follow(Solver(system), BEAM.opening, None) if item.opening > 0.0)
     assert first.state.k_q.max() == pytest.approx(law.g_max, rel=1e-2) and first.tangent.growing_q.any()
     line = 0.5 * first.opening * first.state.load
     assert first.external_work == pytest.approx(line, rel=1e-10) == pytest.approx(first.energies.stored, rel=1e-9)
@@ -173,7 +175,8 @@ def test_dense_equations_pay_where_they_are_less_work_than_the_band(kept, pays, 
 def test_a_banded_and_a_sparse_factorisation_give_one_stiffness(name, monkeypatch):
     system, found = solver(CASES[name]).build(CASES[name]).system, []
     for narrow in (np.inf, 0.0):
-        monkeypatch.setattr(iga.path.condensation, "NARROW", narrow)
+        limits = iga.path.condensation.CondensationLimits(narrow=narrow)
+        monkeypatch.setattr(iga.path.condensation, "CONDENSATION", limits)
         found.append(condensed(system))
     banded, sparse = (one.system.bulk_dd for one in found)
     assert np.abs(banded - sparse).max() < 1e-11 * np.abs(sparse).max()

@@ -7,11 +7,19 @@ import pytest
 from specimens import PAPER, E
 
 from iga.dcb.dcb import build
-from iga.path.control import arc_length_control, dissipation_control, gap_control, load_control, opening_control
+from iga.path.control import (
+    Prescribed,
+    arc_length_control,
+    dissipation_control,
+    gap_control,
+    load_control,
+    opening_control,
+)
 from iga.path.follow import follow
-from iga.path.newton import DEFAULT, equilibrium
+from iga.path.newton import equilibrium
 from iga.path.point import Point
-from iga.system.system import respond, untimed
+from iga.path.solver import Solver
+from iga.system.system import respond
 
 CZM1 = replace(PAPER, dofs=400)
 NAMES = ("opening", "load", "gap", "dissipation", "arc length")
@@ -40,7 +48,7 @@ def branch(request):
     They are near to one another: the curve falls in waves, and further on it comes by the same load again.
     """
     system = build(replace(CZM1, kinematics=request.param)).system
-    points = [p for p in follow(system, (1.0,), 80) if isinstance(p, Point)]
+    points = [p for p in follow(Solver(system), (1.0,), 80) if isinstance(p, Point)]
     peak = int(np.argmax([p.state.load for p in points]))
     pairs = zip(points[peak:-1], points[peak + 1 :], strict=True)
     start, end = next(
@@ -90,7 +98,7 @@ def test_every_control_leads_to_the_same_next_point(branch, name):
     target = asked(there, respond(system, there, decide=False))[0]
     away = (target - before) / (a_d @ path.du_d + a_load * path.d_load)
     trial = replace(start.state, u_d=start.state.u_d + away * path.du_d, load=start.state.load + away * path.d_load)
-    found = equilibrium(system, trial, asked, target, target - before, DEFAULT, untimed)
+    found = equilibrium(Solver(system), trial, Prescribed(asked, target, target - before))
     assert found is not None
     size = np.linalg.norm(end.state.u_d)
     assert np.linalg.norm(end.state.u_d - start.state.u_d) > 0.01 * size, "no step at all"
@@ -126,7 +134,7 @@ def test_arc_length_counts_no_point_that_is_broken(branch):
 
 
 def curve(problem):
-    points = [p for p in follow(build(problem).system, problem.opening, 60) if isinstance(p, Point)]
+    points = [p for p in follow(Solver(build(problem).system), problem.opening, 60) if isinstance(p, Point)]
     return np.array([(p.opening, p.state.load, p.slope, p.external_work) for p in points])
 
 

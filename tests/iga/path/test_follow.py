@@ -8,7 +8,7 @@ import pytest
 from paths import BOTH, CZM1, column, decided, ledger, loads, run
 
 import iga.path.follow
-from iga.path.newton import DEFAULT
+from iga.path.solver import DEFAULT
 
 SNAPPING = [
     pytest.param(

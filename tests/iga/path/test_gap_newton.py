@@ -12,10 +12,12 @@ from iga.algebra.factors import bordered
 from iga.dcb.dcb import build
 from iga.interface.interface import Contact
 from iga.path import gap_newton
-from iga.path.control import gap_control, opening_control
+from iga.path.control import Prescribed, gap_control, opening_control
 from iga.path.follow import follow
+from iga.path.gap_newton import GAP_NEWTON, GapLaw
 from iga.path.newton import correction, residual_norm
 from iga.path.point import Point
+from iga.path.solver import Solver
 from iga.system.system import System, factorise, respond, untimed
 
 CZM1 = replace(PAPER, opening=(1.5,), dofs=700)
@@ -25,15 +27,16 @@ CZM1 = replace(PAPER, opening=(1.5,), dofs=700)
 def walked(**effects) -> tuple[System, list[Point]]:
     """A system and its path."""
     system = build(replace(CZM1, **effects)).system
-    return system, [point for point in follow(system, (1.5,), 60) if isinstance(point, Point)]
+    return system, [point for point in follow(Solver(system), (1.5,), 60) if isinstance(point, Point)]
 
 
 def leap(system, point: Point, control, by: float):
     """State and response where a step that changes the control ``by`` so much leads; whether the law is settled."""
     old = point.state
     response = respond(system, old, decide=False)
-    known, (value, _, _) = factorise(system, response, untimed), control(old, response)
-    found = correction(system, old, response, known, control, value + by, inner=True)
+    solver, (value, _, _) = Solver(system), control(old, response)
+    solver.factorise(response)
+    found = correction(solver, old, response, Prescribed(control, value + by, by), on_gaps=True)
     moved = old.moved(found[0])
     return moved, respond(system, moved), found[1]
 
@@ -78,7 +81,7 @@ def test_a_leap_of_the_front_breaks_points_in_order():
 
 def test_too_many_points_are_left_to_a_new_tangent(monkeypatch):
     system, points = walked(kinematics="linear", contact=True)
-    monkeypatch.setattr(gap_newton, "MOST", 2)
+    monkeypatch.setattr(gap_newton, "GAP_NEWTON", gap_newton.GapLimits(solutions=2))
     moved, response, settled = leap(system, points[40], opening_control(system), 0.3)
     assert not settled and residual_norm(system, moved.load, response) > 1e-6, "the plain step is no equilibrium"
 
@@ -88,9 +91,8 @@ def step_of_a_point(law, plain: float, guess: float | None = None, n_dof: int = 
     touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), np.array([[0]]), np.ones((1, 1, 1)))
     spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm[:1]]))
     flat, guess_q = (np.zeros(1), np.zeros(1)), None if guess is None else np.array([guess])
-    one = SimpleNamespace(dA_q=np.ones(1))
-    plain_d = np.append(plain, np.zeros(n_dof))
-    found = gap_newton.settled_step(one, touch, law, flat, plain_d, spring, guess_q)
+    one = GapLaw(SimpleNamespace(dA_q=np.ones(1)), touch, law, *flat)
+    found = gap_newton.settled_step(one, np.append(plain, np.zeros(n_dof)), spring, guess_q)
     return None if found is None else float(found[0])
 
 
@@ -103,7 +105,7 @@ def test_a_point_as_soft_as_the_specimen_is_stiff_has_no_gap(softening, gap):
     assert found is None if gap is None else found == pytest.approx(gap)
 
 
-@pytest.mark.parametrize("n_dof", [1, gap_newton.MOST + 1])
+@pytest.mark.parametrize("n_dof", [1, GAP_NEWTON.solutions + 1])
 def test_a_search_that_goes_round_in_circles_is_thrown_off(monkeypatch, n_dof):
     """Beyond 1 the law takes two thirds of every step away: from 2 Newton goes to -2, and from there to 2."""
 
@@ -112,13 +114,13 @@ def test_a_search_that_goes_round_in_circles_is_thrown_off(monkeypatch, n_dof):
         return np.where(beyond, 2.0 / 3.0 * (np.sign(g_q) - g_q), 0.0), np.where(beyond, -2.0 / 3.0, 0.0)
 
     assert step_of_a_point(law, 0.0, 2.0, n_dof) == pytest.approx(0.0, abs=1e-12)
-    monkeypatch.setattr(gap_newton, "ROUND", gap_newton.CORRECTIONS + 1)
+    monkeypatch.setattr(gap_newton, "GAP_NEWTON", gap_newton.GapLimits(damped=GAP_NEWTON.corrections + 1))
     assert step_of_a_point(law, 0.0, 2.0, n_dof) is None
 
 
 def test_a_guess_with_all_points_on_their_tangents_is_no_step_of_its_own():
     """Nothing pulls anywhere then, and there are no equations."""
-    for n_dof in (1, gap_newton.MOST + 1):
+    for n_dof in (1, GAP_NEWTON.solutions + 1):
         assert step_of_a_point(lambda g_q: (0.0 * g_q, 0.0 * g_q), 1.0, 0.3, n_dof) == 1.0
 
 
@@ -159,10 +161,10 @@ def test_tractions_agree_with_the_law_to_a_part_of_the_largest(off, agrees):
     """Of a traction of 5, all of which the tangent knows but for what it is off by."""
     touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), np.array([[0]]), np.ones((1, 1, 1)))
     spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm[:1]]))
-    plain_d, known = np.array([1.0, *np.zeros(gap_newton.MOST + 1)]), (np.full(1, 5.0), np.zeros(1))
+    plain_d, known = np.array([1.0, *np.zeros(GAP_NEWTON.solutions + 1)]), (np.full(1, 5.0), np.zeros(1))
 
     def law(g_q):
         return np.full(1, 5.0 * (1.0 + off)), np.zeros(1)
 
-    found = gap_newton.settled_step(SimpleNamespace(dA_q=np.ones(1)), touch, law, known, plain_d, spring)
+    found = gap_newton.settled_step(GapLaw(SimpleNamespace(dA_q=np.ones(1)), touch, law, *known), plain_d, spring)
     assert (found[0] == 1.0) == agrees and found[0] == pytest.approx(1.0, abs=1e-11)

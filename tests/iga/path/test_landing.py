@@ -8,13 +8,13 @@ import pytest
 from specimens import PAPER
 
 from iga.dcb.dcb import build
-from iga.path.control import gap_control
+from iga.path.control import Prescribed, gap_control
 from iga.path.follow import follow
 from iga.path.kinks import SEVERAL, broken_between, slope_over_arcs, travelled
-from iga.path.newton import DEFAULT, equilibrium
+from iga.path.newton import equilibrium
 from iga.path.point import End
-from iga.path.step_length import Pace
-from iga.system.system import untimed
+from iga.path.solver import Solver
+from iga.path.step_length import ByAccuracy, Careful
 
 CZM1 = replace(PAPER, opening=(1.2,), dofs=1956, steps=None)
 
@@ -27,7 +27,7 @@ NEAR = 1e-5
 def path():
     """System, steps (start, end) of a path that chooses them itself, and how it ended."""
     system = build(CZM1).system
-    *points, end = follow(system, CZM1.opening, None)
+    *points, end = follow(Solver(system), CZM1.opening, None)
     return system, list(zip(points[:-1], points[1:], strict=True)), end
 
 
@@ -47,7 +47,7 @@ def one_sided(system, start, end, q, kink):
     g, found = float(end.response.contact.g_q[q]), {}
     for part in (-2, -1, 0, 1, 2):
         target = kink * (1.0 + part * NEAR)
-        near = equilibrium(system, trial, gap_control(system, q), target, target - g, DEFAULT, untimed)
+        near = equilibrium(Solver(system), trial, Prescribed(gap_control(system, q), target, target - g))
         found[part] = np.array([system.load_d @ near.state.u_d, near.state.load])
     sides = []
     for side in (-1, 1):
@@ -119,7 +119,7 @@ def test_over_several_arcs_the_slope_is_that_of_the_curve_through_them(path):
     The parabola of the first of these steps goes back to where the load has just turned, and is left out.
     """
     system, steps, _ = path
-    *counted, _ = follow(system, (1.2,), 60)
+    *counted, _ = follow(Solver(system), (1.2,), 60)
     opening, load = np.array([(p.opening, p.state.load) for p in counted]).T
     told, local = [], []
     for start, end in steps[:-1]:
@@ -154,9 +154,9 @@ def test_where_the_load_turns_the_slope_is_none(monkeypatch):
     A cubic with the slope of either side would overshoot on the other one; the slopes of both sides are known.
     """
     # steps that fail there are tried again as they are, not counted from then on
-    monkeypatch.setattr(Pace, "slower", lambda pace: replace(pace, attempt=pace.attempt + 1))
+    monkeypatch.setattr(ByAccuracy, "failed", Careful)
     system = build(replace(CZM1, dofs=400)).system
-    *points, _ = follow(system, (1.0,), None)
+    *points, _ = follow(Solver(system), (1.0,), None)
     law, errors = system.interface.law, []
     for start, end in zip(points[:-1], points[1:], strict=True):
         kink = kink_of(law, start, end)

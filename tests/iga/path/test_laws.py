@@ -11,7 +11,8 @@ from iga.dcb.dcb import build, solve
 from iga.interface.laws import LAWS
 from iga.path.control import dissipation_control
 from iga.path.follow import follow
-from iga.path.kinks import HAIR, landing, next_event
+from iga.path.kinks import Kink, first_kink, nearest_end
+from iga.path.solver import Solver
 from iga.system.system import respond
 
 #: Unknowns by basis with which the J-integral is met within its tolerance.
@@ -72,7 +73,7 @@ def test_the_gradient_of_the_dissipation_is_that_of_its_value(table, name, rng):
     """Central differences along random directions, at a state where points are on every branch of the law."""
     system = build(replace(PAPER, law_name=name)).system
     law = system.interface.law
-    *_, before, point, _ = follow(system, (0.7,), 60)
+    *_, before, point, _ = follow(Solver(system), (0.7,), 60)
     k_q, g_q = before.state.k_q, point.response.contact.g_q
     growing_q = (g_q > k_q) & (g_q > law.g_max) & (g_q < law.g_u)
     branches = set(np.searchsorted(law.kinks, g_q[growing_q]))
@@ -94,19 +95,19 @@ def test_the_gradient_of_the_dissipation_is_that_of_its_value(table, name, rng):
     [(0.0, 0.0, 0), (0.01, 0.01, 1), (0.03, 0.03, 2), (0.01, 0.03, None)],
     ids=["never loaded", "on the plateau", "on the line", "unloaded"],
 )
-def test_every_kink_on_the_way_is_an_event(gap, history, kink):
+def test_every_kink_on_the_way_is_found(gap, history, kink):
     law = TrapezoidalLaw(4.0, 0.1, 12.5, 1e5)  # kinks at 0.004, 0.01933 and 0.03467
-    found = next_event(law, np.array([gap]), np.array([history]), np.array([2.0]))
-    next_kink = history if kink is None else law.kinks[kink]
-    assert found.away == pytest.approx((next_kink - gap) / 2.0)
-    assert found.beyond - found.away == pytest.approx(HAIR * law.g_max / 2.0)
+    found, away = first_kink(law, np.array([gap]), np.array([history]), np.array([2.0]))
+    assert found.gap == (history if kink is None else law.kinks[kink])
+    assert away == pytest.approx((found.gap - gap) / 2.0)
 
 
 @pytest.mark.parametrize("name", MADE_UP)
-def test_a_step_that_lands_on_a_kink_knows_its_jump(table, name):
+def test_a_step_ends_on_the_nearest_kink(table, name):
     system = build(replace(PAPER, law_name=name)).system
     law, start = system.interface.law, system.start()
     touch = respond(system, start, decide=False).contact
     for kink in (law.g_max, law.g_u):
         g_q = np.linspace(0.0, 1.001 * kink, system.interface.points)
-        assert landing(system, start, touch, g_q).kink.jump == law.jump(kink)
+        found = nearest_end(system, start, touch, g_q)
+        assert found.on and found.kink == Kink(int(np.argmin(np.abs(g_q - kink))), kink)

@@ -10,30 +10,20 @@ from specimens import PAPER
 import iga.path.newton
 import iga.system.system
 from iga.dcb.dcb import build
-from iga.path.control import gap_control, load_control, opening_control
-from iga.path.follow import TRIFLE, follow
-from iga.path.newton import (
-    DEFAULT,
-    PATIENT,
-    SLACK,
-    Newton,
-    _holds,
-    _hopeless,
-    _met,
-    _searched,
-    equilibrium,
-    residual_norm,
-)
+from iga.path.control import Prescribed, gap_control, load_control, opening_control
+from iga.path.follow import PATH, follow
+from iga.path.newton import Iterate, Line, _holds, _hopeless, _searched, equilibrium, residual_norm
 from iga.path.point import Point
+from iga.path.solver import DEFAULT, MANY_DECIDE, Newton, Solver
 from iga.path.tangent import tangent
 from iga.specimen.grading import rectangle
-from iga.system.system import respond, untimed
+from iga.system.system import respond
 
 CZM1 = replace(PAPER, opening=(0.9,), dofs=400)
 
 
 def points_of(system, opening, steps=40):
-    return [p for p in follow(system, (opening,), steps) if isinstance(p, Point)]
+    return [p for p in follow(Solver(system), (opening,), steps) if isinstance(p, Point)]
 
 
 @pytest.fixture(scope="module", params=["linear", "finite"])
@@ -56,7 +46,9 @@ def test_an_error_is_squared_in_one_iteration():
 
     def residuals(size):
         trial = replace(end.state, u_d=(1.0 + size) * end.state.u_d, k_q=start.state.k_q)
-        return equilibrium(system, trial, opening_control(system), end.opening, end.opening, DEFAULT, untimed).residuals
+        return equilibrium(
+            Solver(system), trial, Prescribed(opening_control(system), end.opening, end.opening)
+        ).residuals
 
     first, second = residuals(1e-3), residuals(5e-4)
     print(f"residual norms {first}, {second}")
@@ -70,7 +62,7 @@ def test_beyond_the_peak_there_is_no_equilibrium_and_nothing_is_left_behind(peak
     system, before, top = peak
     state, target = before.state, excess * top.state.load
     kept = {name: np.copy(getattr(state, name)) for name in ("u_d", "k_q", "closed_q")}
-    assert equilibrium(system, state, load_control(system), target, target - state.load, DEFAULT, untimed) is None
+    assert equilibrium(Solver(system), state, Prescribed(load_control(system), target, target - state.load)) is None
     assert all(np.array_equal(getattr(state, name), value) for name, value in kept.items())
     response = respond(system, state, decide=False)
     assert residual_norm(system, state.load, response) <= DEFAULT.tolerance, "the state is no equilibrium any more"
@@ -81,7 +73,7 @@ def test_below_the_peak_the_load_can_be_prescribed(peak):
     system, before, top = peak
     target = before.state.load + 0.01 * (top.state.load - before.state.load)
     change = target - before.state.load
-    found = equilibrium(system, before.state, load_control(system), target, change, DEFAULT, untimed)
+    found = equilibrium(Solver(system), before.state, Prescribed(load_control(system), target, change))
     assert found.state.load == pytest.approx(target, rel=1e-12) and found.residuals[-1] <= DEFAULT.tolerance
     assert np.all(found.state.k_q == before.state.k_q), "history is committed by whoever accepts the step"
 
@@ -93,17 +85,17 @@ def test_stiff_contact_is_found_where_full_steps_go_round_in_circles(kinematics,
     arms = tuple(rectangle("nurbs", (3, 3), x, np.array([y, y + h])) for y in (0.0, -h))
     system = build(replace(CZM1, kinematics=kinematics, penalty=1e8, meshes=arms)).system
     start, law = system.start(), system.interface.law
-    path = tangent(system, start, respond(system, start, decide=False), 1.0, untimed, turning=True)[0]
-    trifle = TRIFLE * law.g_max
+    path = tangent(Solver(system), start, respond(system, start, decide=False), 1.0, turning=True)
+    trifle = PATH.ahead * law.g_max
     away = trifle / float(system.load_d @ path.du_d)
     trial = replace(start, u_d=away * path.du_d, load=away * path.d_load, closed_q=path.closed_q)
 
     def search():
-        return equilibrium(system, trial, opening_control(system), trifle, trifle, PATIENT, untimed)
+        return equilibrium(Solver(system), trial, Prescribed(opening_control(system), trifle, trifle), MANY_DECIDE)
 
     assert not path.agreed
     found = search()
-    assert found is not None and found.residuals[-1] <= PATIENT.tolerance
+    assert found is not None and found.residuals[-1] <= MANY_DECIDE.tolerance
     response = respond(system, found.state, decide=True)
     # two points for one control point: so stiff a contact shares its forces among them as it likes, and the balance
     # hardly knows
@@ -124,7 +116,7 @@ def test_contact_is_decided_on_the_way_from_one_equilibrium_to_another(kinematic
         if not point.tangent.growing_q[q]:
             continue
         asked, step = gap_control(system, q), 0.2 * system.interface.law.g_u
-        found = equilibrium(system, point.state, asked, g_q[q] + step, step, DEFAULT, untimed)
+        found = equilibrium(Solver(system), point.state, Prescribed(asked, g_q[q] + step, step))
         if found is None:
             continue
         response = respond(system, found.state, decide=True)
@@ -146,10 +138,14 @@ def test_a_search_that_goes_round_in_circles_ends():
     assert not _hopeless([*many, 1e-4, 1e-5], DEFAULT.searching)
 
 
+def met(value, target, change):
+    return Prescribed(lambda state, response: (value, None, 0.0), target, change).met(None, None)
+
+
 def test_a_control_is_met_within_a_millionth_of_its_change_or_to_rounding():
-    assert _met(1.0 + 0.9e-6, 1.0, 1.0) and not _met(1.0 + 1.1e-6, 1.0, -1.0)
-    assert _met(1.0 - 0.9e-12, 1.0, 0.0) and not _met(1.0 - 1.1e-12, 1.0, 0.0)
-    assert _met(-2.0, -2.0, 0.0) and _met(0.0, 0.0, 0.0) and not _met(1e-300, 0.0, 0.0)
+    assert met(1.0 + 0.9e-6, 1.0, 1.0) and not met(1.0 + 1.1e-6, 1.0, -1.0)
+    assert met(1.0 - 0.9e-12, 1.0, 0.0) and not met(1.0 - 1.1e-12, 1.0, 0.0)
+    assert met(-2.0, -2.0, 0.0) and met(0.0, 0.0, 0.0) and not met(1e-300, 0.0, 0.0)
 
 
 def test_factors_hold_where_what_they_leave_is_below_the_tolerance():
@@ -161,14 +157,17 @@ def along(force, start):
     """A system of one unknown whose residual along the step is a function of how far it goes; where it was asked."""
     asked = []
 
-    def at(s):
-        asked.append(s)
-        response = SimpleNamespace(internal_d=np.array([force(s), 7.0]))
-        return SimpleNamespace(load=2.0), response, abs(force(s))
+    class Along(Line):
+        def at(self, s):
+            asked.append(s)
+            return made(force(s))
 
-    system = SimpleNamespace(free_d=np.array([True, False]), load_d=np.zeros(2))
-    before = SimpleNamespace(load=2.0), SimpleNamespace(internal_d=np.array([start, 7.0])), abs(start)
-    return _searched(system, at, np.ones(2), before), asked
+    def made(residual):
+        response = SimpleNamespace(internal_d=np.array([residual, 7.0]))
+        return Iterate(SimpleNamespace(load=2.0), response, abs(residual))
+
+    solver = SimpleNamespace(system=SimpleNamespace(free_d=np.array([True, False]), load_d=np.zeros(2)))
+    return _searched(Along(solver, made(start), np.ones(3), True), DEFAULT).norm, asked
 
 
 @pytest.mark.parametrize("stiffening", [1.0, 3.0, 20.0])
@@ -178,10 +177,10 @@ def test_a_search_ends_where_little_work_is_left(stiffening):
     def force(s):
         return -1.0 + s + stiffening * s**3
 
-    (_, _, left), asked = along(force, -1.0)
+    left, asked = along(force, -1.0)
     assert asked[0] == 1.0 and left == abs(force(asked[-1])) and all(0.0 < s <= 1.0 for s in asked)
-    assert -0.5 <= force(asked[-1]) <= SLACK and len(asked) < 10
-    assert all(not -0.5 <= force(s) <= SLACK for s in asked[:-1]), "it stops as soon as that is so"
+    assert -0.5 <= force(asked[-1]) <= DEFAULT.slack and len(asked) < 10
+    assert all(not -0.5 <= force(s) <= DEFAULT.slack for s in asked[:-1]), "it stops as soon as that is so"
     assert asked[1] == pytest.approx(1.0 / (1.0 + stiffening)), "first where the line through both ends vanishes"
 
 
@@ -192,7 +191,7 @@ def test_a_step_that_does_not_go_too_far_is_taken_whole():
 
 def test_a_search_that_finds_nothing_ends():
     """The work jumps over zero: bisection and false position close in on the place, a given number of times."""
-    (_, _, _), asked = along(lambda s: -1.0 if s < 0.3 else 1.0, -1.0)
+    _, asked = along(lambda s: -1.0 if s < 0.3 else 1.0, -1.0)
     assert len(asked) == 13 and abs(asked[-1] - 0.3) < 0.02
 
 
@@ -204,12 +203,12 @@ def test_what_rounding_leaves_counts_in_parts_of_the_forces_in_play(monkeypatch)
         assert iga.path.newton._floor(None, trial, response, Newton(tolerance=1e-12)) == pytest.approx(floor)
 
 
-@pytest.mark.parametrize("name", ["factorise", "correction"])
+@pytest.mark.parametrize("name", ["solver.factorise", "newton.correction"])
 def test_without_a_tangent_or_a_load_that_is_felt_there_is_no_equilibrium(name, peak, monkeypatch):
     system, before, _ = peak
-    monkeypatch.setattr(iga.path.newton, name, lambda *given: None)
+    monkeypatch.setattr(f"iga.path.{name}", lambda *given: None)
     target = 1.01 * before.opening
-    assert equilibrium(system, before.state, opening_control(system), target, 0.01, DEFAULT, untimed) is None
+    assert equilibrium(Solver(system), before.state, Prescribed(opening_control(system), target, 0.01)) is None
 
 
 def test_a_gap_worth_no_force_leaves_contact_as_it_was():

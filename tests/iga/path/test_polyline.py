@@ -11,7 +11,7 @@ from paths import column, loads, run
 
 import iga.path.follow
 from iga.dcb.problem import Problem
-from iga.path.polyline import LEDGER, PEAK, Kept, Largest, judged
+from iga.path.polyline import ACCURACY, Accuracy, Kept, Largest, judged
 
 BEND = 0.005
 
@@ -84,27 +84,27 @@ def test_the_polyline_of_chosen_steps_is_that_of_many_within_the_promise(problem
     few, many = drawn(problem, None), drawn(problem, 1000)
     peak = few[1].max() / many[1].max() - 1.0
     print(f"{len(few[0]) - 1} steps, off by {off(few, many):.1e}, peak {peak:+.1e}, ledger {ledger(few[2]):.1e}")
-    assert off(few, many) < 1.2 * BEND and abs(peak) < PEAK * BEND and ledger(few[2]) <= LEDGER
+    assert off(few, many) < 1.2 * BEND and abs(peak) < ACCURACY.peak * BEND and ledger(few[2]) <= ACCURACY.ledger
 
 
 def test_a_step_across_a_maximum_is_cut(monkeypatch):
     """Of all that is promised the largest load alone is held; without it steps leap over it."""
 
     def largest(part: float) -> float:
-        monkeypatch.setattr(iga.path.polyline, "PEAK", part / 1e6)
+        monkeypatch.setattr(iga.path.polyline, "ACCURACY", Accuracy(peak=part / 1e6))
         monkeypatch.setattr(iga.path.follow, "judged", lambda *given: judged(*given[:-1], 1e6))
         return loads(run(replace(LEAPING, opening=(11.0,)), None)[1]).max()
 
-    kept, loose = largest(PEAK * BEND), largest(np.inf)
+    kept, loose = largest(ACCURACY.peak * BEND), largest(np.inf)
     print(f"without the cut the largest load is {loose / kept - 1.0:+.2%} off")
-    assert loose < (1.0 - 3.0 * PEAK * BEND) * kept
+    assert loose < (1.0 - 3.0 * ACCURACY.peak * BEND) * kept
 
 
 def test_a_ledger_that_is_open_shortens_the_step_that_opens_it(monkeypatch):
     """Of all that is promised the ledger alone is held: with a budget for the whole path, without it only each step."""
 
     def worst(budget: float) -> float:
-        monkeypatch.setattr(iga.path.polyline, "LEDGER", budget)
+        monkeypatch.setattr(iga.path.polyline, "ACCURACY", Accuracy(ledger=budget))
         monkeypatch.setattr(iga.path.follow, "judged", lambda *given: judged(*given[:-1], 1e6))
         return ledger(run(replace(LEAKING, opening=(1.7,)), None)[1])
 

@@ -11,12 +11,13 @@ from paths import CZM1, column, decided, run
 import iga.path.energy
 import iga.path.follow
 import iga.path.gap_newton
+import iga.path.step
 from iga.dcb.dcb import build
 from iga.interface.laws import BilinearLaw
 from iga.path.follow import follow
-from iga.path.newton import DEFAULT, Newton
 from iga.path.point import End
-from iga.path.polyline import KEPT
+from iga.path.polyline import Kept
+from iga.path.solver import DEFAULT, Newton, Solver
 
 
 def test_a_path_that_cannot_go_on_says_why_and_keeps_what_it_has(monkeypatch):
@@ -24,7 +25,7 @@ def test_a_path_that_cannot_go_on_says_why_and_keeps_what_it_has(monkeypatch):
 
     On the gaps alone, too: else a linear bulk never needs any.
     """
-    monkeypatch.setattr(iga.path.gap_newton, "MOST", 0)
+    monkeypatch.setattr(iga.path.gap_newton, "GAP_NEWTON", iga.path.gap_newton.GapLimits(solutions=0))
     problem = replace(CZM1, kinematics="linear")
     system, points, end = run(problem, 30, newton=Newton(tolerance=1e-9, iterations=0))
     _, whole, _ = run(problem, 30)
@@ -52,10 +53,10 @@ def test_no_step_leaks_energy(basis, strength, kinematics, steps, monkeypatch):
 
     guarded = leak()
     monkeypatch.setattr(iga.path.follow, "leaks", lambda *_: False)
-    monkeypatch.setattr(iga.path.follow, "judged", lambda *_: KEPT)
+    monkeypatch.setattr(iga.path.follow, "judged", lambda *_: Kept())
     loose = leak()
     print(f"largest leak {guarded:.1e}, were it let pass {loose:.1e}")
-    assert guarded <= iga.path.energy.LEAK < loose
+    assert guarded <= iga.path.energy.BALANCE.leak < loose
 
 
 class Rounded(BilinearLaw):
@@ -71,7 +72,7 @@ def test_rounding_in_the_energies_does_not_refuse_the_step_on_which_damage_begin
     off = replace(system, interface=replace(system.interface, law=Rounded(**dataclasses.asdict(law))))
     ends = {}
     for name, tried in (("exact", system), ("off", off)):
-        *points, ends[name] = follow(tried, (0.8,), 40)
+        *points, ends[name] = follow(Solver(tried), (0.8,), 40)
         print(f"{name}: {len(points)} points, {ends[name].rejected} rejected")
     assert points[1].energies.dissipated > 0.0 and points[-1].energies.dissipated > 0.1  # by rounding, and in truth
     assert ends["off"] == ends["exact"] == End("complete", 0)
@@ -80,7 +81,7 @@ def test_rounding_in_the_energies_does_not_refuse_the_step_on_which_damage_begin
 def test_bodies_that_nothing_holds_are_refused(monkeypatch):
     monkeypatch.setattr(iga.path.follow, "_departing", lambda *given: None)
     with pytest.raises(ValueError, match="singular: the supports or the interface do not hold the bodies"):
-        next(follow(build(CZM1).system, (1.0,), 10))
+        next(follow(Solver(build(CZM1).system), (1.0,), 10))
 
 
 def test_a_new_mesh_that_nothing_can_be_solved_on_ends_the_path(monkeypatch):
@@ -91,7 +92,7 @@ def test_a_new_mesh_that_nothing_can_be_solved_on_ends_the_path(monkeypatch):
         return departing(*given) if len(asked) == 1 else None
 
     monkeypatch.setattr(iga.path.follow, "_departing", once)
-    *points, end = follow(system, (0.1,), 50, renew=lambda point: (system, point.state))
+    *points, end = follow(Solver(system), (0.1,), 50, renew=lambda point: (system, point.state))
     assert end.status == "stopped: the new mesh at opening 0.1 has a singular tangent" and len(points) == 2
 
 
@@ -106,11 +107,11 @@ def test_a_path_that_leaps_however_short_the_step_is_told_what_to_do(monkeypatch
 @pytest.mark.parametrize(("steps", "again"), [(None, True), (60, False)])
 def test_a_shorter_step_is_foreseen_with_the_law_and_a_careful_one_along_the_tangent(steps, again, monkeypatch):
     """What the tangent was read from is read once more where steps are chosen by accuracy; it is the same."""
-    known, refused, foresee, leaks = [], [], iga.path.follow.foresee, iga.path.follow.leaks
+    known, refused, predicted, leaks = [], [], iga.path.step.predicted, iga.path.follow.leaks
 
-    def recorded(*given):
-        known.append(given[4])
-        return foresee(*given)
+    def recorded(solver, *given):
+        known.append(solver.linearised)
+        return predicted(solver, *given)
 
     def once(system, before, after, most):
         refuse = not refused and after.tangent.growing_q.any()
@@ -118,7 +119,7 @@ def test_a_shorter_step_is_foreseen_with_the_law_and_a_careful_one_along_the_tan
             refused.append(len(known) - 1)
         return refuse or leaks(system, before, after, most)
 
-    monkeypatch.setattr(iga.path.follow, "foresee", recorded)
+    monkeypatch.setattr(iga.path.step, "predicted", recorded)
     monkeypatch.setattr(iga.path.follow, "leaks", once)
     _, points, end = run(replace(CZM1, kinematics="linear", opening=(0.5,)), steps)
     (at,) = refused
@@ -134,8 +135,9 @@ def test_contact_too_stiff_to_be_found_is_searched_for_from_softer_on(monkeypatc
     """Ever stiffer, each search from what the last one found but with the history of the first, the last as stiff."""
     system, asked = build(CZM1).system, []
 
-    def search(tried, trial, control, opening, change, newton, phase):
-        asked.append((tried.interface.law.penalty / system.interface.law.penalty, trial.load, trial.k_q is history))
+    def search(solver, trial, goal, newton):
+        part = solver.system.interface.law.penalty / system.interface.law.penalty
+        asked.append((part, trial.load, trial.k_q is history))
         if len(asked) in (1, 3):
             return None
         return SimpleNamespace(state=replace(trial, load=10.0 * len(asked), k_q=None))
@@ -143,7 +145,7 @@ def test_contact_too_stiff_to_be_found_is_searched_for_from_softer_on(monkeypatc
     monkeypatch.setattr(iga.path.follow, "equilibrium", search)
     start = system.start()
     history = start.k_q
-    found = iga.path.follow._touching(system, start, 0.1, 0.1, lambda name: None)
+    found = iga.path.follow._touching(Solver(system), start, 0.1, 0.1)
     parts, loads_before, same = zip(*asked, strict=True)
     assert parts == pytest.approx((1.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)) and all(same)
     assert loads_before == (0.0, 0.0, 20.0, 20.0, 40.0, 50.0, 60.0, 70.0) and found.state.load == 80.0

@@ -1,4 +1,4 @@
-"""What is foreseen of a step, before its equilibrium is sought."""
+"""What is predicted of a step, before its equilibrium is sought."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -7,28 +7,39 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-import iga.path.follow
 import iga.path.step
 from iga.dcb.dcb import build
 from iga.path.follow import follow
-from iga.path.newton import DEFAULT
-from iga.path.step import Foreseen, advance, foresee
-from iga.path.step_length import paced
+from iga.path.kinks import Kink, StepEnd
+from iga.path.solver import Solver
+from iga.path.step import advance, predicted
 
 
 @pytest.fixture(scope="module")
 def asked():
     """What is known where a step sets out from a growing front, as the path asks for it."""
     given = []
+
+    def recorded(solver, point, step):
+        given.append((solver.system, point, step, solver.linearised))
+        return predicted(solver, point, step)
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(iga.path.follow, "foresee", lambda *words: given.append(words) or foresee(*words))
-        list(follow(build(replace(PAPER, opening=(1.0,), dofs=400)).system, (1.0,), 20))
-    return next(words for words in reversed(given) if words[4] is not None and words[1].tangent.growing_q.any())
+        patch.setattr(iga.path.step, "predicted", recorded)
+        list(follow(Solver(build(replace(PAPER, opening=(1.0,), dofs=400)).system), (1.0,), 20))
+    return next(words for words in reversed(given) if words[3] is not None and words[1].tangent.growing_q.any())
+
+
+def knowing(system, known):
+    """A solver that keeps the factors of a tangent, or none."""
+    solver = Solver(system)
+    solver.linearised = known
+    return solver
 
 
 def foreseen(asked, part, monkeypatch):
     """Where a step sets out by whose tangent the front opens by a part of g_u, and by how much that part travels."""
-    system, point, step, _, known, phase = asked
+    system, point, step, known = asked
     path, moved = point.tangent, []
     away = part * system.interface.law.g_u / path.rate_q[point.front]
 
@@ -39,7 +50,7 @@ def foreseen(asked, part, monkeypatch):
     travelled = iga.path.step.travelled
     with monkeypatch.context() as patch:
         patch.setattr(iga.path.step, "travelled", recorded)
-        return foresee(system, point, replace(step, away=away), False, known, phase), moved
+        return predicted(knowing(system, known), point, replace(step, away=away)), moved
 
 
 @pytest.mark.parametrize("part", [0.05, 0.09, 0.11, 0.9])
@@ -58,15 +69,15 @@ def test_a_short_step_of_a_law_of_straight_lines_is_its_tangent(asked, monkeypat
         away = part * system.interface.law.g_u / path.rate_q[point.front]
         along_d = np.append(path.du_d, path.d_load) * away
         moved_d = np.append(found.state.u_d - point.state.u_d, found.state.load - point.state.load)
-        assert np.abs(moved_d - along_d).max() < 1e-7 * np.abs(along_d).max() and found.settled and found.place is None
+        assert np.abs(moved_d - along_d).max() < 1e-7 * np.abs(along_d).max() and found.settled and found.end is None
 
 
 def test_without_a_known_tangent_a_step_sets_out_along_the_last_one(asked):
-    system, point, step, _, _, phase = asked
-    found, path = foresee(system, point, step, True, None, phase), point.tangent
+    system, point, step, _ = asked
+    found, path = predicted(Solver(system), point, replace(step, by_kinks=True)), point.tangent
     assert np.array_equal(found.state.u_d, point.state.u_d + step.away * path.du_d)
     assert found.state.load == point.state.load + step.away * path.d_load
-    assert not found.settled and found.spent == () and found.place is None
+    assert not found.settled and found.spent == () and found.end is None
 
 
 def test_a_front_that_does_not_grow_does_not_leap(asked, monkeypatch):
@@ -79,37 +90,33 @@ def test_a_front_that_does_not_grow_does_not_leap(asked, monkeypatch):
 
 def made(asked, monkeypatch, **changed):
     """The step as the path makes it, with some of what it is made of changed."""
-    system, point, step, _, known, phase = asked
-    pace = paced(np.array([1.0]), 20)
-    ahead = foresee(system, point, step, pace.by_kinks and not step.exact, known, phase)
+    system, point, step, known = asked
     with monkeypatch.context() as patch:
         for name, value in changed.items():
             patch.setattr(iga.path.step, name, value)
-        return advance(system, point, step, ahead, 1.0, pace, DEFAULT, phase)
+        return advance(knowing(system, known), point, step, 1.0)
 
 
 @pytest.mark.parametrize("lost", ["equilibrium", "tangent"])
 def test_a_step_without_equilibrium_or_tangent_is_none(asked, lost, monkeypatch):
     nothing = {lost: lambda *given, **more: None}
     if lost == "equilibrium":
-        nothing["_landed"] = lambda *given: (None, None)
-    assert made(asked, monkeypatch, **nothing) == (None, None)
-    assert made(asked, monkeypatch)[0] is not None
+        nothing["_at_kink"] = lambda *given: None
+    assert made(asked, monkeypatch, **nothing) is None
+    assert made(asked, monkeypatch) is not None
 
 
 def test_what_stands_still_leads_nowhere(asked, monkeypatch):
     """A control that neither displacements nor the load change."""
     system, point, step, *rest = asked
     still = replace(step, control=lambda state, response: (0.0, np.zeros(system.n_dof), 0.0))
-    pace = paced(np.array([1.0]), 20)
-    given = Foreseen(point.state, True)
-    assert advance(system, point, still, given, 1.0, pace, DEFAULT, rest[-1]) == (None, None)
+    assert advance(knowing(system, *rest), point, still, 1.0) is None
 
 
 def test_what_slides_off_is_spent(asked, monkeypatch):
     _, point, *_ = asked
-    plain, _ = made(asked, monkeypatch)
-    slid, _ = made(asked, monkeypatch, slid_off=lambda *given: 0.25)
+    plain = made(asked, monkeypatch)
+    slid = made(asked, monkeypatch, slid_off=lambda *given: 0.25)
     assert slid.state.slid == point.state.slid + 0.25 and plain.state.slid == point.state.slid
     assert slid.energies.dissipated == pytest.approx(plain.energies.dissipated + 0.25, rel=1e-12)
     assert slid.external_work == plain.external_work and slid.energies.stored == plain.energies.stored
@@ -117,10 +124,9 @@ def test_what_slides_off_is_spent(asked, monkeypatch):
 
 @pytest.mark.parametrize(("gap", "lands"), [(0.9, False), (1.0, True), (1.1, True)])
 def test_a_landing_short_of_its_kink_is_none(asked, gap, lands, monkeypatch):
-    system, point, *_, phase = asked
-    place = SimpleNamespace(q=3, target=1.05, least=1.0, kink="kink")
+    system, point, *_ = asked
+    end = StepEnd(Kink(3, 1.0), 1.05)
     contact = SimpleNamespace(g_q=np.full(system.interface.points, gap))
     found = SimpleNamespace(response=SimpleNamespace(contact=contact))
     monkeypatch.setattr(iga.path.step, "equilibrium", lambda *given: found)
-    expected = (found, "kink") if lands else (None, None)
-    assert iga.path.step._landed(system, point, point.state, place, DEFAULT, phase) == expected
+    assert iga.path.step._at_kink(Solver(system), point, point.state, end) == (found if lands else None)

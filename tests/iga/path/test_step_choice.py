@@ -8,8 +8,8 @@ from paths import CZM1, column, curve, decided, ledger, loads, run
 
 from iga.dcb.dcb import build
 from iga.path.follow import follow
-from iga.path.newton import DEFAULT
-from iga.path.step_length import SPARED
+from iga.path.solver import DEFAULT, Solver
+from iga.path.step_length import LENGTHS
 
 
 @pytest.mark.slow
@@ -78,7 +78,7 @@ def test_the_further_steps_may_leave_their_tangents_the_fewer_there_are():
     system = build(replace(CZM1, dofs=800, interface_points=4)).system
     taken = []
     for bend in (0.003, 0.03):
-        *points, end = follow(system, (2.0,), None, bend=bend)
+        *points, end = follow(Solver(system), (2.0,), None, bend=bend)
         away = [
             abs(b.state.load - a.state.load - a.slope * (b.opening - a.opening))
             for a, b in zip(points, points[1:], strict=False)
@@ -93,6 +93,6 @@ def test_the_further_steps_may_leave_their_tangents_the_fewer_there_are():
 def test_failures_now_and_then_do_not_make_a_path_count_its_steps():
     """A coarse mesh, whose load goes up and down with its points: some steps fail, and few are needed all the same."""
     system = build(replace(CZM1, basis="nurbs", degree=2, dofs=300, interface_points=4)).system
-    *points, end = follow(system, (3.0,), None, bend=0.05)
+    *points, end = follow(Solver(system), (3.0,), None, bend=0.05)
     print(f"{len(points) - 1} steps, {end.rejected} rejected")
-    assert end.status == "complete" and end.rejected > SPARED and len(points) <= 40
+    assert end.status == "complete" and end.rejected > LENGTHS.failures and len(points) <= 40

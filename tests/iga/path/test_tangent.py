@@ -7,20 +7,21 @@ import pytest
 from specimens import PAPER
 
 from iga.dcb.dcb import build
-from iga.path.control import gap_control, opening_control
+from iga.path.control import Prescribed, gap_control, opening_control
 from iga.path.follow import follow
-from iga.path.newton import DEFAULT, equilibrium
+from iga.path.newton import equilibrium
 from iga.path.point import Point
+from iga.path.solver import Solver
 from iga.path.tangent import on_envelope, tangent
 from iga.specimen.grading import rectangle
-from iga.system.system import respond, untimed
+from iga.system.system import respond
 
 #: The path is followed to a third of the opening that the mesh is made for: elements are so long that it snaps back.
 SNAPPING = replace(PAPER, strength=6.0, opening=(3.0,))
 
 
 def points_of(system, programme, steps=60):
-    return [p for p in follow(system, programme, steps) if isinstance(p, Point)]
+    return [p for p in follow(Solver(system), programme, steps) if isinstance(p, Point)]
 
 
 SNAPPING_ONES = [
@@ -47,7 +48,7 @@ def beside(system, point, control, change):
         u_d=point.state.u_d + away * path.du_d,
         load=point.state.load + away * path.d_load,
     )
-    return equilibrium(system, trial, control, value + change, change, DEFAULT, untimed)
+    return equilibrium(Solver(system), trial, Prescribed(control, value + change, change))
 
 
 def fastest(point):
@@ -137,7 +138,7 @@ def test_at_a_turning_point_every_point_is_on_its_secant():
     top = next(
         point for point in points_of(system, (1.0,)) if np.sum(point.tangent.growing_q) >= 2 and point.slope < 0.0
     )
-    back = tangent(system, top.state, respond(system, top.state, decide=False), -1.0, untimed, turning=True)[0]
+    back = tangent(Solver(system), top.state, respond(system, top.state, decide=False), -1.0, turning=True)
     assert back.agreed and back.heading == -1.0 and not np.any(back.growing_q)
     assert back.slope == pytest.approx(top.state.load / top.opening, rel=1e-8)
     assert np.linalg.norm(back.du_d / back.d_load - top.state.u_d / top.state.load) < 1e-7 * np.linalg.norm(
@@ -149,7 +150,7 @@ def test_at_a_turning_point_the_way_back_is_the_difference_quotient():
     """Finite kinematics and contact."""
     system = build(replace(PAPER, dofs=400)).system
     top = points_of(system, (0.7,))[-1]
-    back = tangent(system, top.state, respond(system, top.state, decide=False), -1.0, untimed, turning=True)[0]
+    back = tangent(Solver(system), top.state, respond(system, top.state, decide=False), -1.0, turning=True)
     turned = replace(top, tangent=back)
     near = beside(system, turned, opening_control(system), -1e-5)
     assert back.slope == pytest.approx((near.state.load - top.state.load) / -1e-5, rel=1e-4)
@@ -163,7 +164,7 @@ def test_where_a_path_sets_out_again_rounding_of_the_history_does_not_matter(by)
     top = next(p for p in points_of(system, (1.0,)) if np.sum(p.tangent.growing_q) >= 2)
     k_q = top.state.k_q * (1.0 + by * np.finfo(float).eps)
     state = replace(top.state, k_q=k_q)
-    again = tangent(system, state, respond(system, state, decide=False), 1.0, untimed, turning=True)[0]
+    again = tangent(Solver(system), state, respond(system, state, decide=False), 1.0, turning=True)
     assert again.agreed and np.array_equal(again.growing_q, top.tangent.growing_q)
     assert again.slope == pytest.approx(top.tangent.slope, rel=1e-6)
 
@@ -184,5 +185,5 @@ def test_of_a_matrix_that_is_singular_there_is_no_tangent(monkeypatch):
     system = build(PAPER).system
     start = system.start()
     response = respond(system, start, decide=False)
-    monkeypatch.setattr("iga.path.tangent.factorise", lambda *given: None)
-    assert tangent(system, start, response, 1.0, untimed) is None
+    monkeypatch.setattr("iga.path.solver.factorise", lambda *given: None)
+    assert tangent(Solver(system), start, response, 1.0) is None

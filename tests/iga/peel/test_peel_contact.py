@@ -9,6 +9,7 @@ from iga.interface.interface import contact
 from iga.mesh.quadrature import gauss
 from iga.path.follow import follow
 from iga.path.point import Point
+from iga.path.solver import Solver
 from iga.peel.peel import build, solve
 from iga.specimen.bond import between, everywhere
 from tests.iga.peel.test_peel import PEEL, column
@@ -20,7 +21,7 @@ BACK = replace(PEEL, bond_length=60.0, opening=(5.0, -0.05), dofs=1000, steps=50
 def points_of(problem):
     specimen = build(problem)
     return specimen, [
-        item for item in follow(specimen.system, problem.opening, problem.steps) if isinstance(item, Point)
+        item for item in follow(Solver(specimen.system), problem.opening, problem.steps) if isinstance(item, Point)
     ]
 
 

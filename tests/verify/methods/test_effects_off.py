@@ -24,6 +24,7 @@ from iga.path import tangent as tangent_of
 from iga.path.condensation import condensed
 from iga.path.follow import follow
 from iga.path.point import End, Point
+from iga.path.solver import Solver
 from iga.run import Solution, run
 from iga.specimen.specimen import Specimen
 from iga.system import system as system_of
@@ -62,7 +63,7 @@ def steps_of(problem: Problem, law: BilinearLaw | None = None) -> Iterator[Point
     """The path, step by step, as `iga.run.run` follows it."""
     system = built(problem, law).system
     small = condensed(system)
-    return follow(system if small is None else small.system, problem.opening, problem.steps)
+    return follow(Solver(system if small is None else small.system), problem.opening, problem.steps)
 
 
 # --- what absent means
@@ -135,7 +136,10 @@ class Off:
 
 
 #: A point's contact is neither decided nor, where the programme sets out, sorted by its rate.
-UNDECIDED = {(system_of, "_closed"): lambda system, touch, trial, scale: trial.closed_q, (tangent_of, "NO_GAP"): -1.0}
+UNDECIDED = {
+    (system_of, "_closed"): lambda system, touch, trial, scale: trial.closed_q,
+    (tangent_of, "SORTING"): tangent_of.Sorting(closed=-1.0),
+}
 
 OFF = {
     "contact": Off(("effects.contact=false",), WithoutContact, UNDECIDED),
@@ -215,7 +219,7 @@ def test_one_arm_has_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     half, whole = build(one), build(both)
     assert len(half.bodies) == 1 and 2 * half.system.n_dof == whole.system.n_dof
     assert half.system.interface.master is None and whole.system.interface.mirror_i is None
-    for name in ("closest_points", "nearest_samples", "partner"):
+    for name in ("closest_points", "nearest_samples", "master_points"):
         monkeypatch.setattr(interface_of, name, never)
     assert solved(one).status == "complete"
     monkeypatch.undo()
