@@ -18,7 +18,6 @@ from verify import verification
 from verify.checks.between_codes import cross_checks
 from verify.checks.judgement import Demands
 from verify.cli import main
-from verify.methods import dolfinx
 from verify.methods.plugins import plugins
 from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
@@ -125,7 +124,7 @@ def test_a_failing_check_fails_the_whole(scene: Scene, reports: list, tmp_path: 
 def test_without_dolfinx_its_rows_say_so_and_nothing_fails(
     scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
-    monkeypatch.setattr(dolfinx, "find_spec", lambda name: None)
+    monkeypatch.setattr("verify.methods.solve.dolfinx_installed", lambda: False)
     only(monkeypatch, Job(LINEAR, scene, "dolfinx", "dolfinx"), Job(LINEAR, scene, "lefm", "lefm"))
     assert verify([(LINEAR, scene)], tmp_path, jobs=1)
     assert reports[0].runs[0].left_out == "not run: DOLFINx is not installed"
