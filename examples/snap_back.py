@@ -15,8 +15,7 @@ from iga.path.control import dissipation_control, load_control, opening_control
 from iga.path.newton import DEFAULT, equilibrium
 from iga.system.system import energies, respond, untimed
 from verify.curves.curve import envelope
-from verify.methods.problems import iga_problem
-from verify.methods.solve import solve
+from verify.methods.solve import prepare, solve
 from verify.scene import load_scene
 
 # %% [markdown]
@@ -59,7 +58,7 @@ print(f"{run.load.size - 1} steps, {backs} of them backwards, in {turns} snap-ba
 # that the bond dissipates.
 
 # %%
-solver, problem = iga_problem(scene, "nurbs")
+solver, problem = prepare(scene, "nurbs").problem
 system = solver.build(problem).system
 controls = {
     "load": load_control(system),

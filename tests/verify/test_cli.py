@@ -256,7 +256,8 @@ def test_under_mpi_only_the_first_rank_writes(tmp_path: Path) -> None:
     assert as_process("verify", **many).returncode == 2
     one = (
         "from pathlib import Path; from verify.runs.run import run; from verify.scene.load import load_scene\n"
-        f"run(load_scene('dcb-czm1'), 'lefm', Path({str(tmp_path / 'rank1')!r}))"
+        "from verify.methods.solve import prepare\n"
+        f"run(prepare(load_scene('dcb-czm1'), 'lefm'), Path({str(tmp_path / 'rank1')!r}))"
     )
     assert subprocess.run([sys.executable, "-c", one], env=ENVIRONMENT | many).returncode == 0
     assert not (tmp_path / "rank1").exists()

@@ -14,7 +14,8 @@ import numpy as np
 
 from verify.checks import balance
 from verify.checks import unresolved as resolution
-from verify.methods import zone_resolution
+from verify.methods.method import Prepared
+from verify.methods.solve import prepare
 from verify.result import Result
 from verify.scene import process_zone
 from verify.scene.bodies import elastic_constants
@@ -26,9 +27,6 @@ from verify.verdict import Check, Kind
 Steps = Mapping[str, np.ndarray]
 
 J_TOLERANCE = 0.005
-#: Lagrange elements are three times longer at equal unknowns, with about three of them in the process zone: there the
-#: deviation (1.0 to 1.9 % on the packaged scenes) measures the mesh and not the solver; its tolerance is the curve's.
-J_TOLERANCE_LAGRANGE = 0.02
 #: Measured up to 0.05, of a strip that lies on the edge of its substrate; without the contact the deviation is 1.
 J_PRESSED_TOLERANCE = 0.1
 ENERGY_TOLERANCE = 0.005
@@ -55,15 +53,20 @@ KINDS: Mapping[str, Kind] = {"growth-angle": "analytical"}
 
 
 def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, ...]:
+    """The checks of one run, as far as its columns go; ``subject`` as in `checks_of`."""
+    return checks_of(prepare(scene, result.method), result, subject)
+
+
+def checks_of(prepared: Prepared, result: Result, subject: str = "") -> tuple[Check, ...]:
     """The checks of one run, as far as its columns go.
 
     Parameters
     ----------
     subject : the name of the run in the report; the method's where empty
     """
-    j_tolerance = J_TOLERANCE_LAGRANGE if result.method == "lagrange" else J_TOLERANCE
-    force, moment = balance.force_tolerance(scene, result), balance.moment_tolerance(scene, result)
-    dissipation = partial(dissipation_gap, element=partial(zone_resolution.element_length, scene, result.method))
+    scene, j_tolerance = prepared.scene, max(J_TOLERANCE, prepared.method.mesh_error)
+    force, moment = balance.force_tolerance(prepared, result), balance.moment_tolerance(prepared, result)
+    dissipation = partial(dissipation_gap, element=lambda: prepared.element)
     values: list[tuple[str, Callable[[Scene, Steps], float | None], float, str]] = [
         ("completed", _missing_part, 1e-9, "The run reached the end of the load programme, or the specimen separated."),
         (
@@ -100,30 +103,31 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, 
         for name, worst, tolerance, meaning in found
         if worst is not None and (spread or name not in OF_THE_FACE)
     )
-    return tuple(replace(check, unresolved=_cannot_judge(scene, result, check)) for check in checks)
+    return tuple(replace(check, unresolved=_cannot_judge(prepared, result, check)) for check in checks)
 
 
-def _cannot_judge(scene: Scene, result: Result, check: Check) -> str:
+def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
     """Why a check that is beyond its tolerance cannot judge, empty where it can."""
     if check.name not in OF_THE_ZONE or not abs(check.value) > check.tolerance:
         return ""
-    return resolution.too_coarse(scene, result, check) or end_cannot_judge(scene, result, check)
+    return resolution.too_coarse(prepared, result, check) or end_cannot_judge(prepared, result, check)
 
 
-def end_cannot_judge(scene: Scene, result: Result, check: Check) -> str:
+def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
     """The same of the J-integral where the far end takes part from the start on and explains what it deviates by."""
+    scene = prepared.scene
     gap = _j_gap(scene, result.steps) if check.name == "j-integral" else None
     if gap is None or not felt_from_the_start(scene, result.steps):
         return ""
     held = held_at_the_end(scene, result.steps)
     beyond = _worst(_beyond_the_end(np.abs(gap), held))
-    return resolution.at_the_end(scene, result, float(np.nanmax(held))) if beyond <= check.tolerance else ""
+    return resolution.at_the_end(prepared, float(np.nanmax(held))) if beyond <= check.tolerance else ""
 
 
 def law_of(scene: Scene) -> Law:
     """The scene's traction law, in the copy that only checks and beam use; what all laws have where there is none."""
     i = scene.interface
-    return LAWS.get(i.law, Law)(i.strength, i.toughness, i.ductility, i.penalty, simulated(scene, "")["contact"])
+    return LAWS.get(i.law, Law)(i.strength, i.toughness, i.ductility, i.penalty, simulated(scene)["contact"])
 
 
 def j_deviation(scene: Scene, steps: Steps) -> float | None:
@@ -183,10 +187,10 @@ def held_at_the_end(scene: Scene, steps: Steps) -> np.ndarray:
     law, body = law_of(scene), scene.specimen
     end = steps.get("end_opening", np.zeros(steps["opening"].size))
     held = np.abs(law.area(end))
-    if body.kind == "dcb" and "face_energy" in steps:
+    if not body.clamped and "face_energy" in steps:
         below = law.penalty if law.contact else law.stiffness
         traction = np.where(end < 0.0, below * np.abs(end), np.minimum(law.stiffness * np.abs(end), law.strength))
-        most = traction**2 * body.arm_thickness / process_zone.across_modulus(scene.materials[0], body.plane)
+        most = traction**2 * body.loaded_thickness / process_zone.across_modulus(scene.materials[0], body.plane)
         held = held + np.clip(-steps["face_energy"], 0.0, most)
     return held / scene.interface.toughness
 
@@ -200,7 +204,7 @@ def growth_load(scene: Scene, steps: Steps) -> float | None:
     be released (see `j_deviation`).
     """
     steady = growing(scene, steps) & out_of_reach(scene, steps)
-    if not steady.any() or simulated(scene, "")["kinematics"] == "linear":
+    if not steady.any() or simulated(scene)["kinematics"] == "linear":
         return None
     pull = steps["load"] * np.maximum(np.abs(steps.get("face_slope_top", 1.0)), 1.0)
     return _worst(np.minimum(pull[steady] / _to_release(scene, steps)[steady] - 1.0, 0.0))
@@ -225,7 +229,7 @@ def growth_angle(scene: Scene, steps: Steps) -> float | None:
 def _end_face_energy(scene: Scene, load: float, sine: float) -> float:
     """Energy per length of the strip at its loaded face, whose traction is uniform and keeps its direction."""
     body, strip = scene.specimen, scene.materials[0]
-    along = 0.0 if simulated(scene, "")["kinematics"] == "linear" else min(sine, 1.0) ** 2
+    along = 0.0 if simulated(scene)["kinematics"] == "linear" else min(sine, 1.0) ** 2
     E1, G12 = process_zone.bending_modulus(strip, body.plane), elastic_constants(strip)["G12"]
     return load**2 / (2.0 * body.loaded_thickness * body.width) * (along / E1 + (1.0 - along) / G12)
 
@@ -241,7 +245,7 @@ def growing(scene: Scene, steps: Steps) -> np.ndarray:
 
     None of another specimen, or where the columns do not tell.
     """
-    if scene.specimen.kind != "peel" or not _has(steps, "tip_opening", "damage_front", "dissipated_energy"):
+    if not scene.specimen.clamped or not _has(steps, "tip_opening", "damage_front", "dissipated_energy"):
         return np.zeros(steps["opening"].size, dtype=bool)
     open_ = _tip_is_open(scene, steps)
     inside = steps["damage_front"] < (1.0 - AT_THE_END) * scene.specimen.extent
@@ -264,7 +268,7 @@ def _j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
         touching = law.area(np.minimum(steps["mouth_opening"], 0.0))
         area += touching - law.area(np.minimum(tip, 0.0))
         scale = np.maximum(scale, touching)
-    irreversible = simulated(scene, "")["irreversible"]
+    irreversible = simulated(scene)["irreversible"]
     valid = loading(steps) & zone_is_new(scene, steps) if irreversible else np.ones(J.size, dtype=bool)
     valid &= ~np.isnan(spent) | np.isnan(tip)  # not on a branch that nobody has stated
     return np.where(valid, J - area, 0.0) / scale
@@ -284,20 +288,20 @@ def out_of_reach(scene: Scene, steps: Steps) -> np.ndarray:
     foundation K of bond and substrate in series, and the energy on the flush faces, which load sin(theta) lacks, as
     ``exp(-2 x / l)``: 3e-4 of G_Ic. A substrate that is clamped below fades as ``exp(-pi x / 2 t)`` by itself.
     """
-    if "damage_front" not in steps or scene.specimen.kind != "peel":
+    if "damage_front" not in steps or not scene.specimen.clamped:
         return np.zeros(steps["opening"].size, dtype=bool)
     body, law, plane = scene.specimen, law_of(scene), scene.specimen.plane
-    strip, substrate = scene.materials
-    K = 1.0 / (1.0 / law.stiffness + body.substrate_thickness / process_zone.across_modulus(substrate, plane))
-    bending = process_zone.bending_modulus(strip, plane) * body.strip_thickness**3 / 12.0
-    away = max(4.0 * (4.0 * bending / K) ** 0.25, 2.0 * body.substrate_thickness)
+    (strip, substrate), (_, base) = scene.materials, body.thicknesses
+    K = 1.0 / (1.0 / law.stiffness + base / process_zone.across_modulus(substrate, plane))
+    bending = process_zone.bending_modulus(strip, plane) * body.loaded_thickness**3 / 12.0
+    away = max(4.0 * (4.0 * bending / K) ** 0.25, 2.0 * base)
     return steps["damage_front"] <= body.extent - away
 
 
 def _turn(scene: Scene, steps: Steps) -> np.ndarray:
     """How far the loaded faces turn in the sense in which the load opens the specimen, of every step (n_steps,)."""
     top, bottom = steps["face_slope_top"], steps["face_slope_bottom"]
-    pressed = top if scene.specimen.kind == "peel" else bottom - top
+    pressed = top if scene.specimen.clamped else bottom - top
     return np.where(steps["opening"] < 0.0, pressed, np.abs(top) + np.abs(bottom))
 
 
@@ -357,7 +361,7 @@ def penetration(scene: Scene, steps: Steps) -> float | None:
     surface bulges by a part of that. None where contact was to be left out, or the programme never goes down; not
     counted where the specimen turns about its far end (see `far_from_end`).
     """
-    if not simulated(scene, "")["contact"] or not _has(steps, "penetration", "contact_pressure"):
+    if not simulated(scene)["contact"] or not _has(steps, "penetration", "contact_pressure"):
         return None
     specimen, across = scene.specimen, elastic_constants(scene.materials[0])["E2"]
     gives = steps["contact_pressure"] * (1.0 / scene.interface.penalty + specimen.loaded_thickness / across)
@@ -425,7 +429,7 @@ def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = l
         return None
     crack = np.maximum.accumulate(steps["crack_length"])
     counted = far_from_end(scene, steps) & (crack > scene.specimen.free_length)
-    if not simulated(scene, "")["irreversible"] or not counted.any():
+    if not simulated(scene)["irreversible"] or not counted.any():
         return None
     crack, dissipated = crack[counted], steps["dissipated_energy"][counted]
     new_crack = crack[-1] - crack[0]

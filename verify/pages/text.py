@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup, escape
 
 from verify.methods.reference_mesh import reference_mesh
-from verify.scene.bodies import MATERIALS
+from verify.methods.solve import prepare
 from verify.scene.effects import simulated
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def _body(specimen: Dcb | Peel, unit: str) -> str:
 
 
 def _effects(scene: Scene) -> str:
-    found, chosen = simulated(scene, "nurbs"), [key for key, value in scene.effects if value == "auto"]
+    found, chosen = simulated(scene), [key for key, value in scene.effects if value == "auto"]
     words = {
         "kinematics": {
             "finite": "finite kinematics (large rotations)",
@@ -159,12 +159,12 @@ def _effects(scene: Scene) -> str:
 
 
 def _bodies(scene: Scene) -> str:
-    return "bodies" if scene.specimen.kind == "peel" else "arms"
+    return scene.specimen.bodies_in_short
 
 
 def modelled(scene: Scene, method: str) -> str:
     """The effects as a method simulates them, in short."""
-    effects = simulated(scene, method)
+    effects = prepare(scene, method).effects
     damage = "irreversible" if effects["irreversible"] else "reversible"
     return ", ".join(
         (
@@ -188,7 +188,7 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         ),
         *(
             (body, name, quantity(value, unit))
-            for body in MATERIALS[specimen.kind]
+            for body in specimen.materials
             for name, value, unit in _moduli(getattr(scene, body), units)
         ),
         ("interface", "strength p_max", quantity(law.strength, units.stress)),
@@ -202,7 +202,7 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         ("isogeometric mesh", "interface points", _points(mesh)),
         ("DOLFINx mesh", "degree", str(other.degree)),
         ("DOLFINx mesh", "elements along", str(other.elements)),
-        ("DOLFINx mesh", f"elements through the {'strip' if specimen.kind == 'peel' else 'arm'}", str(other.layers)),
+        ("DOLFINx mesh", f"elements through the {specimen.body}", str(other.layers)),
     ]
     return rows
 

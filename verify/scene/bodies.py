@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import Annotated, ClassVar, Literal, NamedTuple, TypeAlias
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
 from verify.scene.tables import Positive, Section, refuse
-
-if TYPE_CHECKING:
-    pass
 
 
 def _as_names(value: object) -> object:
@@ -21,12 +18,108 @@ def _as_names(value: object) -> object:
 Files: TypeAlias = Annotated[tuple[Annotated[str, Field(min_length=1)], ...], BeforeValidator(_as_names)]
 
 
-class Dcb(Section):
+class Ratio(NamedTuple):
+    """Range of one length of a specimen over another one."""
+
+    key: str
+    low: float
+    high: float
+    other: str
+
+
+class Reach(NamedTuple):
+    """Range of the opening: its ends, and what they are in words."""
+
+    low: float
+    high: float
+    why_low: str
+    why_high: str
+
+
+class Delamination(Section):
+    """Two bodies that meet on Y = 0, upper and lower, bonded along a part of it: what every specimen answers.
+
+    ``materials`` names the tables of their materials, one for both or one each; ``bodies`` the bodies themselves, and
+    ``body`` those that the load bends. ``arms`` is how many these are: the load pulls both bodies apart, or one off the
+    other, which is clamped. ``ratios`` are the proportions that are solved, ``bond_key`` the length that a longer bond
+    has larger.
+    """
+
+    materials: ClassVar[tuple[str, ...]]
+    bodies: ClassVar[tuple[str, str]]
+    body: ClassVar[str]
+    bodies_in_short: ClassVar[str]
+    arms: ClassVar[int]
+    ratios: ClassVar[tuple[Ratio, ...]]
+    bond_key: ClassVar[str]
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether one body can stand for both."""
+        return self.arms == 2
+
+    @property
+    def clamped(self) -> bool:
+        """Whether the lower body is clamped."""
+        return self.arms == 1
+
+    @property
+    def free_length(self) -> float:
+        """Distance from the loaded end to the bond."""
+        raise NotImplementedError
+
+    @property
+    def extent(self) -> float:
+        """Distance from the loaded end to the far end of the bond."""
+        return self.lengths[0]
+
+    @property
+    def lengths(self) -> tuple[float, float]:
+        """Of the upper and the lower body."""
+        raise NotImplementedError
+
+    @property
+    def thicknesses(self) -> tuple[float, float]:
+        """Of the upper and the lower body."""
+        raise NotImplementedError
+
+    @property
+    def loaded_thickness(self) -> float:
+        """Of a body that the load bends."""
+        return self.thicknesses[0]
+
+    @property
+    def tip(self) -> float:
+        """Coordinate X of the end of the bond next to the load."""
+        raise NotImplementedError
+
+    def place(self, s: float) -> float:
+        """Coordinate X of what is ``s`` away from the loaded end."""
+        raise NotImplementedError
+
+    def reach(self) -> Reach:
+        """How far the specimen can be opened, and pressed together."""
+        raise NotImplementedError
+
+
+class Dcb(Delamination):
     """Double cantilever beam: two arms, bonded on X in [precrack, length], loaded at X = 0.
 
     ``mesh``: `.iga` files of the upper and the lower arm for T-splines; one stands for both, the lower being its mirror
     image.
     """
+
+    materials: ClassVar[tuple[str, ...]] = ("material",)
+    bodies: ClassVar[tuple[str, str]] = ("upper", "lower")
+    body: ClassVar[str] = "arm"
+    bodies_in_short: ClassVar[str] = "arms"
+    arms: ClassVar[int] = 2
+    ratios: ClassVar[tuple[Ratio, ...]] = (
+        Ratio("arm_thickness", 1e-6, 1e3, "length"),
+        Ratio("precrack", 1e-6, 0.999999, "length"),
+        Ratio("width", 1e-9, 1e9, "length"),
+    )
+    bond_key: ClassVar[str] = "length"
 
     kind: Literal["dcb"]
     """Two arms, bonded from the precrack to the far end, pulled apart at X = 0."""
@@ -53,26 +146,45 @@ class Dcb(Section):
 
     @property
     def free_length(self) -> float:
-        """Distance from the loaded end to the bond."""
         return self.precrack
 
     @property
-    def extent(self) -> float:
-        """Distance from the loaded end to the far end of the bond."""
-        return self.length
+    def lengths(self) -> tuple[float, float]:
+        return self.length, self.length
 
     @property
-    def loaded_thickness(self) -> float:
-        return self.arm_thickness
+    def thicknesses(self) -> tuple[float, float]:
+        return self.arm_thickness, self.arm_thickness
+
+    @property
+    def tip(self) -> float:
+        return self.precrack
 
     def place(self, s: float) -> float:
-        """Coordinate X of what is ``s`` away from the loaded end."""
         return s
 
+    def reach(self) -> Reach:
+        why = "-arm_thickness, at which both loaded faces would be in one place"
+        return Reach(-self.arm_thickness, 2 * self.length, why, "2 length")
 
-class Peel(Section):
+
+class Peel(Delamination):
     """A strip peeled off a substrate: left ends flush at X = 0, bonded on X in [0, bond_length], strip pulled up at its
     right end, substrate clamped at its base."""
+
+    materials: ClassVar[tuple[str, ...]] = ("strip", "substrate")
+    bodies: ClassVar[tuple[str, str]] = ("strip", "substrate")
+    body: ClassVar[str] = "strip"
+    bodies_in_short: ClassVar[str] = "bodies"
+    arms: ClassVar[int] = 1
+    ratios: ClassVar[tuple[Ratio, ...]] = (
+        Ratio("strip_thickness", 1e-6, 1e3, "strip_length"),
+        Ratio("substrate_thickness", 1e-6, 1e3, "substrate_length"),
+        Ratio("bond_length", 1e-6, 0.999999, "strip_length"),
+        Ratio("width", 1e-9, 1e9, "strip_length"),
+        Ratio("substrate_length", 1e-6, 1e6, "strip_length"),
+    )
+    bond_key: ClassVar[str] = "bond_length"
 
     kind: Literal["peel"]
     """A strip peeled off a substrate that is fixed at its base, pulled up at its free end."""
@@ -112,33 +224,39 @@ class Peel(Section):
 
     @property
     def free_length(self) -> float:
-        """Distance from the loaded end to the bond."""
         return self.strip_length - self.bond_length
 
     @property
-    def extent(self) -> float:
-        """Distance from the loaded end to the far end of the bond."""
-        return self.strip_length
+    def lengths(self) -> tuple[float, float]:
+        return self.strip_length, self.substrate_length
 
     @property
-    def loaded_thickness(self) -> float:
-        return self.strip_thickness
+    def thicknesses(self) -> tuple[float, float]:
+        return self.strip_thickness, self.substrate_thickness
+
+    @property
+    def tip(self) -> float:
+        return self.bond_length
 
     def place(self, s: float) -> float:
-        """Coordinate X of what is ``s`` away from the loaded end."""
         return self.strip_length - s
+
+    def reach(self) -> Reach:
+        """A strip may be pressed down beside the end of its substrate."""
+        return Reach(-2 * self.strip_thickness, 2 * self.strip_length, "-2 strip_thickness", "2 strip_length")
+
+
+#: The specimens by their kind.
+SPECIMENS: Mapping[str, type[Dcb] | type[Peel]] = {"dcb": Dcb, "peel": Peel}
 
 
 def specimen_kind(value: object) -> str:
-    """Tell the specimens apart by their kind; one without a kind that is known is refused as a dcb."""
+    """Tell the specimens apart by their kind; one without a known kind is refused as a dcb."""
     kind = value.get("kind") if isinstance(value, Mapping) else getattr(value, "kind", None)
-    return "peel" if kind == "peel" else "dcb"
+    return kind if isinstance(kind, str) and kind in SPECIMENS else "dcb"
 
 
 Specimen: TypeAlias = Annotated[Annotated[Dcb, Tag("dcb")] | Annotated[Peel, Tag("peel")], Discriminator(specimen_kind)]
-
-#: The materials that a scene must give, by the kind of its specimen; the others it must not.
-MATERIALS: Mapping[str, tuple[str, ...]] = {"dcb": ("material",), "peel": ("strip", "substrate")}
 
 
 class Isotropic(Section):

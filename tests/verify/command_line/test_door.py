@@ -34,19 +34,19 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     import verify.studies.scaling.study
     import verify.verification
 
-    def nothing(scene, method: str, *_: object, **__: object):
-        return Result(method, steps_from_rows([dict.fromkeys(CURVE_COLUMNS, 0.0)]), seconds={}), ()
+    def nothing(prepared, *_: object, **__: object):
+        return Result(prepared.method.name, steps_from_rows([dict.fromkeys(CURVE_COLUMNS, 0.0)]), seconds={}), ()
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(run, "run", nothing)
     monkeypatch.setattr(verify.verification, "verify", lambda *_: True)
-    monkeypatch.setattr(verify.studies.costies.cost.study, "cost", lambda *_: None)
-    monkeypatch.setattr(verify.studies.costies.cost.accuracy, "run_seconds", lambda *_: 1.0)
-    monkeypatch.setattr(verify.studies.hardies.hard.suite, "hard", lambda *_: True)
+    monkeypatch.setattr(verify.studies.cost.study, "cost", lambda *_: None)
+    monkeypatch.setattr(verify.studies.cost.accuracy, "run_seconds", lambda *_: 1.0)
+    monkeypatch.setattr(verify.studies.hard.suite, "hard", lambda *_: True)
     monkeypatch.setattr(verify.export.command, "export", lambda *_: [])
     for study, name in (
-        (verify.studies.effectseffects.study, "effects"),
-        (verify.studies.scaling.scaling.study, "scaling"),
+        (verify.studies.effects.study, "effects"),
+        (verify.studies.scaling.study, "scaling"),
     ):
         monkeypatch.setattr(study, name, lambda *_: type("Study", (), {"complete": True}))
     (tmp_path / "own.toml").write_text("\n".join(f"{key} = {as_toml(value)}" for key, value in DCB.items()))

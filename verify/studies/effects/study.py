@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from verify.methods.solve import require
+from verify.methods.solve import prepare, require
 from verify.runs.environment import THREADS, machine, versions
 from verify.runs.fingerprint import source as source_of
 from verify.runs.folder import write_csv, write_json
 from verify.runs.jobs import dry_run, run_all
-from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.studies.effects.plan import planned
 from verify.studies.effects.row import Row, row, table
@@ -37,7 +36,7 @@ class Study:
         return {
             "scene": self.scene.model_dump(),
             "method": self.method,
-            "simulated": simulated(self.scene, self.method),
+            "simulated": prepare(self.scene, self.method).effects,
             "effects": {one.key: asdict(one) | {"sentence": one.sentence} for one in self.rows},
             "left_out": list(self.reasons),
             "source": source_of(("iga", "fem_reference")),
@@ -72,6 +71,6 @@ def effects(
 
 def would_run(source: str, scene: Scene, method: str, given: Sequence[str], out: Path) -> list[str]:
     """The runs with their times, a line each, and what is left out; nothing is run."""
-    require(scene, method)
+    require(prepare(scene, method))
     plan = planned(source, scene, method, given)
     return [*dry_run([*plan.jobs, *plan.repeats()], out, 1), *plan.reasons]

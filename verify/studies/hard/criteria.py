@@ -8,6 +8,7 @@ import numpy as np
 
 from verify.checks.identities import J_TOLERANCE, end_cannot_judge, j_deviation
 from verify.curves.curve import Curve, curve_error, dense
+from verify.methods.solve import prepare
 from verify.methods.zone_resolution import ENOUGH, expected, measured
 from verify.result import Result
 from verify.studies.hard.case import Finding, Number, Trial
@@ -39,7 +40,7 @@ def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
     if elements >= ENOUGH and bends:
         meaning = "The J-integral is the area under the law, at every step."
         check = Check("j-integral", name, deviation, J_TOLERANCE, "exact", meaning)
-        why = "" if check.passed else end_cannot_judge(trial.scene, trial.result, check)
+        why = "" if check.passed else end_cannot_judge(prepare(trial.scene, trial.result.method), trial.result, check)
         yield Number("j-deviation", name, deviation, f"Deviation of the J-integral; {why}.") if why else check
     else:
         why = f"{elements:.2g} elements in the process zone" if bends else "of linear elements, which lock in bending"

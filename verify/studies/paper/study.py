@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from verify.curves.curve import Curve, curve_error, oscillation, peak
-from verify.methods.problems import lefm_problem
+from verify.methods.solve import prepare
 from verify.methods.zone_resolution import expected
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
@@ -180,7 +180,7 @@ def curve(result: Result) -> Curve:
 
 def limit(scene: Scene) -> Curve:
     """LEFM by simple beam theory, the curve that the paper draws."""
-    rows = lefm.solve(replace(lefm_problem(scene), theory="simple")).rows
+    rows = lefm.solve(replace(prepare(scene, "lefm").problem, theory="simple")).rows
     return tuple(np.array([row[name] for row in rows]) for name in ("opening", "load"))
 
 

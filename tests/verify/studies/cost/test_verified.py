@@ -54,8 +54,8 @@ def solving(monkeypatch: pytest.MonkeyPatch) -> Callable[[Sequence[float]], None
                 raise KeyboardInterrupt
             return a_curve(np.nan_to_num(error), scene, method, on_step, stop=error != error)
 
-        def fake(scene, method, folder, keep_fields, on_step, frames):
-            return true(scene, method, folder, keep_fields, on_step, solver=made_up)[0], ()
+        def fake(prepared, folder, keep, on_step):
+            return true(prepared, folder, keep, on_step, solver=made_up)[0], ()
 
         monkeypatch.setattr(run_module, "run", fake)
 
