@@ -43,7 +43,9 @@ def reports(monkeypatch: pytest.MonkeyPatch) -> list[SceneReport]:
 
 
 def only(monkeypatch: pytest.MonkeyPatch, *jobs: Job) -> None:
-    monkeypatch.setattr(one_scene, "planned", lambda source, scene, full: [j for j in jobs if j.scene is scene])
+    monkeypatch.setattr(
+        "verify.verification.planned", lambda source, scene, full: [j for j in jobs if j.scene is scene]
+    )
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from scipy.integrate import trapezoid
 
-from verify.checks.identities import law_of
+from verify.checks.mechanics.columns import law_of
 from verify.methods.method import Prepared
 from verify.result import Result, Snapshot
 from verify.scene.effects import NEGLIGIBLE

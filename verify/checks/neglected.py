@@ -14,7 +14,7 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from verify.checks import matched
-from verify.checks.identities import law_of
+from verify.checks.mechanics.columns import law_of
 from verify.methods.method import Prepared
 from verify.methods.solve import prepare
 from verify.result import Result, Snapshot

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from verify.checks import balance
 from verify.checks.identities import run_checks
+from verify.checks.mechanics import balance
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.solve import prepare, solve
 from verify.result import Result

@@ -7,7 +7,8 @@ import pytest
 
 import iga.dcb
 import iga.peel
-from verify.checks.identities import penetration, run_checks, zone_is_new
+from verify.checks.identities import penetration, run_checks
+from verify.checks.mechanics.columns import zone_is_new
 from verify.checks.neglected import of_run
 from verify.methods.solve import solve
 from verify.result import Result

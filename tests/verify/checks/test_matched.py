@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.checks.identities import law_of
 from verify.checks.matched import left_out, summary
+from verify.checks.mechanics.columns import law_of
 from verify.checks.neglected import of_run
 from verify.methods.solve import prepare
 from verify.result import Result, Snapshot, steps_from_rows

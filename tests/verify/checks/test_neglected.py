@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from verify.checks import neglected
-from verify.checks.identities import law_of
+from verify.checks.mechanics.columns import law_of
 from verify.methods.solve import prepare
 from verify.result import Result, Snapshot
 from verify.scene.effects import stiffer

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -245,3 +246,23 @@ def test_what_is_written_has_a_place_where_none_is_told(tmp_path: Path, monkeypa
     assert exported == [Path("debond-export/dcb-czm1-csv"), Path("there")]
     found = {path.parent.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("curve.csv")}
     assert found == {"debond-out/dcb-czm1-lefm", "there"}
+
+
+@pytest.mark.parametrize("name", ["dcb-czm1", "peel-60"])
+def test_a_run_makes_its_problem_once(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Warnings, solver, checks and summary share it. The mesh is looked at once; the solver makes it in its own time."""
+    kind = load_scene(name).specimen.kind
+    solver = import_module(f"iga.{kind}.{kind}")
+    made, built, problem, build = [], [], solver.Problem, solver.build
+
+    class Counted(problem):
+        def __init__(self, **keys) -> None:
+            made.append(keys)
+            super().__init__(**keys)
+
+    monkeypatch.setattr(solver, "Problem", Counted)
+    monkeypatch.setattr(solver, "build", lambda *given: built.append(given) or build(*given))
+    few = ["--set", "load.opening=0.05", "--set", "discretization.steps=3"]
+    main(["solve", name, "--method", "nurbs", *few, "--out", str(tmp_path)])
+    assert json.loads((tmp_path / "result.json").read_text())["status"] == "complete"
+    assert len(made) == 1 and len(built) == 2 and built[0][0] is built[1][0]

@@ -188,7 +188,7 @@ def test_verify_holds_the_mesh_against_methods_on_meshes_of_their_own(
     monkeypatch.setattr(verification, "write_page", lambda module, reports, *others: seen.extend(reports))
     every = one_scene.planned
     few = ("tspline", "nurbs", "lefm")
-    monkeypatch.setattr(one_scene, "planned", lambda *what: [job for job in every(*what) if job.variant in few])
+    monkeypatch.setattr(verification, "planned", lambda *what: [job for job in every(*what) if job.variant in few])
     source = scene_file(tmp_path, [Path(file).name for file in written(tmp_path, *arms)])
     scene = load_scene(source)
     verification.verify([(source, scene)], tmp_path / "out", 1)

@@ -23,7 +23,6 @@ from verify.runs.fingerprint import fingerprint
 from verify.runs.folder import read_columns, read_result
 from verify.runs.jobs import left_out
 from verify.scene.load import load_scene
-from verify.studies import one_scene
 from verify.studies.one_scene import planned
 from verify.verification import verify
 
@@ -208,7 +207,7 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
     assert [job.method for job in all_jobs][:6] == list(names.METHODS)
 
     def only(*names: str) -> None:
-        monkeypatch.setattr(one_scene, "planned", lambda *a: [j for j in jobs if j.method in names])
+        monkeypatch.setattr(verification, "planned", lambda *a: [j for j in jobs if j.method in names])
 
     jobs = [job for job in planned(LINEAR, scene) if job.method in ("beam", "good", "absent", "wrong")]
     jobs = [type(job)(job.source, scene, job.method, job.variant) for job in jobs]

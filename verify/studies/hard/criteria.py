@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from verify.checks.identities import J_TOLERANCE, end_cannot_judge, j_deviation
+from verify.checks.identities import end_cannot_judge
+from verify.checks.mechanics.j_integral import J_TOLERANCE, j_deviation
 from verify.curves.curve import Curve, curve_error, dense
 from verify.methods.solve import prepare
 from verify.methods.zone_resolution import ENOUGH, expected, measured

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from verify.checks.identities import law_of
+from verify.checks.mechanics.columns import law_of
 from verify.curves.curve import PROPAGATION, load_at, peak
 from verify.methods.solve import prepare, solve
 from verify.methods.zone_resolution import warnings

@@ -11,7 +11,8 @@ from math import nan
 
 import numpy as np
 
-from verify.checks.identities import growing, growth_angle, j_deviation
+from verify.checks.mechanics.j_integral import j_deviation
+from verify.checks.mechanics.peel_growth import growing, growth_angle
 from verify.curves.curve import PROPAGATION, Curve, load_at, peak
 from verify.methods import zone_resolution
 from verify.methods.dolfinx import dolfinx_installed

@@ -7,7 +7,8 @@ from dataclasses import replace
 from itertools import pairwise
 from math import isfinite, nan
 
-from verify.checks.identities import ANGLE_TOLERANCE, J_TOLERANCE
+from verify.checks.identities import ANGLE_TOLERANCE
+from verify.checks.mechanics.j_integral import J_TOLERANCE
 from verify.curves.curve import peak
 from verify.methods.zone_resolution import ENOUGH
 from verify.studies.paper.comparison import VISIBLE, Comparison, Statement, below, ratio
