@@ -132,15 +132,9 @@ def sentence(scene: Scene) -> str:
 
 def _body(specimen: Dcb | Peel, unit: str) -> str:
     """The specimen and what is done to it."""
-    if specimen.kind == "peel":
-        lengths = ("strip_length", "strip_thickness", "substrate_length", "substrate_thickness", "bond_length")
-        strip, thick, substrate, depth, bond = (quantity(getattr(specimen, name), unit) for name in lengths)
-        bodies = f"A strip of {strip} by {thick}, bonded over {bond} to a clamped substrate of {substrate} by {depth},"
-        return f"{bodies} is peeled off by lifting its free end"
-    length, thick, crack = (
-        quantity(value, unit) for value in (specimen.length, specimen.arm_thickness, specimen.precrack)
+    return specimen.sentence.format(
+        **{name: quantity(value, unit) for name, value in specimen if isinstance(value, float)}
     )
-    return f"A double cantilever beam with arms of {length} by {thick} and a precrack of {crack} is opened"
 
 
 def _effects(scene: Scene) -> str:
@@ -159,7 +153,7 @@ def _effects(scene: Scene) -> str:
 
 
 def _bodies(scene: Scene) -> str:
-    return scene.specimen.bodies_in_short
+    return f"{scene.specimen.body}s" if scene.specimen.symmetric else "bodies"
 
 
 def modelled(scene: Scene, method: str) -> str:

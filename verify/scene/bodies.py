@@ -27,31 +27,33 @@ class Ratio(NamedTuple):
     other: str
 
 
-class Reach(NamedTuple):
-    """Range of the opening: its ends, and what they are in words."""
-
-    low: float
-    high: float
-    why_low: str
-    why_high: str
-
-
 class Delamination(Section):
     """Two bodies that meet on Y = 0, upper and lower, bonded along a part of it: what every specimen answers.
 
-    ``materials`` names the tables of their materials, one for both or one each; ``bodies`` the bodies themselves, and
-    ``body`` those that the load bends. ``arms`` is how many these are: the load pulls both bodies apart, or one off the
-    other, which is clamped. ``ratios`` are the proportions that are solved, ``bond_key`` the length that a longer bond
-    has larger.
+    A specimen says of itself, besides its lengths:
+
+    ``materials``, ``bodies`` : names of the tables of its materials, one for both or one each; names of the bodies
+    ``arms``, ``body`` : how many of them the load bends, both, or one off the other, which is clamped; its name
+    ``length_keys``, ``thickness_keys`` : keys of the lengths and thicknesses of the bodies
+    ``tip_key``, ``end_key`` : keys of X of the bond's end next to the load, and of X of the loaded end, empty for 0
+    ``bond_key`` : the key that is larger where the bond is longer
+    ``pressed`` : how many thicknesses the loaded faces can be pressed together, and why no more
+    ``ratios`` : proportions that are solved
+    ``sentence`` : what is done to the specimen, with the keys of its lengths
     """
 
     materials: ClassVar[tuple[str, ...]]
     bodies: ClassVar[tuple[str, str]]
-    body: ClassVar[str]
-    bodies_in_short: ClassVar[str]
     arms: ClassVar[int]
-    ratios: ClassVar[tuple[Ratio, ...]]
+    body: ClassVar[str]
+    length_keys: ClassVar[tuple[str, str]]
+    thickness_keys: ClassVar[tuple[str, str]]
+    tip_key: ClassVar[str]
+    end_key: ClassVar[str]
     bond_key: ClassVar[str]
+    pressed: ClassVar[tuple[int, str]]
+    ratios: ClassVar[tuple[Ratio, ...]]
+    sentence: ClassVar[str]
 
     @property
     def symmetric(self) -> bool:
@@ -64,9 +66,26 @@ class Delamination(Section):
         return self.arms == 1
 
     @property
-    def free_length(self) -> float:
-        """Distance from the loaded end to the bond."""
-        raise NotImplementedError
+    def lengths(self) -> tuple[float, float]:
+        """Of the upper and the lower body."""
+        upper, lower = self.length_keys
+        return getattr(self, upper), getattr(self, lower)
+
+    @property
+    def thicknesses(self) -> tuple[float, float]:
+        """Of the upper and the lower body."""
+        upper, lower = self.thickness_keys
+        return getattr(self, upper), getattr(self, lower)
+
+    @property
+    def tip(self) -> float:
+        """Coordinate X of the end of the bond next to the load."""
+        return getattr(self, self.tip_key)
+
+    @property
+    def loaded_at(self) -> float:
+        """Coordinate X of the loaded end."""
+        return getattr(self, self.end_key) if self.end_key else 0.0
 
     @property
     def extent(self) -> float:
@@ -74,32 +93,18 @@ class Delamination(Section):
         return self.lengths[0]
 
     @property
-    def lengths(self) -> tuple[float, float]:
-        """Of the upper and the lower body."""
-        raise NotImplementedError
-
-    @property
-    def thicknesses(self) -> tuple[float, float]:
-        """Of the upper and the lower body."""
-        raise NotImplementedError
+    def free_length(self) -> float:
+        """Distance from the loaded end to the bond."""
+        return abs(self.tip - self.loaded_at)
 
     @property
     def loaded_thickness(self) -> float:
         """Of a body that the load bends."""
         return self.thicknesses[0]
 
-    @property
-    def tip(self) -> float:
-        """Coordinate X of the end of the bond next to the load."""
-        raise NotImplementedError
-
     def place(self, s: float) -> float:
         """Coordinate X of what is ``s`` away from the loaded end."""
-        raise NotImplementedError
-
-    def reach(self) -> Reach:
-        """How far the specimen can be opened, and pressed together."""
-        raise NotImplementedError
+        return self.loaded_at + (s if self.tip > self.loaded_at else -s)
 
 
 class Dcb(Delamination):
@@ -109,17 +114,20 @@ class Dcb(Delamination):
     image.
     """
 
-    materials: ClassVar[tuple[str, ...]] = ("material",)
-    bodies: ClassVar[tuple[str, str]] = ("upper", "lower")
-    body: ClassVar[str] = "arm"
-    bodies_in_short: ClassVar[str] = "arms"
-    arms: ClassVar[int] = 2
-    ratios: ClassVar[tuple[Ratio, ...]] = (
+    materials = ("material",)
+    bodies = ("upper", "lower")
+    arms, body = 2, "arm"
+    length_keys, thickness_keys = ("length", "length"), ("arm_thickness", "arm_thickness")
+    tip_key, end_key, bond_key = "precrack", "", "length"
+    pressed = 1, "-arm_thickness, at which both loaded faces would be in one place"
+    ratios = (
         Ratio("arm_thickness", 1e-6, 1e3, "length"),
         Ratio("precrack", 1e-6, 0.999999, "length"),
         Ratio("width", 1e-9, 1e9, "length"),
     )
-    bond_key: ClassVar[str] = "length"
+    sentence = (
+        "A double cantilever beam with arms of {length} by {arm_thickness} and a precrack of {precrack} is opened"
+    )
 
     kind: Literal["dcb"]
     """Two arms, bonded from the precrack to the far end, pulled apart at X = 0."""
@@ -144,47 +152,29 @@ class Dcb(Delamination):
             raise refuse(f"< specimen.length = {length:g}", ((), precrack))
         return precrack
 
-    @property
-    def free_length(self) -> float:
-        return self.precrack
-
-    @property
-    def lengths(self) -> tuple[float, float]:
-        return self.length, self.length
-
-    @property
-    def thicknesses(self) -> tuple[float, float]:
-        return self.arm_thickness, self.arm_thickness
-
-    @property
-    def tip(self) -> float:
-        return self.precrack
-
-    def place(self, s: float) -> float:
-        return s
-
-    def reach(self) -> Reach:
-        why = "-arm_thickness, at which both loaded faces would be in one place"
-        return Reach(-self.arm_thickness, 2 * self.length, why, "2 length")
-
 
 class Peel(Delamination):
     """A strip peeled off a substrate: left ends flush at X = 0, bonded on X in [0, bond_length], strip pulled up at its
     right end, substrate clamped at its base."""
 
-    materials: ClassVar[tuple[str, ...]] = ("strip", "substrate")
-    bodies: ClassVar[tuple[str, str]] = ("strip", "substrate")
-    body: ClassVar[str] = "strip"
-    bodies_in_short: ClassVar[str] = "bodies"
-    arms: ClassVar[int] = 1
-    ratios: ClassVar[tuple[Ratio, ...]] = (
+    materials = ("strip", "substrate")
+    bodies = ("strip", "substrate")
+    arms, body = 1, "strip"
+    length_keys = ("strip_length", "substrate_length")
+    thickness_keys = ("strip_thickness", "substrate_thickness")
+    tip_key, end_key, bond_key = "bond_length", "strip_length", "bond_length"
+    pressed = 2, "-2 strip_thickness"
+    ratios = (
         Ratio("strip_thickness", 1e-6, 1e3, "strip_length"),
         Ratio("substrate_thickness", 1e-6, 1e3, "substrate_length"),
         Ratio("bond_length", 1e-6, 0.999999, "strip_length"),
         Ratio("width", 1e-9, 1e9, "strip_length"),
         Ratio("substrate_length", 1e-6, 1e6, "strip_length"),
     )
-    bond_key: ClassVar[str] = "bond_length"
+    sentence = (
+        "A strip of {strip_length} by {strip_thickness}, bonded over {bond_length} to a clamped substrate of "
+        "{substrate_length} by {substrate_thickness}, is peeled off by lifting its free end"
+    )
 
     kind: Literal["peel"]
     """A strip peeled off a substrate that is fixed at its base, pulled up at its free end."""
@@ -221,29 +211,6 @@ class Peel(Delamination):
         if substrate is not None and bond_length > substrate:
             raise refuse(f"<= specimen.substrate_length = {substrate:g}", ((), bond_length))
         return bond_length
-
-    @property
-    def free_length(self) -> float:
-        return self.strip_length - self.bond_length
-
-    @property
-    def lengths(self) -> tuple[float, float]:
-        return self.strip_length, self.substrate_length
-
-    @property
-    def thicknesses(self) -> tuple[float, float]:
-        return self.strip_thickness, self.substrate_thickness
-
-    @property
-    def tip(self) -> float:
-        return self.bond_length
-
-    def place(self, s: float) -> float:
-        return self.strip_length - s
-
-    def reach(self) -> Reach:
-        """A strip may be pressed down beside the end of its substrate."""
-        return Reach(-2 * self.strip_thickness, 2 * self.strip_length, "-2 strip_thickness", "2 strip_length")
 
 
 #: The specimens by their kind.

@@ -223,10 +223,11 @@ class Scene(Section):
         specimen = info.data.get("specimen")
         if specimen is None:
             return load
-        low, high, why_low, why_high = specimen.reach()
+        times, why = specimen.pressed
+        low, high = -times * specimen.loaded_thickness, 2 * specimen.extent
         outside = [(("opening", i), opening) for i, opening in enumerate(load.opening) if not low <= opening <= high]
         if outside:
-            raise refuse(f">= {low:g} ({why_low}) and <= {high:g} ({why_high})", *outside)
+            raise refuse(f">= {low:g} ({why}) and <= {high:g} (2 {specimen.length_keys[0]})", *outside)
         return load
 
     @field_validator("effects")

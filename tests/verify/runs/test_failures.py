@@ -211,10 +211,10 @@ def test_an_identity_that_does_not_hold_fails_a_run(
         check = Check("energy-ledger", "lefm", 0.1, 0.01, "exact", "The energies add up.", unresolved=unresolved)
         return lambda *_: (check,)
 
-    monkeypatch.setattr(verify.runs.run, "run_checks", judged())
+    monkeypatch.setattr(verify.runs.run, "checks_of", judged())
     assert main([*SOLVE, "--out", str(tmp_path)]) == 1
     assert "lefm: broken: energy-ledger" in capsys.readouterr().err
-    monkeypatch.setattr(verify.runs.run, "run_checks", judged("2 elements in the process zone"))
+    monkeypatch.setattr(verify.runs.run, "checks_of", judged("2 elements in the process zone"))
     assert main([*SOLVE, "--out", str(tmp_path)]) == 0
     assert ": 2 elements in the process zone" in capsys.readouterr().out
 
