@@ -107,7 +107,7 @@ def test_meshes_that_mirror_each_other_may_differ_by_rounding(off: float, same: 
     upper, lower = SimpleNamespace(P_AI=points[::-1]), SimpleNamespace(P_AI=points + [0.0, off * 50.0])
     monkeypatch.setattr("verify.methods.given_meshes.given_meshes", lambda scene: (upper, lower))
     monkeypatch.setattr("iga.mesh.mirror.upside_down", lambda mesh: mesh)
-    scene = SimpleNamespace(specimen=SimpleNamespace(mesh=("a", "b"), arm_thickness=50.0))
+    scene = SimpleNamespace(specimen=SimpleNamespace(mesh=("a", "b"), loaded_thickness=50.0))
     said = neglected._other_arm(prepare(scene, "tspline"), Result("tspline", {}))
     assert said.negligible == same and said.value == pytest.approx(off, rel=1e-3)
     more = SimpleNamespace(P_AI=np.concatenate([points, points[:1]]))

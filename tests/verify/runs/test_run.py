@@ -358,7 +358,7 @@ def test_a_rank_that_fails_says_which_it_is_and_ends_at_once(monkeypatch, capsys
     """Without waiting for the others, which wait for it."""
     ended: list[int] = []
     monkeypatch.setattr(run_of.os, "_exit", ended.append)
-    monkeypatch.setattr(environment, "mpi_rank", lambda: 3)
+    monkeypatch.setattr(run_of, "mpi_rank", lambda: 3)
 
     def broken(on_step: Callable | None) -> Result:
         raise ArithmeticError("no luck")

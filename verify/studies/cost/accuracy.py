@@ -198,7 +198,8 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
         except SceneError:  # more unknowns than a scene may have
             break
         there = expected(chosen, method).elements
-        if there >= elements and prepare(chosen, method).mesh.degree >= degree:
+        mesh = prepare(chosen, method).mesh
+        if there >= elements and mesh is not None and mesh.degree >= degree:
             return overrides
         size = round(size * (min(elements / there, 1.5) if 0.0 < there < elements else 1.2)) + 8
     raise Refusal(f"--accuracy: no mesh is known with {elements:.1f} elements in the process zone of {scene.name}")
