@@ -15,8 +15,8 @@ pytest.importorskip("jinja2")
 
 from tests.verify.checks.test_peel_checks import made_up  # noqa: E402
 from verify import report  # noqa: E402
-from verify.checks.identities import law_of  # noqa: E402
 from verify.checks.matched import of_run  # noqa: E402
+from verify.checks.mechanics.columns import law_of  # noqa: E402
 from verify.methods.solve import prepare
 from verify.report.figures.entry import entries  # noqa: E402
 from verify.report.matched import sentences  # noqa: E402
