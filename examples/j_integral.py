@@ -12,7 +12,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from verify.checks.identities import j_deviation, law_of, loading
+from verify.checks.mechanics.columns import law_of, loading
+from verify.checks.mechanics.j_integral import j_deviation
 from verify.methods.solve import solve
 from verify.scene import load_scene
 

@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from verify.curves.curve import oscillation, peak
-from verify.methods.solve import solve
+from verify.methods.solve import prepare, solve
 from verify.methods.zone_resolution import ENOUGH, element_length, expected, measured, warnings
 from verify.scene import load_scene
 from verify.scene.process_zone import bulk_length, slender_length
@@ -94,7 +94,7 @@ figure.savefig(Path(__file__).with_suffix(".png"), dpi=110)
 
 # %%
 scene = load_scene("dcb-czm1-linear", ["interface.strength=32", "discretization.dofs=700"])
-print("\n".join(warnings(scene, "nurbs")))
+print("\n".join(warnings(prepare(scene, "nurbs"))))
 
 # %% [markdown]
 # Nothing happens at exactly three. With three elements or more the curve can be trusted, with fewer than two it cannot,

@@ -16,8 +16,7 @@ from iga.path.newton import equilibrium
 from iga.path.solver import Solver
 from iga.system.system import energies, respond
 from verify.curves.curve import envelope
-from verify.methods.problems import iga_problem
-from verify.methods.solve import solve
+from verify.methods.solve import prepare, solve
 from verify.scene import load_scene
 
 # %% [markdown]
@@ -60,7 +59,7 @@ print(f"{run.load.size - 1} steps, {backs} of them backwards, in {turns} snap-ba
 # that the bond dissipates.
 
 # %%
-solver, problem = iga_problem(scene, "nurbs")
+solver, problem = prepare(scene, "nurbs").problem
 system = solver.build(problem).system
 controls = {
     "load": load_control(system),

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +18,7 @@ import pytest
 from verify.cli import main, parser
 from verify.command_line.completion import Command, commands
 from verify.command_line.spelling import parsed
-from verify.methods import dolfinx, names, problems
-from verify.methods import solve as methods
+from verify.methods import dolfinx, names
 from verify.methods.plugins import plugins
 from verify.scene.tables import one_of
 from verify.theory import lefm
@@ -128,16 +128,17 @@ def test_bad_input_is_refused_before_any_work(line: str, folder: Path, capsys: p
 
 def test_the_smallest_mesh_is_the_one_that_the_solver_takes() -> None:
     from iga.dcb.meshes import arm_meshes
-    from iga.dcb.problem import Problem
+    from verify.methods.iga import least_dofs
+    from verify.methods.solve import prepare
     from verify.scene.load import load_scene
 
     for method in names.WITH_DOFS:
         for degree in (3,) if method == "tspline" else (1, 2, 3, 4, 5):
-            keys = problems.problem_keys(load_scene("dcb-czm1"), method)
-            least = methods.least_dofs(method, degree)
-            arm_meshes(Problem(basis=method, degree=degree, dofs=least, **keys))
+            _, problem = prepare(load_scene("dcb-czm1"), method).problem
+            least = least_dofs(method, degree)
+            arm_meshes(replace(problem, degree=degree, dofs=least))
             with pytest.raises(ValueError, match="unknowns"):
-                arm_meshes(Problem(basis=method, degree=degree, dofs=least - 1, **keys))
+                arm_meshes(replace(problem, degree=degree, dofs=least - 1))
 
 
 @pytest.mark.parametrize("columns", [40, 200])
@@ -256,7 +257,8 @@ def test_under_mpi_only_the_first_rank_writes(tmp_path: Path) -> None:
     assert as_process("verify", **many).returncode == 2
     one = (
         "from pathlib import Path; from verify.runs.run import run; from verify.scene.load import load_scene\n"
-        f"run(load_scene('dcb-czm1'), 'lefm', Path({str(tmp_path / 'rank1')!r}))"
+        "from verify.methods.solve import prepare\n"
+        f"run(prepare(load_scene('dcb-czm1'), 'lefm'), Path({str(tmp_path / 'rank1')!r}))"
     )
     assert subprocess.run([sys.executable, "-c", one], env=ENVIRONMENT | many).returncode == 0
     assert not (tmp_path / "rank1").exists()

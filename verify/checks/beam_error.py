@@ -33,15 +33,15 @@ def tolerance(scene: Scene) -> float | None:
 
     What a finite beam lacks besides is there on stocky arms as well.
     """
-    if scene.specimen.kind == "peel":
+    if scene.specimen.clamped:
         return ON_SUBSTRATE
-    error, slender = theory_error(scene), ANALYTICAL[simulated(scene, "beam")["kinematics"]]
+    error, slender = theory_error(scene), ANALYTICAL[simulated(scene)["kinematics"]]
     return None if error > NO_JUDGE else max(slender, error + slender - ANALYTICAL["linear"])
 
 
 def meaning(scene: Scene) -> str:
     """What the theory is good for on the arms of a scene."""
-    if scene.specimen.kind == "peel":
+    if scene.specimen.clamped:
         return f"it leaves out the corner of the substrate, up to {ON_SUBSTRATE:.1%}"
     slenderness = f"a0 / h = {scene.specimen.free_length / scene.specimen.loaded_thickness:.3g}"
     return f"its own error with {slenderness} on this bond is up to {100.0 * theory_error(scene):.2g} %"
@@ -57,7 +57,7 @@ def theory_error(scene: Scene) -> float:
     h from 4 to 75, E1 / E2 from 1 to 15, E1 / G12 from 2 to 27, l / h from 0.3 to 10 and D from 2 to 50, in both planes
     and kinematics: 1.2 to 3.2 times the distance, where that is more than 0.1 %.
     """
-    if scene.specimen.kind == "peel":
+    if scene.specimen.clamped:
         return ON_SUBSTRATE
     body, arm, root = scene.specimen, scene.materials[0], sqrt(squeeze(scene))
     constants, along = elastic_constants(arm), bending_modulus(arm, body.plane)
@@ -66,7 +66,7 @@ def theory_error(scene: Scene) -> float:
     stretched = (along / across_modulus(arm, body.plane)) ** 0.5 * (constants["G12"] / constants["E1"]) ** 0.25
     given_way = ACROSS * root * stretched
     turned = abs(turned_up - given_way) + APART * (turned_up + given_way)
-    return max(LEAST, MARGIN * turned * body.arm_thickness / body.precrack)
+    return max(LEAST, MARGIN * turned * body.loaded_thickness / body.free_length)
 
 
 def squeeze(scene: Scene) -> float:
@@ -74,7 +74,8 @@ def squeeze(scene: Scene) -> float:
 
     ``h p_max / (E2 g_u)`` of a dcb; 0 of a peel, whose strip has the same layer under it in the beam.
     """
-    if scene.specimen.kind == "peel":
+    if scene.specimen.clamped:
         return 0.0
     law, body = scene.interface, scene.specimen
-    return body.arm_thickness * law.strength**2 / (2.0 * across_modulus(scene.materials[0], body.plane) * law.toughness)
+    across = across_modulus(scene.materials[0], body.plane)
+    return body.loaded_thickness * law.strength**2 / (2.0 * across * law.toughness)

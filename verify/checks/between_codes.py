@@ -11,27 +11,30 @@ from dataclasses import replace
 from math import inf
 
 from verify.checks import beam_error, load_introduction
-from verify.checks.proof import MATCHED, REFERENCE, beside_models, difference_of_models, drawn, held_against, proof
+from verify.checks.proof import REFERENCE, RUNS, beside_models, difference_of_models, drawn, held_against, proof
 from verify.curves.curve import curve_error, first_drop, from_origin, load_at
 from verify.curves.leg_checks import farthest_check, programme_checks, stiffness_check
 from verify.curves.legs import path
 from verify.curves.of_run import peak_load
 from verify.methods import through_thickness, zone_resolution
+from verify.methods.solve import prepare
 from verify.result import Result
 from verify.scene.published import Published
 from verify.scene.schema import Scene
 from verify.verdict import Check
 
-#: Lagrange bases of equal size are coarser than NURBS: their tolerance is that of their mesh.
-CROSS_CODE = {"tspline": 0.005, "tspline-adaptive": 0.005, "nurbs": 0.005, MATCHED: 0.005, "lagrange": 0.02}
-#: Runs that are as fine as their tolerance against the beam asks for.
-CLOSE = ("tspline", "tspline-adaptive", "nurbs", MATCHED, "dolfinx", "dolfinx-p3")
+#: The judge that shares nothing with the codes.
+BEAM = "beam"
+#: Distance between the curves of two codes on fine meshes.
+FINE = 0.005
+#: Runs of codes that are held against the reference, with their tolerances: a coarser mesh has its own.
+CROSS_CODE = {
+    name: max(FINE, method.mesh_error) for name, method in RUNS.items() if method.code not in (REFERENCE, BEAM)
+}
 #: Largest distance between curves that elements longer than a third of the process zone explain: 17 % were measured.
 COARSE = 0.2
 #: Part of the peak load by which a load that falls at once is that of a specimen that comes apart.
 APART = 0.1
-#: Runs that are held against published values: all but the coarse ones of a sequence of meshes, and LEFM.
-JUDGED = (*CROSS_CODE, "dolfinx", "dolfinx-p3", "beam")
 
 
 def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
@@ -44,10 +47,9 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
     usable = {method: result for method, result in results.items() if result.load.size > 1}
     fine = beam_error.tolerance(scene)
     checks: list[Check] = []
-    if "beam" in usable and fine is not None and not no_beam(scene):
-        for method in (name for name in dict.fromkeys((*CROSS_CODE, *CLOSE)) if name in usable):
-            tolerance = fine if method in CLOSE else max(fine, CROSS_CODE[method])
-            check = beam_check(scene, method, usable[method], usable["beam"], tolerance)
+    if BEAM in usable and fine is not None and not no_beam(scene):
+        for name in (name for name in RUNS if name in usable and name != BEAM):
+            check = beam_check(scene, name, usable[name], usable[BEAM], max(fine, RUNS[name].mesh_error))
             checks.append(proven(scene, check, usable))
     for method, tolerance in CROSS_CODE.items():
         if method in usable and REFERENCE in usable:
@@ -65,7 +67,7 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
     pair, found = check.subject.split(" / "), check
     if pair[-1] == REFERENCE:
         found = held_against(check, proof(results, max(scene.load.opening)))
-    if pair[-1] == "beam":
+    if pair[-1] == BEAM:
         found = beside_models(check, difference_of_models(results, max(scene.load.opening)))
     if found.state != "broken" or not abs(found.value) <= COARSE:
         return found
@@ -74,7 +76,7 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
         f"{method}: {text}"
         for method in methods
         for about in (zone_resolution, through_thickness)
-        for text in about.warnings(scene, method)
+        for text in about.warnings(prepare(scene, method))
     ]
     return replace(found, unresolved="; ".join(coarse))
 
@@ -109,7 +111,7 @@ def beam_check(scene: Scene, name: str, result: Result, beam: Result, tolerance:
     drops = [first_drop((run.opening, run.load), APART) for run in (beam, result)]
     value = distance(result, beam, min([max(scene.load.opening), *(drops if drops[0] < inf else ())]))
     return Check(
-        "beam-curve", f"{name} / beam", value, tolerance, "analytical", meaning, beam_error.theory_error(scene)
+        "beam-curve", f"{name} / {BEAM}", value, tolerance, "analytical", meaning, beam_error.theory_error(scene)
     )
 
 
@@ -126,14 +128,14 @@ def no_beam(scene: Scene) -> str:
 def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
     """What is not judged, and why."""
     why = no_beam(scene)
-    return (f"beam: held against no code: {why}",) if why and "beam" in results else ()
+    return (f"beam: held against no code: {why}",) if why and BEAM in results else ()
 
 
 def published_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
     """Every run against every value that the scene carries; a load that a run did not come to is NaN, and fails."""
     checks = []
     for name, known in zip(published_names(scene), scene.published, strict=True):
-        for method in (method for method in JUDGED if method in results):
+        for method in (name for name in RUNS if name in results):
             value = known.deviation(published_load(known, results[method], scene.load.opening))
             checks.append(Check(name, method, value, known.tolerance, known.kind, published_meaning(known)))
     return tuple(checks)

@@ -12,7 +12,8 @@ import numpy as np
 
 from verify.checks import beam_error, load_introduction
 from verify.checks.between_codes import (
-    CROSS_CODE,
+    BEAM,
+    FINE,
     beam_check,
     no_beam,
     pair_checks,
@@ -22,6 +23,7 @@ from verify.checks.between_codes import (
     published_names,
 )
 from verify.checks.odd_one_out import ODD, odd_one_out
+from verify.checks.proof import SEARCHING
 from verify.curves.leg_checks import farthest_check, turns_check
 from verify.curves.legs import TURN_TOLERANCE, path
 from verify.curves.read import Reading, read_curve
@@ -35,7 +37,7 @@ from verify.support.refusal import Refusal
 from verify.verdict import Check, Run, SceneReport
 
 #: Codes that a curve from elsewhere is held against, with the relative tolerance that holds between them as well.
-CODES: Mapping[str, float] = {**{m: CROSS_CODE[m] for m in ("tspline", "nurbs")}, "dolfinx": CROSS_CODE["nurbs"]}
+CODES: Mapping[str, float] = {name: FINE for name, one in METHODS.items() if one.has_mesh and not one.mesh_error}
 
 #: Part of its largest load below which a curve bears nothing any more.
 NOTHING = 0.01
@@ -97,7 +99,7 @@ def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneRepo
     """
     for curve in curves:
         _keep(curve, out / report.scene.name / curve.name)
-    against = next((run for run in report.runs if run.method == "nurbs" and run.result is not None), None)
+    against = next((run for run in report.runs if run.method == SEARCHING and run.result is not None), None)
     runs = [
         Run(
             curve.name,
@@ -165,11 +167,11 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
             pair = pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
             checks += [proven(scene, check, usable) for check in pair]
     fine = beam_error.tolerance(scene)
-    if "beam" in usable and fine is not None and not no_beam(scene):
-        beam = usable["beam"]
+    if BEAM in usable and fine is not None and not no_beam(scene):
+        beam = usable[BEAM]
         checks.append(proven(scene, beam_check(scene, name, curve, beam, fine), usable))
         curves = (curve.opening, curve.load), (beam.opening, beam.load)
-        checks += farthest_check(f"{name} / beam", *curves, programme, fine, "analytical")
+        checks += farthest_check(f"{name} / {BEAM}", *curves, programme, fine, "analytical")
     for known_name, known in zip(published_names(scene), scene.published, strict=True):
         value = known.deviation(published_load(known, curve, programme))
         checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))

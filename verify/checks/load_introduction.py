@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import isnan, nan, sqrt
 
+from verify.checks.proof import SEARCHING
 from verify.curves.curve import peak
 from verify.result import Result
 from verify.scene.bodies import axial_modulus, elastic_constants
@@ -45,10 +46,10 @@ def estimate(scene: Scene) -> Corner:
     h, a = specimen.loaded_thickness, max(specimen.free_length, specimen.loaded_thickness)
     modulus = axial_modulus(scene.materials[0], specimen.plane)
     local = 0.25 * (h / a) ** 3 * modulus / sqrt(constants["E2"] * constants["G12"])
-    share = 2.0 if specimen.kind == "peel" else 1.0
+    share = 2.0 / specimen.arms
     theta = 0.5 * a * sqrt(share * scene.interface.toughness / (modulus * h**3 / 12.0))
     lever = 0.5 * theta * h / a if theta < FAR else nan
-    return Corner(-local, lever if simulated(scene, "")["kinematics"] == "finite" else 0.0)
+    return Corner(-local, lever if simulated(scene)["kinematics"] == "finite" else 0.0)
 
 
 def measured(scene: Scene) -> Corner:
@@ -58,7 +59,7 @@ def measured(scene: Scene) -> Corner:
     end = max(scene.load.opening)
     mesh = scene.discretization.model_copy(update={"dofs": DOFS, "steps": STEPS})
     face, node = (
-        solve(_at(scene.model_copy(update={"discretization": mesh}), at, end), "nurbs") for at in ("face", "node")
+        solve(_at(scene.model_copy(update={"discretization": mesh}), at, end), SEARCHING) for at in ("face", "node")
     )
     if not (face.complete and node.complete):
         return estimate(scene)
@@ -80,7 +81,7 @@ def sentence(scene: Scene) -> str:
     """What to know of the load before a code is compared with this scene; empty where the scene's is a point load."""
     if scene.load.at != "face":
         return ""
-    solved = matters(scene) and scene.specimen.kind == "dcb" and max(scene.load.opening) > 0.0
+    solved = matters(scene) and not scene.specimen.clamped and max(scene.load.opening) > 0.0
     found = _measured(scene.model_dump_json()) if solved else estimate(scene)
     return (
         "the load is spread evenly over the end face, and the opening is its mean: a code that pulls the corner away "

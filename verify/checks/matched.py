@@ -13,10 +13,10 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from scipy.integrate import trapezoid
 
-from verify.checks.identities import law_of
+from verify.checks.mechanics.columns import law_of
+from verify.methods.method import Prepared
 from verify.result import Result, Snapshot
 from verify.scene.effects import NEGLIGIBLE
-from verify.scene.schema import Scene
 from verify.theory.law import Law
 
 #: A point pulls where its traction is more than this part of the strength.
@@ -50,15 +50,16 @@ class LeftOut:
         return self.bound <= NEGLIGIBLE
 
 
-def summary(scene: Scene, result: Result) -> dict[str, float]:
+def summary(prepared: Prepared, result: Result) -> dict[str, float]:
     """What ``result.json`` says of it: tilt, gap and pull, or nothing where the method follows the surfaces."""
-    found = of_run(scene, result)
+    found = of_run(prepared, result)
     return {} if found is None else asdict(found)
 
 
-def of_run(scene: Scene, result: Result) -> LeftOut | None:
+def of_run(prepared: Prepared, result: Result) -> LeftOut | None:
     """What a run leaves out; None where its method follows the surfaces, or where no fields were kept."""
-    if result.method != "dolfinx" or not result.snapshots:
+    method, scene = prepared.method, prepared.scene
+    if not (method.has_mesh and "search" in method.fixed(scene) and result.snapshots):
         return None
     specimen = scene.specimen
     return left_out(result.snapshots, law_of(scene), specimen.place(0.0), specimen.width)

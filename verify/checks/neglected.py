@@ -14,9 +14,11 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from verify.checks import matched
-from verify.checks.identities import law_of
+from verify.checks.mechanics.columns import law_of
+from verify.methods.method import Prepared
+from verify.methods.solve import prepare
 from verify.result import Result, Snapshot
-from verify.scene.effects import GROWING, NEGLIGIBLE, STANDING, simulated, stiffer
+from verify.scene.effects import GROWING, NEGLIGIBLE, STANDING, stiffer
 from verify.scene.schema import Scene
 from verify.theory.law import Law
 
@@ -58,24 +60,30 @@ _NAMES = {
 
 
 def of_run(scene: Scene, result: Result) -> tuple[Neglected, ...]:
-    """Every effect that the run left out and of which its columns tell."""
-    effects, rules = simulated(scene, result.method), (_rotation, _overlap, _healing, _other_arm, _tilt)
-    left_out = (
-        effects["kinematics"] == "linear",
-        not effects["contact"],
-        not effects["irreversible"],
-        effects["symmetry"] and result.method != "beam",
-        not effects["search"] and result.method != "dolfinx",  # of which the report tells apart
-    )
-    if result.method == "lefm" or result.opening.size < 2:
+    """Every effect that the run left out and that its columns show."""
+    return of_prepared(prepare(scene, result.method), result)
+
+
+def of_prepared(prepared: Prepared, result: Result) -> tuple[Neglected, ...]:
+    """The same of a prepared scene. A method that is made for one arm, or for fixed pairs of points, leaves nothing out
+    by them; the report names what a fixed pair is worth (`verify.checks.matched`)."""
+    effects, own = prepared.effects, prepared.method.fixed(prepared.scene)
+    rules = {
+        _rotation: effects["kinematics"] == "linear",
+        _overlap: not effects["contact"],
+        _healing: not effects["irreversible"],
+        _other_arm: effects["symmetry"] and "symmetry" not in own,
+        _tilt: not effects["search"] and "search" not in own,
+    }
+    if prepared.method.is_limit or result.opening.size < 2:
         return ()
-    found = (rule(scene, result) for rule, without in zip(rules, left_out, strict=True) if without)
+    found = (rule(prepared, result) for rule, without in rules.items() if without)
     return tuple(one for one in found if one is not None)
 
 
-def warnings(scene: Scene, result: Result) -> tuple[str, ...]:
+def warnings(prepared: Prepared, result: Result) -> tuple[str, ...]:
     """A sentence for every effect that should not have been left out."""
-    return tuple(one.sentence for one in of_run(scene, result) if not one.negligible)
+    return tuple(one.sentence for one in of_prepared(prepared, result) if not one.negligible)
 
 
 def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
@@ -91,15 +99,15 @@ def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
     )
 
 
-def summary(scene: Scene, result: Result) -> dict[str, dict[str, object]]:
+def summary(prepared: Prepared, result: Result) -> dict[str, dict[str, object]]:
     """The entry ``neglected`` of result.json."""
     return {
         one.key: {"value": one.value, "negligible": one.negligible, "sentence": one.sentence}
-        for one in of_run(scene, result)
+        for one in of_prepared(prepared, result)
     }
 
 
-def _rotation(scene: Scene, result: Result) -> Neglected | None:
+def _rotation(prepared: Prepared, result: Result) -> Neglected | None:
     """What the largest rotation of the loaded faces means for the load of a beam.
 
     While the crack stands the load changes by 16/35 theta^2, while it grows by 6/35 theta^2 (see
@@ -116,14 +124,15 @@ def _rotation(scene: Scene, result: Result) -> Neglected | None:
     return Neglected("kinematics", change, change <= NEGLIGIBLE, turn)
 
 
-def _overlap(scene: Scene, result: Result) -> Neglected | None:
+def _overlap(prepared: Prepared, result: Result) -> Neglected | None:
     """What contact would have made of the part of the bond that is squeezed.
 
     The smallest gap is that of the fields that were kept and, at every step, of both ends of the bond, and of all the
     faces where the programme goes down. In the fields the squeezed bond holds a part of the work; each point of it
     would have been stiffer by penalty / secant.
     """
-    law, steps = law_of(scene), result.steps
+    scene, steps = prepared.scene, result.steps
+    law = law_of(scene)
     gaps = [steps[name] for name in ("tip_opening", "end_opening") if name in steps]
     gaps += [snapshot.gap_q for snapshot in result.snapshots]
     if not gaps:
@@ -154,7 +163,7 @@ def _load_of(snapshot: Snapshot, result: Result, law: Law, scene: Scene) -> floa
     return abs(0.5 * scene.specimen.width * float(trapezoid(change_q[order], snapshot.s_q[order]))) / work
 
 
-def _healing(scene: Scene, result: Result) -> Neglected | None:
+def _healing(prepared: Prepared, result: Result) -> Neglected | None:
     """How much of what a damaged bond had taken it gave back: with irreversible damage it would not have.
 
     Without history nothing is dissipated: the work of the bond is the cohesive energy, and that falls where gaps do.
@@ -162,7 +171,7 @@ def _healing(scene: Scene, result: Result) -> Neglected | None:
     steps = result.steps
     if "cohesive_energy" not in steps or "damage_front" not in steps:
         return None
-    damaged = np.maximum.accumulate(steps["damage_front"]) > scene.specimen.free_length
+    damaged = np.maximum.accumulate(steps["damage_front"]) > prepared.scene.specimen.free_length
     taken = np.where(damaged, steps["cohesive_energy"], 0.0)
     most = np.maximum.accumulate(taken)
     back = float(np.max((most - taken) / np.where(most > 0.0, most, 1.0)))
@@ -170,30 +179,29 @@ def _healing(scene: Scene, result: Result) -> Neglected | None:
     return Neglected("irreversible", back, back <= NEGLIGIBLE, seen)
 
 
-def _other_arm(scene: Scene, result: Result) -> Neglected | None:
+def _other_arm(prepared: Prepared, result: Result) -> Neglected | None:
     """How far the mesh of the other arm is from the mirror image that stands for it; nothing else can differ."""
-    specimen = scene.specimen
-    if result.method != "tspline" or len(specimen.mesh) != 2:
+    specimen = prepared.scene.specimen
+    if not prepared.method.takes_files or len(specimen.mesh) != 2:
         return Neglected("symmetry", 0.0, True, "the arms are alike")
     from iga.mesh.mirror import upside_down
     from verify.methods.given_meshes import given_meshes
 
-    upper, lower = given_meshes(scene)
+    upper, lower = given_meshes(prepared.scene)
     ours, theirs = (_sorted(mesh.P_AI) for mesh in (upper, upside_down(lower)))
     apart = float(np.max(np.abs(ours - theirs))) if ours.shape == theirs.shape else nan
-    same = apart <= SAME * specimen.arm_thickness
+    same = apart <= SAME * specimen.loaded_thickness
     seen = "the meshes of the arms mirror each other" if same else "the lower arm has another mesh, which was left out"
-    return Neglected("symmetry", apart / specimen.arm_thickness, same, seen)
+    return Neglected("symmetry", apart / specimen.loaded_thickness, same, seen)
 
 
-def _tilt(scene: Scene, result: Result) -> Neglected | None:
+def _tilt(prepared: Prepared, result: Result) -> Neglected | None:
     """What gaps and tractions across the surface half way between the faces are off by along the undeformed normal."""
-    effects = simulated(scene, result.method)
+    effects, specimen = prepared.effects, prepared.scene.specimen
     snapshots = tuple(snapshot for snapshot in result.snapshots if snapshot.X_euvi.size)  # a beam has no faces
     if effects["symmetry"] or effects["kinematics"] == "linear" or not snapshots:
         return None
-    specimen = scene.specimen
-    found = matched.left_out(snapshots, law_of(scene), specimen.place(0.0), specimen.width, between=True)
+    found = matched.left_out(snapshots, law_of(prepared.scene), specimen.place(0.0), specimen.width, between=True)
     tilt = f"{degrees(found.tilt):.2g} degrees"
     seen = f"half way between the faces the bond tilts by up to {tilt}, worth {found.bound:.2%} of G_Ic or of the load"
     return Neglected("search", found.bound, found.valid, seen)

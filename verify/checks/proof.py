@@ -19,11 +19,25 @@ import numpy as np
 from verify.curves.curve import Curve, curve_error, dense, peak
 from verify.curves.leg_checks import stiffness
 from verify.curves.legs import path
+from verify.methods.names import METHODS
 from verify.result import Result
 from verify.verdict import Check
 
 #: Names of runs: the reference, the same on its second mesh, NURBS, and NURBS with the pairs of points kept.
 REFERENCE, SECOND, SEARCHING, MATCHED = "dolfinx", "dolfinx-second", "nurbs", "nurbs-matched"
+
+#: Runs on meshes as fine as a method's own, by the method. Coarser runs are held against none.
+VARIANTS = {"tspline-adaptive": "tspline", MATCHED: SEARCHING, "dolfinx-p3": REFERENCE}
+#: The methods of all runs that are held against others, by the names of the runs.
+RUNS = {
+    name: method
+    for method in METHODS.values()
+    for name in (method.name, *(variant for variant, of in VARIANTS.items() if of == method.name))
+    if not method.is_limit
+}
+
+#: Runs that are held against none.
+LIMITS = {name for name, method in METHODS.items() if method.is_limit}
 
 #: Another basis that searches, and the distance to NURBS within which it confirms these.
 CONFIRMING, CONFIRMED = "tspline", 0.005

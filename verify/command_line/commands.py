@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from shutil import get_terminal_size
 from typing import TYPE_CHECKING
@@ -15,7 +15,9 @@ from verify.support.say import say
 
 if TYPE_CHECKING:
     from verify.checks.foreign_curves import Curve
+    from verify.methods.method import NotRun, Prepared
     from verify.result import Result
+    from verify.runs.run import Keep
     from verify.scene.schema import Scene
     from verify.verdict import Check
 
@@ -23,48 +25,41 @@ FAILED = 1
 
 
 def solve(options: argparse.Namespace) -> int:
-    from verify.methods import through_thickness, zone_resolution
-    from verify.methods.names import NotRun
-    from verify.methods.solve import require
+    from verify.methods.method import NotRun
+    from verify.methods.solve import prepare, require
     from verify.runs.environment import mpi_rank, mpi_size
-    from verify.runs.run import run
-    from verify.scene.effects import decided
     from verify.scene.load import load_scene
 
     if options.accuracy is not None:
         return _accurate(options)
-    options.method = options.method or "nurbs"
-    _known_method(options.method, options.dofs)
+    name = options.method or "nurbs"
+    _known_method(name, options.dofs)
     dofs = [f"discretization.dofs={options.dofs}"] if options.dofs else []
-    scene = load_scene(options.scene, [*dofs, *options.overrides])
-    if mpi_size() > 1 and options.method != "dolfinx":
-        raise Refusal(f"--method: must be dolfinx under mpirun, the others run in one process, got {options.method!r}")
-    options.out = options.out or Path("debond-out") / f"{scene.name}-{options.method}"
-    quiet = mpi_rank() > 0
+    prepared = prepare(load_scene(options.scene, [*dofs, *options.overrides]), name)
+    if mpi_size() > 1 and not prepared.method.ranks:
+        raise Refusal(f"--method: must be dolfinx under mpirun, the others run in one process, got {name!r}")
+    out = options.out = options.out or Path("debond-out") / f"{prepared.scene.name}-{name}"
     try:
-        require(scene, options.method)
+        require(prepared)
     except NotRun as error:
         return _not_run(error)
-    _folder(options.out)
+    _folder(out)
+    quiet = mpi_rank() > 0
     if not quiet:
-        coarse = (*zone_resolution.warnings(scene, options.method), *through_thickness.warnings(scene, options.method))
-        for remark in (*decided(scene, options.method), *coarse):
-            say(str(remark))
-        if options.fields and options.frames and options.method in ("beam", "lefm"):
-            say(f"--fields: the method {options.method} has no bodies to draw: no frames for ParaView")
-    result, checks = _watched(run, scene, options, quiet)
+        _say_before(prepared, options.fields and options.frames > 0)
+    result, checks = _watched(prepared, out, _kept(options), quiet)
     if not quiet:
-        _print_result(result, checks, options.out)
-        _say_after(scene, result, checks)
+        _print_result(result, checks, out)
+        _say_after(prepared, result, checks)
     return 0 if result.complete and not _broken(checks) else FAILED
 
 
 def _accurate(options: argparse.Namespace) -> int:
     """Solve to an accuracy: choose method and mesh, say what and for how long, and verify the solution."""
     from verify.methods import zone_resolution
+    from verify.methods.solve import prepare
     from verify.runs.environment import mpi_size
-    from verify.runs.run import run
-    from verify.scene.effects import decided
+    from verify.runs.run import NO_FIELDS
     from verify.scene.load import load_scene
     from verify.scene.parse import parse_scene
     from verify.studies.cost.accuracy import choose
@@ -81,30 +76,47 @@ def _accurate(options: argparse.Namespace) -> int:
     say(planned(scene, first))
     out = options.out or Path("debond-out") / f"{scene.name}-{first.method}"
     _folder(out)
-    for decision in decided(parse_scene(scene.model_dump(), first.overrides), first.method):
+    for decision in prepare(parse_scene(scene.model_dump(), first.overrides), first.method).decisions:
         say(str(decision))
 
-    def solved(level: Scene, method: str, folder: Path, delivers: bool):
-        own = {"method": method, "out": folder, "fields": options.fields and delivers}
-        return _watched(run, level, argparse.Namespace(**{**vars(options), **own}), False)
+    def solved(level: Scene, method: str, folder: Path, delivers: bool) -> tuple[Result, tuple[Check, ...]]:
+        return _watched(prepare(level, method), folder, _kept(options) if delivers else NO_FIELDS, False)
 
     found = verified(scene, first, options.accuracy, out, solved)
     last = found.delivered
+    prepared = prepare(last.scene, last.method)
     _print_result(last.result, last.checks, out)
     print(found.sentence)
-    for remark in zone_resolution.warnings(last.scene, last.method):
+    for remark in zone_resolution.warnings(prepared):
         say(remark)
-    _say_after(last.scene, last.result, last.checks)
+    _say_after(prepared, last.result, last.checks)
     if not found.close:
         remedy = "ask for less, or refine with --dofs and discretization.steps"
         say(f"--accuracy: {percent(found.asked)} has not been reached: {found.why}; {found.sentence}; {remedy}")
     return 0 if found.holds else FAILED
 
 
-def _say_after(scene: Scene, result: Result, checks: Sequence[Check]) -> None:
+def _kept(options: argparse.Namespace) -> Keep:
+    from verify.runs.run import Keep
+
+    return Keep(options.fields, options.frames if options.fields else 0)
+
+
+def _say_before(prepared: Prepared, frames: bool) -> None:
+    """What was decided, and what the mesh cannot resolve."""
+    from verify.methods import through_thickness, zone_resolution
+
+    coarse = (*zone_resolution.warnings(prepared), *through_thickness.warnings(prepared))
+    for remark in (*prepared.decisions, *coarse):
+        say(str(remark))
+    if frames and not prepared.method.has_mesh:
+        say(f"--fields: the method {prepared.method.name} has no bodies to draw: no frames for ParaView")
+
+
+def _say_after(prepared: Prepared, result: Result, checks: Sequence[Check]) -> None:
     from verify.checks import neglected
 
-    for remark in neglected.warnings(scene, result):
+    for remark in neglected.warnings(prepared, result):
         say(remark)
     broken = _broken(checks)
     if result.complete and broken:
@@ -115,36 +127,25 @@ def _broken(checks: Sequence[Check]) -> list[str]:
     return [check.name for check in checks if check.state == "broken"]
 
 
-def _watched(run, scene, options: argparse.Namespace, quiet: bool):
+def _watched(prepared: Prepared, folder: Path, keep: Keep, quiet: bool) -> tuple[Result, tuple[Check, ...]]:
     """The run with its progress along the programme."""
+    from verify.runs.run import run
     from verify.support.progress import Progress
 
+    scene = prepared.scene
     legs = [abs(b - a) for a, b in zip((0.0, *scene.load.opening), scene.load.opening, strict=False)]
-    with Progress(f"{scene.name} {options.method}", sum(legs), quiet) as progress:
-        travelled = _Travelled()
-        return run(
-            scene,
-            options.method,
-            options.out,
-            options.fields,
-            lambda row: progress.advance(travelled(row), f"opening {row['opening']:.4g} load {row['load']:.4g}"),
-            frames=options.frames if options.fields else 0,
-        )
+    gone = before = 0.0
+    with Progress(f"{scene.name} {prepared.method.name}", sum(legs), quiet) as progress:
+
+        def advance(row: Mapping[str, float]) -> None:
+            nonlocal gone, before
+            gone, before = gone + abs(row["opening"] - before), row["opening"]
+            progress.advance(gone, f"opening {row['opening']:.4g} load {row['load']:.4g}")
+
+        return run(prepared, folder, keep, advance)
 
 
-class _Travelled:
-    """How far the opening has gone, back and forth added up."""
-
-    def __init__(self) -> None:
-        self._opening, self._way = 0.0, 0.0
-
-    def __call__(self, row) -> float:
-        self._way += abs(row["opening"] - self._opening)
-        self._opening = row["opening"]
-        return self._way
-
-
-def _print_result(result, checks, folder: Path) -> None:
+def _print_result(result: Result, checks: Sequence[Check], folder: Path) -> None:
     from verify.checks.table import check_table
 
     peak = result.load.argmax() if result.load.size else None
@@ -225,8 +226,8 @@ def cost(options: argparse.Namespace) -> int:
 
 
 def effects(options: argparse.Namespace) -> int:
-    from verify.methods.names import NotRun
-    from verify.methods.solve import require
+    from verify.methods.method import NotRun
+    from verify.methods.solve import prepare, require
     from verify.scene.load import load_scene
     from verify.studies.effects.study import effects, would_run
 
@@ -237,7 +238,7 @@ def effects(options: argparse.Namespace) -> int:
     try:
         if options.dry_run:
             return _listed(would_run(*what))
-        require(scene, options.method)
+        require(prepare(scene, options.method))
         _folder(options.out)
         return 0 if effects(*what, options.jobs, options.scheduler).complete else FAILED
     except NotRun as error:
@@ -396,7 +397,7 @@ def _alone(command: str) -> None:
 
 def _known_method(method: str, dofs: int | None, option: str = "--method") -> None:
     from verify.methods.names import WITH_DOFS
-    from verify.methods.plugins import known_methods
+    from verify.methods.plugins import find, known_methods
     from verify.scene.complaints import suggestion
     from verify.scene.tables import one_of
 
@@ -405,7 +406,7 @@ def _known_method(method: str, dofs: int | None, option: str = "--method") -> No
         later = f"; {suggestion(method, known)}".rstrip("; ")
         raise Refusal(f"{option}: must be {one_of(known)}, got {method!r}{later}")
     if dofs and method not in WITH_DOFS:
-        other = "; --set dolfinx.elements=N sets its mesh" if method == "dolfinx" else ""
+        other = "; --set dolfinx.elements=N sets its mesh" if find(method).has_mesh else ""
         raise Refusal(f"--dofs: is only for --method {one_of(WITH_DOFS)}, got {dofs} for {method}{other}")
 
 
@@ -419,9 +420,7 @@ def _folder(path: Path) -> None:
         raise Refusal(f"--out: must be a folder that can be written to, got {str(path)!r}: {error.strerror}") from None
 
 
-def _not_run(error: Exception) -> int:
-    from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS
-
-    ways = [". Ways to get it:", *(f"\n  {way}" for way in DOLFINX_WAYS)] if str(error) == DOLFINX_MISSING else []
+def _not_run(error: NotRun) -> int:
+    ways = [". Ways to get it:", *(f"\n  {way}" for way in error.ways)] if error.ways else []
     say("".join([str(error), *ways]))
     return FAILED

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from datetime import date
 from typing import Any
 
-from verify.scene.bodies import MATERIALS, Orthotropic
+from verify.scene.bodies import Orthotropic
 from verify.scene.complaints import suggestion
 from verify.scene.keys import SPECIMENS, Key, keys, keys_of
 from verify.scene.load import load_scene
@@ -85,7 +85,7 @@ def new_scene(kind: str) -> str:
     table = ""
     for key in keys(kind):
         if key.table != table:
-            if table in MATERIALS[kind]:
+            if table in SPECIMENS[kind].materials:
                 lines += _instead(raw, table)
             table = key.table
             lines += ["", f"[{table}]"]

@@ -8,12 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem_reference.problem.specimen import Body, Region, Specimen
-from verify.methods.problems import dolfinx_problem
+from verify.methods.solve import prepare
 from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
-
-#: Upper body first.
-BODIES: Mapping[str, tuple[str, str]] = {"dcb": ("upper", "lower"), "peel": ("strip", "substrate")}
 
 #: Part of a height by which a node may lie beside the middle of a face, by rounding.
 MIDDLE = 1e-9
@@ -98,22 +95,13 @@ def scene_mesh(scene: Scene, layers: int | None = None) -> SceneMesh:
     ------
     Refusal : a degree above 2, fewer elements than the specimen has parts.
     """
-    kind = scene.specimen.kind
     degree = scene.dolfinx.degree if scene.dolfinx.degree != "auto" else 2
     if degree > 2:
         raise Refusal(f"dolfinx.degree: must be 1 or 2 for export, got {degree}")
-    try:
-        problem = dolfinx_problem(_of_degree(scene, degree))
-        specimen = (replace(problem, layers=layers) if layers else problem).specimen()
-    except ValueError as error:
-        raise Refusal(f"dolfinx.{error}") from None
-    mesh = _meshed(specimen, degree, BODIES[kind])
+    asked = {"degree": degree, "layers": layers or scene.dolfinx.layers}  # layers left out are chosen for the degree
+    given = scene.model_copy(update={"dolfinx": scene.dolfinx.model_copy(update=asked)})
+    mesh = _meshed(prepare(given, "dolfinx").problem.specimen(), degree, scene.specimen.bodies)
     return replace(mesh, loaded=tuple(_pulled(face, scene.load.at, mesh.X_nI) for face in mesh.loaded))
-
-
-def _of_degree(scene: Scene, degree: int) -> Scene:
-    """The scene with this degree, which its layers are chosen for."""
-    return scene.model_copy(update={"dolfinx": scene.dolfinx.model_copy(update={"degree": degree})})
 
 
 def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMesh:

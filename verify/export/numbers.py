@@ -26,7 +26,7 @@ def law(scene: Scene) -> Bilinear:
 
 def effects(scene: Scene) -> dict[str, Any]:
     """The simulated effects; always with both bodies."""
-    return {key: value for key, value in simulated(scene, "").items() if key != "symmetry"}
+    return {key: value for key, value in simulated(scene).items() if key != "symmetry"}
 
 
 def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:

@@ -11,6 +11,7 @@ import numpy as np
 from iga.mesh.bernstein import bernstein, tensor
 from verify.fields.cells import Cells, grid
 from verify.fields.vtk_xml import Grid, write_collection, write_grid
+from verify.methods.iga import LAGRANGE
 from verify.scene.bodies import elastic_constants
 from verify.scene.schema import Scene
 
@@ -22,6 +23,10 @@ NEAR = 1e-6
 
 #: Folder of the frames, beside the collections of them, and the two series.
 FOLDER, SERIES = "frames", ("fields", "interface")
+
+
+#: Makes a frame, see `iga.output.frames`; None on a rank that does not write.
+Make = Callable[[], Mapping[str, Any] | None]
 
 
 class Frames:
@@ -43,31 +48,31 @@ class Frames:
         way = (0.0, *scene.load.opening)
         self._part = sum(abs(b - a) for a, b in zip(way, way[1:], strict=False)) / count
         self._folder, self._writes = folder, writes
-        self._through_bk, self._in_nodes = through_thickness(scene), method == "lagrange"
+        self._through_bk, self._in_nodes = through_thickness(scene), method == LAGRANGE.name
         self._opening, self._back, self._due = 0.0, 0.0, 0.0
         self._times: list[float] = []
-        self._left: Callable[[], Mapping[str, Any] | None] | None = None
+        self._left: Make | None = None
 
-    def __call__(self, opening: float, make: Callable[[], Mapping[str, Any] | None]) -> None:
+    def __call__(self, opening: float, make: Make) -> None:
         self._back += max(self._opening - opening, 0.0)
         self._opening = opening
         self._left = make
         if self._time >= self._due - NEAR * self._part:
             self._due = self._part * (np.floor(self._time / self._part + NEAR) + 1.0)
-            self._write()
+            self._write(make)
 
     def finish(self) -> None:
         """Write the last state, if it has not been."""
         if self._left is not None:
-            self._write()
+            self._write(self._left)
 
     @property
     def _time(self) -> float:
         return self._opening + 2.0 * self._back
 
-    def _write(self) -> None:
-        made, self._left = self._left(), None
-        if not self._writes:
+    def _write(self, make: Make) -> None:
+        made, self._left = make(), None
+        if made is None or not self._writes:
             return
         number, whole = len(self._times), {"TimeValue": self._time, "opening": made["opening"], "load": made["load"]}
         self._times.append(self._time)

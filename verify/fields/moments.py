@@ -10,6 +10,7 @@ import numpy as np
 
 from iga.mesh.bernstein import bernstein, tensor
 from verify.fields.frames import bezier_values
+from verify.methods.iga import NURBS
 from verify.result import Snapshot
 from verify.scene.schema import Pose, Scene
 
@@ -20,7 +21,7 @@ FRACTIONS = (0.05, 0.15, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9)
 INTERVALS = 2
 
 #: The method whose bodies the report draws.
-LEAD = "nurbs"
+LEAD = NURBS.name
 
 
 class Moments:

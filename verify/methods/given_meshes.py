@@ -52,14 +52,10 @@ def given_meshes(scene: Scene) -> tuple[Mesh, ...]:
         on, its ends on the specimen's, and an element boundary where the bond ends.
     """
     specimen = scene.specimen
-    if specimen.kind == "peel":
-        lengths, tip = (specimen.strip_length, specimen.substrate_length), specimen.bond_length
-    else:
-        lengths, tip = (specimen.length, specimen.length), specimen.precrack
     meshes = []
-    for file, length, side in zip(specimen.mesh, lengths, ("bottom", "top"), strict=False):
+    for file, length, side in zip(specimen.mesh, specimen.lengths, ("bottom", "top"), strict=False):
         mesh = _read(file)
-        _require(file, mesh, length, side, tip)
+        _require(file, mesh, length, side, specimen.tip)
         meshes.append(mesh)
     if len(meshes) == 1:
         meshes.append(upside_down(meshes[0]))

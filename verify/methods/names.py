@@ -1,32 +1,30 @@
-"""Names of the built-in methods, and the two reasons why a method does not run."""
+"""The built-in methods by name."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
 
-from verify.support.refusal import Refusal
+from verify.methods.beam import BEAM
+from verify.methods.dolfinx import DOLFINX
+from verify.methods.iga import LAGRANGE, NURBS, TSPLINE
+from verify.methods.lefm import LEFM
+from verify.methods.method import Method, NotRun, Unsuitable
+from verify.scene.schema import Scene
+from verify.scene.tables import one_of
 
-#: name -> what it is, in the words of the report
-METHODS: Mapping[str, str] = {
-    "tspline": "isogeometric, T-splines",
-    "nurbs": "isogeometric, NURBS",
-    "lagrange": "isogeometric code, Lagrange basis",
-    "dolfinx": "DOLFINx, Lagrange elements",
-    "beam": "beam on a cohesive interface",
-    "lefm": "linear elastic fracture mechanics",
-}
-WITH_DOFS = ("tspline", "nurbs", "lagrange")
+__all__ = ["METHODS", "WITH_DOFS", "NotRun", "Unsuitable", "refuse_law"]
 
-OnStep = Callable[[Mapping[str, float]], None]
+METHODS: Mapping[str, Method] = {method.name: method for method in (TSPLINE, NURBS, LAGRANGE, DOLFINX, BEAM, LEFM)}
 
-#: Called with the opening of every converged step and with what makes its frame, see `verify.fields.frames`.
-OnFrame = Callable[[float, Callable[[], Mapping[str, Any] | None]], None]
+#: Those whose mesh ``discretization.dofs`` sets.
+WITH_DOFS = tuple(method.name for method in METHODS.values() if method.with_dofs)
 
 
-class NotRun(Exception):
-    """A method that this machine cannot run; the message says why."""
-
-
-class Unsuitable(Refusal):
-    """A method that cannot solve this scene on any machine."""
+def refuse_law(scene: Scene, who: str, has: Sequence[str]) -> None:
+    """Raise Unsuitable where ``who`` does not have the law of a scene, naming the built-in methods that do."""
+    law = scene.interface.law
+    if law in has:
+        return
+    *head, last = [name for name, other in METHODS.items() if law in other.laws()]
+    able = f"{', '.join(head)} and {last} have it" if head else f"{last} has it"
+    raise Unsuitable(f"interface.law: must be {one_of(has)} for {who}, got {law!r}; {able}")

@@ -2,12 +2,12 @@
 
 A solver is called with a scene and with a function to call after every converged step, and returns a result:
 
-    def solve(scene: verify.scene.load.Scene, on_step: Callable[[Mapping[str, float]], None]) -> verify.result.Result
+    def solve(scene: verify.scene.Scene, on_step: Callable[[Mapping[str, float]], None]) -> verify.result.Result
 
-Its rows and the ``steps`` of its result hold ``opening`` and ``load``, and whatever else it knows of
-``verify.result``: each column brings its checks. Where it has a function ``unsuitable`` as an attribute, that says of a
-scene why the solver is not made for it, or nothing. Its attribute ``laws`` names the traction laws that it has
-(``interface.law`` of a scene); left out: the bilinear one alone.
+Its rows and the ``steps`` of its result hold ``opening`` and ``load``, and any other column of ``verify.result``, each
+of which brings its checks. An attribute ``unsuitable`` of it, a function of the scene, returns why the solver is not
+made for the scene, or an empty text. An attribute ``laws`` names the traction laws that it has (``interface.law`` of a
+scene); left out: the bilinear one alone.
 """
 
 from __future__ import annotations
@@ -23,9 +23,10 @@ from typing import Any
 
 import numpy as np
 
-from verify.methods.names import METHODS, NotRun, OnStep, Unsuitable
+from verify.methods.method import Failure, Method, NotRun, OnFrame, OnStep, Prepared, Unsuitable
+from verify.methods.names import METHODS
 from verify.result import Result
-from verify.scene.laws import PLAIN, refusal
+from verify.scene.laws import PLAIN
 from verify.scene.schema import Scene
 from verify.support.timing import Stopwatch, peak_memory_mb
 
@@ -34,12 +35,6 @@ GROUP = "debond.methods"
 Solver = Callable[[Scene, OnStep], Result]
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
-
-
-class PluginFault(Exception):
-    """What a solver of another package did wrong."""
-
-    whose = "the plug-in: see error.log"
 
 
 @dataclass(frozen=True)
@@ -81,43 +76,73 @@ def plugins() -> dict[str, Plugin]:
     }
 
 
-def require(scene: Scene, method: str) -> None:
-    """Raise ``NotRun`` where the plug-in of that name is broken, ``Unsuitable`` where it says so of the scene."""
-    plugin = plugins()[method]
-    solver = plugin.load()
-    unsuitable = getattr(solver, "unsuitable", None)
-    try:
-        other_law = refusal(scene.interface.law, method, getattr(solver, "laws", (PLAIN,)), METHODS)
-        why = unsuitable(scene) if unsuitable is not None else ""
-    except Exception as error:
-        raise NotRun(f"not run: plug-in {method} of {plugin.package}: {type(error).__name__}: {error}") from None
-    if other_law:
-        raise Unsuitable(other_law)
-    if why:
-        raise Unsuitable(f"{method}: {why}")
+def known_methods() -> dict[str, str]:
+    """What every method is, by its name: the built-in ones, then those of other packages."""
+    others = {name: f"plug-in of {plugin.package}" for name, plugin in plugins().items() if name not in METHODS}
+    return {name: method.what for name, method in METHODS.items()} | others
 
 
-def solve(scene: Scene, method: str, on_step: OnStep) -> Result:
-    """The result of a plug-in, timed and in the shape of every other.
+def find(name: str) -> Method:
+    """The method of a name; of a name that is none, one that cannot run, as which curves of other codes are judged."""
+    if name in METHODS:
+        return METHODS[name]
+    plugin = plugins().get(name)
+    return _unknown(name) if plugin is None else _method(name, plugin)
 
-    Raises
-    ------
-    NotRun : it cannot be loaded.
-    PluginFault : it fails, or returns what is no result.
-    """
-    plugin = plugins()[method]
-    solver, watch, told = plugin.load(), Stopwatch(), _Told(on_step)
-    try:
-        with watch.phase("solve"):
-            found = solver(scene, told)
-        steps = _from_zero(_steps(found))
-        if not told.any:
-            for row in zip(*steps.values(), strict=True):
-                on_step(dict(zip(steps, map(float, row), strict=True)))
-    except Exception as error:
-        raise PluginFault(f"plug-in {method} of {plugin.package}: {type(error).__name__}: {error}") from error
+
+def _unknown(name: str) -> Method:
+    def missing(prepared: Prepared, *_: object) -> Any:
+        raise NotRun(f"not run: there is no method {name}")
+
+    return Method(name=name, label=name, what="another code", solve=missing, require=missing, code=name)
+
+
+def _method(name: str, plugin: Plugin) -> Method:
+    """The plug-in as a method like the built-in ones; nothing is imported before it is used."""
+
+    def laws() -> tuple[str, ...]:
+        try:
+            return tuple(getattr(plugin.load(), "laws", (PLAIN,)))
+        except TypeError as error:
+            raise _not_run(error) from None
+
+    def require(prepared: Prepared) -> None:
+        unsuitable = getattr(plugin.load(), "unsuitable", None)
+        try:
+            why = unsuitable(prepared.scene) if unsuitable is not None else ""
+        except Exception as error:
+            raise _not_run(error) from None
+        if why:
+            raise Unsuitable(f"{name}: {why}")
+
+    def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
+        solver = plugin.load()
+        try:
+            return replace(_solved(solver, prepared.scene, on_step), method=name)
+        except Exception as error:
+            why = f"plug-in {name} of {plugin.package}: {type(error).__name__}: {error}"
+            raise Failure(why, "the plug-in: see error.log") from error
+
+    def _not_run(error: Exception) -> NotRun:
+        return NotRun(f"not run: plug-in {name} of {plugin.package}: {type(error).__name__}: {error}")
+
+    what = f"plug-in of {plugin.package}"
+    return Method(
+        name=name, label=name, what=what, solve=solve, require=require, laws=laws, code=name, takes_files=True
+    )
+
+
+def _solved(solver: Solver, scene: Scene, on_step: OnStep) -> Result:
+    """The result of a solver, timed and with columns of one length; a solver that reports no step has them reported."""
+    watch, reported = Stopwatch(), _Reported(on_step)
+    with watch.phase("solve"):
+        found = solver(scene, reported)
+    steps = _from_zero(_steps(found))
+    if not reported.any:
+        for row in zip(*steps.values(), strict=True):
+            on_step(dict(zip(steps, map(float, row), strict=True)))
     memory = found.peak_memory_mb or peak_memory_mb()
-    return replace(found, method=method, steps=steps, seconds=found.seconds or watch.seconds(), peak_memory_mb=memory)
+    return replace(found, steps=steps, seconds=found.seconds or watch.seconds(), peak_memory_mb=memory)
 
 
 def content(method: str) -> list[str]:
@@ -130,8 +155,8 @@ def content(method: str) -> list[str]:
     return [plugin.package, found.hexdigest()]
 
 
-class _Told:
-    """Passes rows on, with one of zeros before a first that is none."""
+class _Reported:
+    """Passes rows on, after a row of zeros where the first one is not at rest."""
 
     def __init__(self, on_step: OnStep) -> None:
         self._on_step, self.any = on_step, False
@@ -190,10 +215,3 @@ def _files(module: str) -> list[Path]:
 
 def _one_line(error: Exception) -> str:
     return " ".join(str(error).split())
-
-
-def known_methods() -> dict[str, str]:
-    """``METHODS``, and those of other packages (`verify.methods.plugins`)."""
-
-    others = {name: f"plug-in of {plugin.package}" for name, plugin in plugins().items() if name not in METHODS}
-    return {**METHODS, **others}

@@ -2,60 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import replace
 from math import nan
 
 import numpy as np
 
-from verify.methods.names import WITH_DOFS
-from verify.methods.problems import dolfinx_problem, iga_problem
+from verify.methods.method import ENOUGH, Prepared, Zone
+from verify.methods.solve import prepare
 from verify.result import Result
-from verify.scene.process_zone import bulk_length, slender_length
 from verify.scene.schema import Scene
 
-#: Elements that a zone needs at the least (Turon et al. 2007, sec. 2.2: three to five).
-ENOUGH = 3
-
-#: Meshes of fewer unknowns are made to see whether they resolve a zone; the size of larger ones is told by proportion.
+#: Meshes of fewer unknowns are made to see whether they resolve a zone; the size of larger ones follows by proportion.
 AT_HAND = 5000
-
-
-@dataclass(frozen=True)
-class Zone:
-    """Length of the zone by both formulas and the length of the elements along the interface, NaN without a mesh."""
-
-    slender: float
-    bulk: float
-    element: float
-
-    @property
-    def length(self) -> float:
-        """Shorter than either."""
-        return 1.0 / (1.0 / self.slender + 1.0 / self.bulk)
-
-    @property
-    def elements(self) -> float:
-        """How many elements span the zone."""
-        return self.length / self.element
-
-    @property
-    def resolved(self) -> bool:
-        """Also where there is no mesh that could fail to."""
-        return not self.elements < ENOUGH
 
 
 def expected(scene: Scene, method: str) -> Zone:
     """Zone and elements of a scene solved by one method."""
-    return Zone(slender_length(scene), bulk_length(scene), element_length(scene, method))
+    return prepare(scene, method).zone
 
 
-def warnings(scene: Scene, method: str) -> tuple[str, ...]:
-    """What to say before a run that cannot resolve its zone: one sentence with what to do, or nothing."""
-    zone = expected(scene, method)
+def warnings(prepared: Prepared) -> tuple[str, ...]:
+    """One sentence, with a remedy, before a run whose mesh cannot resolve the process zone."""
+    zone = prepared.zone
     if zone.resolved:
         return ()
-    unit = _length_unit(scene)
+    unit = _length_unit(prepared.scene)
     spans = (
         f"process zone {zone.length:.2g}{unit} < element {zone.element:.2g}{unit}"
         if zone.elements < 1
@@ -63,7 +34,7 @@ def warnings(scene: Scene, method: str) -> tuple[str, ...]:
         f"fewer than {ENOUGH}"
     )
     return (
-        f"{spans}: expect too high a load and snap-backs from element to element; {remedy(scene, method)}, "
+        f"{spans}: expect too high a load and snap-backs from element to element; {remedy(prepared)}, "
         "or a lower interface.strength",
     )
 
@@ -82,9 +53,9 @@ def measured(result: Result) -> float:
     return float(np.median((front - crack)[running])) if running.any() else nan
 
 
-def summary(scene: Scene, result: Result) -> dict[str, float]:
-    """The entry ``process_zone`` of result.json; NaN where there is nothing to tell."""
-    zone, length = expected(scene, result.method), measured(result)
+def summary(prepared: Prepared, result: Result) -> dict[str, float]:
+    """The entry ``process_zone`` of result.json; NaN where a number is not known."""
+    zone, length = prepared.zone, measured(result)
     return {
         "estimate": zone.length,
         "elements": zone.elements,
@@ -94,47 +65,30 @@ def summary(scene: Scene, result: Result) -> dict[str, float]:
 
 
 def element_length(scene: Scene, method: str) -> float:
-    """Longest element along the bond, NaN for a method without a mesh, or where none can be made.
-
-    A mesh that is made from the scene is made once; files may have changed.
-    """
-    return _longest.__wrapped__(scene, method) if scene.specimen.mesh else _longest(scene, method)
+    """Longest element along the bond, NaN for a method without a mesh, or where none can be made."""
+    return prepare(scene, method).element
 
 
-@lru_cache(maxsize=32)
-def _longest(scene: Scene, method: str) -> float:
-    try:
-        if method in WITH_DOFS:
-            from iga.specimen.specimen import element_length as longest
-
-            solver, problem = iga_problem(scene, method)
-            return longest(solver.build(problem))
-        if method == "dolfinx":
-            return float(np.max(dolfinx_problem(scene).specimen().bond_elements))
-    except ValueError:
-        pass
-    return nan
-
-
-def remedy(scene: Scene, method: str, elements: float = ENOUGH) -> str:
+def remedy(prepared: Prepared, elements: float = ENOUGH) -> str:
     """The setting of the mesh with which that many elements span the zone."""
-    if scene.specimen.mesh and method in WITH_DOFS:
+    scene, method = prepared.scene, prepared.method
+    if scene.specimen.mesh and method.with_dofs:
         return f"a mesh with {elements:.2g} elements in it resolves it"
     key, now = (
-        ("dolfinx.elements", scene.dolfinx.elements)
-        if method == "dolfinx"
-        else ("discretization.dofs", scene.discretization.dofs)
+        ("discretization.dofs", scene.discretization.dofs)
+        if method.with_dofs
+        else ("dolfinx.elements", scene.dolfinx.elements)
     )
     # both grow about as the elements along the specimen do
-    wanted = _rounded(now * elements / expected(scene, method).elements)
-    while method in WITH_DOFS and wanted < AT_HAND and _with_dofs(scene, method, wanted).elements < elements:
+    wanted = _rounded(now * elements / prepared.zone.elements)
+    while method.with_dofs and wanted < AT_HAND and _with_dofs(prepared, wanted).elements < elements:
         wanted = _rounded(1.05 * wanted)
     return f"{key} = {wanted} resolves it"
 
 
-def _with_dofs(scene: Scene, method: str, dofs: int) -> Zone:
-    mesh = scene.discretization.model_copy(update={"dofs": dofs})
-    return expected(scene.model_copy(update={"discretization": mesh}), method)
+def _with_dofs(prepared: Prepared, dofs: int) -> Zone:
+    mesh = prepared.scene.discretization.model_copy(update={"dofs": dofs})
+    return replace(prepared, scene=prepared.scene.model_copy(update={"discretization": mesh})).zone
 
 
 def _rounded(number: float) -> int:

@@ -21,6 +21,8 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+from verify.methods.names import METHODS as BUILT_IN
+from verify.methods.plugins import find
 from verify.pages.svg import adapted
 from verify.support.timing import PHASES
 
@@ -36,12 +38,7 @@ PALETTE = {
     "good": ("#1f7a4d", "#5fce97"),
     "bad": ("#b3261e", "#ff8a7d"),
     "zone": ("#e6b400", "#e6b400"),
-    "nurbs": ("#0072b2", "#5bb8f0"),
-    "tspline": ("#4b3fa0", "#b0a5ff"),
-    "lagrange": ("#bf5400", "#ff9a52"),
-    "dolfinx": ("#00805e", "#3dd1a5"),
-    "beam": ("#b0478f", "#ee9ad2"),
-    "lefm": ("#6b7280", "#a0a9b5"),
+    **{name: one.look.colours for name, one in BUILT_IN.items() if one.look.colours},
     "phase-mesh": ("#b9c4d0", "#566373"),
     "phase-basis": ("#8fa3b8", "#7a8da3"),
     "phase-assembly": ("#3f6f9f", "#79aee0"),
@@ -52,15 +49,9 @@ PALETTE = {
 
 _STAND_IN = {name: f"#0a0b{i + 1:02x}" for i, name in enumerate(PALETTE)}
 
-METHODS = ("dolfinx", "nurbs", "tspline", "lagrange", "beam", "lefm")
-METHOD_NAMES = {
-    "nurbs": "NURBS",
-    "tspline": "T-spline",
-    "lagrange": "Lagrange",
-    "dolfinx": "DOLFINx",
-    "beam": "cohesive beam",
-    "lefm": "LEFM limit",
-}
+#: In the order of tables and legends.
+METHODS = tuple(sorted(BUILT_IN, key=lambda name: BUILT_IN[name].look.place))
+METHOD_NAMES = {name: one.label + " limit" * one.is_limit for name, one in BUILT_IN.items()}
 SHOWN_PHASES = (*PHASES, "other")
 
 #: Width of a figure in inches; every figure is drawn at the size that makes 8 pt text readable where it is shown.
@@ -142,26 +133,12 @@ class Line:
         }
 
 
-_BASE_LINES = {
-    "dolfinx": Line("dolfinx", 3.4, (), 0.5, 2.0),
-    "nurbs": Line("nurbs", 1.2, (), 1.0, 4.0),
-    "tspline": Line("tspline", 1.2, (), 1.0, 4.2),
-    "lagrange": Line("lagrange", 1.1, (5.0, 2.0), 1.0, 3.8),
-    "beam": Line("beam", 1.5, (1.2, 1.8), 1.0, 4.5),
-    "lefm": Line("lefm", 0.8, (4.0, 3.0), 1.0, 1.5),
-}
-
-
-#: Of methods of other packages and of other codes.
-OTHERS = Line("ink", 1.3, (6.0, 1.5, 1.2, 1.5), 1.0, 4.7)
-
-
 def line(method: str, repeat: int = 0) -> Line:
     """Style of the ``repeat``-th run of a method: further runs of the same method get thinner and fainter."""
-    base = _BASE_LINES.get(method, OTHERS)
+    look = find(method).look
     fade = 0.6**repeat
-    width, alpha = max(base.width * fade, 0.6), base.alpha * max(fade, 0.4)
-    return Line(base.colour, width, base.dashes, alpha, base.order - 0.1 * repeat)
+    width, alpha = max(look.width * fade, 0.6), look.alpha * max(fade, 0.4)
+    return Line(method if look.colours else "ink", width, look.dashes, alpha, look.order - 0.1 * repeat)
 
 
 def colour(name: str) -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup, escape
 
 from verify.methods.reference_mesh import reference_mesh
-from verify.scene.bodies import MATERIALS
+from verify.methods.solve import prepare
 from verify.scene.effects import simulated
 
 if TYPE_CHECKING:
@@ -133,19 +133,13 @@ def sentence(scene: Scene) -> str:
 
 def _body(specimen: Dcb | Peel, unit: str) -> str:
     """The specimen and its load."""
-    if specimen.kind == "peel":
-        lengths = ("strip_length", "strip_thickness", "substrate_length", "substrate_thickness", "bond_length")
-        strip, thick, substrate, depth, bond = (quantity(getattr(specimen, name), unit) for name in lengths)
-        bodies = f"A strip of {strip} by {thick}, bonded over {bond} to a clamped substrate of {substrate} by {depth},"
-        return f"{bodies} is peeled off by lifting its free end"
-    length, thick, crack = (
-        quantity(value, unit) for value in (specimen.length, specimen.arm_thickness, specimen.precrack)
+    return specimen.sentence.format(
+        **{name: quantity(value, unit) for name, value in specimen if isinstance(value, float)}
     )
-    return f"A double cantilever beam with arms of {length} by {thick} and a precrack of {crack} is opened"
 
 
 def _effects(scene: Scene) -> str:
-    found, chosen = simulated(scene, "nurbs"), [key for key, value in scene.effects if value == "auto"]
+    found, chosen = simulated(scene), [key for key, value in scene.effects if value == "auto"]
     words: Mapping[str, Mapping[object, str]] = {
         "kinematics": {
             "finite": "finite kinematics (large rotations)",
@@ -160,12 +154,12 @@ def _effects(scene: Scene) -> str:
 
 
 def _bodies(scene: Scene) -> str:
-    return "bodies" if scene.specimen.kind == "peel" else "arms"
+    return f"{scene.specimen.body}s" if scene.specimen.symmetric else "bodies"
 
 
 def modelled(scene: Scene, method: str) -> str:
     """The effects as a method simulates them, in short."""
-    effects = simulated(scene, method)
+    effects = prepare(scene, method).effects
     damage = "irreversible" if effects["irreversible"] else "reversible"
     return ", ".join(
         (
@@ -189,7 +183,7 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         ),
         *(
             (body, name, quantity(value, unit))
-            for body in MATERIALS[specimen.kind]
+            for body in specimen.materials
             for name, value, unit in _moduli(getattr(scene, body), units)
         ),
         ("interface", "strength p_max", quantity(law.strength, units.stress)),
@@ -203,7 +197,7 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         ("isogeometric mesh", "interface points", _points(mesh)),
         ("DOLFINx mesh", "degree", str(other.degree)),
         ("DOLFINx mesh", "elements along", str(other.elements)),
-        ("DOLFINx mesh", f"elements through the {'strip' if specimen.kind == 'peel' else 'arm'}", str(other.layers)),
+        ("DOLFINx mesh", f"elements through the {specimen.body}", str(other.layers)),
     ]
     return rows
 

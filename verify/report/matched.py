@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import degrees
 
 from verify.checks import matched
+from verify.methods.solve import prepare
 from verify.pages.text import number, percent
 from verify.report.figures.entry import Entry
 from verify.scene.effects import simulated
@@ -14,14 +15,14 @@ from verify.scene.schema import Scene
 
 def sentences(scene: Scene, found: Sequence[Entry]) -> tuple[str, ...]:
     """A sentence for each DOLFINx run of a peel test with finite kinematics; linear kinematics follow no surface."""
-    if scene.specimen.kind != "peel" or simulated(scene, "dolfinx")["kinematics"] == "linear":
+    if not scene.specimen.clamped or simulated(scene)["kinematics"] == "linear":
         return ()
     runs = (entry for entry in found if entry.method == "dolfinx" and entry.agreement is not None)
     return tuple(_sentence(scene, entry) for entry in runs)
 
 
 def _sentence(scene: Scene, entry: Entry) -> str:
-    found = matched.of_run(entry.run.scene or scene, entry.result)
+    found = matched.of_run(prepare(entry.run.scene or scene, entry.result.method), entry.result)
     how = f"{entry.label} keeps its pairs of points and measures gaps along the undeformed normal"
     if found is None:
         return f"{how}; what that leaves out is not known, as the run kept no fields"

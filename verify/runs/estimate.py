@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-from verify.methods.names import WITH_DOFS
+from verify.methods.plugins import find
 from verify.methods.reference_mesh import reference_mesh
-from verify.scene.effects import crack_at_the_end, simulated
+from verify.methods.solve import prepare
+from verify.scene.effects import crack_at_the_end
 from verify.scene.process_zone import bulk_length, slender_length
 from verify.scene.schema import Scene, counted_steps
-
-#: Seconds besides the steps, and seconds a step for a thousand unknowns, in proportion to them; with `dcb-czm1`, finite
-#: kinematics, on one core of 2023. A rough guide: another machine is as likely to be twice as fast.
-BESIDES = {"dolfinx": 4.0}
-PER_STEP = {"tspline": 0.01, "nurbs": 0.01, "lagrange": 0.01, "dolfinx": 0.02, "beam": 0.03, "lefm": 0.001}
-
-#: Of a method of another package.
-UNKNOWN = 0.03
 
 #: While a crack grows the front of the zone goes ahead by an eighth of the full opening a step: so many steps for every
 #: length of the zone, and so many besides. Measured on ``dcb-czm1`` and ``peel-120``, by both codes.
@@ -25,17 +18,21 @@ STEPS_CHOSEN = 50
 
 
 def seconds(scene: Scene, method: str) -> float:
-    """Estimated time of a run."""
-    per_step = PER_STEP.get(method, UNKNOWN) * unknowns(scene, method) / 1000
-    return BESIDES.get(method, 2.0) + steps(scene, method) * per_step
+    """Estimated time of a run: that besides the steps, and a step's in proportion to the unknowns.
+
+    The times of the methods are those on `dcb-czm1`, finite kinematics, on one core of 2023. A rough guide: another
+    machine is as likely to be twice as fast.
+    """
+    one = find(method)
+    return one.besides + steps(scene, method) * one.per_step * unknowns(scene, method) / 1000
 
 
 def steps(scene: Scene, method: str) -> int:
     """About how many steps a path takes, however many are asked for: the front of the zone asks for its own."""
-    if scene.discretization.steps == "auto" and method in WITH_DOFS:
+    if scene.discretization.steps == "auto" and find(method).with_dofs:
         return STEPS_CHOSEN
     specimen = scene.specimen
-    bond = (specimen.extent if specimen.kind == "peel" else specimen.length) - specimen.free_length
+    bond = specimen.extent - specimen.free_length
     grown = min(max(crack_at_the_end(scene) - specimen.free_length, 0.0), bond)
     zones = grown / min(slender_length(scene), bulk_length(scene))
     return round(max(counted_steps(scene), STEPS_BESIDES + STEPS_PER_ZONE * zones))
@@ -43,9 +40,10 @@ def steps(scene: Scene, method: str) -> int:
 
 def unknowns(scene: Scene, method: str) -> int:
     """Degrees of freedom that a method aims at; 1000 for one that chooses its own."""
-    if method in WITH_DOFS:
-        return scene.discretization.dofs // (2 if simulated(scene, method)["symmetry"] else 1)
-    if method != "dolfinx":
+    prepared = prepare(scene, method)
+    if prepared.method.with_dofs:
+        return scene.discretization.dofs // (2 if prepared.effects["symmetry"] else 1)
+    if not prepared.method.has_mesh:
         return 1000
     mesh = reference_mesh(scene)
     return 4 * (mesh.degree * mesh.elements + 1) * (mesh.degree * mesh.layers + 1)

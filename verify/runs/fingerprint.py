@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from verify.methods import plugins
-from verify.methods.names import METHODS, WITH_DOFS
+from verify.methods.names import METHODS
 from verify.runs.environment import machine, versions
 from verify.scene.schema import Scene
 
@@ -23,9 +23,6 @@ GROUND = (
     "verify/verdict.py",
 )
 
-#: Packages whose source a method runs besides.
-_PACKAGES = {**dict.fromkeys(WITH_DOFS, ("iga",)), "dolfinx": ("fem_reference",)}
-
 
 def fingerprint(scene: Scene, method: str, *besides: str) -> str:
     """Hash of the scene as solved, the method with its source, library versions, machine and threads.
@@ -35,7 +32,7 @@ def fingerprint(scene: Scene, method: str, *besides: str) -> str:
     besides : what else tells two runs apart
     """
     plugged = [] if method in METHODS else plugins.content(method)
-    return digest(_ground(scene, method), besides, source(_PACKAGES.get(method, ())), plugged, _here())
+    return digest(_ground(scene, method), besides, source(plugins.find(method).packages), plugged, _here())
 
 
 def source(packages: tuple[str, ...] = ()) -> str:

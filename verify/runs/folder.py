@@ -141,12 +141,14 @@ def read_result(folder: Path) -> Result:
 
 
 def damage(folder: Path, proof: str) -> str:
-    """What cannot be read of a result that was whole once, or nothing; ``proof`` is the file that was written last."""
-    name = proof
+    """The file that cannot be read of a result that was whole once, or nothing; ``proof`` is the one written last."""
+    name, about = proof, {}
     try:
         if proof == "result.json":
             read_result(folder)
-        about = json.loads((folder / proof).read_bytes()) if proof.endswith(".json") else (folder / proof).read_bytes()
+        content = (folder / proof).read_bytes()
+        if proof.endswith(".json"):
+            about = json.loads(content)
         whole = proof == "result.json" and about["status"] == "complete"
         for name in ("curve.csv", "evidence.csv"):
             if whole or (folder / name).exists():
@@ -182,7 +184,8 @@ def read_fields(path: Path) -> tuple[Snapshot, ...]:
 def _snapshot(table: Mapping[str, np.ndarray]) -> Snapshot:
     """Numbers of the sizes that belong together."""
     scalars = ("opening", "load")
-    found = Snapshot(**{name: float(array) if name in scalars else array for name, array in table.items()})
+    values: dict[str, Any] = {name: float(array) if name in scalars else array for name, array in table.items()}
+    found = Snapshot(**values)
     sizes = {len(array) for array in (found.s_q, found.gap_q, found.traction_q, found.damage_q)}
     grids = found.X_euvi.shape == found.u_euvi.shape and found.stress_euv.shape in (found.X_euvi.shape[:-1], (0,))
     if not (grids and len(sizes) == 1 and all(array.dtype.kind in "fiu" for array in table.values())):

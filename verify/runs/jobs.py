@@ -8,8 +8,9 @@ from pathlib import Path
 
 from verify.checks.identities import OF_THE_ZONE
 from verify.methods.given_meshes import OWN
-from verify.methods.names import NotRun
-from verify.methods.solve import require
+from verify.methods.method import NotRun
+from verify.methods.plugins import find
+from verify.methods.solve import prepare, require
 from verify.result import Result
 from verify.runs.estimate import seconds
 from verify.runs.fingerprint import fingerprint
@@ -58,18 +59,14 @@ class Job:
         return parse_scene(self.scene.model_dump(), self.overrides) if self.overrides else self.scene
 
     def task(self) -> Task:
-        """The run as a sweep does it.
-
-        All DOLFINx runs are one lane: they share a cache of compiled forms, and the second to compile the same form
-        would wait for the first, and give up after ten seconds.
-        """
+        """The run as a sweep does it."""
         scene = self.solved
         return Task(
             self.place,
             fingerprint(scene, self.method, f"fields {self.fields}", f"repeat {self.repeat}"),
             ("verify.cli", *self._words(FOLDER)),
             "result.json",
-            lane="dolfinx" if self.method == "dolfinx" else "",
+            lane=find(self.method).lane,
             seconds=seconds(scene, self.method),
         )
 
@@ -120,7 +117,7 @@ def dry_run(plan: Sequence[Job], out: Path, jobs: int) -> list[str]:
 def left_out(job: Job) -> str:
     """Why a job cannot be done here, or nothing."""
     try:
-        require(job.solved, job.method)
+        require(prepare(job.solved, job.method))
     except (NotRun, Refusal) as error:
         text = str(error)
         return text if text.startswith("not run") else f"not run: {text}"
@@ -130,7 +127,7 @@ def left_out(job: Job) -> str:
 def is_missing(job: Job) -> bool:
     """Whether this machine lacks the method of a job that it is made for."""
     try:
-        require(job.solved, job.method)
+        require(prepare(job.solved, job.method))
     except NotRun:
         return True
     except Refusal:

@@ -6,7 +6,7 @@ import os
 import sys
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
@@ -14,36 +14,51 @@ from typing import Any, NoReturn
 import numpy as np
 
 from verify.checks import matched, neglected
-from verify.checks.identities import run_checks
+from verify.checks.identities import checks_of
 from verify.fields.frames import Frames, cleared
 from verify.fields.moments import LEAD, Moments
 from verify.methods import zone_resolution
-from verify.methods.solve import solve
+from verify.methods.method import Failure, Prepared
+from verify.methods.solve import solve_prepared
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
 from verify.runs.environment import machine, mpi_rank, mpi_size, threads, versions
 from verify.runs.folder import NO_ROOM, CurveWriter, write_fields, write_json
 from verify.runs.memory import keep_freed_memory
 from verify.runs.store import alone_in
-from verify.scene.effects import decided, simulated
-from verify.scene.schema import Scene
 from verify.support.say import say
 from verify.support.timing import PHASES, peak_memory_mb
 from verify.verdict import Check, of_state
 
-Solver = Callable[[Scene, str, Callable[[Mapping[str, float]], None] | None], Result]
 Row = Mapping[str, float]
+OnRow = Callable[[Row], None]
+
+#: Solves a scene by a method, in place of the method itself: tests have some.
+Solver = Callable[..., Result]
+
+#: Whose an error is of which nothing else is known.
+OURS = "the program: please report it with error.log"
+
+
+@dataclass(frozen=True)
+class Keep:
+    """What is kept of a run beside its curve: fields of a few steps, and so many frames for ParaView on the way along
+    the programme (`verify.fields.frames`)."""
+
+    fields: bool = False
+    frames: int = 0
+
+
+NO_FIELDS = Keep()
 
 
 def run(
-    scene: Scene,
-    method: str,
+    prepared: Prepared,
     folder: Path,
-    keep_fields: bool = False,
-    on_step: Callable[[Row], None] | None = None,
-    solver: Solver = solve,
-    frames: int = 0,
+    keep: Keep = NO_FIELDS,
+    on_step: OnRow | None = None,
+    solver: Solver | None = None,
 ) -> tuple[Result, tuple[Check, ...]]:
-    """Solve a scene by one method and write its folder.
+    """Solve a prepared scene by its method and write its folder.
 
     Whatever ends the run, the files are valid: rows are written as they come, and ``result.json`` says in ``status``
     why a run stopped. An interrupt by the user is recorded and passed on; so is a disk that takes no more.
@@ -52,8 +67,8 @@ def run(
     ----------
     folder : made where absent; an earlier run in it is replaced
     on_step : called after every converged step, for progress
-    solver : what to run; ``verify.methods.solve.solve``
-    frames : so many for ParaView on the way along the programme, see ``verify.fields.frames``
+    solver : called with scene, name of the method and a function for every row; `verify.methods.solve.solve` on the
+        prepared scene where left out
 
     Raises
     ------
@@ -61,22 +76,54 @@ def run(
     OSError : the folder takes no more; what is in it is valid.
     """
     keep_freed_memory()
-    if frames:
-        solver = partial(_filmed, solver, Frames(folder, scene, method, frames, writes=mpi_rank() == 0))
-    elif keep_fields and method == LEAD and solver is solve:
-        solver = _with_moments
+    solving = _solving(prepared, folder, keep, solver)
     if mpi_rank() > 0:  # the same numbers are on every rank: one of them writes
-        return _silent(scene, method, solver), ()
+        return _silent(solving), ()
     folder.mkdir(parents=True, exist_ok=True)
     with alone_in(folder):
-        return _recorded(scene, method, folder, keep_fields, on_step, solver)
+        return _recorded(_Run(prepared, folder, keep), on_step, solving)
+
+
+def _solving(prepared: Prepared, folder: Path, keep: Keep, solver: Solver | None) -> Callable[[OnRow | None], Result]:
+    """The solver, with what it is to keep on its way, as a function of who hears of every row."""
+    scene, name = prepared.scene, prepared.method.name
+    plain = partial(solver, scene, name) if solver is not None else partial(solve_prepared, prepared)
+    if keep.frames:
+        return partial(_filmed, plain, Frames(folder, scene, name, keep.frames, writes=mpi_rank() == 0))
+    if keep.fields and name == LEAD and solver is None:
+        return partial(_with_moments, plain, Moments(scene))
+    return plain
+
+
+@dataclass(frozen=True)
+class _Run:
+    """A run of a prepared scene into a folder."""
+
+    prepared: Prepared
+    folder: Path
+    keep: Keep
+
+    def finish(self, result: Result) -> tuple[Check, ...]:
+        """The checks of its result, which is written with them."""
+        checks = checks_of(self.prepared, result)
+        if self.keep.fields and result.snapshots:
+            write_fields(self.folder / "fields.npz", result.snapshots)
+        if self.keep.fields and result.between:
+            write_fields(self.folder / "moments.npz", result.between)
+        write_json(self.folder / "result.json", summary(self.prepared, result, checks))
+        return checks
+
+    def stopped(self, rows: list[Row], why: str) -> Result:
+        """The result of a run that an error has ended."""
+        steps = steps_from_rows(rows) if rows else {name: np.zeros(0) for name in CURVE_COLUMNS}
+        return Result(self.prepared.method.name, steps, f"stopped: {why}", peak_memory_mb=peak_memory_mb())
 
 
 def _recorded(
-    scene: Scene, method: str, folder: Path, keep_fields: bool, on_step: Callable[[Row], None] | None, solver: Solver
+    one: _Run, on_step: OnRow | None, solving: Callable[[OnRow | None], Result]
 ) -> tuple[Result, tuple[Check, ...]]:
-    cleared(folder)
-    writer = CurveWriter(folder)
+    cleared(one.folder)
+    writer = CurveWriter(one.folder)
     rows: list[Row] = []
 
     def record(row: Row) -> None:
@@ -86,53 +133,56 @@ def _recorded(
             on_step(row)
 
     try:
-        result = _explained(scene, solver(scene, method, record))
+        result = _explained(one.prepared, solving(record))
     except KeyboardInterrupt:
-        _finish(folder, scene, _stopped(method, rows, "interrupted"), keep_fields)
+        one.finish(one.stopped(rows, "interrupted"))
         raise
     except Exception as error:
         if isinstance(error, OSError) and error.errno in NO_ROOM:
             if mpi_size() > 1:
                 _take_down_all_ranks(str(error))
             raise
-        (folder / "error.log").write_text(traceback.format_exc())
-        whose = getattr(error, "whose", "the program: please report it with error.log")
-        why = f"{type(error).__name__}: {error} (an error in {whose})"
-        result = _stopped(method, rows, why)
+        (one.folder / "error.log").write_text(traceback.format_exc())
+        why = _why(error)
+        result = one.stopped(rows, why)
         if mpi_size() > 1:
-            _finish(folder, scene, result, keep_fields)
+            one.finish(result)
             _take_down_all_ranks(why)
     finally:
         writer.close()
-    return result, _finish(folder, scene, result, keep_fields)
+    return result, one.finish(result)
 
 
-def _explained(scene: Scene, result: Result) -> Result:
+def _why(error: Exception) -> str:
+    """An error in a sentence, with whose it is."""
+    if isinstance(error, Failure):
+        return f"{error} (an error in {error.whose})"
+    return f"{type(error).__name__}: {error} (an error in {OURS})"
+
+
+def _explained(prepared: Prepared, result: Result) -> Result:
     """A path that stops on a mesh too coarse for its process zone says so first: no step is small enough for that."""
-    warning = next(iter(zone_resolution.warnings(scene, result.method)), "")
-    if result.complete or not warning:
+    warning = "" if result.complete else next(iter(zone_resolution.warnings(prepared)), "")
+    if not warning:
         return result
     zone, _, _ = warning.partition(":")
     return replace(result, status=f"stopped: {zone}; {result.status.removeprefix('stopped: ')}")
 
 
-def _filmed(
-    solver: Callable[..., Result], frames: Frames, scene: Scene, method: str, on_step: Callable | None
-) -> Result:
-    result = solver(scene, method, on_step, on_frame=frames)
+def _filmed(solver: Solver, frames: Frames, on_step: OnRow | None) -> Result:
+    result = solver(on_step, on_frame=frames)
     frames.finish()
     return result
 
 
-def _with_moments(scene: Scene, method: str, on_step: Callable | None) -> Result:
-    moments = Moments(scene)
-    result = solve(scene, method, on_step, on_frame=moments)
+def _with_moments(solver: Solver, moments: Moments, on_step: OnRow | None) -> Result:
+    result = solver(on_step, on_frame=moments)
     return replace(result, between=moments.snapshots())
 
 
-def _silent(scene: Scene, method: str, solver: Solver) -> Result:
+def _silent(solving: Callable[[OnRow | None], Result]) -> Result:
     try:
-        return solver(scene, method, None)
+        return solving(None)
     except Exception as error:
         return _take_down_all_ranks(f"{type(error).__name__}: {error}")
 
@@ -144,22 +194,12 @@ def _take_down_all_ranks(why: str) -> NoReturn:
     os._exit(1)
 
 
-def _finish(folder: Path, scene: Scene, result: Result, keep_fields: bool) -> tuple[Check, ...]:
-    checks = run_checks(scene, result)
-    if keep_fields and result.snapshots:
-        write_fields(folder / "fields.npz", result.snapshots)
-    if keep_fields and result.between:
-        write_fields(folder / "moments.npz", result.between)
-    write_json(folder / "result.json", summary(scene, result, checks))
-    return checks
-
-
-def summary(scene: Scene, result: Result, checks: tuple[Check, ...]) -> dict[str, Any]:
+def summary(prepared: Prepared, result: Result, checks: tuple[Check, ...]) -> dict[str, Any]:
     """The content of ``result.json``."""
     opening, load = result.opening, result.load
     peak = int(np.argmax(load)) if load.size else 0
     return {
-        "scene": scene.model_dump(),
+        "scene": prepared.scene.model_dump(),
         "method": result.method,
         "dofs": result.dofs,
         "elements": result.elements,
@@ -172,11 +212,11 @@ def summary(scene: Scene, result: Result, checks: tuple[Check, ...]) -> dict[str
         "jit_seconds": result.jit_seconds,
         "peak_memory_mb": result.peak_memory_mb,
         "nonzeros": result.nonzeros,
-        "effects": simulated(scene, result.method),
-        "decided": {one.key: one.why for one in decided(scene, result.method)},
-        "neglected": neglected.summary(scene, result),
-        "process_zone": zone_resolution.summary(scene, result),
-        "matched_interface": matched.summary(scene, result),
+        "effects": dict(prepared.effects),
+        "decided": {one.key: one.why for one in prepared.decisions},
+        "neglected": neglected.summary(prepared, result),
+        "process_zone": zone_resolution.summary(prepared, result),
+        "matched_interface": matched.summary(prepared, result),
         "checks": {c.name: _verdict(c) for c in checks},
         "versions": versions(),
         "machine": machine(),
@@ -189,8 +229,3 @@ def summary(scene: Scene, result: Result, checks: tuple[Check, ...]) -> dict[str
 
 def _verdict(check: Check) -> dict[str, Any]:
     return {"value": check.value, "tolerance": check.tolerance, "kind": check.kind, **of_state(check)}
-
-
-def _stopped(method: str, rows: list[Row], why: str) -> Result:
-    steps = steps_from_rows(rows) if rows else {name: np.zeros(0) for name in CURVE_COLUMNS}
-    return Result(method=method, steps=steps, status=f"stopped: {why}", peak_memory_mb=peak_memory_mb())

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import Annotated, ClassVar, Literal, NamedTuple, TypeAlias
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
 from verify.scene.tables import Positive, Section, refuse
-
-if TYPE_CHECKING:
-    pass
 
 
 def _as_names(value: object) -> object:
@@ -21,12 +18,116 @@ def _as_names(value: object) -> object:
 Files: TypeAlias = Annotated[tuple[Annotated[str, Field(min_length=1)], ...], BeforeValidator(_as_names)]
 
 
-class Dcb(Section):
+class Ratio(NamedTuple):
+    """Range of one length of a specimen over another one."""
+
+    key: str
+    low: float
+    high: float
+    other: str
+
+
+class Delamination(Section):
+    """Two bodies that meet on Y = 0, upper and lower, bonded along a part of it: what every specimen answers.
+
+    A specimen says of itself, besides its lengths:
+
+    ``materials``, ``bodies`` : names of the tables of its materials, one for both or one each; names of the bodies
+    ``arms``, ``body`` : how many of them the load bends, both, or one off the other, which is clamped; its name
+    ``length_keys``, ``thickness_keys`` : keys of the lengths and thicknesses of the bodies
+    ``tip_key``, ``end_key`` : keys of X of the bond's end next to the load, and of X of the loaded end, empty for 0
+    ``bond_key`` : the key that is larger where the bond is longer
+    ``pressed`` : how many thicknesses the loaded faces can be pressed together, and why no more
+    ``ratios`` : proportions that are solved
+    ``sentence`` : what is done to the specimen, with the keys of its lengths
+    """
+
+    materials: ClassVar[tuple[str, ...]]
+    bodies: ClassVar[tuple[str, str]]
+    arms: ClassVar[int]
+    body: ClassVar[str]
+    length_keys: ClassVar[tuple[str, str]]
+    thickness_keys: ClassVar[tuple[str, str]]
+    tip_key: ClassVar[str]
+    end_key: ClassVar[str]
+    bond_key: ClassVar[str]
+    pressed: ClassVar[tuple[int, str]]
+    ratios: ClassVar[tuple[Ratio, ...]]
+    sentence: ClassVar[str]
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether one body can stand for both."""
+        return self.arms == 2
+
+    @property
+    def clamped(self) -> bool:
+        """Whether the lower body is clamped."""
+        return self.arms == 1
+
+    @property
+    def lengths(self) -> tuple[float, float]:
+        """Of the upper and the lower body."""
+        upper, lower = self.length_keys
+        return getattr(self, upper), getattr(self, lower)
+
+    @property
+    def thicknesses(self) -> tuple[float, float]:
+        """Of the upper and the lower body."""
+        upper, lower = self.thickness_keys
+        return getattr(self, upper), getattr(self, lower)
+
+    @property
+    def tip(self) -> float:
+        """Coordinate X of the end of the bond next to the load."""
+        return getattr(self, self.tip_key)
+
+    @property
+    def loaded_at(self) -> float:
+        """Coordinate X of the loaded end."""
+        return getattr(self, self.end_key) if self.end_key else 0.0
+
+    @property
+    def extent(self) -> float:
+        """Distance from the loaded end to the far end of the bond."""
+        return self.lengths[0]
+
+    @property
+    def free_length(self) -> float:
+        """Distance from the loaded end to the bond."""
+        return abs(self.tip - self.loaded_at)
+
+    @property
+    def loaded_thickness(self) -> float:
+        """Of a body that the load bends."""
+        return self.thicknesses[0]
+
+    def place(self, s: float) -> float:
+        """Coordinate X of what is ``s`` away from the loaded end."""
+        return self.loaded_at + (s if self.tip > self.loaded_at else -s)
+
+
+class Dcb(Delamination):
     """Double cantilever beam: two arms, bonded on X in [precrack, length], loaded at X = 0.
 
     ``mesh``: `.iga` files of the upper and the lower arm for T-splines; one stands for both, the lower being its mirror
     image.
     """
+
+    materials = ("material",)
+    bodies = ("upper", "lower")
+    arms, body = 2, "arm"
+    length_keys, thickness_keys = ("length", "length"), ("arm_thickness", "arm_thickness")
+    tip_key, end_key, bond_key = "precrack", "", "length"
+    pressed = 1, "-arm_thickness, at which both loaded faces would be in one place"
+    ratios = (
+        Ratio("arm_thickness", 1e-6, 1e3, "length"),
+        Ratio("precrack", 1e-6, 0.999999, "length"),
+        Ratio("width", 1e-9, 1e9, "length"),
+    )
+    sentence = (
+        "A double cantilever beam with arms of {length} by {arm_thickness} and a precrack of {precrack} is opened"
+    )
 
     kind: Literal["dcb"]
     """Two arms, bonded from the precrack to the far end, pulled apart at X = 0."""
@@ -51,28 +152,29 @@ class Dcb(Section):
             raise refuse(f"< specimen.length = {length:g}", ((), precrack))
         return precrack
 
-    @property
-    def free_length(self) -> float:
-        """Distance from the loaded end to the bond."""
-        return self.precrack
 
-    @property
-    def extent(self) -> float:
-        """Distance from the loaded end to the far end of the bond."""
-        return self.length
-
-    @property
-    def loaded_thickness(self) -> float:
-        return self.arm_thickness
-
-    def place(self, s: float) -> float:
-        """Coordinate X of what is ``s`` away from the loaded end."""
-        return s
-
-
-class Peel(Section):
+class Peel(Delamination):
     """A strip peeled off a substrate: left ends flush at X = 0, bonded on X in [0, bond_length], strip pulled up at its
     right end, substrate clamped at its base."""
+
+    materials = ("strip", "substrate")
+    bodies = ("strip", "substrate")
+    arms, body = 1, "strip"
+    length_keys = ("strip_length", "substrate_length")
+    thickness_keys = ("strip_thickness", "substrate_thickness")
+    tip_key, end_key, bond_key = "bond_length", "strip_length", "bond_length"
+    pressed = 2, "-2 strip_thickness"
+    ratios = (
+        Ratio("strip_thickness", 1e-6, 1e3, "strip_length"),
+        Ratio("substrate_thickness", 1e-6, 1e3, "substrate_length"),
+        Ratio("bond_length", 1e-6, 0.999999, "strip_length"),
+        Ratio("width", 1e-9, 1e9, "strip_length"),
+        Ratio("substrate_length", 1e-6, 1e6, "strip_length"),
+    )
+    sentence = (
+        "A strip of {strip_length} by {strip_thickness}, bonded over {bond_length} to a clamped substrate of "
+        "{substrate_length} by {substrate_thickness}, is peeled off by lifting its free end"
+    )
 
     kind: Literal["peel"]
     """A strip peeled off a substrate that is fixed at its base, pulled up at its free end."""
@@ -110,35 +212,18 @@ class Peel(Section):
             raise refuse(f"<= specimen.substrate_length = {substrate:g}", ((), bond_length))
         return bond_length
 
-    @property
-    def free_length(self) -> float:
-        """Distance from the loaded end to the bond."""
-        return self.strip_length - self.bond_length
 
-    @property
-    def extent(self) -> float:
-        """Distance from the loaded end to the far end of the bond."""
-        return self.strip_length
-
-    @property
-    def loaded_thickness(self) -> float:
-        return self.strip_thickness
-
-    def place(self, s: float) -> float:
-        """Coordinate X of what is ``s`` away from the loaded end."""
-        return self.strip_length - s
+#: The specimens by their kind.
+SPECIMENS: Mapping[str, type[Dcb] | type[Peel]] = {"dcb": Dcb, "peel": Peel}
 
 
 def specimen_kind(value: object) -> str:
-    """Tell the specimens apart by their kind; one without a kind that is known is refused as a dcb."""
+    """Tell the specimens apart by their kind; one without a known kind is refused as a dcb."""
     kind = value.get("kind") if isinstance(value, Mapping) else getattr(value, "kind", None)
-    return "peel" if kind == "peel" else "dcb"
+    return kind if isinstance(kind, str) and kind in SPECIMENS else "dcb"
 
 
 Specimen: TypeAlias = Annotated[Annotated[Dcb, Tag("dcb")] | Annotated[Peel, Tag("peel")], Discriminator(specimen_kind)]
-
-#: The materials that a scene must give, by the kind of its specimen; the others it must not.
-MATERIALS: Mapping[str, tuple[str, ...]] = {"dcb": ("material",), "peel": ("strip", "substrate")}
 
 
 class Isotropic(Section):

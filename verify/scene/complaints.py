@@ -10,13 +10,15 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from verify.scene.bodies import Dcb, Isotropic, Orthotropic, Peel
+from verify.scene.bodies import SPECIMENS, Isotropic, Orthotropic
 from verify.scene.schema import Scene
 from verify.scene.tables import Section, one_of
 
 _MATERIALS: Mapping[str, type[Section]] = {"isotropic": Isotropic, "orthotropic": Orthotropic}
-_SPECIMENS: Mapping[str, type[Section]] = {"dcb": Dcb, "peel": Peel}
-_ALTERNATIVES = {"specimen": _SPECIMENS, **dict.fromkeys(("material", "strip", "substrate"), _MATERIALS)}
+_ALTERNATIVES: Mapping[str, Mapping[str, type[Section]]] = {
+    "specimen": SPECIMENS,
+    **dict.fromkeys(("material", "strip", "substrate"), _MATERIALS),
+}
 _BOUNDS = (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))
 _KINDS = {float: "a number", int: "an integer", bool: "true or false", str: "a text"}
 
@@ -110,7 +112,7 @@ def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) 
     """The range of a key; with its type in front where ``full``."""
     annotation = _without_none(field.annotation if field else None)
     if path == ("specimen", "kind"):
-        return one_of(_SPECIMENS)
+        return one_of(SPECIMENS)
     if get_origin(annotation) is Literal:
         return one_of(get_args(annotation))
     if get_origin(annotation) is tuple and _table(annotation) is None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import atan2, degrees, exp, sqrt
+from types import MappingProxyType
 from typing import Any
 
 from verify.scene.bodies import Isotropic, Material
@@ -27,13 +28,8 @@ STANDING, GROWING = 16.0 / 35.0, 6.0 / 35.0
 #: that it would have held (1.54 to 1.60 for crack lengths of 1 to 40 / lambda, see `load_of_squeezing`).
 RIGID = 1.6
 
-#: What a method cannot choose: the DOLFINx model has both arms, the beam one; LEFM has no interface, and its crack
-#: never heals. Beneath the strip of a peel test the beam has its substrate, too.
-_FIXED: dict[str, dict[str, Any]] = {
-    "dolfinx": {"symmetry": False, "search": False},
-    "beam": {"symmetry": True, "search": False},
-    "lefm": {"symmetry": True, "search": False, "contact": False, "irreversible": True},
-}
+#: Of a method that fixes no effect.
+NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -49,9 +45,9 @@ class Decision:
         return f"effects.{self.key}: {value}, as {self.why}"
 
 
-def simulated(scene: Scene, method: str) -> dict[str, Any]:
-    """The effects as a method simulates them: ``auto`` replaced by what it stands for, the rest as far as it has it."""
-    found = scene.effects.model_dump() | {one.key: one.value for one in decided(scene)} | _fixed(scene, method)
+def simulated(scene: Scene, fixed: Mapping[str, Any] = NOTHING) -> dict[str, Any]:
+    """The effects as they are simulated: ``auto`` replaced by what it stands for, and those that a method has fixed."""
+    found = {**scene.effects.model_dump(), **{one.key: one.value for one in decided(scene)}, **fixed}
     return found if searches(found) else found | {"search": False}
 
 
@@ -60,8 +56,8 @@ def searches(effects: Mapping[str, Any]) -> bool:
     return effects["search"] and effects["kinematics"] == "finite" and not effects["symmetry"]
 
 
-def decided(scene: Scene, method: str = "") -> tuple[Decision, ...]:
-    """What is chosen for every effect that is ``auto``, but those that a method cannot choose."""
+def decided(scene: Scene, fixed: Mapping[str, Any] = NOTHING) -> tuple[Decision, ...]:
+    """What is chosen for every effect that is ``auto``, but those that a method has fixed."""
     rules: Mapping[str, Callable[[Scene], tuple[str | bool, str]]] = {
         "kinematics": _kinematics,
         "contact": _contact,
@@ -69,7 +65,6 @@ def decided(scene: Scene, method: str = "") -> tuple[Decision, ...]:
         "symmetry": _symmetry,
         "search": _search,
     }
-    fixed = _fixed(scene, method)
     chosen = (key for key, value in scene.effects if value == "auto" and key not in fixed)
     return tuple(Decision(key, *rules[key](scene)) for key in chosen)
 
@@ -81,8 +76,7 @@ def end_rotation(scene: Scene) -> float:
     free length is that before any growth or, if larger, that at the end.
     """
     specimen = scene.specimen
-    length = specimen.strip_length if specimen.kind == "peel" else specimen.length
-    free = min(max(specimen.free_length, specimen.loaded_thickness, crack_at_the_end(scene)), length)
+    free = min(max(specimen.free_length, specimen.loaded_thickness, crack_at_the_end(scene)), specimen.extent)
     return 1.5 * _deflection(scene) / free
 
 
@@ -93,7 +87,7 @@ def crack_at_the_end(scene: Scene) -> float:
     alone, and c = 2.
     """
     specimen = scene.specimen
-    share = 2.0 if specimen.kind == "peel" else 1.0
+    share = 2.0 / specimen.arms
     return sqrt(3 * _deflection(scene) * sqrt(_bending(scene) / (share * specimen.width * scene.interface.toughness)))
 
 
@@ -107,12 +101,12 @@ def load_of_squeezing(scene: Scene) -> float:
     r k; see `stiffer`. In series with the bond, of a dcb up to its plane of symmetry, are the arm or strip itself,
     which gives way across by h / (2 E2) (Kanninen 1973, Int. J. Fract. 9), and the substrate under a strip.
     """
-    specimen, law, peel = scene.specimen, scene.interface, scene.specimen.kind == "peel"
+    specimen, law = scene.specimen, scene.interface
     initial = law.strength**2 * law.ductility / (2.0 * law.toughness)
     across = specimen.loaded_thickness / (2.0 * _modulus(scene.materials[0], 2))
-    if specimen.kind == "peel":
-        across += specimen.substrate_thickness / _modulus(scene.materials[1], 2)
-    k, closed = (1.0 / (1.0 / (bond if peel else 2.0 * bond) + across) for bond in (initial, law.penalty))
+    if specimen.clamped:
+        across += specimen.thicknesses[1] / _modulus(scene.materials[1], 2)
+    k, closed = (1.0 / (1.0 / (specimen.arms * bond) + across) for bond in (initial, law.penalty))
     alpha = specimen.free_length * (k * specimen.width / (4.0 * _bending(scene))) ** 0.25
     return squeezed(alpha) * stiffer(closed / k)
 
@@ -164,8 +158,8 @@ def _irreversible(scene: Scene) -> tuple[bool, str]:
 
 def _symmetry(scene: Scene) -> tuple[bool, str]:
     mesh, specimen = scene.discretization, scene.specimen
-    if specimen.kind == "peel":
-        return False, "strip and substrate differ"
+    if not specimen.symmetric:
+        return False, f"{' and '.join(specimen.bodies)} differ"
     if len(specimen.mesh) == 2:
         return False, "each arm has a mesh of its own"
     if mesh.mismatch != 1.0 or mesh.slave != "upper":
@@ -176,11 +170,6 @@ def _symmetry(scene: Scene) -> tuple[bool, str]:
 def _search(scene: Scene) -> tuple[bool, str]:
     alike, why = _symmetry(scene)
     return not alike, f"{why} and turn alike" if alike else why
-
-
-def _fixed(scene: Scene, method: str) -> dict[str, Any]:
-    fixed = _FIXED.get(method, {})
-    return {**fixed, "symmetry": False} if method == "beam" and scene.specimen.kind == "peel" else fixed
 
 
 def _bending(scene: Scene) -> float:
@@ -197,5 +186,4 @@ def _modulus(material: Material, axis: int) -> float:
 
 def _deflection(scene: Scene) -> float:
     """Largest deflection of an arm."""
-    opening = max(map(abs, scene.load.opening))
-    return opening if scene.specimen.kind == "peel" else opening / 2
+    return max(map(abs, scene.load.opening)) / scene.specimen.arms

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from pydantic.fields import FieldInfo
 
-from verify.scene.bodies import MATERIALS, Dcb, Isotropic, Orthotropic, Peel
+from verify.scene.bodies import SPECIMENS, Isotropic, Orthotropic
 from verify.scene.schema import Scene
 from verify.scene.tables import Section
-
-SPECIMENS: Mapping[str, type[Section]] = {"dcb": Dcb, "peel": Peel}
 
 
 @dataclass(frozen=True)
@@ -32,7 +30,7 @@ def tables(kind: str, material: type[Section] = Isotropic) -> Iterator[tuple[str
     for name, field in Scene.model_fields.items():
         if name == "specimen":
             yield name, SPECIMENS[kind]
-        elif name in MATERIALS[kind]:
+        elif name in SPECIMENS[kind].materials:
             yield name, material
         elif isinstance(field.annotation, type) and issubclass(field.annotation, Section):
             yield name, field.annotation
@@ -41,7 +39,7 @@ def tables(kind: str, material: type[Section] = Isotropic) -> Iterator[tuple[str
 def keys(kind: str) -> tuple[Key, ...]:
     """The keys of a scene with isotropic materials; tables that stand there more than once are left out."""
     known = dict(tables(kind))
-    several = {name for names in MATERIALS.values() for name in names} | {"published"}
+    several = {name for specimen in SPECIMENS.values() for name in specimen.materials} | {"published"}
     top = [Key("", name, field) for name, field in Scene.model_fields.items() if name not in {*known, *several}]
     return (*top, *(key for name, table in known.items() for key in keys_of(name, table)))
 
@@ -54,5 +52,5 @@ def dotted_keys() -> tuple[str, ...]:
     """What may stand before the equals sign of ``--set``, for any specimen and material."""
     found = [key.dotted for kind in SPECIMENS for key in keys(kind)]
     for kind in SPECIMENS:
-        found += [key.dotted for name in MATERIALS[kind] for key in keys_of(name, Orthotropic)]
+        found += [key.dotted for name in SPECIMENS[kind].materials for key in keys_of(name, Orthotropic)]
     return tuple(sorted(set(found)))

@@ -47,17 +47,9 @@ def _beside(key: str, value: float, low: float, high: float, other: str, size: f
 
 
 def _lengths(scene: Scene) -> Iterator[Range]:
-    s = scene.specimen
-    bodies = [("strip", "strip_length"), ("substrate", "substrate_length")] if s.kind == "peel" else [("arm", "length")]
-    for body, length in bodies:
-        name, size = f"specimen.{length}", getattr(s, length)
-        yield _beside(f"specimen.{body}_thickness", getattr(s, f"{body}_thickness"), 1e-6, 1e3, name, size)
-    name, size = f"specimen.{bodies[0][1]}", getattr(s, bodies[0][1])
-    end = "bond_length" if s.kind == "peel" else "precrack"
-    yield _beside(f"specimen.{end}", getattr(s, end), 1e-6, 0.999999, name, size)
-    yield _beside("specimen.width", s.width, 1e-9, 1e9, name, size)
-    if s.kind == "peel":
-        yield _beside("specimen.substrate_length", s.substrate_length, 1e-6, 1e6, name, size)
+    body = scene.specimen
+    for key, low, high, other in body.ratios:
+        yield _beside(f"specimen.{key}", getattr(body, key), low, high, f"specimen.{other}", getattr(body, other))
 
 
 def _stiffnesses(scene: Scene) -> Iterator[Range]:

@@ -35,8 +35,8 @@ def slender_length(scene: Scene) -> float:
     ``1 / E I`` is the sum over the bodies that bend: both arms of a dcb, the strip of a peel. For a traction that drops
     from the start (ductility without bound) it is ``1.0075 (E' G_Ic / p_max^2)^(1/4) h^(3/4)`` in a dcb.
     """
-    law, plane = scene.interface, scene.specimen.plane
-    softness = sum(12.0 / (bending_modulus(body, plane) * height**3) for body, height in _bending(scene))
+    law, plane, bending = scene.interface, scene.specimen.plane, _bodies(scene)[: scene.specimen.arms]
+    softness = sum(12.0 / (bending_modulus(body, plane) * height**3) for body, height in bending)
     g_u = 2.0 * law.toughness / law.strength
     return slender_factor(law.ductility) * (g_u * (1.0 - 1.0 / law.ductility) / (law.strength * softness)) ** 0.25
 
@@ -86,18 +86,8 @@ def crack_modulus(material: Material, plane: str) -> float:
 
 
 def _bodies(scene: Scene) -> tuple[tuple[Material, float], ...]:
-    """Material and thickness of every body."""
-    specimen = scene.specimen
-    if specimen.kind == "peel":
-        thickness = (specimen.strip_thickness, specimen.substrate_thickness)
-    else:
-        thickness = (specimen.arm_thickness, specimen.arm_thickness)
-    return tuple(zip(scene.materials, thickness, strict=True))
-
-
-def _bending(scene: Scene) -> tuple[tuple[Material, float], ...]:
-    """The bodies that bend away from the interface; the substrate of a peel is clamped."""
-    return _bodies(scene)[:1] if scene.specimen.kind == "peel" else _bodies(scene)
+    """Material and thickness of both bodies, those that bend away from the interface first."""
+    return tuple(zip(scene.materials, scene.specimen.thicknesses, strict=True))
 
 
 def _compliance(material: Material, plane: str) -> np.ndarray:

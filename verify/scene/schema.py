@@ -6,19 +6,16 @@ user reads about a broken one are made in ``verify.scene.complaints``.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, ValidationInfo, ValidatorFunctionWrapHandler, field_validator
 from pydantic_core import PydanticCustomError
 
-from verify.scene.bodies import MATERIALS, Material, Specimen, definite
+from verify.scene.bodies import Material, Specimen, definite
 from verify.scene.laws import PLAIN, known
 from verify.scene.published import Published
 from verify.scene.tables import Positive, Section, one_of, refuse
 from verify.support.programme import turns
-
-if TYPE_CHECKING:
-    pass
 
 
 def _hundred_initial_stiffnesses(data: dict[str, Any]) -> float:
@@ -210,7 +207,7 @@ class Scene(Section):
         specimen = info.data.get("specimen")
         if specimen is None:
             return validate(value) if value is not None else None
-        wanted = MATERIALS[specimen.kind]
+        wanted = specimen.materials
         if info.field_name in wanted:
             if value is None:
                 raise PydanticCustomError("missing", "missing")
@@ -222,42 +219,36 @@ class Scene(Section):
     @field_validator("load")
     @classmethod
     def _within_reach(cls, load: Load, info: ValidationInfo) -> Load:
-        """Two arms of length L cannot be further apart than 2 L.
-
-        Pressed together by one thickness both loaded faces would be in one place. A strip may be pressed down beside
-        the end of its substrate.
-        """
+        """Two arms of length L cannot be further apart than 2 L."""
         specimen = info.data.get("specimen")
         if specimen is None:
             return load
-        thickness, length = (
-            ("strip_thickness", "strip_length") if specimen.kind == "peel" else ("arm_thickness", "length")
-        )
-        times, why = (2, "-2 strip_thickness")
-        if specimen.kind == "dcb":
-            times, why = 1, "-arm_thickness, at which both loaded faces would be in one place"
-        low, high = -times * getattr(specimen, thickness), 2 * getattr(specimen, length)
+        times, why = specimen.pressed
+        low, high = -times * specimen.loaded_thickness, 2 * specimen.extent
         outside = [(("opening", i), opening) for i, opening in enumerate(load.opening) if not low <= opening <= high]
         if outside:
-            raise refuse(f">= {low:g} ({why}) and <= {high:g} (2 {length})", *outside)
+            raise refuse(f">= {low:g} ({why}) and <= {high:g} (2 {specimen.length_keys[0]})", *outside)
         return load
 
     @field_validator("effects")
     @classmethod
     def _symmetric_specimen(cls, effects: Effects, info: ValidationInfo) -> Effects:
         specimen = info.data.get("specimen")
-        if effects.symmetry is True and specimen is not None and specimen.kind == "peel":
-            raise refuse("false for a peel: strip and substrate differ", (("symmetry",), True))
-        if effects.search is False and specimen is not None and specimen.kind == "peel":
-            raise refuse("true for a peel: strip and substrate turn", (("search",), False))
+        if specimen is None or specimen.symmetric:
+            return effects
+        of, bodies = f"for a {specimen.kind}", " and ".join(specimen.bodies)
+        if effects.symmetry is True:
+            raise refuse(f"false {of}: {bodies} differ", (("symmetry",), True))
+        if effects.search is False:
+            raise refuse(f"true {of}: {bodies} turn", (("search",), False))
         return effects
 
     @field_validator("discretization")
     @classmethod
     def _two_meshes(cls, mesh: Discretization, info: ValidationInfo) -> Discretization:
         effects, specimen = info.data.get("effects"), info.data.get("specimen")
-        if mesh.adaptive and specimen is not None and (specimen.kind == "peel" or specimen.mesh):
-            why = "for a peel" if specimen.kind == "peel" else "with specimen.mesh, which is taken as it is"
+        if mesh.adaptive and specimen is not None and (specimen.mesh or not specimen.symmetric):
+            why = "with specimen.mesh, which is taken as it is" if specimen.symmetric else f"for a {specimen.kind}"
             raise refuse(f"false {why}", (("adaptive",), True))
         if mesh.adaptive and mesh.mismatch != 1.0:
             raise refuse("1 with discretization.adaptive, whose arms are alike", (("mismatch",), mesh.mismatch))

@@ -13,8 +13,8 @@ from verify.checks.identities import run_checks
 from verify.checks.odd_one_out import odd_one_out
 from verify.checks.proof import MATCHED, REFERENCE, SEARCHING, SECOND
 from verify.methods import given_meshes
-from verify.methods.names import METHODS, WITH_DOFS
-from verify.methods.plugins import known_methods
+from verify.methods.names import WITH_DOFS
+from verify.methods.plugins import find, known_methods
 from verify.methods.reference_mesh import reference_mesh, second_mesh
 from verify.runs.jobs import Job, Outcome, is_missing
 from verify.scene.effects import simulated
@@ -22,15 +22,6 @@ from verify.scene.schema import Scene
 from verify.studies.mesh_sequences import sequences
 from verify.studies.paper.plan import cubic
 from verify.verdict import Check, Run, SceneReport
-
-NAMES = {
-    "tspline": "T-spline",
-    "nurbs": "NURBS",
-    "lagrange": "Lagrange",
-    "dolfinx": "DOLFINx",
-    "beam": "cohesive beam",
-    "lefm": "LEFM",
-}
 
 #: T-splines that follow the process zone, with at most a third of the unknowns that the meshes at rest have.
 ADAPTIVE = ("discretization.adaptive=true", "discretization.dofs=700")
@@ -40,13 +31,12 @@ def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
     """The runs of one scene; those that do not take its mesh files make meshes of their own."""
     own = (given_meshes.OWN,) if scene.specimen.mesh else ()
     for method in known_methods():
-        takes = method == given_meshes.METHOD or method not in METHODS
-        yield Job(source, scene, method, method, () if takes else own)
+        yield Job(source, scene, method, method, () if find(method).takes_files else own)
     yield Job(source, scene, REFERENCE, SECOND, (*own, *second_mesh(scene)), fields=False)
-    effects = simulated(scene, SEARCHING)
-    if scene.specimen.kind == "dcb" and effects["kinematics"] == "finite" and effects["search"]:
+    effects = simulated(scene)
+    if scene.specimen.symmetric and effects["kinematics"] == "finite" and effects["search"]:
         yield Job(source, scene, SEARCHING, MATCHED, (*own, "effects.search=false"), fields=False)
-    if full and scene.specimen.kind == "dcb":
+    if full and scene.specimen.symmetric:
         fine = cubic(source, scene)
         yield replace(fine, overrides=(*own, *fine.overrides))
         yield Job(source, scene, "tspline", "tspline-adaptive", (*own, *ADAPTIVE))
@@ -84,7 +74,7 @@ def _with_its_mesh(scene: Scene, job: Job) -> Scene:
 def convergence(reports: Sequence[SceneReport]) -> list[str]:
     """Observed order and grid convergence index of the peak load, where there are three meshes or more."""
     return [
-        f"{report.scene.name}: {one.quantity} of {len(one.runs)} {NAMES.get(one.method, one.method)} meshes: order "
+        f"{report.scene.name}: {one.quantity} of {len(one.runs)} {find(one.method).label} meshes: order "
         f"{one.found.order:.2f}, limit {one.found.limit:.6g}, GCI {one.found.gci:.2%}; {one.found.verdict}"
         for report in reports
         for one in sequences(report)
@@ -97,7 +87,7 @@ def _as_run(outcome: Outcome, out: Path) -> Run:
     scene = job.solved
     degrees = {"dolfinx": reference_mesh(scene).degree, **dict.fromkeys(WITH_DOFS, scene.discretization.degree)}
     degree = degrees.get(job.method)
-    name = NAMES.get(job.method, job.method) + (f" p={degree}" if degree else "")
+    name = find(job.method).label + (f" p={degree}" if degree else "")
     adaptive = job.method == "tspline" and scene.discretization.adaptive
     name, most = (f"{name}, adaptive", "at most ") if adaptive else (name, "")
     name += {SECOND: ", second mesh", MATCHED: ", pairs kept"}.get(job.variant, "")

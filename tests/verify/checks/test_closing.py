@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import iga.dcb
-import iga.peel
-from verify.checks.identities import penetration, run_checks, zone_is_new
+import iga.dcb.dcb
+import iga.peel.peel
+from verify.checks.identities import penetration, run_checks
+from verify.checks.mechanics.columns import zone_is_new
 from verify.checks.neglected import of_run
 from verify.methods.solve import solve
 from verify.result import Result
@@ -69,7 +70,7 @@ def test_faces_without_contact_beyond_the_bond_are_found(
 ) -> None:
     """Contact planted out there: of all checks this one alone sees the bodies pass through each other."""
     scene = scene_of(*words)
-    for specimen in (iga.dcb, iga.peel):
+    for specimen in (iga.dcb.dcb, iga.peel.peel):
         monkeypatch.setattr(specimen, "presses", lambda problem: False)
     result = solve(scene, method)
     assert penetration(scene, result.steps) > 10.0

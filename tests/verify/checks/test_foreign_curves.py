@@ -19,7 +19,6 @@ from verify.methods.solve import solve
 from verify.result import Result
 from verify.runs.store import NAME
 from verify.scene.load import load_scene
-from verify.studies import one_scene
 from verify.studies.one_scene import planned
 from verify.verdict import Check, Run, SceneReport
 
@@ -48,7 +47,9 @@ AS = ("--opening", "U2", "--load", "RF2", "--opening-scale", "-2", "--load-scale
 
 
 def only(monkeypatch: pytest.MonkeyPatch, *methods: str) -> None:
-    monkeypatch.setattr(one_scene, "planned", lambda *given: (job for job in planned(*given) if job.method in methods))
+    monkeypatch.setattr(
+        verification, "planned", lambda *given: (job for job in planned(*given) if job.method in methods)
+    )
 
 
 def test_a_file_becomes_a_method_of_the_report(

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from verify.checks.between_codes import cross_checks
-from verify.checks.identities import dissipation_gap, law_of, loading, run_checks
+from verify.checks.identities import dissipation_gap, run_checks
+from verify.checks.mechanics.columns import law_of, loading
 from verify.methods.solve import solve
 from verify.result import Result, steps_from_rows
 from verify.scene.load import load_scene

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from verify.checks import neglected
-from verify.checks.identities import law_of
+from verify.checks.mechanics.columns import law_of
+from verify.methods.solve import prepare
 from verify.result import Result, Snapshot
 from verify.scene.effects import stiffer
 from verify.scene.load import load_scene
@@ -106,12 +107,12 @@ def test_meshes_that_mirror_each_other_may_differ_by_rounding(off: float, same: 
     upper, lower = SimpleNamespace(P_AI=points[::-1]), SimpleNamespace(P_AI=points + [0.0, off * 50.0])
     monkeypatch.setattr("verify.methods.given_meshes.given_meshes", lambda scene: (upper, lower))
     monkeypatch.setattr("iga.mesh.mirror.upside_down", lambda mesh: mesh)
-    scene = SimpleNamespace(specimen=SimpleNamespace(mesh=("a", "b"), arm_thickness=50.0))
-    said = neglected._other_arm(scene, SimpleNamespace(method="tspline"))
+    scene = SimpleNamespace(specimen=SimpleNamespace(mesh=("a", "b"), loaded_thickness=50.0))
+    said = neglected._other_arm(prepare(scene, "tspline"), Result("tspline", {}))
     assert said.negligible == same and said.value == pytest.approx(off, rel=1e-3)
     more = SimpleNamespace(P_AI=np.concatenate([points, points[:1]]))
     monkeypatch.setattr("verify.methods.given_meshes.given_meshes", lambda scene: (upper, more))
-    assert not neglected._other_arm(scene, SimpleNamespace(method="tspline")).negligible
+    assert not neglected._other_arm(prepare(scene, "tspline"), Result("tspline", {})).negligible
 
 
 def test_a_remark_names_all_runs_and_the_worst_of_them() -> None:
@@ -124,7 +125,8 @@ def test_a_remark_names_all_runs_and_the_worst_of_them() -> None:
     (remark,) = neglected.remarks(scene, {"a": run(0.2), "b": run(0.01), "c": run(0.3)})
     assert remark.startswith("a, c: without finite kinematics: ") and f"{np.degrees(0.3):.2g} degrees" in remark
     assert neglected.remarks(scene, {"b": run(0.01)}) == ()
-    assert len(neglected.warnings(scene, run(0.3))) == 1 and neglected.warnings(scene, run(0.01)) == ()
+    prepared = prepare(scene, "nurbs")
+    assert len(neglected.warnings(prepared, run(0.3))) == 1 and neglected.warnings(prepared, run(0.01)) == ()
     one_row = Result("nurbs", {name: column[:1] for name, column in run(0.3).steps.items()})
     assert neglected.of_run(scene, one_row) == ()
 

@@ -7,7 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.checks.identities import growing, law_of, out_of_reach, run_checks
+from verify.checks.identities import run_checks
+from verify.checks.mechanics.columns import law_of
+from verify.checks.mechanics.peel_growth import growing, out_of_reach
 from verify.methods.solve import solve
 from verify.result import Result
 from verify.scene.load import load_scene

@@ -22,7 +22,9 @@ from iga.mesh.boundary import boundary_chains
 from tests.verify.checks.test_peel_checks import made_up as made_up_peel
 from verify.checks.between_codes import cross_checks, published_names
 from verify.checks.foreign_curves import checks_of
-from verify.checks.identities import growing, law_of, run_checks
+from verify.checks.identities import run_checks
+from verify.checks.mechanics.columns import law_of
+from verify.checks.mechanics.peel_growth import growing
 from verify.checks.odd_one_out import odd_one_out
 from verify.checks.proof import REFERENCE, SECOND
 from verify.curves.compare import checks, compare

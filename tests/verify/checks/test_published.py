@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from verify.checks.between_codes import cross_checks, peak_load, published_checks, published_load, published_names
-from verify.checks.identities import J_TOLERANCE, law_of, run_checks
+from verify.checks.identities import run_checks
+from verify.checks.mechanics.columns import law_of
+from verify.checks.mechanics.j_integral import J_TOLERANCE
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.solve import solve
 from verify.result import Result

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.checks.identities import J_TOLERANCE, held_at_the_end, j_deviation, run_checks
+from verify.checks.identities import run_checks
+from verify.checks.mechanics.j_integral import J_TOLERANCE, held_at_the_end, j_deviation
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.solve import solve
 from verify.result import Result

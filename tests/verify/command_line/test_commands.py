@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -17,7 +18,9 @@ from verify.command_line.compare import Source
 from verify.curves.read import Reading
 from verify.methods.dolfinx import DOLFINX_MISSING
 from verify.methods.names import Unsuitable
+from verify.methods.solve import prepare
 from verify.result import Result
+from verify.runs.run import NO_FIELDS
 from verify.scene.load import load_scene
 from verify.studies.cost import accuracy
 from verify.studies.cost import study as cost_study
@@ -183,9 +186,16 @@ def test_a_result_in_words(capsys: pytest.CaptureFixture) -> None:
     assert "peak" not in capsys.readouterr().out
 
 
-def test_the_way_of_a_programme_adds_up_back_and_forth() -> None:
-    way = commands._Travelled()
-    assert [way({"opening": d}) for d in (0.0, 1.0, 0.5, -0.5, 2.0)] == [0.0, 1.0, 1.5, 2.5, 5.0]
+def test_the_way_of_a_programme_adds_up_back_and_forth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def made_up(prepared, folder, keep, on_step) -> None:
+        for opening in (0.0, 1.0, 0.5, -0.5, 2.0):
+            on_step({"opening": opening, "load": 0.0})
+
+    gone: list[float] = []
+    monkeypatch.setattr("verify.runs.run.run", made_up)
+    monkeypatch.setattr("verify.support.progress.Progress.advance", lambda self, done, news: gone.append(done))
+    commands._watched(prepare(load_scene("dcb-czm1"), "lefm"), tmp_path, NO_FIELDS, True)
+    assert gone == [0.0, 1.0, 1.5, 2.5, 5.0]
 
 
 @pytest.mark.parametrize(
@@ -245,3 +255,23 @@ def test_what_is_written_has_a_place_where_none_is_told(tmp_path: Path, monkeypa
     assert exported == [Path("debond-export/dcb-czm1-csv"), Path("there")]
     found = {path.parent.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("curve.csv")}
     assert found == {"debond-out/dcb-czm1-lefm", "there"}
+
+
+@pytest.mark.parametrize("name", ["dcb-czm1", "peel-60"])
+def test_a_run_makes_its_problem_once(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Warnings, solver, checks and summary share it. Its mesh is looked at once, and made in the solver's time."""
+    kind = load_scene(name).specimen.kind
+    solver = import_module(f"iga.{kind}.{kind}")
+    made, built, problem, build = [], [], solver.Problem, solver.build
+
+    class Counted(problem):
+        def __init__(self, **keys) -> None:
+            made.append(keys)
+            super().__init__(**keys)
+
+    monkeypatch.setattr(solver, "Problem", Counted)
+    monkeypatch.setattr(solver, "build", lambda *given: built.append(given) or build(*given))
+    few = ["--set", "load.opening=0.05", "--set", "discretization.steps=3"]
+    main(["solve", name, "--method", "nurbs", *few, "--out", str(tmp_path)])
+    assert json.loads((tmp_path / "result.json").read_text())["status"] == "complete"
+    assert len(made) == 1 and len(built) == 2 and built[0][0] is built[1][0]

@@ -34,8 +34,8 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     import verify.studies.scaling.study
     import verify.verification
 
-    def nothing(scene, method: str, *_: object, **__: object):
-        return Result(method, steps_from_rows([dict.fromkeys(CURVE_COLUMNS, 0.0)]), seconds={}), ()
+    def nothing(prepared, *_: object, **__: object):
+        return Result(prepared.method.name, steps_from_rows([dict.fromkeys(CURVE_COLUMNS, 0.0)]), seconds={}), ()
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(run, "run", nothing)

@@ -12,7 +12,7 @@ from verify.cli import main
 from verify.command_line.new_scene import PUBLISHED, new_scene
 from verify.command_line.scene_list import line, page
 from verify.command_line.sketch import sketch
-from verify.scene.bodies import MATERIALS, Orthotropic
+from verify.scene.bodies import Orthotropic
 from verify.scene.complaints import _bounds
 from verify.scene.keys import SPECIMENS, keys, keys_of
 from verify.scene.load import load_scene, packaged_scenes
@@ -21,6 +21,7 @@ from verify.scene.published import Published
 from verify.scene.schema import Scene
 
 KINDS = tuple(SPECIMENS)
+MATERIALS = {kind: specimen.materials for kind, specimen in SPECIMENS.items()}
 
 
 def given(text: str) -> dict[str, dict]:

@@ -19,10 +19,10 @@ from iga.mesh.bernstein import bernstein, tensor
 from verify.cli import main, parser
 from verify.fields.cells import vtk_order
 from verify.fields.frames import Frames, bezier_values, cleared, solid_cells, through_thickness
-from verify.methods.problems import iga_problem
+from verify.methods.solve import prepare
 from verify.result import Result, steps_from_rows
 from verify.runs.jobs import Job
-from verify.runs.run import run
+from verify.runs.run import Keep, run
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
@@ -151,7 +151,7 @@ def unstructured() -> Scene:
 def test_files_say_what_the_solver_found(case, tmp_path):
     method, scene = CASES[case] if case in CASES else ("tspline", unstructured() if case == "unstructured" else dcb())
     watched = Watched(Frames(tmp_path, scene, method, 4), [])
-    solver, problem = iga_problem(scene, method)
+    solver, problem = prepare(scene, method).problem
     solution = solver.solve(rational(problem) if case == "rational" else problem, on_frame=watched)
     assert solution.status == "complete" and len(watched.written) >= 4
     for (_, file), (specimen, point) in zip(series(tmp_path), watched.written, strict=True):
@@ -274,10 +274,10 @@ def stub(scene, method, on_step, on_frame=None):
 
 
 def test_a_run_leaves_the_frames_that_are_asked_for(tmp_path, monkeypatch):
-    monkeypatch.setattr("verify.runs.run._finish", lambda *_: ())
-    run(dcb(), "nurbs", tmp_path, solver=stub, frames=1)
+    monkeypatch.setattr("verify.runs.run._Run.finish", lambda *_: ())
+    run(prepare(dcb(), "nurbs"), tmp_path, solver=stub, keep=Keep(frames=1))
     assert [time for time, _ in series(tmp_path)] == [0.0, 0.3]  # the last state as well, though it came short
-    run(dcb(), "nurbs", tmp_path, solver=stub)
+    run(prepare(dcb(), "nurbs"), tmp_path, solver=stub)
     assert not list(tmp_path.rglob("*.pvd")) and not list(tmp_path.rglob("*.vtu"))
 
 

@@ -21,7 +21,7 @@ from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss, square
 from verify.fields.cells import write_vtu
 from verify.fields.frames import Frames
-from verify.methods.problems import iga_problem
+from verify.methods.solve import prepare
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 
@@ -51,7 +51,7 @@ def run(request, tmp_path_factory):
         frames(opening, make)
         kept[:] = make.args
 
-    solver, problem = iga_problem(scene, method)
+    solver, problem = prepare(scene, method).problem
     assert solver.solve(problem, on_frame=on_frame).status == "complete"
     frames.finish()
     return folder, method, *kept

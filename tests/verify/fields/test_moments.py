@@ -12,9 +12,9 @@ from made_up_runs import scene_report, snapshot
 
 from verify.fields.moments import FRACTIONS, Moments
 from verify.fields.moments import snapshot as drawn
-from verify.methods.solve import solve
+from verify.methods.solve import prepare, solve
 from verify.runs.folder import read_result
-from verify.runs.run import run
+from verify.runs.run import Keep, run
 from verify.scene.load import load_scene
 
 SMALL = ("discretization.dofs=600", "discretization.steps=60")
@@ -36,8 +36,8 @@ def test_a_moment_is_a_snapshot_at_fewer_points(name: str) -> None:
 
 def test_moments_lie_between_the_snapshots_and_leave_the_path_as_it_is(tmp_path: Path) -> None:
     scene = load_scene("dcb-czm1-linear", SMALL)
-    run(scene, "nurbs", tmp_path / "plain")
-    run(scene, "nurbs", tmp_path / "with", keep_fields=True)
+    run(prepare(scene, "nurbs"), tmp_path / "plain")
+    run(prepare(scene, "nurbs"), tmp_path / "with", keep=Keep(fields=True))
     plain, kept = ((tmp_path / name / "curve.csv").read_text() for name in ("plain", "with"))
     assert plain == kept and not (tmp_path / "plain" / "moments.npz").exists()
     found = read_result(tmp_path / "with")
@@ -45,7 +45,7 @@ def test_moments_lie_between_the_snapshots_and_leave_the_path_as_it_is(tmp_path:
     step = np.diff(found.opening).max()
     for moment, part in zip(found.between, FRACTIONS, strict=True):
         assert 0.0 <= moment.opening - 3.0 * part <= step
-    run(scene, "lefm", tmp_path / "with")
+    run(prepare(scene, "lefm"), tmp_path / "with")
     assert not (tmp_path / "with" / "moments.npz").exists(), "nothing of an earlier run is left"
 
 

@@ -29,7 +29,7 @@ from iga.run import Solution, run
 from iga.specimen.specimen import Specimen
 from iga.system import system as system_of
 from iga.system.system import untimed
-from verify.methods.problems import iga_problem
+from verify.methods.solve import prepare
 from verify.scene.load import load_scene
 
 #: How much longer a step with the effect off may take than one without its code, and runs to tell.
@@ -43,7 +43,7 @@ TIMED = ("discretization.dofs=600", "discretization.steps=30", "load.opening=0.8
 
 def problem(*overrides: str) -> Problem:
     given = (*SMALL, *overrides)
-    return iga_problem(load_scene("dcb-czm1", given), "nurbs")[1]
+    return prepare(load_scene("dcb-czm1", given), "nurbs").problem[1]
 
 
 def built(problem: Problem, law: BilinearLaw | None = None) -> Specimen:

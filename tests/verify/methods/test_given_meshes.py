@@ -20,8 +20,7 @@ from verify.checks.identities import OF_THE_ZONE
 from verify.cli import REFUSED, main
 from verify.methods.given_meshes import OWN, given_meshes, own_mesh
 from verify.methods.names import METHODS
-from verify.methods.problems import iga_problem
-from verify.methods.solve import require, solve
+from verify.methods.solve import prepare, require, solve
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 from verify.studies import one_scene
@@ -33,7 +32,7 @@ DCB = ("discretization.dofs=400", "load.opening=0.5", "discretization.steps=4")
 
 @pytest.fixture(scope="module")
 def arms() -> tuple[Mesh, ...]:
-    return arm_meshes(iga_problem(load_scene("dcb-czm1", DCB), "tspline")[1])
+    return arm_meshes(prepare(load_scene("dcb-czm1", DCB), "tspline").problem[1])
 
 
 def written(folder: Path, *meshes: Mesh) -> list[str]:
@@ -74,7 +73,7 @@ def test_the_load_is_that_of_the_mesh_that_was_made(arms: tuple[Mesh, ...], tmp_
 
 
 def test_bodies_of_a_peel(tmp_path: Path) -> None:
-    problem = iga_problem(load_scene("peel-60", ["discretization.dofs=1200"]), "tspline")[1]
+    problem = prepare(load_scene("peel-60", ["discretization.dofs=1200"]), "tspline").problem[1]
     bodies = tuple(tspline_rectangle(mesh) for mesh in peel_tmeshes(problem))
     found = given_meshes(scene_with(written(tmp_path, *bodies), "peel-60"))
     assert all(alike(one, body) for one, body in zip(found, bodies, strict=True))
@@ -114,11 +113,11 @@ def test_what_is_no_mesh_is_refused(tmp_path: Path) -> None:
 
 def test_what_is_no_mesh_of_the_specimen_is_refused_before_a_run(arms: tuple[Mesh, ...], tmp_path: Path) -> None:
     files = written(tmp_path, *arms)
-    require(scene_with(files), "tspline")
+    require(prepare(scene_with(files), "tspline"))
     shifted = [replace(arm, P_AI=arm.P_AI + [0.0, 0.01]) for arm in arms]
     for wrong in (written(tmp_path, *shifted), [str(tmp_path / "none.iga")]):
         with pytest.raises(Refusal, match="specimen.mesh: "):
-            require(scene_with(wrong), "tspline")
+            require(prepare(scene_with(wrong), "tspline"))
 
 
 def test_bodies_may_be_off_their_places_by_a_millionth_of_the_length(arms: tuple[Mesh, ...], tmp_path: Path) -> None:
@@ -136,7 +135,7 @@ def test_bodies_may_be_off_their_places_by_a_millionth_of_the_length(arms: tuple
 def test_a_method_that_takes_no_files_refuses_them(method: str, arms: tuple[Mesh, ...], tmp_path: Path) -> None:
     for files in (written(tmp_path, *arms), [str(tmp_path / "none.iga")]):
         with pytest.raises(Refusal, match=rf"specimen.mesh: must be left out .* for {method}, which takes no mesh"):
-            require(scene_with(files), method)
+            require(prepare(scene_with(files), method))
         assert own_mesh(scene_with(files)) == load_scene("dcb-czm1", [OWN]) == load_scene("dcb-czm1")
 
 
@@ -190,7 +189,7 @@ def test_verify_holds_the_mesh_against_methods_on_meshes_of_their_own(
     monkeypatch.setattr(verification, "write_page", lambda module, findings, *others: seen.extend(findings.reports))
     every = one_scene.planned
     few = ("tspline", "nurbs", "lefm")
-    monkeypatch.setattr(one_scene, "planned", lambda *what: [job for job in every(*what) if job.variant in few])
+    monkeypatch.setattr(verification, "planned", lambda *what: [job for job in every(*what) if job.variant in few])
     source = scene_file(tmp_path, [Path(file).name for file in written(tmp_path, *arms)])
     scene = load_scene(source)
     verification.verify([(source, scene)], tmp_path / "out", 1)

@@ -15,6 +15,7 @@ import pytest
 from verify import verification
 from verify.cli import main
 from verify.methods import names, plugins
+from verify.methods.method import Failure
 from verify.methods.plugins import known_methods
 from verify.methods.solve import solve
 from verify.result import Result
@@ -22,7 +23,6 @@ from verify.runs.fingerprint import fingerprint
 from verify.runs.folder import read_columns, read_result
 from verify.runs.jobs import left_out
 from verify.scene.load import load_scene
-from verify.studies import one_scene
 from verify.studies.one_scene import planned
 from verify.verification import verify
 
@@ -159,7 +159,7 @@ def test_one_that_fails_is_a_run_that_stopped(
 
 
 def test_a_method_of_debond_cannot_be_replaced(package: Path) -> None:
-    assert known_methods()["nurbs"] == names.METHODS["nurbs"]
+    assert known_methods()["nurbs"] == names.METHODS["nurbs"].what
     with pytest.raises(names.NotRun, match="its name must be a word of its own"):
         plugins.plugins()["nurbs"].load()
 
@@ -207,7 +207,7 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
     assert [job.method for job in all_jobs][:6] == list(names.METHODS)
 
     def only(*names: str) -> None:
-        monkeypatch.setattr(one_scene, "planned", lambda *a: [j for j in jobs if j.method in names])
+        monkeypatch.setattr(verification, "planned", lambda *a: [j for j in jobs if j.method in names])
 
     jobs = [job for job in planned(LINEAR, scene) if job.method in ("beam", "good", "absent", "wrong")]
     jobs = [type(job)(job.source, scene, job.method, job.variant) for job in jobs]
@@ -224,7 +224,7 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
 
 
 def test_nothing_is_imported_to_list_methods(package: Path) -> None:
-    program = "import sys; from verify.methods.solve import known_methods; assert 'good' in known_methods(); "
+    program = "import sys; from verify.methods.plugins import known_methods; assert 'good' in known_methods(); "
     program += "sys.exit('fakecode' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", program], env=os.environ | {}).returncode == 0
 
@@ -255,8 +255,8 @@ class Given:
 def test_a_result_that_is_no_curve_is_a_fault(steps: dict, why: str, monkeypatch: pytest.MonkeyPatch) -> None:
     solver = Given(lambda scene, on_step: Result("mine", steps))
     monkeypatch.setattr(plugins, "plugins", lambda: {"mine": solver})
-    with pytest.raises(plugins.PluginFault) as fault:
-        plugins.solve(load_scene(LINEAR), "mine", lambda row: None)
+    with pytest.raises(Failure) as fault:
+        solve(load_scene(LINEAR), "mine")
     assert str(fault.value).startswith(f"plug-in mine of fakecode 1.0: {why}")
 
 
@@ -268,7 +268,7 @@ def test_a_path_that_is_told_begins_at_zero(monkeypatch: pytest.MonkeyPatch) -> 
 
     rows = []
     monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given(solver)})
-    found = plugins.solve(load_scene(LINEAR), "mine", lambda row: rows.append(dict(row)))
+    found = solve(load_scene(LINEAR), "mine", lambda row: rows.append(dict(row)))
     assert rows == [{"opening": d, "load": P} for d, P in ((0.0, 0.0), (0.5, 2.0), (1.0, 1.0))]
     assert found.opening.tolist() == [0.0, 0.5, 1.0] and found.load.tolist() == [0.0, 2.0, 1.0]
     assert found.method == "mine" and found.peak_memory_mb > 0.0 and found.seconds["total"] >= 0.0
@@ -279,12 +279,12 @@ def test_a_row_without_a_load_is_a_fault_and_so_is_a_judge_that_fails(monkeypatc
         on_step({"opening": 0.5})
         return Result("mine", {"opening": [0.5], "load": [2]})
 
-    solver.unsuitable = lambda scene: 1 / 0
     monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given(solver)})
-    with pytest.raises(plugins.PluginFault, match="a row must have load, got opening"):
-        plugins.solve(load_scene(LINEAR), "mine", lambda row: None)
+    with pytest.raises(Failure, match="a row must have load, got opening"):
+        solve(load_scene(LINEAR), "mine")
+    solver.unsuitable = lambda scene: 1 / 0
     with pytest.raises(names.NotRun, match="not run: plug-in mine of fakecode 1.0: ZeroDivisionError"):
-        plugins.require(load_scene(LINEAR), "mine")
+        solve(load_scene(LINEAR), "mine")
 
 
 def test_a_module_that_nobody_can_find_has_no_files(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import MISSING, fields
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from iga.elements.elasticity import orthotropic
-from verify.methods.names import METHODS
-from verify.methods.problems import (
-    SNAPSHOT_FRACTIONS,
-    beam_problem,
-    dolfinx_problem,
-    iga_problem,
-    lefm_problem,
-    problem_keys,
-)
-from verify.methods.solve import least_dofs, solve
+from verify.methods import dolfinx
+from verify.methods.iga import least_dofs
+from verify.methods.method import Failure
+from verify.methods.problems import SNAPSHOT_FRACTIONS
+from verify.methods.solve import prepare, solve
 from verify.scene.bodies import axial_modulus, elastic_constants
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
@@ -57,16 +54,15 @@ def test_steps_where_the_path_does_not_choose_them() -> None:
 
 
 @pytest.mark.parametrize("name", ["dcb-czm1", "peel-60"])
-def test_the_least_unknowns_are_none_for_theories(name: str) -> None:
-    assert all(least_dofs(method, 3) == 0 for method in METHODS if method in ("beam", "lefm", "dolfinx"))
+def test_every_basis_has_a_least_number_of_unknowns(name: str) -> None:
     assert all(0 < least_dofs(method, 1) for method in ("nurbs", "lagrange", "tspline"))
-    _, problem = iga_problem(load_scene(name), "nurbs")
+    _, problem = prepare(load_scene(name), "nurbs").problem
     assert problem.basis == "nurbs" and problem.meshes == () and problem.opening == load_scene(name).load.opening
 
 
 def test_snapshots_of_a_programme_that_only_closes_are_of_the_start() -> None:
     scene = load_scene("dcb-czm1", ["load.opening=[-0.1]"])
-    assert problem_keys(scene, "nurbs")["snapshot_openings"] == (0.0,) * len(SNAPSHOT_FRACTIONS)
+    assert prepare(scene, "nurbs").problem[1].snapshot_openings == (0.0,) * len(SNAPSHOT_FRACTIONS)
 
 
 def opened(*overrides: str) -> np.ndarray:
@@ -93,39 +89,29 @@ def test_fracture_mechanics_goes_beyond_its_factors_by_the_elastica(name: str) -
 
 @pytest.mark.parametrize(
     ("installed", "whose"),
-    [(None, "mine"), ("0.10.0", "mine"), ("0.8.0", "DOLFINx 0.8.0, or for it: debond takes 0.9 to 0.11, see")],
+    [(None, ""), ("0.10.0", ""), ("0.8.0", "DOLFINx 0.8.0, or for it: debond takes 0.9 to 0.11, see debond doctor")],
 )
 def test_a_call_that_another_dolfinx_does_not_have_is_its_error(installed, whose: str, monkeypatch) -> None:
-    from types import SimpleNamespace
-
-    from verify.methods import solve as methods
-
-    monkeypatch.setitem(__import__("sys").modules, "dolfinx", installed and SimpleNamespace(__version__=installed))
-    error = TypeError("no such keyword")
-    error.whose = "mine"
-    assert methods._whose_dolfinx(error).startswith(whose)
-    if not whose.startswith("DOLFINx"):
-        assert "please report it with error.log" in methods._whose_dolfinx(TypeError("plain"))
+    monkeypatch.setitem(sys.modules, "dolfinx", installed and SimpleNamespace(__version__=installed))
+    assert dolfinx.another_dolfinx() == whose
 
 
 def test_an_error_of_dolfinx_comes_out_with_whose_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of its calls alone; what the solver itself raises is as it was."""
-    import sys
-    from types import SimpleNamespace
-
-    from verify.methods import solve as methods
+    """Of its calls alone; what the solver itself raises is as it was, and so is all of a DOLFINx that is supported."""
 
     def broken(problem, **how) -> None:
         raise broken.error
 
-    scene = load_scene("dcb-czm1", ["dolfinx.elements=20"])
+    prepared = prepare(load_scene("dcb-czm1", ["dolfinx.elements=20"]), "dolfinx")
     monkeypatch.setitem(sys.modules, "fem_reference.solve", SimpleNamespace(solve_debonding=broken))
-    monkeypatch.setattr(methods, "_whose_dolfinx", lambda error: f"that of {error}")
-    for kind, told in ((TypeError, True), (AttributeError, True), (ImportError, True), (ValueError, False)):
-        broken.error = kind("no luck")
-        with pytest.raises(kind, match="no luck") as caught:
-            methods._dolfinx(scene, "dolfinx", None, None)
-        assert getattr(caught.value, "whose", None) == ("that of no luck" if told else None)
+    for version, kinds in (("0.8.0", (TypeError, AttributeError, ImportError)), ("0.10.0", ())):
+        monkeypatch.setitem(sys.modules, "dolfinx", SimpleNamespace(__version__=version))
+        for kind in (TypeError, AttributeError, ImportError, ValueError):
+            broken.error = kind("no luck")
+            with pytest.raises(Failure if kind in kinds else kind, match="no luck") as caught:
+                dolfinx.solve(prepared, lambda row: None, None)
+            if kind in kinds:
+                assert caught.value.whose.startswith("DOLFINx 0.8.0") and caught.value.__cause__ is broken.error
 
 
 BARE = {
@@ -144,8 +130,8 @@ def test_what_is_not_told_is_the_same_for_a_solver_and_for_a_scene(kind: str) ->
     bodies = {"material": stiff} if kind == "dcb" else {"strip": stiff, "substrate": stiff}
     raw = {"specimen": {"kind": kind, **BARE[kind]}, **bodies, "interface": {"strength": 4.0, "toughness": 0.1}}
     scene = parse_scene({**raw, "load": {"opening": 1.0}})
-    problems = [iga_problem(scene, "nurbs")[1], dolfinx_problem(scene), beam_problem(scene)]
-    problems += [lefm_problem(scene)] if kind == "dcb" else []
+    problems = [prepare(scene, "nurbs").problem[1]]
+    problems += [prepare(scene, name).problem for name in ("dolfinx", "beam", *["lefm"] * (kind == "dcb"))]
     for problem in problems:
         known = {field.name: field.default for field in fields(problem) if field.default is not MISSING}
         for name in {"snapshot_openings", "opening", "substrate"} | ({"kinematics"} if "points" in known else set()):

@@ -2,14 +2,14 @@
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from verify.methods import zone_resolution
-from verify.methods.names import WITH_DOFS
-from verify.methods.problems import iga_problem
-from verify.methods.solve import solve
+from verify.methods.method import Prepared
+from verify.methods.names import METHODS, WITH_DOFS
+from verify.methods.solve import prepare, solve
 from verify.methods.zone_resolution import Zone, element_length, expected, measured, summary, warnings
 from verify.result import Result
 from verify.runs.run import run
@@ -81,7 +81,7 @@ def test_the_modulus_of_a_bulky_body():
 def test_elements_are_those_of_the_mesh_maker(method, rule):
     """The crack path is divided into equal elements; of Lagrange ones all nodes are seen, three an element."""
     scene = load_scene("dcb-czm1", [f'discretization.interface_rule="{rule}"'])
-    solver, problem = iga_problem(scene, method)
+    solver, problem = prepare(scene, method).problem
     specimen = solver.build(problem)
     start, end = specimen.path
     assert start == 4.0 and 9.0 < end < 14.0
@@ -92,51 +92,49 @@ def test_elements_are_those_of_the_mesh_maker(method, rule):
     assert on_path == pytest.approx(round(on_path), rel=1e-9) and 0 < on_path < specimen.meshes[0].elements
 
 
-@pytest.mark.parametrize(("mesh", "made"), [((), 1), (('specimen.mesh=["upper.iga", "lower.iga"]',), 2)])
-def test_a_mesh_is_made_once_to_see_it_but_files_may_have_changed(mesh, made, monkeypatch):
-    scene, asked = load_scene("dcb-czm1", ["discretization.dofs=777", *mesh]), []
+def test_a_mesh_is_made_once_for_what_is_prepared(monkeypatch):
+    """That of a scene that is prepared again may have changed: files are read again."""
+    scene, asked = load_scene("dcb-czm1", ["discretization.dofs=777"]), []
 
-    def problem(*given):
-        asked.append(given)
+    def mesh(prepared):
+        asked.append(prepared)
         raise ValueError("no mesh")
 
-    monkeypatch.setattr(zone_resolution, "iga_problem", problem)
-    assert np.isnan(element_length(scene, "nurbs")) and np.isnan(element_length(scene, "nurbs"))
-    assert asked == made * [(scene, "nurbs")]
-    monkeypatch.undo()
-    zone_resolution._longest.cache_clear()  # of a mesh that could be made after all
+    prepared = Prepared(scene, replace(METHODS["nurbs"], mesh=mesh))
+    assert np.isnan(prepared.element) and np.isnan(prepared.zone.elements) and asked == [prepared]
+    assert np.isnan(replace(prepared).element) and len(asked) == 2
 
 
 @pytest.mark.parametrize("method", ["beam", "lefm"])
 def test_methods_without_a_mesh_have_nothing_to_warn_of(method):
     scene = load_scene("dcb-czm1", ["interface.strength=60"])
-    assert np.isnan(element_length(scene, method)) and warnings(scene, method) == ()
+    assert np.isnan(element_length(scene, method)) and warnings(prepare(scene, method)) == ()
 
 
 @pytest.mark.parametrize("method", WITH_DOFS)
 def test_a_mesh_that_is_too_coarse_is_warned_of_and_the_one_advised_is_not(method):
-    (text,) = warnings(load_scene("dcb-czm2", ["discretization.dofs=160"]), method)
+    (text,) = warnings(prepare(load_scene("dcb-czm2", ["discretization.dofs=160"]), method))
     assert text.startswith("process zone 0.73 mm < element ")
     few = {"tspline": 300, "nurbs": 600, "lagrange": 1600}[method]
-    (text,) = warnings(load_scene("dcb-czm2", [f"discretization.dofs={few}"]), method)
+    (text,) = warnings(prepare(load_scene("dcb-czm2", [f"discretization.dofs={few}"]), method))
     assert re.match(r"process zone 0.73 mm spans 2\.\d elements of 0\.[23]\d* mm, fewer than 3", text)
     advised = int(re.search(r"discretization\.dofs = (\d+)", text)[1])
     assert few < advised < 2 * few
-    assert warnings(load_scene("dcb-czm2", [f"discretization.dofs={advised}"]), method) == ()
+    assert warnings(prepare(load_scene("dcb-czm2", [f"discretization.dofs={advised}"]), method)) == ()
 
 
 def test_what_a_warning_says_depends_on_the_method_and_on_the_units():
     strong = load_scene("dcb-czm2", ["interface.strength=60"])
-    assert "dolfinx.elements = " in warnings(strong, "dolfinx")[0]
+    assert "dolfinx.elements = " in warnings(prepare(strong, "dolfinx"))[0]
     plain = load_scene("dcb-czm2", ["discretization.dofs=280"]).model_copy(update={"units": "consistent units"})
-    assert "mm" not in warnings(plain, "nurbs")[0]
+    assert "mm" not in warnings(prepare(plain, "nurbs"))[0]
 
 
 def test_the_printed_peel_test_has_a_zone_far_below_any_element():
     pytest.importorskip("iga.peel.peel")
-    (text,) = warnings(load_scene("peel-as-printed"), "nurbs")
+    (text,) = warnings(prepare(load_scene("peel-as-printed"), "nurbs"))
     assert text.startswith("process zone 0.014 mm < element 0.")
-    assert warnings(load_scene("peel-120"), "nurbs") == ()
+    assert warnings(prepare(load_scene("peel-120"), "nurbs")) == ()
 
 
 def test_measured_over_the_steps_at_which_a_crack_runs():
@@ -146,21 +144,21 @@ def test_measured_over_the_steps_at_which_a_crack_runs():
     assert measured(Result("nurbs", steps)) == pytest.approx(0.9)
     assert np.isnan(measured(Result("nurbs", {name: v[:2] for name, v in steps.items()})))
     assert np.isnan(measured(Result("nurbs", {name: v for name, v in steps.items() if name != "damage_front"})))
-    found = summary(load_scene("dcb-czm1"), Result("nurbs", steps))
+    found = summary(prepare(load_scene("dcb-czm1"), "nurbs"), Result("nurbs", steps))
     assert found["measured_elements"] / found["elements"] == pytest.approx(0.9 / found["estimate"])
 
 
 def test_a_scene_without_a_mesh_is_left_to_the_solver():
     scene = load_scene("dcb-czm1")
     few = scene.model_copy(update={"discretization": scene.discretization.model_copy(update={"dofs": 8})})
-    assert warnings(few, "nurbs") == ()
+    assert warnings(prepare(few, "nurbs")) == ()
 
 
 def test_a_run_measures_what_was_estimated(tmp_path):
     """In the plane the arm shears as well, which makes the zone a little longer than that of the beam."""
     keys = ["load.opening=1.6", "discretization.steps=40", "effects.symmetry=true", "effects.kinematics='linear'"]
     scene = load_scene("dcb-czm1", [*keys, "discretization.dofs=1000"])
-    result, _ = run(scene, "nurbs", tmp_path)
+    result, _ = run(prepare(scene, "nurbs"), tmp_path)
     found = json.loads((tmp_path / "result.json").read_text())["process_zone"]
     assert 1.0 < found["measured"] / found["estimate"] < 1.15
     assert found["measured_elements"] == pytest.approx(found["measured"] / element_length(scene, "nurbs"))

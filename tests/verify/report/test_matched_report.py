@@ -15,8 +15,9 @@ pytest.importorskip("jinja2")
 
 from tests.verify.checks.test_peel_checks import made_up  # noqa: E402
 from verify import report  # noqa: E402
-from verify.checks.identities import law_of  # noqa: E402
 from verify.checks.matched import of_run  # noqa: E402
+from verify.checks.mechanics.columns import law_of  # noqa: E402
+from verify.methods.solve import prepare
 from verify.report.figures.entry import entries  # noqa: E402
 from verify.report.matched import sentences  # noqa: E402
 from verify.result import Result, Snapshot  # noqa: E402
@@ -62,7 +63,7 @@ def scene() -> Scene:
 def test_the_bound_stands_next_to_the_run(scene: Scene) -> None:
     """A tilt of 0.12 degrees: the tractions pull lengthwise with its sine, 0.21 % of the load."""
     tilt = np.radians(0.12)
-    found = of_run(scene, peel(scene, tilt))
+    found = of_run(prepare(scene, peel(scene, tilt).method), peel(scene, tilt))
     assert found.bound == found.pull == pytest.approx(np.sin(tilt), rel=0.01) and found.valid
     text = said(scene, peel(scene, 0.5 * tilt, tilt))
     assert f"{LABEL} keeps its pairs of points" in text and "tilts by at most 0.12° where it is pulled" in text
@@ -77,7 +78,7 @@ def test_it_says_where_a_matched_interface_is_not_valid(scene: Scene) -> None:
 
 def test_the_bound_is_that_of_gap_and_pull(scene: Scene) -> None:
     """2 delta / g_u of G_Ic where the gap is off by delta: no traction is above 2 G_Ic / g_u."""
-    found, law = of_run(scene, peel(scene, 0.001)), law_of(scene)
+    found, law = of_run(prepare(scene, peel(scene, 0.001).method), peel(scene, 0.001)), law_of(scene)
     delta = found.gap * law.g_open
     assert replace(found, pull=0.0).bound * scene.interface.toughness == pytest.approx(law.strength * delta)
     assert replace(found, gap=0.0).bound == found.pull

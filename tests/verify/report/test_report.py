@@ -16,7 +16,7 @@ pytest.importorskip("jinja2")
 from made_up_runs import ENVIRONMENT, made_up, scene_report  # noqa: E402
 
 from verify import report  # noqa: E402
-from verify.checks.identities import law_of  # noqa: E402
+from verify.checks.mechanics.columns import law_of  # noqa: E402
 from verify.curves.curve import curve_error  # noqa: E402
 from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS  # noqa: E402
 from verify.pages.text import inputs, number, percent, quantity, seconds  # noqa: E402

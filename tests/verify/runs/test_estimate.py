@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from verify.runs.estimate import BESIDES, PER_STEP, STEPS_CHOSEN, UNKNOWN, seconds, steps, unknowns
+from verify.methods.names import METHODS
+from verify.runs.estimate import STEPS_CHOSEN, seconds, steps, unknowns
 from verify.scene.load import load_scene
 from verify.scene.process_zone import bulk_length, slender_length
 
@@ -21,10 +22,12 @@ def test_unknowns_are_those_aimed_at() -> None:
     assert unknowns(elements, "dolfinx") == 2 * 2 * 201 * 3, "two arms, two components, one element through each"
 
 
-@pytest.mark.parametrize(("method", "per_step"), [*PER_STEP.items(), ("code of another", UNKNOWN)])
+@pytest.mark.parametrize(
+    ("method", "per_step"), [(name, one.per_step) for name, one in METHODS.items()] + [("code of another", 0.03)]
+)
 def test_time_goes_with_steps_and_unknowns(method: str, per_step: float) -> None:
     scene = load_scene("dcb-czm1", ["discretization.steps=40", "discretization.dofs=4000"])
-    steady = BESIDES.get(method, 2.0)
+    steady = 4.0 if method == "dolfinx" else 2.0
     per_run = per_step * steps(scene, method) * unknowns(scene, method) / 1000
     assert seconds(scene, method) == pytest.approx(steady + per_run) and per_run > 0.0
 

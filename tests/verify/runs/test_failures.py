@@ -18,6 +18,7 @@ import pytest
 
 from verify.cli import main
 from verify.methods.names import METHODS
+from verify.methods.solve import prepare
 from verify.result import CURVE_COLUMNS, Result
 from verify.runs.folder import CurveWriter, damage, read_columns, write_json
 from verify.runs.run import run
@@ -184,13 +185,13 @@ def test_two_runs_into_one_folder(tmp_path: Path) -> None:
 
     def second(*_: object) -> Result:
         with pytest.raises(Refusal, match="--out: must be a folder that no other debond is at work in, got"):
-            run(scene, "lefm", tmp_path)
+            run(prepare(scene, "lefm"), tmp_path)
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run(scene, "lefm", tmp_path, solver=second)
+        run(prepare(scene, "lefm"), tmp_path, solver=second)
     assert json.loads((tmp_path / "result.json").read_text())["status"] == "stopped: interrupted"
-    assert run(scene, "lefm", tmp_path)[0].complete  # the lock goes with the run
+    assert run(prepare(scene, "lefm"), tmp_path)[0].complete  # the lock goes with the run
 
 
 def test_two_processes_into_one_folder(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
@@ -210,10 +211,10 @@ def test_an_identity_that_does_not_hold_fails_a_run(
         check = Check("energy-ledger", "lefm", 0.1, 0.01, "exact", "The energies add up.", unresolved=unresolved)
         return lambda *_: (check,)
 
-    monkeypatch.setattr(verify.runs.run, "run_checks", judged())
+    monkeypatch.setattr(verify.runs.run, "checks_of", judged())
     assert main([*SOLVE, "--out", str(tmp_path)]) == 1
     assert "lefm: broken: energy-ledger" in capsys.readouterr().err
-    monkeypatch.setattr(verify.runs.run, "run_checks", judged("2 elements in the process zone"))
+    monkeypatch.setattr(verify.runs.run, "checks_of", judged("2 elements in the process zone"))
     assert main([*SOLVE, "--out", str(tmp_path)]) == 0
     assert ": 2 elements in the process zone" in capsys.readouterr().out
 

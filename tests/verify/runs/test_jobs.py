@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from verify.checks.identities import OF_THE_ZONE
+from verify.methods.solve import prepare
 from verify.runs.jobs import Job, _in_short, dry_run, left_out, outcome
 from verify.runs.run import run
 from verify.runs.store import Store
@@ -72,7 +73,7 @@ def test_a_run_that_left_no_result_or_a_damaged_one_has_failed(tmp_path: Path) -
         assert wrong.result is None and wrong.failed and wrong.left_out.startswith("failed: ")
         assert "result.json: must be as debond has written it" in wrong.left_out and _in_short(done) == wrong.left_out
     small = replace(JOB, method="lefm", overrides=("load.opening=0.1",))
-    result, _ = run(small.solved, "lefm", tmp_path)
+    result, _ = run(prepare(small.solved, "lefm"), tmp_path)
     kept = outcome(small, done)
     assert kept.result is not None and kept.result.complete and not kept.failed and kept.left_out == ""
     assert _in_short(done).startswith(f"complete, peak load {result.load.max():.5g}, ") and result.load.max() < 0.9

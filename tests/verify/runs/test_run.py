@@ -20,11 +20,12 @@ import pytest
 
 from verify.methods import dolfinx
 from verify.methods import solve as methods
+from verify.methods.solve import prepare
 from verify.result import CURVE_COLUMNS, Result, Snapshot, steps_from_rows
 from verify.runs import environment
 from verify.runs import run as run_of
 from verify.runs.folder import read_columns, read_result, write_json
-from verify.runs.run import run
+from verify.runs.run import Keep, run
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 from verify.support.timing import Stopwatch
@@ -80,7 +81,7 @@ def failing(error: BaseException):
 
 
 def test_curve_csv_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
-    run(scene, "nurbs", tmp_path, solver=stub)
+    run(prepare(scene, "nurbs"), tmp_path, solver=stub)
     lines = (tmp_path / "curve.csv").read_text().splitlines()
     assert lines[0] == HEADER
     assert [float(cell) for cell in lines[1].split(",")] == [0.0] * 7
@@ -89,7 +90,7 @@ def test_curve_csv_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
 
 
 def test_result_json_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
-    run(scene, "nurbs", tmp_path, solver=stub)
+    run(prepare(scene, "nurbs"), tmp_path, solver=stub)
     about = json.loads((tmp_path / "result.json").read_text())
     assert set(about) == RESULT_KEYS
     assert list(about["seconds"]) == SECONDS_KEYS
@@ -101,7 +102,7 @@ def test_result_json_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
 
 
 def test_a_run_is_read_back_as_it_was(scene: Scene, tmp_path: Path) -> None:
-    written, _ = run(scene, "nurbs", tmp_path, keep_fields=True, solver=stub)
+    written, _ = run(prepare(scene, "nurbs"), tmp_path, keep=Keep(fields=True), solver=stub)
     read = read_result(tmp_path)
     assert set(read.steps) == set(written.steps)
     assert all(np.array_equal(read.steps[name], written.steps[name]) for name in read.steps)
@@ -114,7 +115,7 @@ def test_ending_and_condition_are_read_back(scene: Scene, tmp_path: Path) -> Non
     def solver(scene: Scene, method: str, on_step) -> Result:
         return replace(stub(scene, method, on_step), ending="separated at opening 2.5", condition=3e7)
 
-    _, checks = run(scene, "nurbs", tmp_path, solver=solver)
+    _, checks = run(prepare(scene, "nurbs"), tmp_path, solver=solver)
     read = read_result(tmp_path)
     assert (read.ending, read.condition) == ("separated at opening 2.5", 3e7)
     assert next(check for check in checks if check.name == "completed").passed
@@ -124,19 +125,19 @@ def test_a_path_that_stops_on_an_unresolved_zone_says_so(scene: Scene, tmp_path:
     def solver(scene: Scene, method: str, on_step) -> Result:
         return replace(stub(scene, method, on_step), status="stopped: Newton did not converge")
 
-    assert run(scene, "nurbs", tmp_path, solver=solver)[0].status == "stopped: Newton did not converge"
+    assert run(prepare(scene, "nurbs"), tmp_path, solver=solver)[0].status == "stopped: Newton did not converge"
     coarse = load_scene("dcb-czm1-linear", ["interface.strength=40.0", "discretization.dofs=280"])
-    status = run(coarse, "nurbs", tmp_path, solver=solver)[0].status
+    status = run(prepare(coarse, "nurbs"), tmp_path, solver=solver)[0].status
     assert status.startswith("stopped: process zone 0.2") and status.endswith("; Newton did not converge")
 
 
 def test_fields_are_kept_only_when_asked_for(scene: Scene, tmp_path: Path) -> None:
-    run(scene, "nurbs", tmp_path, solver=stub)
+    run(prepare(scene, "nurbs"), tmp_path, solver=stub)
     assert not (tmp_path / "fields.npz").exists()
 
 
 def test_an_error_in_a_solver_leaves_a_valid_partial_run(scene: Scene, tmp_path: Path) -> None:
-    result, checks = run(scene, "nurbs", tmp_path, solver=failing(RuntimeError("no luck")))
+    result, checks = run(prepare(scene, "nurbs"), tmp_path, solver=failing(RuntimeError("no luck")))
     assert result.status.startswith("stopped: RuntimeError: no luck")
     assert read_columns(tmp_path / "curve.csv")["opening"][-1] == 1.0
     assert "Traceback" in (tmp_path / "error.log").read_text()
@@ -145,23 +146,23 @@ def test_an_error_in_a_solver_leaves_a_valid_partial_run(scene: Scene, tmp_path:
 
 def test_an_interrupt_is_recorded_and_passed_on(scene: Scene, tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
-        run(scene, "nurbs", tmp_path, solver=failing(KeyboardInterrupt()))
+        run(prepare(scene, "nurbs"), tmp_path, solver=failing(KeyboardInterrupt()))
     assert json.loads((tmp_path / "result.json").read_text())["status"] == "stopped: interrupted"
     assert len(read_columns(tmp_path / "curve.csv")["load"]) == 6
 
 
 def test_a_killed_run_leaves_a_valid_shorter_curve_and_no_old_result(scene: Scene, tmp_path: Path) -> None:
-    run(scene, "nurbs", tmp_path, solver=stub)
+    run(prepare(scene, "nurbs"), tmp_path, solver=stub)
     endless = (
         "import sys, time; from pathlib import Path; from verify.runs.run import run; "
-        "from verify.scene.load import load_scene\n"
+        "from verify.methods.solve import prepare; from verify.scene.load import load_scene\n"
         "def solve(scene, method, on_step):\n"
         "    for i in range(50):\n"
         "        on_step(dict(opening=i / 7, load=i / 3, crack_length=4.0, stored_energy=0.0, dissipated_energy=0.0,\n"
         "                     external_work=0.0, newton_iterations=3.0))\n"
         "    print('written', flush=True)\n"
         "    time.sleep(600)\n"
-        "run(load_scene('dcb-czm1-linear'), 'nurbs', Path(sys.argv[1]), solver=solve)"
+        "run(prepare(load_scene('dcb-czm1-linear'), 'nurbs'), Path(sys.argv[1]), solver=solve)"
     )
     environment = os.environ | {"PYTHONPATH": str(PROJECT)}
     command = [sys.executable, "-c", endless, str(tmp_path)]
@@ -278,10 +279,10 @@ def test_an_error_is_told_before_other_ranks_are_taken_down(
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", str(ranks))
     unlucky.error = RuntimeError("no luck")
     if ranks == 1:
-        run(scene, "nurbs", tmp_path, solver=unlucky)
+        run(prepare(scene, "nurbs"), tmp_path, solver=unlucky)
     else:
         with pytest.raises(Down):
-            run(scene, "nurbs", tmp_path, solver=unlucky)
+            run(prepare(scene, "nurbs"), tmp_path, solver=unlucky)
     status = json.loads((tmp_path / "result.json").read_text())["status"]
     assert status.startswith("stopped: RuntimeError: no luck (an error in the program")
     assert taken_down == ([] if ranks == 1 else [status.removeprefix("stopped: ")])
@@ -295,7 +296,7 @@ def test_a_full_disk_ends_the_other_ranks_and_says_so_itself(
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", str(ranks))
     unlucky.error = OSError(errno.ENOSPC, "no room")
     with pytest.raises(OSError if ranks == 1 else Down):
-        run(scene, "nurbs", tmp_path, solver=unlucky)
+        run(prepare(scene, "nurbs"), tmp_path, solver=unlucky)
     assert len(taken_down) == ranks - 1 and not (tmp_path / "error.log").exists()
 
 
@@ -305,10 +306,10 @@ def test_other_ranks_compute_and_write_nothing(
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
     monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "1")
     whole = Result("nurbs", steps_from_rows([{name: 1.0 for name in CURVE_COLUMNS}]))
-    assert run(scene, "nurbs", tmp_path / "out", solver=lambda *given: whole) == (whole, ())
+    assert run(prepare(scene, "nurbs"), tmp_path / "out", solver=lambda *given: whole) == (whole, ())
     unlucky.error = RuntimeError("no luck")
     with pytest.raises(Down):
-        run(scene, "nurbs", tmp_path / "out", solver=unlucky)
+        run(prepare(scene, "nurbs"), tmp_path / "out", solver=unlucky)
     assert taken_down == ["RuntimeError: no luck"] and not (tmp_path / "out").exists()
 
 
@@ -357,12 +358,12 @@ def test_a_rank_that_fails_says_which_it_is_and_ends_at_once(monkeypatch, capsys
     """Without waiting for the others, which wait for it."""
     ended: list[int] = []
     monkeypatch.setattr(run_of.os, "_exit", ended.append)
-    monkeypatch.setattr(environment, "mpi_rank", lambda: 3)
+    monkeypatch.setattr(run_of, "mpi_rank", lambda: 3)
 
-    def broken(scene: Scene, method: str, on_step: Callable | None) -> Result:
+    def broken(on_step: Callable | None) -> Result:
         raise ArithmeticError("no luck")
 
-    run_of._silent(load_scene("dcb-czm1"), "dolfinx", broken)
+    run_of._silent(broken)
     assert ended == [1] and capsys.readouterr().err.strip().endswith("rank 3: ArithmeticError: no luck")
 
 
@@ -376,7 +377,7 @@ def test_what_was_done_before_an_error_is_the_result(scene: Scene, tmp_path: Pat
             row["opening"], row["load"] = i + 1.0, [2.0, 3.0, 1.0, 9.0][i]
         raise ArithmeticError("no luck")
 
-    result, _ = run(scene, "nurbs", tmp_path, solver=solver)
+    result, _ = run(prepare(scene, "nurbs"), tmp_path, solver=solver)
     assert result.opening.tolist() == [0.0, 1.0, 2.0, 3.0] and result.load.tolist() == [0.0, 2.0, 3.0, 1.0]
     written = json.loads((tmp_path / "result.json").read_text())
     assert (written["steps"], written["peak_load"], written["peak_opening"]) == (3, 3.0, 2.0)

@@ -14,7 +14,6 @@ from verify.checks.judgement import NO_DEMANDS, judged
 from verify.cli import main
 from verify.runs import verdict_file
 from verify.runs.jobs import Job
-from verify.studies import one_scene
 from verify.verdict import Check
 
 
@@ -72,7 +71,9 @@ def test_a_run_without_result_says_why(tmp_path: Path) -> None:
 def beam_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """Scenes are solved by the beam and LEFM only, which takes no time."""
     both = ("beam", "lefm")
-    monkeypatch.setattr(one_scene, "planned", lambda source, scene, full: [Job(source, scene, m, m) for m in both])
+    monkeypatch.setattr(
+        "verify.verification.planned", lambda source, scene, full: [Job(source, scene, m, m) for m in both]
+    )
 
 
 #: A folder and a unit that would be a script, if anybody let them; a file's name cannot have a slash.

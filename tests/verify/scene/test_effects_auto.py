@@ -16,11 +16,11 @@ from scipy.optimize import brentq
 from verify.checks import neglected
 from verify.cli import main
 from verify.curves.of_run import cubics, distance
-from verify.methods.solve import solve
+from verify.methods.solve import prepare, solve
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene import effects
-from verify.scene.effects import GROWING, RIGID, STANDING, decided, load_of_squeezing, simulated, squeezed, stiffer
+from verify.scene.effects import GROWING, RIGID, STANDING, decided, load_of_squeezing, squeezed, stiffer
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 from verify.studies.one_scene import scene_report
@@ -110,7 +110,7 @@ def test_what_a_squeezed_bond_is_worth_is_that_of_a_beam_on_it(alpha: float) -> 
 def test_auto_decides_and_says_why(name: str, overrides: tuple[str, ...], key: str, value: object, why: str) -> None:
     scene = load_scene(name, (*ALL_AUTO, "effects.kinematics=finite", *overrides, f"effects.{key}=auto"))
     found = next(one for one in decided(scene) if one.key == key)
-    assert found.value == value and simulated(scene, "tspline")[key] == value
+    assert found.value == value and prepare(scene, "tspline").effects[key] == value
     assert why in str(found) and str(found).startswith(f"effects.{key}: ")
 
 
@@ -131,14 +131,14 @@ def test_damage_must_stay_where_a_programme_goes_back(programme: str, why: str) 
 
 def test_theories_of_one_arm_stand_for_both_arms_and_a_strip_is_peeled_alone() -> None:
     for method, dcb in (("beam", True), ("lefm", True), ("dolfinx", False)):
-        assert simulated(load_scene("dcb-czm1"), method)["symmetry"] is dcb
-    assert simulated(load_scene("peel-80"), "beam")["symmetry"] is False
+        assert prepare(load_scene("dcb-czm1"), method).effects["symmetry"] is dcb
+    assert prepare(load_scene("peel-80"), "beam").effects["symmetry"] is False
 
 
 def test_what_a_method_cannot_choose_is_not_decided() -> None:
     scene = load_scene("dcb-czm1", ALL_AUTO)
-    assert {one.key for one in decided(scene, "dolfinx")} == {"kinematics", "contact", "irreversible"}
-    assert simulated(scene, "dolfinx")["symmetry"] is False and simulated(scene, "beam")["symmetry"] is True
+    assert {one.key for one in prepare(scene, "dolfinx").decisions} == {"kinematics", "contact", "irreversible"}
+    assert prepare(scene, "dolfinx").effects["symmetry"] is False and prepare(scene, "beam").effects["symmetry"]
     assert decided(load_scene("dcb-czm1")) == ()
 
 
@@ -182,7 +182,7 @@ def test_alike_arms_need_no_search_and_the_run_shows_it() -> None:
 @pytest.mark.parametrize("effects", ["effects.kinematics=linear", "effects.symmetry=true"])
 def test_nothing_is_looked_for_where_nothing_moves_away_or_there_is_one_arm(effects: str) -> None:
     scene = load_scene("dcb-czm1", (effects,))
-    assert scene.effects.search is True and simulated(scene, "nurbs")["search"] is False
+    assert scene.effects.search is True and prepare(scene, "nurbs").effects["search"] is False
     assert "search" not in {one.key for one in neglected.of_run(*run_of("dcb-czm1", (*COARSE[:2], effects)))}
 
 
@@ -191,10 +191,10 @@ def test_a_run_says_what_it_should_not_have_left_out(key: str) -> None:
     name, right, wrong = WITHOUT[key]
     scene, result = run_of(name, right)
     found = {one.key: one for one in neglected.of_run(scene, result)}
-    assert found[key].negligible and not any(key in one for one in neglected.warnings(scene, result))
+    assert found[key].negligible and not any(key in one for one in neglected.warnings(prepare(scene, "nurbs"), result))
     scene, result = run_of(name, wrong)
     (said,) = [one for one in neglected.of_run(scene, result) if one.key == key]
-    assert not said.negligible and said.sentence in neglected.warnings(scene, result)
+    assert not said.negligible and said.sentence in neglected.warnings(prepare(scene, "nurbs"), result)
     assert said.sentence.startswith("without ") and "not negligible (limit 0.5%)" in said.sentence
 
 
@@ -212,7 +212,7 @@ def test_a_bond_that_is_squeezed_wants_contact_though_nothing_closes() -> None:
 def test_a_beam_that_is_peeled_has_no_faces_to_look_at() -> None:
     scene = load_scene("peel-60", ["load.opening=0.3"])
     result = solve(scene, "beam")
-    assert result.snapshots and "search" not in neglected.summary(scene, result)
+    assert result.snapshots and "search" not in neglected.summary(prepare(scene, result.method), result)
 
 
 def test_the_end_and_not_the_way_there_counts_for_the_turn() -> None:
@@ -240,10 +240,9 @@ def test_two_meshes_that_differ_are_no_symmetry(tmp_path: Path) -> None:
 
     from iga.dcb.meshes import arm_meshes
     from iga.files.iga_format import write_iga
-    from verify.methods.problems import iga_problem
 
-    _, problem = iga_problem(load_scene("dcb-czm1", ["discretization.dofs=400"]), "nurbs")
-    _, finer = iga_problem(load_scene("dcb-czm1", ["discretization.dofs=500"]), "nurbs")
+    _, problem = prepare(load_scene("dcb-czm1", ["discretization.dofs=400"]), "nurbs").problem
+    _, finer = prepare(load_scene("dcb-czm1", ["discretization.dofs=500"]), "nurbs").problem
     upper, lower = arm_meshes(problem)
     for name, mesh in (("upper", upper), ("lower", lower), ("other", arm_meshes(finer)[1])):
         write_iga(from_mesh(mesh), tmp_path / f"{name}.iga")

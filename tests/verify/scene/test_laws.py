@@ -15,11 +15,10 @@ from verify.checks.between_codes import cross_checks
 from verify.checks.identities import J_OF_ANY_LAW, J_OF_LAW, run_checks
 from verify.cli import main
 from verify.methods.names import METHODS, Unsuitable
-from verify.methods.problems import iga_problem
-from verify.methods.solve import require, solve
+from verify.methods.solve import prepare, require, solve
 from verify.pages.text import inputs
 from verify.result import Result
-from verify.scene.laws import known, laws_of
+from verify.scene.laws import known
 from verify.scene.load import load_scene
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
@@ -68,19 +67,19 @@ def test_a_scene_takes_every_law_that_a_solver_has() -> None:
 @pytest.mark.parametrize("specimen", ["dcb-czm1", "peel-120"])
 def test_the_isogeometric_problem_has_the_law_of_the_scene(specimen: str) -> None:
     scene = load_scene(specimen, [f"interface.law={NAME}", "effects.contact=false"])
-    law = iga_problem(scene, "nurbs")[1].law
+    law = prepare(scene, "nurbs").problem[1].law
     assert isinstance(law, TrapezoidalLaw) and law.penalty == scene.interface.penalty and not law.contact
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_method_has_a_law_or_refuses_it_with_who_has_it(method: str) -> None:
-    assert (NAME in laws_of(method)) == (method not in LACKING)
+    assert (NAME in METHODS[method].laws()) == (method not in LACKING)
     if method not in LACKING:
-        require(scene_with(NAME), method)
+        require(prepare(scene_with(NAME), method))
         return
     with pytest.raises(Unsuitable) as caught:
-        require(scene_with(NAME), method)
-    has, able = one_of(laws_of(method)), "tspline, nurbs, lagrange and lefm"
+        require(prepare(scene_with(NAME), method))
+    has, able = one_of(METHODS[method].laws()), "tspline, nurbs, lagrange and lefm"
     assert str(caught.value) == f"interface.law: must be {has} for {method}, got '{NAME}'; {able} have it"
 
 
@@ -88,7 +87,7 @@ def test_a_method_has_a_law_or_refuses_it_with_who_has_it(method: str) -> None:
 def test_the_command_line_says_so_and_exits_with_two(method: str, tmp_path: Path, capsys) -> None:
     line = ["solve", "dcb-czm1", "--method", method, "--set", f"interface.law={NAME}", "--out", str(tmp_path / "run")]
     assert main(line) == 2
-    assert f"interface.law: must be {one_of(laws_of(method))} for {method}, got" in capsys.readouterr().err
+    assert f"interface.law: must be {one_of(METHODS[method].laws())} for {method}, got" in capsys.readouterr().err
     assert not (tmp_path / "run").exists()
 
 
@@ -108,12 +107,12 @@ def test_a_plug_in_has_the_laws_that_it_names(tmp_path: Path, monkeypatch: pytes
     (place / "fakelaws.py").write_text(module)
     monkeypatch.syspath_prepend(str(place))
     monkeypatch.delitem(sys.modules, "fakelaws", raising=False)
-    require(scene_with(NAME), "able")
-    require(scene_with("bilinear"), "plain")
+    require(prepare(scene_with(NAME), "able"))
+    require(prepare(scene_with("bilinear"), "plain"))
     with pytest.raises(Unsuitable, match='must be "bilinear" for plain'):
-        require(scene_with(NAME), "plain")
+        require(prepare(scene_with(NAME), "plain"))
     with pytest.raises(Unsuitable, match='must be "bilinear" or "a-trapezoid" for able'):
-        require(scene_with("a-parabola"), "able")
+        require(prepare(scene_with("a-parabola"), "able"))
 
 
 @pytest.fixture(scope="module")

@@ -278,9 +278,9 @@ def test_a_scene_survives_being_written_down() -> None:
 
 def test_automatic_kinematics_follows_the_rotation() -> None:
     scene = load_scene("dcb-czm1", ["effects.kinematics=auto"])
-    assert simulated(scene, "nurbs")["kinematics"] == "finite"
+    assert simulated(scene)["kinematics"] == "finite"
     small = load_scene("dcb-czm1", ["effects.kinematics=auto", "load.opening=0.1"])
-    assert simulated(small, "nurbs")["kinematics"] == "linear"
+    assert simulated(small)["kinematics"] == "linear"
     # on the precrack theta = 3 Delta / (4 a); with the crack grown to 11.28 (by a^2 = 3/2 Delta sqrt(EI / wG)) 0.1994
     assert end_rotation(small) == pytest.approx(0.75 * 0.1 / 4)
     assert end_rotation(scene) == pytest.approx(0.1994, rel=1e-3)

@@ -20,13 +20,11 @@ import numpy as np
 
 from verify.methods.names import WITH_DOFS, NotRun
 from verify.methods.reference_mesh import thickness_error
-from verify.methods.solve import require, solve
-from verify.methods.through_thickness import degree_through
+from verify.methods.solve import prepare, require, solve
 from verify.methods.zone_resolution import expected
 from verify.runs.environment import machine
 from verify.runs.estimate import steps
 from verify.runs.fingerprint import source
-from verify.scene.effects import simulated
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import STEPS, Scene
 from verify.studies.cost.ladder import LADDER
@@ -117,7 +115,7 @@ def _from_study(scene: Scene, accuracy: float, path: Path) -> Choice | None:
             continue
         overrides = tuple(one for one in run["overrides"] if not one.startswith("effects."))
         try:
-            require(parse_scene(scene.model_dump(), overrides), run["solver"])
+            require(prepare(parse_scene(scene.model_dump(), overrides), run["solver"]))
         except (NotRun, Refusal):
             continue
         what = f"{run['method']} of degree {run['degree']} with {run['dofs']} unknowns"
@@ -147,7 +145,7 @@ def _from_table(scene: Scene, accuracy: float) -> Choice:
     degree = 2 if thickness_error(scene, 2, 1) <= GUESS.through * accuracy else 3
     overrides = (*_steps(scene, accuracy), *with_elements(scene, METHOD, degree, elements))
     chosen = parse_scene(scene.model_dump(), overrides)
-    require(chosen, METHOD)
+    require(prepare(chosen, METHOD))
     seconds = predicted_seconds(chosen, METHOD, iterations(chosen, METHOD))
     mesh = f"NURBS of degree {degree} with {chosen.discretization.dofs} unknowns"
     zone = f"{expected(chosen, METHOD).elements:.1f} elements in the process zone"
@@ -164,7 +162,7 @@ def _steps(scene: Scene, accuracy: float) -> tuple[str, ...]:
 
 def iterations(scene: Scene, method: str) -> float:
     """Newton iterations of a whole run, about."""
-    finite = simulated(scene, method)["kinematics"] == "finite"
+    finite = prepare(scene, method).effects["kinematics"] == "finite"
     return (GUESS.iterations if finite else 1.0) * steps(scene, method)
 
 
@@ -209,7 +207,8 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
         except SceneError:  # more unknowns than a scene may have
             break
         there = expected(chosen, method).elements
-        if there >= elements and degree_through(chosen, method) >= degree:
+        mesh = prepare(chosen, method).mesh
+        if there >= elements and mesh is not None and mesh.degree >= degree:
             return overrides
         size = round(size * (min(elements / there, 1.5) if 0.0 < there < elements else 1.2)) + 8
     raise Refusal(f"--accuracy: no mesh is known with {elements:.1f} elements in the process zone of {scene.name}")

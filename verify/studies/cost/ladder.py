@@ -117,7 +117,7 @@ def ladders(source: str, scene: Scene, given: Sequence[str]) -> tuple[dict[Famil
     found: dict[Family, list[Try]] = {}
     reasons: dict[str, str] = {}
     for family in (*FAMILIES, BEAM):
-        if family.method == "tspline-adaptive" and scene.specimen.kind == "peel":
+        if family.method == "tspline-adaptive" and not scene.specimen.symmetric:
             reasons.setdefault(family.method, "left out: only the mesh of a dcb follows the process zone")
             continue
         rungs = {one: left_out(one.job(source, scene, given)) for one in ladder(scene, family)}

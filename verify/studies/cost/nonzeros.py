@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from verify.methods.names import WITH_DOFS
-from verify.methods.problems import iga_problem
+from verify.methods.solve import prepare
 from verify.scene.schema import Scene
 
 
@@ -15,7 +15,7 @@ def nonzeros(scene: Scene, method: str) -> int:
     """Pairs of unknowns that share an element or an interface point, before anything moves; 0 for other methods."""
     if method not in WITH_DOFS:
         return 0
-    solver, problem = iga_problem(scene, method)
+    solver, problem = prepare(scene, method).problem
     system = solver.build(problem).system
     together = [np.asarray(solid.basis.conn_ea) for solid in system.solids] + [_touching(system.interface)]
     n = system.n_dof // 2

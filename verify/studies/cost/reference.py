@@ -88,7 +88,7 @@ class Reference:
 
 def reference_jobs(source: str, scene: Scene, given: Sequence[str]) -> tuple[tuple[Job, ...], tuple[Job, ...]]:
     """Runs of the reference, coarse to fine, and of the other code: none where DOLFINx is missing."""
-    one_arm = scene.specimen.kind == "dcb" and scene.discretization.mismatch == 1.0
+    one_arm = scene.specimen.symmetric and scene.discretization.mismatch == 1.0
     halved = ("effects.symmetry=true",) if one_arm else ()
     own = _jobs(source, scene, Family("nurbs", "nurbs", 3, 0.0), MESHES.zone, (*given, *halved))
     other = (

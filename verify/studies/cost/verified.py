@@ -25,12 +25,12 @@ from verify.curves.of_run import POINTS_PER_STEP, cubics, distance
 from verify.fields.frames import cleared
 from verify.methods.names import WITH_DOFS
 from verify.methods.reference_mesh import reference_mesh
+from verify.methods.solve import prepare
 from verify.methods.zone_resolution import expected
 from verify.result import Result
 from verify.runs import estimate
 from verify.runs.folder import FILES, write_json
 from verify.runs.store import alone_in
-from verify.scene.effects import simulated
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.studies.cost.accuracy import Choice, with_elements
@@ -289,7 +289,7 @@ def growth(scene: Scene, following: Scene, method: str) -> float:
     unknowns, steps = (of(following, method) / of(scene, method) for of in (estimate.unknowns, estimate.steps))
     if scene.discretization.steps == "auto":
         steps *= (scene.discretization.bend / following.discretization.bend) ** 0.5
-    condensed = method in WITH_DOFS and simulated(scene, method)["kinematics"] == "linear"
+    condensed = method in WITH_DOFS and prepare(scene, method).effects["kinematics"] == "linear"
     return steps * unknowns ** (REFINEMENT.condensed if condensed else 1.0)
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from verify.methods.solve import prepare
 from verify.runs.jobs import Job, left_out
-from verify.scene.effects import simulated
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
 from verify.studies.frame import repeated
@@ -102,4 +102,4 @@ def _pair(base: Job, switch: Switch) -> Pair:
 
 def _value(scene: Scene, method: str, switch: Switch) -> str:
     """What a method makes of the effect, as the scene file would write it."""
-    return str(simulated(scene, method)[switch.key]).lower()
+    return str(prepare(scene, method).effects[switch.key]).lower()

@@ -7,8 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import ClassVar
 
-from verify.methods.solve import require
-from verify.scene.effects import simulated
+from verify.methods.solve import prepare, require
 from verify.scene.schema import Scene
 from verify.studies import frame
 from verify.studies.effects.plan import planned
@@ -32,7 +31,7 @@ class Study(frame.Study):
     def about(self) -> dict[str, object]:
         return {
             "method": self.method,
-            "simulated": simulated(self.scene, self.method),
+            "simulated": prepare(self.scene, self.method).effects,
             "effects": {one.key: asdict(one) | {"sentence": one.sentence} for one in self.rows},
         }
 
@@ -62,6 +61,6 @@ def effects(
 
 def would_run(source: str, scene: Scene, method: str, given: Sequence[str], out: Path) -> list[str]:
     """The runs with their times, a line each, and what is left out; nothing is run."""
-    require(scene, method)
+    require(prepare(scene, method))
     plan = planned(source, scene, method, given)
     return frame.would_run([*plan.jobs, *plan.timed], plan.left_out, out)

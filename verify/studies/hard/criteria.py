@@ -6,10 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from verify.checks.identities import J_TOLERANCE, end_cannot_judge, j_deviation
-from verify.checks.unresolved import too_coarse
+from verify.checks.identities import end_cannot_judge
+from verify.checks.mechanics.j_integral import J_TOLERANCE, j_deviation
+from verify.checks.mechanics.unresolved import too_coarse
 from verify.curves.curve import curve_error
 from verify.curves.of_run import cubics
+from verify.methods.solve import prepare
 from verify.methods.zone_resolution import ENOUGH, expected, measured
 from verify.result import Result
 from verify.studies.hard.case import Finding, Number, Trial
@@ -51,7 +53,8 @@ def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
 
 def _cannot_judge(trial: Trial, check: Check) -> str:
     """Why the J-integral cannot judge the run: the far end or the mesh explains its deviation; else empty."""
-    return end_cannot_judge(trial.scene, trial.result, check) or too_coarse(trial.scene, trial.result, check)
+    prepared = prepare(trial.scene, trial.result.method)
+    return end_cannot_judge(prepared, trial.result, check) or too_coarse(prepared, trial.result, check)
 
 
 def missing(trial: Trial) -> float:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from verify.methods.names import Unsuitable
-from verify.methods.solve import solve
+from verify.methods.solve import prepare, solve
 from verify.result import Result, steps_from_rows
 from verify.runs.folder import read_result, write_json
 from verify.runs.run import Solver, run
@@ -117,7 +117,7 @@ def read_cell(folder: Path) -> Verdict:
 def _run(scene: Scene, basis: str, folder: Path, solver: Solver) -> Result:
     """A run; one that is refused, for a mesh too coarse or a specimen not known, is a run without a step."""
     try:
-        return run(scene, basis, folder, keep_fields=False, solver=solver)[0]
+        return run(prepare(scene, basis), folder, solver=solver)[0]
     except Unsuitable as error:
         return Result(basis, steps_from_rows([]), f"stopped: {error}")
 

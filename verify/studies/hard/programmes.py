@@ -147,7 +147,7 @@ def _judge_separation(trials: Trials) -> Iterator[Finding]:
             continue
         left = abs(result.load[-1]) / np.max(np.abs(result.load))
         yield Check("no-load", name, left, 0.01, "exact", "Nothing is carried any more, over the peak load.")
-        bond = body.bond_length if body.kind == "peel" else body.length - body.precrack
+        bond = body.extent - body.free_length
         whole = trial.scene.interface.toughness * body.width * bond
         lost = result.steps["dissipated_energy"][-1] / whole - 1.0
         hinge = 1.0 / result.snapshots[0].s_q.size

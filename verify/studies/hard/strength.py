@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from verify.checks.identities import law_of
+from verify.checks.mechanics.columns import law_of
 from verify.curves.curve import PROPAGATION, load_at, peak
 from verify.curves.of_run import cubics
-from verify.methods.solve import solve
+from verify.methods.solve import prepare, solve
 from verify.methods.zone_resolution import warnings
 from verify.studies.hard.case import FINE, Case, Finding, Number, Trial, Trials, Variant, variant
 from verify.theory.law import Bilinear
@@ -56,7 +56,7 @@ def broken_area(trial: Trial) -> tuple[float, float]:
 
 def warned(trial: Trial) -> Check:
     """Whether the user is told before the run that the mesh is too coarse for the process zone."""
-    silent = 0.0 if warnings(trial.scene, trial.result.method) else 1.0
+    silent = 0.0 if warnings(prepare(trial.scene, trial.result.method)) else 1.0
     return Check("warned", trial.name, silent, 0.0, "exact", "An under-resolved process zone is announced.")
 
 

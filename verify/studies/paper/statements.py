@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from verify.checks.identities import ANGLE_TOLERANCE, J_TOLERANCE, growing, growth_angle, j_deviation
+from verify.checks.identities import ANGLE_TOLERANCE
+from verify.checks.mechanics.j_integral import J_TOLERANCE, j_deviation
+from verify.checks.mechanics.peel_growth import growing, growth_angle
 from verify.curves.curve import PROPAGATION, Curve, curve_error, load_at, peak
 from verify.curves.of_run import peak_load
 from verify.methods.zone_resolution import ENOUGH

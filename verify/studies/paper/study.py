@@ -11,7 +11,7 @@ import numpy as np
 
 from verify.curves.curve import Curve, curve_error, oscillation
 from verify.curves.of_run import peak_load
-from verify.methods.problems import lefm_problem
+from verify.methods.solve import prepare
 from verify.methods.zone_resolution import element_length, expected
 from verify.methods.zone_resolution import measured as zone_length
 from verify.result import Result
@@ -163,7 +163,7 @@ def curve(result: Result) -> Curve:
 
 def limit(scene: Scene) -> Curve:
     """LEFM by simple beam theory, the curve that the paper draws."""
-    rows = lefm.solve(replace(lefm_problem(scene), theory="simple")).rows
+    rows = lefm.solve(replace(prepare(scene, "lefm").problem, theory="simple")).rows
     return np.array([row["opening"] for row in rows]), np.array([row["load"] for row in rows])
 
 

@@ -9,11 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from verify.methods.problems import dolfinx_problem
+from verify.methods.solve import prepare
 from verify.runs.fingerprint import digest
 from verify.runs.jobs import Job, left_out
 from verify.runs.sweep import Task
-from verify.scene.effects import simulated
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Dolfinx, Scene
 from verify.studies.scaling.ranks import MPIRUN_MISSING, cores
@@ -90,7 +89,7 @@ def sizes() -> list[int]:
 
 def _run(source: str, scene: Scene, method: str, size: int, given: Sequence[str]) -> Run:
     """One size on one rank, with the effects that the whole programme has: those of a short one might be others."""
-    effects = (f"effects.{key}={_toml(value)}" for key, value in simulated(scene, method).items())
+    effects = (f"effects.{key}={_toml(value)}" for key, value in prepare(scene, method).effects.items())
     mesh = (
         (f"dolfinx.degree={DEGREES[method]}", f"dolfinx.elements={elements(scene, size)}")
         if method == "dolfinx"
@@ -121,7 +120,7 @@ def most_elements() -> int:
 
 def _unknowns(scene: Scene, n: int) -> int:
     mesh = [f"dolfinx.elements={n}", f"dolfinx.degree={DEGREES['dolfinx']}", "effects.symmetry=false"]
-    specimen, p = dolfinx_problem(parse_scene(scene.model_dump(), mesh)).specimen(), DEGREES["dolfinx"]
+    specimen, p = prepare(parse_scene(scene.model_dump(), mesh), "dolfinx").problem.specimen(), DEGREES["dolfinx"]
     along = [int(np.sum(specimen.X < body.length + specimen.near)) - 1 for body in specimen.bodies]
     across = [body.Y.size - 1 for body in specimen.bodies]
     return sum(2 * (p * n + 1) * (p * m + 1) for n, m in zip(along, across, strict=True))

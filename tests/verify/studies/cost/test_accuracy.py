@@ -11,8 +11,7 @@ import pytest
 
 from verify.cli import main
 from verify.curves.of_run import distance
-from verify.methods.problems import iga_problem
-from verify.methods.solve import solve
+from verify.methods.solve import prepare, solve
 from verify.methods.zone_resolution import expected
 from verify.runs.environment import machine
 from verify.runs.fingerprint import source
@@ -59,7 +58,8 @@ def test_the_mesh_has_the_elements_that_are_asked_for(name: str) -> None:
 def test_the_mesh_has_its_degree_through_the_arms(degree: int) -> None:
     """The coarsest mesh of `random-114` with so many elements in its zone is quadratic there, and 0.6 % off."""
     scene = random_scene(114)
-    solver, problem = iga_problem(parse_scene(scene.model_dump(), with_elements(scene, METHOD, degree, 3.0)), METHOD)
+    chosen = parse_scene(scene.model_dump(), with_elements(scene, METHOD, degree, 3.0))
+    solver, problem = prepare(chosen, METHOD).problem
     degrees = [block.degrees for mesh in solver.build(problem).meshes for block in mesh.blocks]
     assert set(degrees) == {(degree, degree)}
 

@@ -203,10 +203,10 @@ def test_cost_json_names_the_cheapest_and_the_front(tmp_path: Path) -> None:
 def test_entries_of_the_tangent_are_those_that_forces_depend_on(name: str, dofs: int) -> None:
     """Counted against differences of the residual at a state without symmetry, column after column."""
     from iga.system.system import respond
-    from verify.methods.problems import iga_problem
+    from verify.methods.solve import prepare
 
     scene = load_scene(name, [f"discretization.dofs={dofs}"])
-    solver, problem = iga_problem(scene, "nurbs")
+    solver, problem = prepare(scene, "nurbs").problem
     system = solver.build(problem).system
     start, rng = system.start(), np.random.default_rng(1)
     u_d = 1e-4 * rng.random(system.n_dof)

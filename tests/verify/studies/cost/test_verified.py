@@ -13,7 +13,7 @@ import pytest
 
 from verify.cli import INTERRUPTED, main
 from verify.command_line.commands import FAILED
-from verify.methods.solve import solve
+from verify.methods.solve import prepare, solve
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
 from verify.runs import run as run_module
 from verify.runs.run import run
@@ -54,8 +54,8 @@ def solving(monkeypatch: pytest.MonkeyPatch) -> Callable[[Sequence[float]], None
                 raise KeyboardInterrupt
             return a_curve(np.nan_to_num(error), scene, method, on_step, stop=error != error)
 
-        def fake(scene, method, folder, keep_fields, on_step, frames):
-            return true(scene, method, folder, keep_fields, on_step, solver=made_up)[0], ()
+        def fake(prepared, folder, keep, on_step):
+            return true(prepared, folder, keep, on_step, solver=made_up)[0], ()
 
         monkeypatch.setattr(run_module, "run", fake)
 
@@ -169,7 +169,7 @@ def test_a_wrong_thickness_is_not_shared_by_two_levels(tmp_path: Path) -> None:
     """One quadratic element through the arms of `random-114` is 0.57 % off, however many there are along."""
     scene = random_scene(114)
     first = Choice("nurbs", ("discretization.dofs=430", "discretization.degree=2"), 1.0, "a guess")
-    found = verified(scene, first, 0.003, tmp_path, run)
+    found = verified(scene, first, 0.003, tmp_path, lambda one, method, folder, _: run(prepare(one, method), folder))
     exact = solve(parse_scene(scene.model_dump(), accuracy.with_elements(scene, "nurbs", 4, 9.0)), "nurbs")
     off = [apart(level.result, exact, scene.load.opening) for level in found.levels]
     assert off[0] > 0.005 and len(off) == 3 and found.levels[1].distance > 0.005, "seen, and not accepted"

@@ -275,7 +275,7 @@ GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
 
 def test_the_area_of_a_crack_is_that_of_its_points() -> None:
     """Two points in each of two elements, 4 and 6 long: the first has broken, one of the other is half way there."""
-    from verify.checks.identities import law_of
+    from verify.checks.mechanics.columns import law_of
     from verify.result import Snapshot
 
     scene = load_scene("dcb-czm1", ["specimen.width=2.0"])

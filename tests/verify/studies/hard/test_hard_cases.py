@@ -14,7 +14,6 @@ from tests.verify.studies.hard.test_hard import FAKE, stub
 from verify.methods.names import Unsuitable
 from verify.runs.sweep import Done
 from verify.scene.load import load_scene
-from verify.scene.schema import Scene
 from verify.studies.hard import one, suite
 from verify.studies.hard.cases import CASES
 from verify.support.checked_files import Damaged
@@ -50,10 +49,10 @@ def test_a_verdict_counts_with_the_runs_that_it_is_about(tmp_path: Path, monkeyp
     """A run without a step, as one that was refused, has left nothing to read."""
     run = one.run
 
-    def refusing(scene: Scene, *words, **options) -> tuple:
-        if scene.load.opening[-1] == 2.0:
+    def refusing(prepared, *words, **options) -> tuple:
+        if prepared.scene.load.opening[-1] == 2.0:
             raise Unsuitable("too coarse")
-        return run(scene, *words, **options)
+        return run(prepared, *words, **options)
 
     monkeypatch.setattr(one, "run", refusing)
     known = one.run_case(FAKE, "nurbs", tmp_path, stub)

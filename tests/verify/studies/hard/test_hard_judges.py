@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import brentq
 
 from tests.verify.studies.hard.test_hard import fake_rows
-from verify.checks.identities import law_of
+from verify.checks.mechanics.columns import law_of
 from verify.curves.curve import PROPAGATION
 from verify.methods.solve import solve
 from verify.result import Result, Snapshot, steps_from_rows

@@ -8,12 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from verify.methods import zone_resolution
-from verify.methods.names import WITH_DOFS
+from verify.methods.method import Prepared
 from verify.result import Result
 from verify.scene import process_zone
-from verify.scene.effects import simulated
-from verify.scene.schema import Scene
 
 #: What any code has to balance to where less than that is to be expected.
 LEAST = 1e-8
@@ -29,19 +26,19 @@ ALIKE = 5.0
 CONTACT = 10.0
 
 
-def force_tolerance(scene: Scene, result: Result) -> float:
+def force_tolerance(prepared: Prepared, result: Result) -> float:
     """Force that may be missing, over the peak load."""
-    return float(np.clip(_residual(scene, result), LEAST, MOST))
+    return float(np.clip(_residual(prepared, result), LEAST, MOST))
 
 
-def moment_tolerance(scene: Scene, result: Result) -> float:
+def moment_tolerance(prepared: Prepared, result: Result) -> float:
     """Moment that may be missing, over that of the peak load about the tip: that force, as far away as the specimen is
     long."""
-    lever = scene.specimen.extent / scene.specimen.free_length
-    return float(np.clip(lever * _residual(scene, result), LEAST, MOST))
+    lever = prepared.scene.specimen.extent / prepared.scene.specimen.free_length
+    return float(np.clip(lever * _residual(prepared, result), LEAST, MOST))
 
 
-def _residual(scene: Scene, result: Result) -> float:
+def _residual(prepared: Prepared, result: Result) -> float:
     """Norm of the residual that a run may end its steps with, over its peak load; 0 where nothing is known of it.
 
     An arm that bends holds forces of a / h times its load against each other in each of its elements; their norm, of
@@ -51,14 +48,15 @@ def _residual(scene: Scene, result: Result) -> float:
     that of an element relative to itself, l times the slope of the arm. DOLFINx makes one correction more than its
     tolerance asks for; its contact is as stiff as the penalty, where the arms have hardly moved apart.
     """
-    body, load = scene.specimen, float(np.max(np.abs(result.load), initial=0.0))
-    if result.method not in (*WITH_DOFS, "dolfinx") or load == 0.0 or not result.elements:
+    scene, load = prepared.scene, float(np.max(np.abs(result.load), initial=0.0))
+    if not prepared.method.has_mesh or load == 0.0 or not result.elements:
         return 0.0
-    length, h, eps = zone_resolution.element_length(scene, result.method), body.loaded_thickness, np.finfo(float).eps
+    body = scene.specimen
+    length, h, eps = prepared.element, body.loaded_thickness, float(np.finfo(float).eps)
     modulus = max(process_zone.bending_modulus(material, body.plane) for material in scene.materials)
     stiffness, moved = modulus * body.width * (h / length + length / h), float(np.max(np.abs(result.opening)))
     whole = ALIKE * float(np.sqrt(result.dofs)) * eps * stiffness * moved / load
-    if result.method == "dolfinx":
+    if prepared.method.code != "iga":
         law = scene.interface
         closed = CONTACT * law.penalty * length * body.width * 2.0 * law.toughness / law.strength
         return whole + float(np.sqrt(result.dofs)) * eps * closed / load
@@ -67,4 +65,4 @@ def _residual(scene: Scene, result: Result) -> float:
     slope = min(1.0, 0.75 * moved / body.free_length)  # of one of two arms at its end, 3/2 of its mean
     relative = float(np.sqrt(result.elements)) * ROUNDING * eps * stiffness * slope * length / load
     left = float(np.sqrt(result.elements)) * 2.0 * DEFAULT.tolerance * body.free_length / h
-    return left + (whole if simulated(scene, result.method)["kinematics"] == "linear" else relative)
+    return left + (whole if prepared.effects["kinematics"] == "linear" else relative)

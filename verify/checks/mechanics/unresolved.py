@@ -5,14 +5,14 @@ from __future__ import annotations
 from math import isfinite, isnan, sqrt
 
 from verify.methods import zone_resolution
+from verify.methods.method import Prepared
 from verify.methods.reference_mesh import reference_mesh
-from verify.methods.zone_resolution import expected, measured
+from verify.methods.zone_resolution import measured
 from verify.result import Result
-from verify.scene.schema import Scene
 from verify.verdict import Check
 
 
-def explained(scene: Scene, method: str, elements: float) -> float:
+def explained(prepared: Prepared, elements: float) -> float:
     """Most by which a J-integral deviates, in parts of G_Ic, where so many ``elements`` span the process zone.
 
     It falls with the square of their number, since the law is obeyed at the integration points alone: 0.14 to 0.43
@@ -20,35 +20,34 @@ def explained(scene: Scene, method: str, elements: float) -> float:
     than the arms are thick, while it forms beside longer elements of the free arms), 0.12 to 0.70 for quadratic ones,
     0.03 to 0.06 in DOLFINx (0.28 with linear elements). The linear ones of ``iga`` lock in bending, however many.
     """
-    if method == "dolfinx":
-        return (0.15 if reference_mesh(scene).degree > 1 else 0.5) / elements**2
-    degree = scene.discretization.degree
+    if prepared.method.code != "iga":
+        return (0.15 if reference_mesh(prepared.scene).degree > 1 else 0.5) / elements**2
+    degree = prepared.scene.discretization.degree
     return 1.0 if degree == 1 else 3.0 / min(degree, 3) / elements**2
 
 
-def too_coarse(scene: Scene, result: Result, check: Check) -> str:
+def too_coarse(prepared: Prepared, result: Result, check: Check) -> str:
     """Why a check that rests on the J-integral cannot judge, and what resolves it; empty where it
     deviates by more than the mesh explains."""
     deviation = abs(check.value)
-    zone = expected(scene, result.method)
+    zone = prepared.zone
     length = measured(result)
     elements = (zone.length if isnan(length) else length) / zone.element
-    if not isfinite(elements) or not deviation <= explained(scene, result.method, elements):
+    if not isfinite(elements) or not deviation <= explained(prepared, elements):
         return ""
-    if result.method != "dolfinx" and scene.discretization.degree == 1:
+    if prepared.method.code == "iga" and prepared.scene.discretization.degree == 1:
         return "linear elements lock in bending; discretization.degree = 2 resolves it"
     finer = zone.elements * 1.1 * sqrt(deviation / check.tolerance)
-    remedy = zone_resolution.remedy(scene, result.method, finer)
+    remedy = zone_resolution.remedy(prepared, finer)
     return f"the process zone spans {elements:.2g} elements of the mesh; {remedy}"
 
 
-def at_the_end(scene: Scene, result: Result, held: float) -> str:
+def at_the_end(prepared: Prepared, held: float) -> str:
     """The same where the far end takes part from the start on, holds ``held`` of G_Ic and explains what J deviates by;
     empty of a method without a mesh, which knows its end exactly."""
-    if isnan(expected(scene, result.method).element):
+    if isnan(prepared.element):
         return ""
-    key = "specimen.bond_length" if scene.specimen.kind == "peel" else "specimen.length"
     return (
         f"the far end takes part from the start on and holds up to {held:.2g} of G_Ic, on a spot of contact that the "
-        f"mesh does not resolve; a larger {key} resolves it"
+        f"mesh does not resolve; a larger specimen.{prepared.scene.specimen.bond_key} resolves it"
     )

@@ -1,0 +1,90 @@
+"""What a strip that is peeled off a clamped substrate obeys while the crack grows: load and angle."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from verify.checks.mechanics.columns import Steps, far_from_end, has, law_of, loading, tip_is_open, worst, zone_is_new
+from verify.scene import process_zone
+from verify.scene.bodies import elastic_constants
+from verify.scene.effects import simulated
+from verify.scene.schema import Scene
+
+#: Part of the length within which the process zone has come to the far end.
+AT_THE_END = 1e-9
+
+
+def growth_load(scene: Scene, steps: Steps) -> float | None:
+    """Largest part of G_Ic w by which the load falls short of it while the crack of a peel grows.
+
+    ``J w = load s - w sum of the face energies = G_Ic w`` with the slope s = du_y/dX = lambda sin(theta) of the loaded
+    face, but for linear kinematics: s <= 1 unless its load stretches an upright strip, lambda = 1 + load / (E h w),
+    0.2 % in peel-soft; so load max(s, 1) is what may not fall short. What the gap at the far end holds is not there to
+    be released (see `j_deviation`).
+    """
+    steady = growing(scene, steps) & out_of_reach(scene, steps)
+    if not steady.any() or simulated(scene)["kinematics"] == "linear":
+        return None
+    pull = steps["load"] * np.maximum(np.abs(steps.get("face_slope_top", 1.0)), 1.0)
+    return worst(np.minimum(pull[steady] / _to_release(scene, steps)[steady] - 1.0, 0.0))
+
+
+def growth_angle(scene: Scene, steps: Steps) -> float | None:
+    """load sin(theta) / (G_Ic w) - 1 at the last step at which the crack of a peel grows out of reach of the flush end.
+
+    Of an inextensible strip on a rigid substrate (Rivlin 1944 for theta = 90 degrees; elastica). What is left of J is
+    the energy on the end faces. On the loaded one that is of the load itself, and is taken off: ``P^2 / (2 h w)
+    (sin(theta)^2 / E1 + cos(theta)^2 / G12)`` (Kendall 1975 for theta = 90 degrees).
+    """
+    steady = growing(scene, steps) & out_of_reach(scene, steps)
+    if not steady.any() or "face_slope_top" not in steps:
+        return None
+    last = np.flatnonzero(steady)[-1]
+    load, sine = steps["load"][last], abs(steps["face_slope_top"][last])
+    pull = load * sine - _end_face_energy(scene, load, sine)
+    return float(pull / _to_release(scene, steps)[last] - 1.0)
+
+
+def _end_face_energy(scene: Scene, load: float, sine: float) -> float:
+    """Energy per length of the strip at its loaded face, whose traction is uniform and keeps its direction."""
+    body, strip = scene.specimen, scene.materials[0]
+    along = 0.0 if simulated(scene)["kinematics"] == "linear" else min(sine, 1.0) ** 2
+    E1, G12 = process_zone.bending_modulus(strip, body.plane), elastic_constants(strip)["G12"]
+    return load**2 / (2.0 * body.loaded_thickness * body.width) * (along / E1 + (1.0 - along) / G12)
+
+
+def _to_release(scene: Scene, steps: Steps) -> np.ndarray:
+    """G_Ic w less what the gap at the far end holds, of every step (n_steps,): what a growing crack takes."""
+    end = steps.get("end_opening", np.zeros(steps["opening"].size))
+    return (scene.interface.toughness - law_of(scene).area(end)) * scene.specimen.width
+
+
+def growing(scene: Scene, steps: Steps) -> np.ndarray:
+    """Steps (n_steps,) of a peel at which a whole process zone travels, from the open tip to its front in the bond.
+
+    None of another specimen, or where the columns do not tell.
+    """
+    if not scene.specimen.clamped or not has(steps, "tip_opening", "damage_front", "dissipated_energy"):
+        return np.zeros(steps["opening"].size, dtype=bool)
+    open_ = tip_is_open(scene, steps)
+    inside = steps["damage_front"] < (1.0 - AT_THE_END) * scene.specimen.extent
+    pulled = (steps["opening"] > 0.0) & zone_is_new(scene, steps)
+    return open_ & inside & loading(steps) & far_from_end(scene, steps) & pulled
+
+
+def out_of_reach(scene: Scene, steps: Steps) -> np.ndarray:
+    """Steps (n_steps,) of a peel whose process zone does not stress the flush end: it is four decay lengths of the
+    strip away, and twice the thickness of the substrate.
+
+    Ahead of the front the strip and what is under it fade as ``exp(-x / l)``, l = (4 E I / K w)^(1/4) of a beam on the
+    foundation K of bond and substrate in series, and the energy on the flush faces, which load sin(theta) lacks, as
+    ``exp(-2 x / l)``: 3e-4 of G_Ic. A substrate that is clamped below fades as ``exp(-pi x / 2 t)`` by itself.
+    """
+    if "damage_front" not in steps or not scene.specimen.clamped:
+        return np.zeros(steps["opening"].size, dtype=bool)
+    body, law, plane = scene.specimen, law_of(scene), scene.specimen.plane
+    (strip, substrate), (_, base) = scene.materials, body.thicknesses
+    K = 1.0 / (1.0 / law.stiffness + base / process_zone.across_modulus(substrate, plane))
+    bending = process_zone.bending_modulus(strip, plane) * body.loaded_thickness**3 / 12.0
+    away = max(4.0 * (4.0 * bending / K) ** 0.25, 2.0 * base)
+    return steps["damage_front"] <= body.extent - away

@@ -1,0 +1,231 @@
+"""What a method is, built in or a plug-in, and a scene prepared for it once a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import nan
+from typing import Any
+
+from verify.result import Result, Snapshot, steps_from_rows
+from verify.scene import effects
+from verify.scene.effects import Decision
+from verify.scene.laws import PLAIN
+from verify.scene.schema import Scene
+from verify.support.refusal import Refusal
+from verify.support.timing import Stopwatch, peak_memory_mb
+
+OnStep = Callable[[Mapping[str, float]], None]
+
+#: Called with the opening of every converged step and with what makes its frame, see `verify.fields.frames`.
+OnFrame = Callable[[float, Callable[[], Mapping[str, Any] | None]], None]
+
+#: Elements that a process zone needs at the least (Turon et al. 2007, sec. 2.2: three to five).
+ENOUGH = 3
+
+
+class NotRun(Exception):
+    """A method that this machine cannot run; the message says why, ``ways`` how to get it."""
+
+    def __init__(self, why: str, ways: Sequence[str] = ()) -> None:
+        super().__init__(why)
+        self.ways = tuple(ways)
+
+
+class Unsuitable(Refusal):
+    """A method that cannot solve this scene on any machine."""
+
+
+class Failure(Exception):
+    """An error in a solver that is not debond's own fault; ``whose`` says whose it is."""
+
+    def __init__(self, why: str, whose: str) -> None:
+        super().__init__(why)
+        self.whose = whose
+
+
+@dataclass(frozen=True)
+class Look:
+    """How curves of a method are drawn.
+
+    ``colours`` are those on a light and on a dark page, empty for the colour of the text; ``dashes`` are lengths on and
+    off in points, none for a solid line; ``order`` decides what is drawn above what; ``place`` is that in tables and
+    legends.
+    """
+
+    colours: tuple[str, str] | None = None
+    width: float = 1.3
+    dashes: tuple[float, ...] = (6.0, 1.5, 1.2, 1.5)
+    alpha: float = 1.0
+    order: float = 4.7
+    place: int = 100
+
+
+@dataclass(frozen=True)
+class MeshFacts:
+    """The mesh of a method as far as warnings and checks need it.
+
+    ``element`` is the length of the longest element along the bond, ``degree`` the lowest in any direction, ``layers``
+    the number of elements through an arm or strip; 0 where these are graded, which has always resolved it.
+    """
+
+    element: float
+    degree: int
+    layers: int
+
+
+@dataclass(frozen=True)
+class Zone:
+    """Length of the process zone by both formulas and of the elements along the interface, NaN without a mesh."""
+
+    slender: float
+    bulk: float
+    element: float
+
+    @property
+    def length(self) -> float:
+        """Shorter than either."""
+        return 1.0 / (1.0 / self.slender + 1.0 / self.bulk)
+
+    @property
+    def elements(self) -> float:
+        """How many elements span the zone."""
+        return self.length / self.element
+
+    @property
+    def resolved(self) -> bool:
+        """True without a mesh as well: nothing can be too coarse."""
+        return not self.elements < ENOUGH
+
+
+def _bilinear() -> tuple[str, ...]:
+    return (PLAIN,)
+
+
+def _all_free(scene: Scene) -> Mapping[str, Any]:
+    return {}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Method:
+    """A solver by its name.
+
+    Parameters
+    ----------
+    label : its name in tables and legends
+    what : what it is, in the words of the report
+    solve : solves a prepared scene; methods without fields do not call ``on_frame``
+    problem : the scene in the solver's terms, from the effects as simulated. ValueError where it refuses them
+    mesh : facts of the mesh made for a problem; None for a method without one. ValueError where none can be made
+    require : raises `Unsuitable` or `NotRun` where the method cannot solve a prepared scene
+    laws : names of the traction laws that it has
+    fixed : the effects that it has, whatever a scene asks for
+    code : the program that it belongs to; methods of one program confirm each other less than others do
+    packages : those of the project whose source it runs
+    with_dofs : whether ``discretization.dofs`` sets the size of its mesh
+    takes_files : whether it solves on mesh files that a scene names
+    ranks : whether it runs on several MPI ranks
+    lane : runs of one lane are done one after the other, unless it is empty
+    is_limit : whether it is a limit that codes approach, and is held against none
+    mesh_error : error of the load curve that its mesh leaves at the unknowns of a packaged scene; 0 where that is less
+        than the tolerances between codes
+    besides, per_step : seconds of a run besides its steps, and a step and a thousand unknowns, see
+        `verify.runs.estimate`
+    """
+
+    name: str
+    label: str
+    what: str
+    solve: Callable[[Prepared, OnStep, OnFrame | None], Result]
+    problem: Callable[[Scene, Mapping[str, Any]], Any] = lambda scene, effects: scene
+    mesh: Callable[[Prepared], MeshFacts] | None = None
+    require: Callable[[Prepared], None] = lambda prepared: None
+    laws: Callable[[], Sequence[str]] = _bilinear
+    fixed: Callable[[Scene], Mapping[str, Any]] = _all_free
+    code: str
+    packages: tuple[str, ...] = ()
+    with_dofs: bool = False
+    takes_files: bool = False
+    ranks: bool = False
+    lane: str = ""
+    is_limit: bool = False
+    mesh_error: float = 0.0
+    besides: float = 2.0
+    per_step: float = 0.03
+    look: Look = Look()
+
+    @property
+    def has_mesh(self) -> bool:
+        return self.mesh is not None
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A scene for one method: what run, checks and summary share, each part made once and when it is first needed."""
+
+    scene: Scene
+    method: Method
+
+    @cached_property
+    def effects(self) -> Mapping[str, Any]:
+        """The effects as the method simulates them."""
+        return effects.simulated(self.scene, self.method.fixed(self.scene))
+
+    @property
+    def decisions(self) -> tuple[Decision, ...]:
+        """What stands for every effect that the scene leaves to ``auto`` and the method can choose."""
+        return effects.decided(self.scene, self.method.fixed(self.scene))
+
+    @cached_property
+    def problem(self) -> Any:
+        """The scene in the solver's own terms. Raises ValueError where the solver refuses them."""
+        return self.method.problem(self.scene, self.effects)
+
+    @cached_property
+    def mesh(self) -> MeshFacts | None:
+        """Facts of the mesh; the solver makes it again in its own time. Raises ValueError where none can be made."""
+        return self.method.mesh(self) if self.method.mesh is not None else None
+
+    @cached_property
+    def element(self) -> float:
+        """Longest element along the bond, NaN for a method without a mesh, or where none can be made."""
+        try:
+            return nan if self.mesh is None else self.mesh.element
+        except ValueError:
+            return nan
+
+    @cached_property
+    def zone(self) -> Zone:
+        """Length of the process zone before a run, beside the elements in it."""
+        from verify.scene.process_zone import bulk_length, slender_length  # which bring SciPy along
+
+        return Zone(slender_length(self.scene), bulk_length(self.scene), self.element)
+
+
+def require_growing(prepared: Prepared) -> None:
+    """Raise Unsuitable where the programme goes down anywhere."""
+    programme = prepared.scene.load.opening
+    if any(b <= a for a, b in zip((0.0, *programme), programme, strict=False)):
+        name = prepared.method.name
+        raise Unsuitable(f"load.opening: must only increase for the method {name}, got {list(programme)}")
+
+
+def result_of(name: str, solution: Any, watch: Stopwatch) -> Result:
+    """The result of a solver that returns rows and status, and rejected_steps, snapshots, dofs, elements, ending,
+    condition and nonzeros as far as it knows them."""
+    return Result(
+        method=name,
+        steps=steps_from_rows(solution.rows),
+        status=solution.status,
+        ending=getattr(solution, "ending", ""),
+        condition=getattr(solution, "condition", 0.0),
+        dofs=getattr(solution, "dofs", 0),
+        elements=getattr(solution, "elements", 0),
+        rejected_steps=getattr(solution, "rejected_steps", 0),
+        snapshots=tuple(Snapshot(**snapshot) for snapshot in getattr(solution, "snapshots", ())),
+        seconds=watch.seconds(),
+        peak_memory_mb=peak_memory_mb(),
+        nonzeros=getattr(solution, "nonzeros", 0),
+        jit_seconds=watch.compile,
+    )
