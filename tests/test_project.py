@@ -61,20 +61,6 @@ def test_types_are_right() -> None:
     assert ran.returncode == 0, ran.stdout + ran.stderr
 
 
-def test_modules_whose_bodies_are_not_checked_exist() -> None:
-    """A name that is misspelt or gone would silently excuse nothing, or the next module of that name."""
-    overrides = tomllib.loads((PROJECT / "pyproject.toml").read_text())["tool"]["mypy"]["overrides"]
-    own = [name for entry in overrides for name in entry["module"] if name.split(".")[0] in ("iga", "verify")]
-    gone = [name for name in own if not any((PROJECT / path).is_file() for path in places(name))]
-    assert own and gone == []
-
-
-def places(module: str) -> tuple[str, str]:
-    """Where the source of a module may be."""
-    path = module.replace(".", "/")
-    return f"{path}.py", f"{path}/__init__.py"
-
-
 def test_citation_is_of_this_version() -> None:
     text = (PROJECT / "CITATION.cff").read_text()
     assert re.findall(r"^version: (.+)$", text, re.MULTILINE) == [verify.__version__]

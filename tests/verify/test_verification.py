@@ -124,7 +124,7 @@ def test_a_failing_check_fails_the_whole(scene: Scene, reports: list, tmp_path: 
 def test_without_dolfinx_its_rows_say_so_and_nothing_fails(
     scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
-    monkeypatch.setattr("verify.methods.solve.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     only(monkeypatch, Job(LINEAR, scene, "dolfinx", "dolfinx"), Job(LINEAR, scene, "lefm", "lefm"))
     assert verify([(LINEAR, scene)], tmp_path, jobs=1)
     assert reports[0].runs[0].left_out == "not run: DOLFINx is not installed"

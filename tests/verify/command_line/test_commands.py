@@ -82,7 +82,7 @@ def test_effects_of_what_cannot_be_solved_are_not_begun(
     asked, out = studied(True), tmp_path / "out"
     turning = ["effects", "dcb-czm1", "--method", "beam", "--set", "load.opening=[1.0, 0.5]", "--out", str(out), *dry]
     assert main(turning) == REFUSED and "must only increase" in capsys.readouterr().err
-    monkeypatch.setattr("verify.methods.solve.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     assert main(["effects", "dcb-czm1", "--method", "dolfinx", "--out", str(out), *dry]) == FAILED
     assert DOLFINX_MISSING.split(": ")[1] in capsys.readouterr().err
     assert asked == [] and not out.exists()

@@ -83,7 +83,7 @@ def test_elements_are_those_of_the_mesh_maker(method, rule):
     scene = load_scene("dcb-czm1", [f'discretization.interface_rule="{rule}"'])
     solver, problem = prepare(scene, method).problem
     specimen = solver.build(problem)
-    start, end = specimen.path
+    start, end = specimen.layout.free_length, specimen.layout.path_end
     assert start == 4.0 and 9.0 < end < 14.0
     if method == "lagrange":
         x = np.unique(np.round(specimen.meshes[0].P_AI[:, 0], 9))

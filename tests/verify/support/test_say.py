@@ -20,7 +20,9 @@ def test_a_page_that_cannot_be_drawn_is_a_sentence(
     assert capsys.readouterr().err == "debond: no report: not_installed is missing; pip install 'debond[report]'\n"
 
 
-@pytest.mark.parametrize("module", ["report", "cost.page", "hard.page", "scaling.page", "switches.page"])
+@pytest.mark.parametrize(
+    "module", ["report", *(f"studies.{name}.page" for name in ("cost", "effects", "hard", "scaling"))]
+)
 def test_a_page_can_be_imported_first(module: str) -> None:
     """As the command whose page it is does, with nothing else there: no circle of imports."""
     pytest.importorskip("matplotlib")

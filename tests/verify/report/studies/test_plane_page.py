@@ -120,7 +120,7 @@ def test_errors_are_drawn_over_the_unknowns_a_direction(study: PlaneStudy, monke
 def test_stress_and_its_error_are_painted_to_scale(study: PlaneStudy, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn, painted = Drawn(monkeypatch, plane), []
     monkeypatch.setattr(
-        plane, "paint", lambda axes, X, value, limit, x, y: painted.append((axes, X, value, limit, x, y))
+        plane, "paint", lambda axes, X, value, limit, frame: painted.append((axes, X, value, limit, *frame))
     )
     panels = plane.section(study, "plane-1").panels
     assert [title for title, _ in drawn][:2] == ["Stress on the elements of ring", "Error of the stress of ring"]

@@ -162,7 +162,7 @@ def test_the_time_of_a_run_is_that_of_its_beginning_and_of_its_iterations(monkey
 
 def test_what_cannot_be_solved_here_is_passed_over(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A mesh that the scene does not take, a method that is missing or unknown; then comes the next, however slow."""
-    monkeypatch.setattr("verify.methods.solve.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
 
     def one(solver: str, seconds: float, *overrides: str) -> dict:
         about = {"method": solver, "degree": 3, "dofs": 500, "curve_error": 0.001}

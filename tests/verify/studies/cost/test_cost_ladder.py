@@ -51,7 +51,7 @@ def test_every_run_repeats_what_the_study_was_given() -> None:
 def test_methods_that_cannot_are_left_out_with_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     few = tuple(f for f in FAMILIES if f.name in ("tspline-adaptive", "nurbs-p2", "dolfinx-p1", "dolfinx-p2"))
     monkeypatch.setattr(ladder_of, "FAMILIES", few)
-    monkeypatch.setattr("verify.methods.solve.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     found, why = ladders("peel-60", load_scene("peel-60"), ())
     assert [family.name for family in found] == ["nurbs-p2", "beam"]
     assert why == [

@@ -39,7 +39,7 @@ LOAD = (0.25, 0.75)
 @pytest.fixture
 def two_cores(monkeypatch: pytest.MonkeyPatch) -> None:
     """A machine with DOLFINx, mpirun and two cores."""
-    monkeypatch.setattr("verify.methods.solve.dolfinx_installed", lambda: True)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: True)
     monkeypatch.setattr(plan_of, "cores", lambda: 2)
     monkeypatch.setattr(plan_of.shutil, "which", lambda name: f"/usr/bin/{name}")
 
@@ -146,7 +146,7 @@ def test_what_is_not_there_is_left_out_in_words(two_cores: None, monkeypatch: py
     assert "2, 4, 8, 16 ranks: left out: 1 core here" in planned("dcb-czm1", SCENE)[1]
     monkeypatch.setattr(plan_of.shutil, "which", lambda name: None)
     assert "more than 1 rank: left out: mpirun is not installed" in planned("dcb-czm1", SCENE)[1]
-    monkeypatch.setattr("verify.methods.solve.dolfinx_installed", lambda: False)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     runs, left_out = planned("dcb-czm1", SCENE)
     assert {run.method for run in runs} == {"nurbs"}
     assert left_out == ("dolfinx: not run: DOLFINx is not installed",)
@@ -288,7 +288,7 @@ def measured(tmp_path_factory: pytest.TempPathFactory) -> dict:
     """The growth of the ``iga`` solver on this machine."""
     out = tmp_path_factory.mktemp("scaling")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("verify.methods.solve.dolfinx_installed", lambda: False)
+        patch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
         assert main(["scaling", "dcb-czm1", "--out", str(out)]) == 0
     return json.loads((out / "scaling.json").read_text())
 
