@@ -214,3 +214,17 @@ def test_values_are_frozen(folder: str) -> None:
                     frozen = isinstance(said.get("frozen"), ast.Constant) and said["frozen"].value is True
                     classes, mutable = classes + 1, mutable if frozen else [*mutable, f"{file.name}: {node.name}"]
     assert classes > 5 and mutable == []
+
+
+def test_no_module_gives_a_constant_a_second_value() -> None:
+    """The later value would hold for the functions above it, too."""
+    twice = []
+    for module, file in modules(PROJECT).items():
+        names = [
+            target.id
+            for node in ast.parse(file.read_text()).body
+            for target in getattr(node, "targets", [])
+            if isinstance(target, ast.Name) and target.id.isupper()
+        ]
+        twice += [f"{module}.{name}" for name, times in Counter(names).items() if times > 1]
+    assert twice == []
