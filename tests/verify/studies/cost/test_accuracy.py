@@ -132,7 +132,7 @@ def test_what_cannot_be_asked_for_is_refused(tmp_path: Path, capsys: pytest.Capt
 def test_scenes_that_are_not_in_the_table_meet_their_accuracy_in_about_the_time(name: str, tmp_path: Path) -> None:
     scene = load_scene(name)
     first = choose(scene, 0.003, NOWHERE)
-    found = verified(scene, first, 0.003, tmp_path, run)
+    found = verified(scene, first, 0.003, tmp_path, lambda one, method, folder, _: run(prepare(one, method), folder))
     exact = parse_scene(scene.model_dump(), (*with_elements(scene, "nurbs", 4, 12.0), "discretization.steps=300"))
     result = found.delivered.result
     assert found.holds and distance((result.opening, result.load), solve(exact, "nurbs")) <= found.reached[1]
