@@ -26,15 +26,17 @@ from verify.verdict import Check
 #: The judge that shares nothing with the codes.
 BEAM = "beam"
 #: Distance between the curves of two codes on fine meshes.
-FINE = 0.005
+CODE_TOLERANCE = 0.005
 #: Runs of codes that are held against the reference, with their tolerances: a coarser mesh has its own.
 CROSS_CODE = {
-    name: max(FINE, method.mesh_error) for name, method in RUNS.items() if method.code not in (REFERENCE, BEAM)
+    name: max(CODE_TOLERANCE, method.mesh_error)
+    for name, method in RUNS.items()
+    if method.code not in (REFERENCE, BEAM)
 }
 #: Largest distance between curves that elements longer than a third of the process zone explain: 17 % were measured.
 COARSE = 0.2
 #: Part of the peak load by which a load that falls at once is that of a specimen that comes apart.
-APART = 0.1
+SEPARATION_DROP = 0.1
 
 
 def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
@@ -108,7 +110,7 @@ def beam_check(scene: Scene, name: str, result: Result, beam: Result, tolerance:
         "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening): "
         f"{beam_error.meaning(scene)}."
     )
-    drops = [first_drop((run.opening, run.load), APART) for run in (beam, result)]
+    drops = [first_drop((run.opening, run.load), SEPARATION_DROP) for run in (beam, result)]
     value = distance(result, beam, min([max(scene.load.opening), *(drops if drops[0] < inf else ())]))
     return Check(
         "beam-curve", f"{name} / {BEAM}", value, tolerance, "analytical", meaning, beam_error.theory_error(scene)

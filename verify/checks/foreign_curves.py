@@ -13,7 +13,7 @@ import numpy as np
 from verify.checks import beam_error, load_introduction
 from verify.checks.between_codes import (
     BEAM,
-    FINE,
+    CODE_TOLERANCE,
     beam_check,
     no_beam,
     pair_checks,
@@ -30,17 +30,19 @@ from verify.curves.read import Reading, read_curve
 from verify.methods.names import METHODS
 from verify.methods.plugins import known_methods
 from verify.result import Result
-from verify.scene.magnitudes import LEAST, MOST
+from verify.scene.magnitudes import LARGEST_NUMBER, SMALLEST_NUMBER
 from verify.scene.schema import Scene
 from verify.support.programme import only_opens, turns
 from verify.support.refusal import Refusal
 from verify.verdict import Check, Run, SceneReport
 
 #: Codes that a curve from elsewhere is held against, with the relative tolerance that holds between them as well.
-CODES: Mapping[str, float] = {name: FINE for name, one in METHODS.items() if one.has_mesh and not one.mesh_error}
+CODES: Mapping[str, float] = {
+    name: CODE_TOLERANCE for name, one in METHODS.items() if one.has_mesh and not one.mesh_error
+}
 
 #: Part of its largest load below which a curve bears nothing any more.
-NOTHING = 0.01
+BEARS_NO_LOAD = 0.01
 
 #: Part of the first leg behind which a curve begins late.
 LATE = 0.01
@@ -127,7 +129,7 @@ def _programme(scene: Scene, curve: Result, runs: Iterable[Result]) -> tuple[flo
     bears nothing any more, has come to its end."""
     programme = scene.load.opening
     apart = [float(run.opening.max()) for run in runs if run.complete and run.ending.startswith("separated")]
-    if apart and abs(curve.load[-1]) <= NOTHING * np.max(np.abs(curve.load)):
+    if apart and abs(curve.load[-1]) <= BEARS_NO_LOAD * np.max(np.abs(curve.load)):
         apart.append(float(curve.opening.max()))
     end = min(apart, default=np.inf)
     last = next((i for i, goal in enumerate(programme) if goal > end), None)
@@ -190,11 +192,10 @@ def _keep(curve: Curve, folder: Path) -> None:
 def _of_some_size(path: Path, opening: np.ndarray, load: np.ndarray) -> None:
     """Like the numbers of a scene: squares of larger ones overflow, and a page cannot be drawn to their scale."""
     largest = max(float(np.abs(opening).max()), float(np.abs(load).max()))
-    if not (largest <= MOST and opening.max() >= LEAST):
-        got = f"{largest:g}" if largest > MOST else f"openings up to {opening.max():g}"
-        raise Refusal(
-            f"{path}: must hold numbers of a size <= {MOST:g}, and openings up to {LEAST:g} or more, got {got}"
-        )
+    if not (largest <= LARGEST_NUMBER and opening.max() >= SMALLEST_NUMBER):
+        got = f"{largest:g}" if largest > LARGEST_NUMBER else f"openings up to {opening.max():g}"
+        limits = f"numbers of a size <= {LARGEST_NUMBER:g}, and openings up to {SMALLEST_NUMBER:g} or more"
+        raise Refusal(f"{path}: must hold {limits}, got {got}")
 
 
 def _named(word: str) -> tuple[str, Path]:

@@ -7,8 +7,8 @@ from itertools import combinations
 
 import numpy as np
 
-from verify.checks.between_codes import BEAM, CROSS_CODE, FINE, distance
-from verify.checks.proof import LIMITS, MATCHED, REFERENCE, RUNS, SECOND, proof
+from verify.checks.between_codes import BEAM, CODE_TOLERANCE, CROSS_CODE, distance
+from verify.checks.proof import LIMIT_METHODS, MATCHED, REFERENCE, RUNS, SECOND, proof
 from verify.result import Result
 from verify.scene.schema import Scene
 from verify.verdict import Check
@@ -20,7 +20,7 @@ ODD = "odd one out"
 #: Runs whose points keep their pairs.
 KEPT = {MATCHED, REFERENCE, SECOND, BEAM}
 #: Distance within which two runs agree.
-AGREE = FINE
+AGREE = CODE_TOLERANCE
 
 
 def odd_one_out(scene: Scene, checks: Sequence[Check], results: Mapping[str, Result]) -> tuple[str, ...]:
@@ -31,7 +31,7 @@ def odd_one_out(scene: Scene, checks: Sequence[Check], results: Mapping[str, Res
     results : the runs of the scene, by name
     """
     pairs = [check.subject.split(" / ") for check in checks if not check.passed and " / " in check.subject]
-    compared = {name: run for name, run in results.items() if name not in LIMITS and run.load.size > 1}
+    compared = {name: run for name, run in results.items() if name not in LIMIT_METHODS and run.load.size > 1}
     if not pairs or len(compared) < 2 or max(scene.load.opening) <= 0.0:
         return ()
     end = max(scene.load.opening)

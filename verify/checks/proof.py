@@ -37,7 +37,7 @@ RUNS = {
 }
 
 #: Runs that are held against none.
-LIMITS = {name for name, method in METHODS.items() if method.is_limit}
+LIMIT_METHODS = {name for name, method in METHODS.items() if method.is_limit}
 
 #: Another basis that searches, and the distance to NURBS within which it confirms these.
 CONFIRMING, CONFIRMED = "tspline", 0.005

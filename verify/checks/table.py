@@ -46,13 +46,13 @@ def _run(check: Check) -> str:
 
 
 #: Marks of the states in a table, and their order: the last one is shown where a cell stands for several checks.
-MARKS = {"holds": " ", "unresolved": "?", "broken": "!"}
+STATE_MARKS = {"holds": " ", "unresolved": "?", "broken": "!"}
 
 
 def _used(check: Check) -> tuple[int, float]:
     """Orders checks from well within to far beyond their tolerances."""
-    return list(MARKS).index(check.state), abs(check.value) / check.tolerance if check.tolerance else 0.0
+    return list(STATE_MARKS).index(check.state), abs(check.value) / check.tolerance if check.tolerance else 0.0
 
 
 def _cell(check: Check) -> str:
-    return f"{abs(check.value):.1e}{MARKS[check.state]}"
+    return f"{abs(check.value):.1e}{STATE_MARKS[check.state]}"

@@ -165,7 +165,7 @@ def verify(options: argparse.Namespace) -> int:
     from verify.scene.load import load_scene, verified_scenes
     from verify.studies.found import named
     from verify.studies.plane.study import load_plate
-    from verify.verification import verify, would_run
+    from verify.verification import Subjects, verify, would_run
 
     _alone("verify")
     scenes, plates, wrong = [], [], []
@@ -188,12 +188,12 @@ def verify(options: argparse.Namespace) -> int:
     demands = Demands(options.strict, tuple(options.require))
     for method in demands.required:
         _known_method(method, None, "--require")
-    included = named(options.include)
+    subjects = Subjects(scenes, options.full, plates, curves, named(options.include))
     if options.dry_run:
-        return _listed(would_run(scenes, options.out, options.jobs, options.full))
+        return _listed(would_run(subjects, options.out, options.jobs))
     _folder(options.out)
-    what = (options.full, plates, options.scheduler, included, options.format == "md", curves, demands)
-    return 0 if verify(scenes, options.out, options.jobs, *what) else FAILED
+    text = options.format == "md"
+    return 0 if verify(subjects, options.out, options.jobs, options.scheduler, text, demands) else FAILED
 
 
 def _curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curve, ...]:
@@ -227,22 +227,21 @@ def cost(options: argparse.Namespace) -> int:
 
 def effects(options: argparse.Namespace) -> int:
     from verify.methods.method import NotRun
-    from verify.methods.solve import prepare, require
     from verify.scene.load import load_scene
+    from verify.studies.effects.plan import planned
     from verify.studies.effects.study import effects, would_run
 
     _known_method(options.method, None)
     _alone("effects")
     scene = load_scene(options.scene, options.overrides)
-    what = (options.scene, scene, options.method, options.overrides, options.out)
     try:
-        if options.dry_run:
-            return _listed(would_run(*what))
-        require(prepare(scene, options.method))
-        _folder(options.out)
-        return 0 if effects(*what, options.jobs, options.scheduler).complete else FAILED
+        plan = planned(options.scene, scene, options.method, options.overrides)
     except NotRun as error:
         return _not_run(error)
+    if options.dry_run:
+        return _listed(would_run(plan, options.out))
+    _folder(options.out)
+    return 0 if effects(plan, options.out, options.jobs, options.scheduler).complete else FAILED
 
 
 def scaling(options: argparse.Namespace) -> int:

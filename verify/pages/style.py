@@ -58,7 +58,7 @@ SHOWN_PHASES = (*PHASES, "other")
 THIRD, HALF, WIDE = 3.3, 4.6, 9.4
 
 #: Inches around the drawing: a browser's font may be a little larger than that of the layout.
-_MARGIN = 0.04
+_FIGURE_PADDING = 0.04
 
 # A stress near zero is transparent: it takes the page's own colour, light or dark.
 STRESS_MAP = LinearSegmentedColormap.from_list(
@@ -177,7 +177,7 @@ def sheet_of(figure: Figure) -> Bbox:
         size = axes.get_window_extent()
         _broken(axes.xaxis.label, size.width)
         _broken(axes.yaxis.label, size.height)
-    return Bbox.union([figure.bbox_inches, figure.get_tightbbox().padded(_MARGIN)])
+    return Bbox.union([figure.bbox_inches, figure.get_tightbbox().padded(_FIGURE_PADDING)])
 
 
 def _broken(label: Text, room: float) -> None:

@@ -16,7 +16,7 @@ from verify.runs.estimate import seconds
 from verify.runs.fingerprint import fingerprint
 from verify.runs.folder import read_result
 from verify.runs.pools import pool
-from verify.runs.sweep import FOLDER, Done, Task, listed, sweep
+from verify.runs.sweep import OUTPUT_FOLDER, Done, Task, listed, sweep
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.support.checked_files import Damaged
@@ -64,7 +64,7 @@ class Job:
         return Task(
             self.place,
             fingerprint(scene, self.method, f"fields {self.fields}", f"repeat {self.repeat}"),
-            ("verify.cli", *self._words(FOLDER)),
+            ("verify.cli", *self._words(OUTPUT_FOLDER)),
             "result.json",
             lane=find(self.method).lane,
             seconds=seconds(scene, self.method),

@@ -14,7 +14,7 @@ from pathlib import Path
 from verify.support.refusal import Refusal
 
 #: No scene and no case can be called so.
-NAME = "_runs"
+STORE_FOLDER = "_runs"
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def opened(out: Path) -> Iterator[Store]:
     ------
     Refusal : another process is at work there.
     """
-    root = out / NAME
+    root = out / STORE_FOLDER
     root.mkdir(parents=True, exist_ok=True)
     with (root / ".lock").open("w") as lock:
         try:

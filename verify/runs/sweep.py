@@ -19,14 +19,14 @@ from typing import TextIO
 
 from verify.runs.folder import damage
 from verify.runs.pools import Pool
-from verify.runs.store import NAME, Store, link, opened
+from verify.runs.store import STORE_FOLDER, Store, link, opened
 from verify.support.checked_files import Damaged
 from verify.support.progress import Progress, duration
 
 PROJECT = Path(__file__).resolve().parents[2]
 
 #: Stands in a program for the folder that it is to write into.
-FOLDER = "{folder}"
+OUTPUT_FOLDER = "{folder}"
 
 ALIVE_EVERY_SECONDS = 1.0
 
@@ -42,7 +42,7 @@ class Task:
     ----------
     place : where the result is found under the output folder, and the name of the run for people
     key : what the result rests on, as a hash (`verify.runs.fingerprint`)
-    program : module and arguments; ``FOLDER`` stands for the folder to write into
+    program : module and arguments; ``OUTPUT_FOLDER`` stands for the folder to write into
     proof : the file that a program writes last
     lane : tasks of one lane, unless it is empty, run one after the other
     seconds : about how long it takes
@@ -120,7 +120,7 @@ def _damage(task: Task, store: Store) -> str:
 
 def listed(tasks: Sequence[Task], out: Path, jobs: int) -> list[str]:
     """What a sweep would do, one line a run, and about how long it would take."""
-    store = Store(out / NAME)
+    store = Store(out / STORE_FOLDER)
     lines, missing = [], {}
     for task in tasks:
         at_hand = store.whole(task.key)
@@ -215,7 +215,7 @@ def execute(task: Task, root: Path, cwd: Path, running: set[subprocess.Popen] | 
     """Do one task, wherever the files are seen; why it failed, or nothing. ``running`` knows its process meanwhile."""
     store = Store(root)
     work = store.begin(task.key)
-    words = [str(work) if word == FOLDER else word for word in task.program]
+    words = [str(work) if word == OUTPUT_FOLDER else word for word in task.program]
     with (work / "log.txt").open("w+") as log:
         code = call([sys.executable, "-P", "-m", "verify.runs.child", *words], log, cwd, task.timeout, running)
         log.seek(0)

@@ -12,7 +12,7 @@ from verify.runs.environment import machine, threads, versions
 from verify.runs.folder import write_json
 from verify.verdict import Check, Kind, SceneReport, counted, of_state
 
-NAME = "verdict.json"
+VERDICT_FILE = "verdict.json"
 
 
 def write(out: Path, reports: Sequence[SceneReport], judgement: Judgement, included: Sequence[str] = ()) -> None:
@@ -22,7 +22,7 @@ def write(out: Path, reports: Sequence[SceneReport], judgement: Judgement, inclu
     ----------
     included : folders of studies that the report shows; they take no part in the verdict
     """
-    write_json(out / NAME, content(reports, judgement, included))
+    write_json(out / VERDICT_FILE, content(reports, judgement, included))
 
 
 def content(reports: Sequence[SceneReport], judgement: Judgement, included: Sequence[str] = ()) -> dict[str, Any]:

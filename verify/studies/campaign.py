@@ -29,7 +29,7 @@ METHODS = ("tspline", "nurbs", MATCHED, REFERENCE, SECOND, "beam")
 #: Plane codes that solve one model: with the search of the other face, and with the pairs of points kept.
 SAME_MODEL = (("tspline", "nurbs"), (MATCHED, REFERENCE))
 #: Distance of two plane codes beyond which one of them is wrong.
-APART = 0.005
+LARGEST_DISTANCE = 0.005
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,9 @@ class Row:
 def campaign(seeds: Sequence[int], out: Path, jobs: int, scheduler: str | None = None) -> bool:
     """Run the scenes of the seeds, write ``out``/random.csv, print a table; whether no row has a fault.
 
-    A fault is *silent* where all checks hold and two plane codes differ by more than `APART` or were not compared,
-    *unnamed* where a check is broken and no run is named as the odd one out, *stopped* where a run did not come to the
-    end of its programme.
+    A fault is *silent* where all checks hold and two plane codes differ by more than `LARGEST_DISTANCE` or were not
+    compared, *unnamed* where a check is broken and no run is named as the odd one out, *stopped* where a run did not
+    come to the end of its programme.
     """
     plan = {seed: list(_jobs(seed)) for seed in seeds}
     outcomes = {
@@ -86,7 +86,7 @@ def row(report: SceneReport) -> Row:
     apart = float(np.max([_between(results, pair, end) for pair in pairs])) if pairs else nan  # NaN stays NaN
     odd = next((remark for remark in report.remarks if remark.startswith(ODD)), "")
     stopped = [run.name for run in report.runs if run.name != SECOND and not (run.result and run.result.complete)]
-    silent = counts.held == counts.total and not apart <= APART
+    silent = counts.held == counts.total and not apart <= LARGEST_DISTANCE
     fault = "stopped" if stopped else "silent" if silent else "unnamed" if counts.broken and not odd else ""
     zone = 1.0 / (1.0 / slender_length(scene) + 1.0 / bulk_length(scene))
     return Row(

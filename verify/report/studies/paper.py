@@ -18,7 +18,7 @@ from verify.studies.paper.statements import identities, statements
 from verify.studies.paper.study import Study, Trial
 
 #: Measure -> heading of its table, of Figures 6 to 8.
-TABLES = {
+TABLE_TITLES = {
     "error": "Curve distance to the converged curve",
     "oscillation": "Oscillation on the propagation branch",
 }
@@ -141,7 +141,7 @@ def _by_points(study: Study) -> Iterator[Table]:
     """A table a measure: a row for every basis and penalty, a cell for every number of points."""
     bases, points, penalties = (study.values(name) for name in ("basis", "points", "penalty"))
     heads = (Head("Basis"), Head("Penalty"), *(Head(f"{n} points") for n in points))
-    for measure, title in TABLES.items():
+    for measure, title in TABLE_TITLES.items():
         groups = []
         for law, dofs in product(study.values("scene"), study.values("dofs")):
             rows = []

@@ -26,7 +26,7 @@ from verify.runs.environment import machine
 from verify.runs.estimate import steps
 from verify.runs.fingerprint import source
 from verify.scene.parse import SceneError, parse_scene
-from verify.scene.schema import STEPS, Scene
+from verify.scene.schema import DEFAULT_STEPS, Scene
 from verify.studies.cost.ladder import LADDER
 from verify.support.checked_files import Damaged, read_json
 from verify.support.progress import duration
@@ -157,7 +157,7 @@ def _steps(scene: Scene, accuracy: float) -> tuple[str, ...]:
     asked = scene.discretization
     if asked.steps == "auto":
         return (f"discretization.bend={min(asked.bend, max(GUESS.bend * accuracy, 1e-5))!r}",)
-    return (f"discretization.steps={max(asked.steps, STEPS)}",)
+    return (f"discretization.steps={max(asked.steps, DEFAULT_STEPS)}",)
 
 
 def iterations(scene: Scene, method: str) -> float:

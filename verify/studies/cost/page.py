@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 _SCRIPT = Path(__file__).with_name("chart.js")
 
 #: What the chart can show on its axes: key of a row, name, factor.
-ACROSS = (
+X_AXES = (
     ("seconds", "seconds", 1),
     ("dofs", "unknowns", 1),
     ("nonzeros", "entries of the tangent", 1),
     ("newton_iterations", "Newton iterations", 1),
     ("peak_memory_mb", "peak memory (MB)", 1),
 )
-UP = (
+Y_AXES = (
     ("curve_error", "curve error (%)", 100),
     ("peak_error", "error of the peak load (%)", 100),
     ("energy_error", "error of the dissipated energy (%)", 100),
@@ -71,7 +71,7 @@ class Chart:
 def chart(rows: Sequence[Row], key: str) -> Chart:
     """The chart of some runs; ``key`` is unique in the page."""
     methods = {method: METHODS[method] for method in METHODS if any(row.method == method for row in rows)}
-    return Chart(ACROSS, UP, methods, _for_script(rows), work_precision(rows, f"{key}-work-precision"))
+    return Chart(X_AXES, Y_AXES, methods, _for_script(rows), work_precision(rows, f"{key}-work-precision"))
 
 
 def script() -> Markup:

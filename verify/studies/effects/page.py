@@ -26,7 +26,7 @@ BARS = {
 }
 
 #: Changes below this part are drawn as none.
-LEAST = 1e-5
+SMALLEST_BAR = 1e-5
 
 
 def write(study: Study, path: Path) -> None:
@@ -49,13 +49,13 @@ def changed(rows: Sequence[Row], key: str) -> Panel:
         step = 0.8 / len(BARS)
         for i, (column, (name, ink)) in enumerate(BARS.items()):
             value = np.array([getattr(one, column) for one in rows])
-            size = np.where(np.abs(value) > LEAST, np.abs(value), LEAST)
+            size = np.where(np.abs(value) > SMALLEST_BAR, np.abs(value), SMALLEST_BAR)
             at = np.arange(len(rows))[::-1] + 0.4 - (i + 0.5) * step
             axes.barh(at, 100 * size, 0.9 * step, color=colour(ink), linewidth=0, label=name)
             for y, x, change in zip(at, size, value, strict=True):
                 text = in_cell(change, column) if np.isfinite(change) else ""
                 axes.annotate(text, (100 * x, y), (3, 0), textcoords="offset points", va="center", size=6.5)
-        axes.set(xscale="log", xlabel="change with the effect (%)", xlim=(100 * LEAST, None))
+        axes.set(xscale="log", xlabel="change with the effect (%)", xlim=(100 * SMALLEST_BAR, None))
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.set_xlim(right=8 * axes.get_xlim()[1])
         _named(axes, rows)

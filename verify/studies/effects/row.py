@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, nan
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,10 +15,9 @@ from verify.result import Result, run_seconds
 from verify.runs.jobs import Job, Outcome
 from verify.studies.effects.plan import Pair
 from verify.studies.frame import BUSY, failure, unmeasured
-from verify.support.checked_files import Shape, read_table
 
 #: Part of the work, or of the largest load, that counts as none.
-NOTHING = 1e-9
+ZERO = 1e-9
 
 #: Changes by the name of their column, in the words of the table.
 CHANGES: Mapping[str, str] = {
@@ -28,10 +26,6 @@ CHANGES: Mapping[str, str] = {
     "dissipated_change": "dissipated energy",
     "work_change": "work",
 }
-
-
-#: What is read of ``effects.json`` again.
-ABOUT: Shape = {}
 
 
 @dataclass(frozen=True)
@@ -85,11 +79,6 @@ class Row:
             return "no time"
         busy = f" (equal runs differ by up to {self.time_spread:.2g} x)" if self.time_spread > BUSY else ""
         return f"{self.time_ratio:.2g} x time{busy}"
-
-
-def read_csv(path: Path) -> list[Row]:
-    """Rows that were written."""
-    return read_table(path, Row)
 
 
 def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[Outcome]]) -> Row:
@@ -163,8 +152,8 @@ def legs(result: Result, programme: Sequence[float]) -> list[Curve]:
 
 def change(value: float, before: float, scale: float) -> float:
     """value / before - 1: 0 where both are nothing on the ``scale``, NaN where only ``before`` is."""
-    if abs(before) <= NOTHING * scale:
-        return 0.0 if abs(value) <= NOTHING * scale else nan
+    if abs(before) <= ZERO * scale:
+        return 0.0 if abs(value) <= ZERO * scale else nan
     return value / before - 1.0
 
 

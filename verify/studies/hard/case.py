@@ -79,7 +79,7 @@ class Case:
 
 
 #: One arm on a mesh that resolves the process zone of ``dcb-czm1`` with any basis, at the price of a coarse one.
-FINE = ("effects.symmetry=true", "discretization.dofs=6000")
+ONE_FINE_ARM = ("effects.symmetry=true", "discretization.dofs=6000")
 
 
 def variant(name: str, scene: str, *overrides: str) -> Variant:

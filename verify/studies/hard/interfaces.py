@@ -10,14 +10,14 @@ from verify.curves.curve import oscillation
 from verify.curves.of_run import cubics
 from verify.methods.solve import solve
 from verify.result import Result
-from verify.studies.hard.case import FINE, Case, Finding, Number, Trials, Variant, variant
+from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Number, Trials, Variant, variant
 from verify.studies.hard.criteria import distance
 from verify.verdict import Check
 
 
 def _penalties() -> Sequence[Variant]:
     """All of them where a run costs little, and the extremes, which are hardest to solve, in finite kinematics."""
-    fine = (*FINE, "effects.kinematics=linear")
+    fine = (*ONE_FINE_ARM, "effects.kinematics=linear")
     sweep = [variant(f"penalty-1e{n}", "dcb-czm1", f"interface.penalty=1e{n}", *fine) for n in range(2, 11)]
     coarse = "discretization.dofs=280"
     return sweep + [variant(f"finite-1e{n}", "dcb-czm1", f"interface.penalty=1e{n}", coarse) for n in (2, 6, 8, 10)]

@@ -7,13 +7,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from verify.scene.bodies import Dcb, Isotropic
-from verify.studies.hard.case import FINE, Case, Finding, Trial, Trials, Variant, variant
+from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Trial, Trials, Variant, variant
 from verify.studies.hard.criteria import distance
 from verify.verdict import Check
 
 
 def _big_steps() -> Sequence[Variant]:
-    keys = (*FINE, "effects.kinematics=linear")
+    keys = (*ONE_FINE_ARM, "effects.kinematics=linear")
     return [variant(f"steps-{n}", "dcb-czm1", f"discretization.steps={n}", *keys) for n in (5, 5000)]
 
 
@@ -26,7 +26,7 @@ _CLOSING = -0.1
 
 
 def _unload() -> Sequence[Variant]:
-    keys = (*FINE, "interface.penalty=1e3")  # soft enough for the mesh to see how it gives way
+    keys = (*ONE_FINE_ARM, "interface.penalty=1e3")  # soft enough for the mesh to see how it gives way
     return [
         variant(f"{name}-{kinematics}", "dcb-czm1", f"effects.kinematics={kinematics}", f"load.opening={way}", *keys)
         for kinematics in ("linear", "finite")
@@ -121,7 +121,7 @@ def pressed_end(load: float, length: float, bending: float, k: float, elements: 
 def _reversals() -> Sequence[Variant]:
     tiny = "[0.5, 0.499999999, 1.0, 0.999999, 1.5, 1.499, 2.0]"
     return [
-        variant(f"reversals-{basis}", "dcb-czm1", f"load.opening={way}", *FINE)
+        variant(f"reversals-{basis}", "dcb-czm1", f"load.opening={way}", *ONE_FINE_ARM)
         for basis, way in (("none", "2.0"), ("tiny", tiny))
     ]
 

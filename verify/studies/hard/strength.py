@@ -11,7 +11,7 @@ from verify.curves.curve import PROPAGATION, load_at, peak
 from verify.curves.of_run import cubics
 from verify.methods.solve import prepare, solve
 from verify.methods.zone_resolution import warnings
-from verify.studies.hard.case import FINE, Case, Finding, Number, Trial, Trials, Variant, variant
+from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Number, Trial, Trials, Variant, variant
 from verify.theory.law import Bilinear
 from verify.verdict import Check
 
@@ -94,7 +94,7 @@ def _judge_toward_lefm(trials: Trials) -> Iterator[Finding]:
 
 
 def _brittle() -> Sequence[Variant]:
-    return [variant(f"ductility-{r:g}", "dcb-czm1", f"interface.ductility={r}", *FINE) for r in (1.01, 1e4)]
+    return [variant(f"ductility-{r:g}", "dcb-czm1", f"interface.ductility={r}", *ONE_FINE_ARM) for r in (1.01, 1e4)]
 
 
 def _as_printed() -> Sequence[Variant]:

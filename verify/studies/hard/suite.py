@@ -12,7 +12,7 @@ from verify.checks.table import check_table
 from verify.runs.estimate import seconds
 from verify.runs.fingerprint import digest, fingerprint, source
 from verify.runs.pools import pool
-from verify.runs.sweep import FOLDER, Done, Task, listed, sweep
+from verify.runs.sweep import OUTPUT_FOLDER, Done, Task, listed, sweep
 from verify.studies.hard.case import Case
 from verify.studies.hard.one import Verdict, read_cell, read_verdict
 from verify.support.say import write_page
@@ -68,7 +68,7 @@ def task(case: Case, basis: str) -> Task:
     return Task(
         f"{case.name}/{basis}",
         digest(case.name, own, [(name, fingerprint(scene, basis)) for name, scene in scenes]),
-        ("verify.studies.hard.one", case.name, basis, FOLDER),
+        ("verify.studies.hard.one", case.name, basis, OUTPUT_FOLDER),
         "verdict.json",
         seconds=sum(seconds(scene, basis) for _, scene in scenes),
         read=read_cell,

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,20 +13,9 @@ from verify.result import Result
 from verify.runs.jobs import Outcome
 from verify.studies.frame import failure, unmeasured
 from verify.studies.scaling.plan import DEGREES, Run
-from verify.support.checked_files import ANY, NUMBER, Shape, read_table
 
 #: Parts of a Newton iteration; "other" is all that belongs to none: step control, energies, the rows that are written.
 PARTS = ("assembly", "factor", "solve", "other")
-
-
-#: What is read of ``scaling.json`` again.
-ABOUT: Shape = {
-    "growth": {ANY: {ANY: {"exponent": NUMBER, "standard_error": NUMBER, "factor": NUMBER}}},
-    "strong_scaling": [
-        {"dofs": int, "ranks": int, "speed_up": {ANY: NUMBER}, "serial": {ANY: NUMBER}, "efficiency": NUMBER}
-    ],
-    "sentences": [str],
-}
 
 
 @dataclass(frozen=True)
@@ -65,11 +53,6 @@ class Row:
     @property
     def measured(self) -> bool:
         return isfinite(self.iteration)
-
-
-def read_csv(path: Path) -> list[Row]:
-    """Rows that were written."""
-    return read_table(path, Row)
 
 
 def row(run: Run, outcomes: Sequence[Outcome]) -> Row:

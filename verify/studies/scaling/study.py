@@ -17,7 +17,7 @@ from verify.studies.scaling.plan import SIZES, planned
 from verify.studies.scaling.row import PARTS, Row, row
 
 #: What grows, by the name of the column.
-GROWING = ("iteration", *PARTS, "peak_memory_mb", "model_memory_mb")
+FITTED_COLUMNS = ("iteration", *PARTS, "peak_memory_mb", "model_memory_mb")
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Study(frame.Study):
     @cached_property
     def growth(self) -> Mapping[str, Mapping[str, Fit]]:
         """Power laws by method: of the time of an iteration, of its parts, and of the memory."""
-        return {method: {what: self._fit(method, what) for what in GROWING} for method in self.methods}
+        return {method: {what: self._fit(method, what) for what in FITTED_COLUMNS} for method in self.methods}
 
     def value(self, one: Row, what: str) -> float:
         """A number of a row; "model_memory_mb" is what the mesh adds to the memory of the program."""

@@ -23,8 +23,9 @@ from verify.studies.cost import study as study_of
 from verify.studies.cost.findings import LEVELS, cheapest
 from verify.studies.cost.ladder import BEAM, FAMILIES, LADDER, Family, Try, ladder, ladders
 from verify.studies.cost.reference import reference_jobs
-from verify.studies.cost.row import Row, read_csv
+from verify.studies.cost.row import Row
 from verify.studies.cost.study import climb
+from verify.support.checked_files import read_table
 
 
 def test_rungs_divide_the_process_zone_as_they_say() -> None:
@@ -162,7 +163,7 @@ def test_a_study_from_ladder_to_files(seconds: float, tmp_path: Path, monkeypatc
     monkeypatch.setattr(frame, "run_all", run_all)
     monkeypatch.setattr(frame, "write_page", lambda module, study, path: None)
     found = study_of.cost("dcb-czm1", SCENE, (), tmp_path, 2)
-    rows = read_csv(tmp_path / "cost.csv")
+    rows = read_table(tmp_path / "cost.csv", Row)
     assert (tmp_path / "cost.json").exists() and "written: " in capsys.readouterr().out
     if seconds == 0.0:
         assert any("The time allowed" in text for text in found.left_out) and len(asked) < 12
@@ -184,7 +185,7 @@ def test_a_small_study_for_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
     command = ["cost", "dcb-czm1-linear", "--set", "load.opening=1.0", "--out", str(tmp_path)]
     assert main(command) == 0
-    rows = read_csv(tmp_path / "cost.csv")
+    rows = read_table(tmp_path / "cost.csv", Row)
     found = json.loads((tmp_path / "cost.json").read_text())
     assert {one.method for one in rows} == {"nurbs", "tspline", "beam"}
     assert found["reference"]["uncertainty"]["curve"] < 0.001
@@ -194,7 +195,7 @@ def test_a_small_study_for_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     assert next(one.times for one in rows if one.run == best) == study_of.LIMITS.times
     capsys.readouterr()
     assert main(command) == 0
-    assert read_csv(tmp_path / "cost.csv") == rows
+    assert read_table(tmp_path / "cost.csv", Row) == rows
     assert not re.search(r"\b1 of", capsys.readouterr().err), "a run is made again"
 
 
