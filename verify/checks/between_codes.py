@@ -47,11 +47,11 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
     results : runs by name: the method, or a name such as "dolfinx-p3" where a method has several runs
     """
     usable = {method: result for method, result in results.items() if result.load.size > 1}
-    of_beam = beam_error.tolerance(scene)
+    fine = beam_error.tolerance(scene)
     checks: list[Check] = []
-    if BEAM in usable and of_beam is not None and not no_beam(scene):
+    if BEAM in usable and fine is not None and not no_beam(scene):
         for name in (name for name in RUNS if name in usable and name != BEAM):
-            check = beam_check(scene, name, usable[name], usable[BEAM], max(of_beam, RUNS[name].mesh_error))
+            check = beam_check(scene, name, usable[name], usable[BEAM], max(fine, RUNS[name].mesh_error))
             checks.append(proven(scene, check, usable))
     for method, tolerance in CROSS_CODE.items():
         if method in usable and REFERENCE in usable:

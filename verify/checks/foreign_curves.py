@@ -170,12 +170,12 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
         if method in usable:
             pair = pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
             checks += [proven(scene, check, usable) for check in pair]
-    of_beam = beam_error.tolerance(scene)
-    if BEAM in usable and of_beam is not None and not no_beam(scene):
+    fine = beam_error.tolerance(scene)
+    if BEAM in usable and fine is not None and not no_beam(scene):
         beam = usable[BEAM]
-        checks.append(proven(scene, beam_check(scene, name, curve, beam, of_beam), usable))
+        checks.append(proven(scene, beam_check(scene, name, curve, beam, fine), usable))
         curves = (curve.opening, curve.load), (beam.opening, beam.load)
-        checks += farthest_check(f"{name} / {BEAM}", *curves, programme, of_beam, "analytical")
+        checks += farthest_check(f"{name} / {BEAM}", *curves, programme, fine, "analytical")
     for known_name, known in zip(published_names(scene), scene.published, strict=True):
         value = known.deviation(published_load(known, curve, programme))
         checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))

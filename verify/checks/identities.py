@@ -48,15 +48,15 @@ NO_DEPTH = 1e-6  # penetration, over the thickness of an arm, that counts as zer
 J_OF_LAW = "The J-integral of the specimen is the area under the law."
 J_OF_ANY_LAW = "The J-integral of the specimen is G_Ic once the bond has opened (of this law no check knows the shape)."
 
-#: Checks whose error is that of the mesh in the process zone.
+#: Checks that hold as well as the mesh resolves the process zone.
 OF_THE_ZONE = ("j-integral", "j-pressed", "growth-angle")
-#: Checks that require an evenly distributed load: under a point load the slope of the end face does not converge.
+#: Checks that need the load to be spread evenly over the end face: under a point load the slope is that of no mesh.
 OF_THE_FACE = ("j-integral", "j-pressed", "growth-load", "growth-angle")
-#: Kinds of the checks that are not exact identities.
+#: What stands behind a check that is no identity.
 KINDS: Mapping[str, Kind] = {"growth-angle": "analytical"}
 
 
-#: Name, function of scene and columns, tolerance, meaning in a sentence of the report.
+#: Name, value from scene and columns, tolerance, and one sentence for the reader of the report.
 Identity = tuple[str, Callable[[Scene, Steps], float | None], float, str]
 
 
@@ -227,7 +227,7 @@ def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = l
 
 
 def _missing_part(scene: Scene, steps: Steps) -> float:
-    """Distance of the last opening from the end of the programme, over the largest opening."""
+    """Distance from the end of the programme over its largest opening."""
     programme = np.array(scene.load.opening)
     reached = steps["opening"][-1] if steps["opening"].size else 0.0
     return float(abs(reached - programme[-1]) / np.max(np.abs(programme)))

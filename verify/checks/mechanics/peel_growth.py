@@ -15,7 +15,7 @@ AT_THE_END = 1e-9
 
 
 def growth_load(scene: Scene, steps: Steps) -> float | None:
-    """Largest relative amount by which the load falls below G_Ic w while the crack of a peel grows, as a negative number.
+    """Largest relative amount by which the load falls below G_Ic w while the crack of a peel grows.
 
     With finite kinematics ``J w = load s - w sum of the face energies = G_Ic w``, with the slope s = du_y/dX =
     lambda sin(theta) of the loaded face. It is at most 1, unless the load stretches an upright strip: lambda = 1 + load
@@ -78,8 +78,8 @@ def out_of_reach(scene: Scene, steps: Steps) -> np.ndarray:
 
     Ahead of the front the stresses in strip and substrate decay as ``exp(-x / l)``, l = (4 E I / K w)^(1/4) for a beam
     on the foundation K of bond and substrate in series. The energy on the flush faces, which load sin(theta) does not
-    contain, decays as ``exp(-2 x / l)``: 3e-4 of G_Ic at four lengths. The stresses in a substrate that is clamped below
-    decay as ``exp(-pi x / 2 t)``.
+    contain, decays as ``exp(-2 x / l)``: 3e-4 of G_Ic at four lengths. Those in a substrate that is clamped below decay
+    as ``exp(-pi x / 2 t)``.
     """
     if "damage_front" not in steps or not scene.specimen.clamped:
         return np.zeros(steps["opening"].size, dtype=bool)
