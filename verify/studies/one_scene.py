@@ -23,12 +23,12 @@ from verify.studies.mesh_sequences import sequences
 from verify.studies.paper.plan import cubic
 from verify.verdict import Check, Run, SceneReport
 
-#: T-splines that follow the process zone, with at most a third of the unknowns that the meshes at rest have.
+#: Overrides for T-splines whose mesh follows the process zone, with at most a third of the unknowns of fixed meshes.
 ADAPTIVE = ("discretization.adaptive=true", "discretization.dofs=700")
 
 
 def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
-    """The runs of one scene; those that do not take its mesh files make meshes of their own."""
+    """The runs of one scene; methods that cannot read its mesh files use generated meshes."""
     own = (given_meshes.OWN,) if scene.specimen.mesh else ()
     for method in known_methods():
         yield Job(source, scene, method, method, () if find(method).takes_files else own)
@@ -67,12 +67,12 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
 
 
 def _with_its_mesh(scene: Scene, job: Job) -> Scene:
-    """The scene as far as its mesh files are concerned: without them where the job is."""
+    """The scene, without its mesh files where the job does not use them."""
     return given_meshes.own_mesh(scene) if given_meshes.OWN in job.overrides else scene
 
 
 def convergence(reports: Sequence[SceneReport]) -> list[str]:
-    """Observed order and grid convergence index of the peak load, where there are three meshes or more."""
+    """Observed order and grid convergence index of the peak load, for methods with at least three meshes."""
     return [
         f"{report.scene.name}: {one.quantity} of {len(one.runs)} {find(one.method).label} meshes: order "
         f"{one.found.order:.2f}, limit {one.found.limit:.6g}, GCI {one.found.gci:.2%}; {one.found.verdict}"

@@ -1,4 +1,4 @@
-"""The study as a page: one self-contained HTML file with a chart that answers questions."""
+"""The study as a page: one self-contained HTML file with an interactive chart."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _SCRIPT = Path(__file__).with_name("chart.js")
 
-#: What the chart can show on its axes: key of a row, name, factor.
+#: Quantities for the axes of the chart: field of a row, label, factor.
 X_AXES = (
     ("seconds", "seconds", 1),
     ("dofs", "unknowns", 1),
@@ -41,7 +41,7 @@ Y_AXES = (
 
 @dataclass(frozen=True)
 class Level:
-    """What an accuracy costs, at each method's best number of steps and at the same one."""
+    """The cost of an accuracy: with each method's best number of steps, and with equal steps."""
 
     name: str
     best: Cheapest
@@ -59,7 +59,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Chart:
-    """What the template of the chart prints; ``data`` is for the script, ``static`` for a page without."""
+    """Content of the template of the chart; ``data`` for the script, ``static`` for pages without scripts."""
 
     across: tuple[tuple[str, str, int], ...]
     up: tuple[tuple[str, str, int], ...]
@@ -75,7 +75,7 @@ def chart(rows: Sequence[Row], key: str) -> Chart:
 
 
 def script() -> Markup:
-    """What makes the charts of a page answer."""
+    """The script of the charts."""
     return Markup(_SCRIPT.read_text(encoding="utf-8"))
 
 

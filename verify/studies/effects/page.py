@@ -16,7 +16,7 @@ from verify.studies.page import write_study
 if TYPE_CHECKING:
     from verify.studies.effects.study import Study
 
-#: Columns that are drawn, with their names and colours of the palette.
+#: Columns of the chart, each with its name and its colour in the palette.
 BARS = {
     "curve_change": ("curve", "accent"),
     "peak_change": (CHANGES["peak_change"], "nurbs"),
@@ -25,7 +25,7 @@ BARS = {
     "work_change": (CHANGES["work_change"], "beam"),
 }
 
-#: Changes below this part are drawn as none.
+#: Left end of the logarithmic axis; smaller changes have no bar.
 SMALLEST_BAR = 1e-5
 
 
@@ -37,13 +37,13 @@ def write(study: Study, path: Path) -> None:
 
 
 def in_cell(fraction: float, column: str) -> str:
-    """A change in a cell of the table; a distance of curves has no sign."""
+    """A change as text; distances of curves have no sign."""
     text = signed(fraction).replace("-", "−") if np.isfinite(fraction) else "–"
     return text.lstrip("+") if column == "curve_change" else text
 
 
 def changed(rows: Sequence[Row], key: str) -> Panel:
-    """Size of every change on a logarithmic axis; its sign stands beside the bar."""
+    """Bars of the absolute changes on a logarithmic axis, with the signed values beside them."""
     with drawing():
         figure, axes = panel(WIDE, 0.9 * len(rows) + 1.0, left=1.5, top=0.4)
         step = 0.8 / len(BARS)
@@ -65,7 +65,7 @@ def changed(rows: Sequence[Row], key: str) -> Panel:
 
 
 def times(rows: Sequence[Row], key: str) -> Panel:
-    """Time with every effect over that without it."""
+    """Bars of the time with each effect over the time without it."""
     with drawing():
         figure, axes = panel(WIDE, 0.35 * len(rows) + 0.9, left=1.5)
         at, ratio = np.arange(len(rows))[::-1], np.array([one.time_ratio for one in rows])
