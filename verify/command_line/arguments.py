@@ -21,7 +21,7 @@ def count(text: str) -> int:
 
 
 def seeds(text: str) -> tuple[int, int]:
-    """The first and the last: a number N stands for 0 to N - 1, A-B for A to B."""
+    """First and last seed: N means 0 to N - 1, A-B means A to B."""
     first, dash, last = text.partition("-")
     try:
         ends = (count(first), count(last)) if dash else (0, positive(first) - 1)

@@ -1,4 +1,4 @@
-"""The commands: each takes its options to the work, refuses what cannot be done, and returns an exit code."""
+"""The commands: each checks its options, does its work, and returns an exit code."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def solve(options: argparse.Namespace) -> int:
 
 
 def _accurate(options: argparse.Namespace) -> int:
-    """Solve to an accuracy: choose method and mesh, say what and for how long, and verify the solution."""
+    """Solve to an accuracy: choose method and mesh, announce them with the expected time, verify the solution."""
     from verify.methods import zone_resolution
     from verify.methods.solve import prepare
     from verify.runs.environment import mpi_size
@@ -103,7 +103,7 @@ def _kept(options: argparse.Namespace) -> Keep:
 
 
 def _say_before(prepared: Prepared, frames: bool) -> None:
-    """What was decided, and what the mesh cannot resolve."""
+    """Messages before a run: automatic decisions, and warnings of coarse meshes."""
     from verify.methods import through_thickness, zone_resolution
 
     coarse = (*zone_resolution.warnings(prepared), *through_thickness.warnings(prepared))
@@ -128,7 +128,7 @@ def _broken(checks: Sequence[Check]) -> list[str]:
 
 
 def _watched(prepared: Prepared, folder: Path, keep: Keep, quiet: bool) -> tuple[Result, tuple[Check, ...]]:
-    """The run with its progress along the programme."""
+    """Run with a progress bar over the programme."""
     from verify.runs.run import run
     from verify.support.progress import Progress
 
@@ -197,7 +197,7 @@ def verify(options: argparse.Namespace) -> int:
 
 
 def _curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curve, ...]:
-    """Those of other codes, with what the options say of their columns."""
+    """The curves of other codes, read with the options for their columns."""
     from verify.checks.foreign_curves import read_curves
     from verify.curves.read import Reading
 
@@ -211,18 +211,25 @@ def _curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curv
 
 
 def cost(options: argparse.Namespace) -> int:
-    from verify.methods.given_meshes import refuse_files
-    from verify.scene.load import load_scene
     from verify.studies.cost.study import cost, would_run
 
-    _alone("cost")
-    scene = load_scene(options.scene, options.overrides)
-    refuse_files(scene, "debond cost")
-    what = (options.scene, scene, options.overrides, options.out, options.jobs)
+    scene = _studied(options, "cost")
     if options.dry_run:
-        return _listed(would_run(*what))
+        return _listed(would_run(options.scene, scene, options.overrides, options.out, options.jobs))
     _folder(options.out)
-    return 0 if cost(*what) is not None else FAILED
+    study = cost(options.scene, scene, options.overrides, options.out, options.jobs)
+    return 0 if study is not None else FAILED
+
+
+def _studied(options: argparse.Namespace, command: str) -> Scene:
+    """The scene of a study that generates its own meshes."""
+    from verify.methods.given_meshes import refuse_files
+    from verify.scene.load import load_scene
+
+    _alone(command)
+    scene = load_scene(options.scene, options.overrides)
+    refuse_files(scene, f"debond {command}")
+    return scene
 
 
 def effects(options: argparse.Namespace) -> int:
@@ -245,18 +252,13 @@ def effects(options: argparse.Namespace) -> int:
 
 
 def scaling(options: argparse.Namespace) -> int:
-    from verify.methods.given_meshes import refuse_files
-    from verify.scene.load import load_scene
     from verify.studies.scaling.study import scaling, would_run
 
-    _alone("scaling")
-    scene = load_scene(options.scene, options.overrides)
-    refuse_files(scene, "debond scaling")
-    what = (options.scene, scene, options.overrides, options.out)
+    scene = _studied(options, "scaling")
     if options.dry_run:
-        return _listed(would_run(*what))
+        return _listed(would_run(options.scene, scene, options.overrides, options.out))
     _folder(options.out)
-    return 0 if scaling(*what).complete else FAILED
+    return 0 if scaling(options.scene, scene, options.overrides, options.out).complete else FAILED
 
 
 def hard(options: argparse.Namespace) -> int:
@@ -410,7 +412,7 @@ def _known_method(method: str, dofs: int | None, option: str = "--method") -> No
 
 
 def _folder(path: Path) -> None:
-    """Make the output folder now, so that hours of work do not end at a closed door."""
+    """Create the output folder now, so that a folder without write permission is refused before the work."""
     try:
         path.mkdir(parents=True, exist_ok=True)
         (path / ".writable").touch()

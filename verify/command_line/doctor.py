@@ -43,7 +43,7 @@ PACKAGES = (
 
 
 def examine() -> tuple[list[str], bool]:
-    """Lines for the user, and whether the main job can run at all."""
+    """Lines for the user, and whether all required packages are installed."""
     needed = all(_present(package.module) for package in PACKAGES if not package.extra)
     report = all(map(_present, ("jinja2", "matplotlib", "PIL")))
     lines = [*_machine(), "", *map(_package, PACKAGES), *_dolfinx(), "", *map(_state, plugins().values())]
@@ -70,7 +70,7 @@ def _machine() -> Iterator[str]:
 
 
 def _memory() -> tuple[str, str]:
-    """In all, and what is free of it."""
+    """Total and free memory."""
     found = Path("/proc/meminfo")
     sizes = dict(re.findall(r"(\w+): +(\d+) kB", found.read_text())) if found.exists() else {}
     total, free = (int(sizes.get(key, 0)) / 1024**2 for key in ("MemTotal", "MemAvailable"))
@@ -78,7 +78,7 @@ def _memory() -> tuple[str, str]:
 
 
 def _cache() -> tuple[str, str]:
-    """Whether the folder in which ./debond keeps what it builds can be written to."""
+    """Whether the folder for the environments of ./debond is writable, and its path."""
     home = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
     folder = Path(os.environ.get("DEBOND_CACHE") or home / "debond").expanduser().absolute()
     there = next(path for path in (folder, *folder.parents) if path.exists())

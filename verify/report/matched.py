@@ -1,4 +1,4 @@
-"""The effects that a matched interface neglects in a peel test, a sentence for each such run."""
+"""The error of a matched interface in a peel test, in a sentence per run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from verify.scene.schema import Scene
 
 
 def sentences(scene: Scene, found: Sequence[Entry]) -> tuple[str, ...]:
-    """A sentence for each DOLFINx run of a peel test with finite kinematics; linear kinematics follow no surface."""
+    """A sentence for each DOLFINx run of a peel test with finite kinematics; linear kinematics has no such error."""
     if not scene.specimen.clamped or simulated(scene)["kinematics"] == "linear":
         return ()
     runs = (entry for entry in found if entry.method == "dolfinx" and entry.agreement is not None)

@@ -1,4 +1,4 @@
-"""Snapshots of the runs side by side, and the traction along the interface."""
+"""Snapshots of the runs grouped by opening, and the traction along the interface."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def shared_snapshots(runs: Sequence[Entry]) -> list[list[tuple[Entry, Snapshot]]
 
 
 def process_zone(snapshot: Snapshot) -> tuple[float, float] | None:
-    """Start and end of the damaged, not yet open part of the interface; None where nothing is damaged."""
+    """Start and end of the damaged part of the interface that is not fully open; None without damage."""
     s, damage = np.asarray(snapshot.s_q), np.asarray(snapshot.damage_q)
     active = (damage > 1e-9) & (damage < 1 - 1e-9)
     if not active.any():
@@ -45,7 +45,7 @@ def process_zone(snapshot: Snapshot) -> tuple[float, float] | None:
 
 
 def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, small: bool) -> Panel:
-    """Traction along the interface at one opening, all methods over each other; ``small`` for three in a row."""
+    """Traction of all methods along the interface at one opening; ``small``: for three panels in a row."""
     units, strength = Units.of(scene.units), scene.interface.strength
     opening = group[0][1].opening
     zone = process_zone(group[0][1])
