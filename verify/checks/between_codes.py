@@ -11,7 +11,7 @@ from dataclasses import replace
 from math import inf
 
 from verify.checks import beam_error, load_introduction
-from verify.checks.proof import REFERENCE, RUNS, beside_models, difference_of_models, drawn, held_against, proof
+from verify.checks.proof import REFERENCE, RUNS, beside_models, difference_of_models, held_against, proof, sampled
 from verify.curves.curve import curve_error, first_drop, from_origin, load_at
 from verify.curves.leg_checks import farthest_check, programme_checks, stiffness_check
 from verify.curves.legs import path
@@ -95,7 +95,7 @@ def pair_checks(scene: Scene, pair: str, a: Result, b: Result, tolerance: float)
         meaning = "Two codes that share nothing find the same peak load (relative difference)."
         checks.append(Check("peak", pair, ratio, tolerance, "cross-code", meaning))
     curves = (a.opening, a.load), (b.opening, b.load)
-    checks += stiffness_check(pair, drawn(a), drawn(b), programme, tolerance)
+    checks += stiffness_check(pair, sampled(a), sampled(b), programme, tolerance)
     checks += farthest_check(pair, *curves, programme, tolerance)
     return (*checks, *programme_checks(pair, *curves, programme, tolerance))
 
@@ -161,7 +161,7 @@ def published_load(known: Published, result: Result, programme: Sequence[float] 
     """
     if known.quantity == "peak" or known.opening is None:
         return peak_load(result)
-    curve = drawn(result)
+    curve = sampled(result)
     if known.leg is None:
         return float(load_at(curve, known.opening))
     legs = path(curve, programme).legs[known.leg - 1 : known.leg]

@@ -16,9 +16,10 @@ from math import inf
 
 import numpy as np
 
-from verify.curves.curve import Curve, curve_error, dense, peak
+from verify.curves.curve import Curve, curve_error, peak
 from verify.curves.leg_checks import stiffness
 from verify.curves.legs import path
+from verify.curves.of_run import cubics
 from verify.methods.names import METHODS
 from verify.result import Result
 from verify.verdict import Check
@@ -105,12 +106,9 @@ def difference_of_models(results: Mapping[str, Result], end: float) -> Distance:
     return found if found.curve <= MOST_OF_MODELS else same
 
 
-def drawn(result: Result) -> Curve:
+def sampled(result: Result) -> Curve:
     """The curve of a run, with points between its steps where the slopes are known."""
-    steps = result.steps
-    if {"load_slope", "heading"} <= set(steps):
-        return dense(result.opening, result.load, steps["load_slope"], steps["heading"])
-    return result.opening, result.load
+    return cubics(result, 10)
 
 
 def held_against(check: Check, known: Proof) -> Check:
@@ -145,7 +143,7 @@ def beside_models(check: Check, models: Distance) -> Check:
 
 
 def _apart(a: Result, b: Result, end: float) -> Distance:
-    one, other = drawn(a), drawn(b)
+    one, other = sampled(a), sampled(b)
     end = min(end, float(np.max(one[0])), float(np.max(other[0])))
     softer = stiffness(*(path(curve, (end,)).legs[0] for curve in (one, other)))
     return Distance(curve_error(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0), abs(np.nan_to_num(softer)))

@@ -18,7 +18,7 @@ ANY = "*"
 #: A number or null, which stands for NaN.
 NUMBER = (float, type(None))
 
-#: Layout of a value: a type (``float`` means finite), a tuple of types, ``{key: layout}``, or ``[layout]`` of all items.
+#: Layout of a value: a type (``float`` means finite), a tuple of types, ``{key: layout}``, or ``[layout]`` for items.
 Shape = Any
 
 _WORDS = {
