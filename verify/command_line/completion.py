@@ -156,8 +156,8 @@ def _zsh(found: tuple[Command, ...]) -> Iterator[str]:
 def _zsh_words(words: tuple[str, ...]) -> str:
     plain = [word for word in words if word not in PATHS]
     tight = "-S '' " if plain and plain[-1].endswith("=") else ""
-    said = [f"compadd {tight}-- {' '.join(plain)}"] * bool(plain) + ["_files"] * (words[-1:] == PATHS)
-    return "; ".join(said) or ":"
+    offers = [f"compadd {tight}-- {' '.join(plain)}"] * bool(plain) + ["_files"] * (words[-1:] == PATHS)
+    return "; ".join(offers) or ":"
 
 
 def _fish(found: tuple[Command, ...]) -> Iterator[str]:

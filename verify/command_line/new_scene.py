@@ -34,8 +34,8 @@ def allowed(raw: Mapping[str, Any], key: Key) -> str:
         parse_scene(wrong)
     except SceneError as error:
         place = key.dotted.replace("published.", "published[0].")
-        said = [one for one in error.sentences if one.startswith(f"{place}: must be ")]
-        return said[0].removeprefix(f"{place}: must be ").removesuffix(f", got {_OUT_OF_PLACE!r}") if said else ""
+        rules = [one for one in error.sentences if one.startswith(f"{place}: must be ")]
+        return rules[0].removeprefix(f"{place}: must be ").removesuffix(f", got {_OUT_OF_PLACE!r}") if rules else ""
     return ""
 
 
@@ -132,8 +132,8 @@ def _comment(raw: Mapping[str, Any], key: Key, width: int = _LINE_WIDTH) -> Iter
         r"\[([a-z ]+)\]", lambda found: f"[{UNITS[found[1]]}]", " ".join((key.field.description or "").split())
     )
     takes = allowed(raw, key)
-    said = " ".join(filter(None, (what, takes and f"Takes {takes}.")))
-    return (f"# {line}" for line in textwrap.wrap(said, width - 2, break_long_words=False, break_on_hyphens=False))
+    text = " ".join(filter(None, (what, takes and f"Takes {takes}.")))
+    return (f"# {line}" for line in textwrap.wrap(text, width - 2, break_long_words=False, break_on_hyphens=False))
 
 
 def _toml(value: object) -> str:

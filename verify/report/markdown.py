@@ -74,7 +74,7 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _summary(summary: Summary) -> Iterator[str]:
-    yield from (f"- {plain(said.text)}" for said in summary.sentences)
+    yield from (f"- {plain(sentence.text)}" for sentence in summary.sentences)
     if summary.missing:
         yield from ("", "Not run, stopped early, or neglected:", "")
         yield from (f"- {plain(text)}" for text in (*summary.missing, *summary.ways))

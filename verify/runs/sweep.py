@@ -218,13 +218,13 @@ def execute(task: Task, root: Path, cwd: Path, running: set[subprocess.Popen] | 
     with (work / "log.txt").open("w+") as log:
         code = call([sys.executable, "-P", "-m", "verify.runs.child", *words], log, cwd, task.timeout, running)
         log.seek(0)
-        said = log.read().strip().splitlines()
+        messages = log.read().strip().splitlines()
     if code in ENDED and (work / task.proof).exists() and not next(work.rglob("error.log"), None):
         store.keep(work, task.key)
         return ""
     store.give_up(work, task.key)
     why = f"signal {-code}" if code < 0 else f"exit {code}"
-    return f"failed: {said[-1]}" if said and code >= 0 else f"failed: {why}"
+    return f"failed: {messages[-1]}" if messages and code >= 0 else f"failed: {why}"
 
 
 def call(

@@ -117,10 +117,10 @@ def table(rows: Iterable[Row]) -> list[str]:
 def _line(one: Row) -> str:
     kind = "ortho" if one.orthotropic else "iso"
     judged = f"{one.checks - one.broken - one.unresolved}/{one.checks}"
-    said = "; ".join(filter(None, (one.fault, one.names, one.odd)))
+    notes = "; ".join(filter(None, (one.fault, one.names, one.odd)))
     return (
         f"{one.scene:12}{one.slenderness:6.1f}{one.zone:8.2f} {kind:9} {one.plane + ' ' + one.kinematics:15}"
-        f"{one.apart:8.2%}{one.beam:8.2%}  {judged} {said}"
+        f"{one.apart:8.2%}{one.beam:8.2%}  {judged} {notes}"
     )
 
 

@@ -61,9 +61,14 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     on_their_own = [o.job.variant for o in outcomes if o.job.variant in results and given_meshes.OWN in o.job.overrides]
     given, own = ({k: r for k, r in results.items() if (k in on_their_own) == other} for other in (False, True))
     left_out = (*neglected.remarks(scene, given), *neglected.remarks(given_meshes.own_mesh(scene), own))
-    said = (*remarks(scene, results), *given_meshes.remarks(on_their_own), *left_out, *load_introduction.remarks(scene))
+    noted = (
+        *remarks(scene, results),
+        *given_meshes.remarks(on_their_own),
+        *left_out,
+        *load_introduction.remarks(scene),
+    )
     checks += cross_checks(scene, results)
-    return SceneReport(scene, runs, tuple(checks), (*said, *odd_one_out(scene, checks, results)))
+    return SceneReport(scene, runs, tuple(checks), (*noted, *odd_one_out(scene, checks, results)))
 
 
 def _with_its_mesh(scene: Scene, job: Job) -> Scene:

@@ -38,7 +38,7 @@ class Frame:
     """One opening."""
 
     opening: str
-    said: str  # text of the slider: opening, load, process zone
+    text: str  # of the slider: opening, load, process zone
     panel: Panel
 
 
@@ -97,14 +97,14 @@ def _lead(group: Sequence[tuple[Entry, Snapshot]]) -> tuple[Entry, Snapshot] | N
 
 def _one(scene: Scene, lead: tuple[Entry, Snapshot], scales: Scales, picture: Figure, sheet: Bbox, key: str) -> Frame:
     """A picture with its caption."""
-    (entry, snapshot), units, said = lead, Units.of(scene.units), _said(scene, lead[1])
+    (entry, snapshot), units, text = lead, Units.of(scene.units), _text(scene, lead[1])
     whose = entry.label if _between(entry, snapshot) else "all runs with fields"
     caption = (
-        f"{said[:1].upper()}{said[1:]}. True scale, stress to ± {quantity(scales.stress, units.stress, 3)}; below, the "
+        f"{text[:1].upper()}{text[1:]}. True scale, stress to ± {quantity(scales.stress, units.stress, 3)}; below, the "
         f"normal traction of {whose} along the same axis, and on the right the place on the curve."
     )
-    svg = to_svg(picture, key, f"The crack of {scene.name}: {said}", sheet=sheet)
-    return Frame(quantity(snapshot.opening, units.length, 3), said, Panel(svg, caption, "wide"))
+    svg = to_svg(picture, key, f"The crack of {scene.name}: {text}", sheet=sheet)
+    return Frame(quantity(snapshot.opening, units.length, 3), text, Panel(svg, caption, "wide"))
 
 
 def _between(entry: Entry, snapshot: Snapshot) -> bool:
@@ -178,7 +178,7 @@ def _place(axes: Axes, scene: Scene, drawn: Sequence[Entry], entry: Entry, snaps
     axes.locator_params(axis="x", nbins=4)
 
 
-def _said(scene: Scene, snapshot: Snapshot) -> str:
+def _text(scene: Scene, snapshot: Snapshot) -> str:
     """Opening, load and the process zone in words."""
     units, zone = Units.of(scene.units), process_zone(snapshot)
     text = f"opening {quantity(snapshot.opening, units.length, 3)}, load {quantity(snapshot.load, units.force, 3)}"

@@ -27,7 +27,7 @@ _LOAD_NOTE = (
 )
 _DEVIATION_NOTE = (
     "Deviation of the load on the propagation branch. The band around zero is what a coarser mesh of the converged "
-    "curve differs from it: below that nothing is said."
+    "curve differs from it; smaller deviations are not significant."
 )
 _SWEEP_NOTE = "Envelopes of the paths, stronger with more points, over the converged curve (broad and grey)."
 _POINTS_NOTE = "Solid: the finer mesh. Dashed: the coarser one. A run that stopped leaves a gap."
@@ -37,7 +37,7 @@ _STRIPS_NOTE = (
 )
 _STRIPS_APART_NOTE = (
     "Deviation of the load from 30 % after the peak on. The band around zero is what a coarser mesh of the converged "
-    "curve differs from it: below that nothing is said."
+    "curve differs from it; smaller deviations are not significant."
 )
 
 #: Measure -> label of its axis.

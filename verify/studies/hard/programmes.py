@@ -142,8 +142,10 @@ def _separation() -> Sequence[Variant]:
 def _judge_separation(trials: Trials) -> Iterator[Finding]:
     for name, trial in trials.items():
         body, result = trial.scene.specimen, trial.result
-        said = result.complete and result.ending.startswith("separated")
-        yield Check("separated", name, 0.0 if said else 1.0, 0.0, "exact", "The run ends by itself and says separated.")
+        separated = result.complete and result.ending.startswith("separated")
+        yield Check(
+            "separated", name, 0.0 if separated else 1.0, 0.0, "exact", "The run ends by itself and says separated."
+        )
         if result.load.size < 2:
             continue
         left = abs(result.load[-1]) / np.max(np.abs(result.load))
