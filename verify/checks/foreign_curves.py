@@ -89,7 +89,7 @@ def read_curves(words: Sequence[str], reading: Reading) -> tuple[Curve, ...]:
             whose = "another curve's" if name in [curve.name for curve in curves] else "a method's"
             raise Refusal(f"--with: a name must not be {whose}, got {name!r}; NAME={path} gives another")
         opening, load = read_curve(path, reading)
-        _of_some_size(path, opening, load)
+        _refuse_size(path, opening, load)
         curves.append(Curve(name, path, reading, Result(name, {"opening": opening, "load": load})))
     return tuple(curves)
 
@@ -191,7 +191,7 @@ def _keep(curve: Curve, folder: Path) -> None:
     np.savetxt(folder / "curve.csv", rows, "%.17g", ",", header="opening,load", comments="")
 
 
-def _of_some_size(path: Path, opening: np.ndarray, load: np.ndarray) -> None:
+def _refuse_size(path: Path, opening: np.ndarray, load: np.ndarray) -> None:
     """Refuse numbers outside the range of scenes: squares overflow, and charts cannot be scaled to them."""
     largest = max(float(np.abs(opening).max()), float(np.abs(load).max()))
     if not (largest <= LARGEST_NUMBER and opening.max() >= SMALLEST_NUMBER):

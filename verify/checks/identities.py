@@ -17,9 +17,9 @@ from verify.checks.mechanics import unresolved as resolution
 from verify.checks.mechanics.columns import Steps, far_from_end, has, peak, scale, worst
 from verify.checks.mechanics.j_integral import (
     J_TOLERANCE,
-    beyond_the_end,
-    felt_from_the_start,
-    held_at_the_end,
+    beyond_far_end,
+    far_end_energy,
+    far_end_loaded,
     j_deviation,
     j_gap,
     j_pressed,
@@ -130,11 +130,11 @@ def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
     """The same for the J-integral, where the far end carries load from the start and explains the deviation."""
     scene = prepared.scene
     gap = j_gap(scene, result.steps) if check.name == "j-integral" else None
-    if gap is None or not felt_from_the_start(scene, result.steps):
+    if gap is None or not far_end_loaded(scene, result.steps):
         return ""
-    held = held_at_the_end(scene, result.steps)
-    beyond = worst(beyond_the_end(np.abs(gap), held))
-    return resolution.at_the_end(prepared, float(np.nanmax(held))) if beyond <= check.tolerance else ""
+    held = far_end_energy(scene, result.steps)
+    beyond = worst(beyond_far_end(np.abs(gap), held))
+    return resolution.far_end_unresolved(prepared, float(np.nanmax(held))) if beyond <= check.tolerance else ""
 
 
 def penetration(scene: Scene, steps: Steps) -> float | None:

@@ -52,7 +52,7 @@ def odd_one(results: Mapping[str, Result], end: float, models: float = 0.0) -> s
     end : largest opening of the programme
     models : change of the curve by fixed pairs of points
     """
-    apart = {frozenset(pair): _far(results, pair, end, models) for pair in combinations(results, 2)}
+    apart = {frozenset(pair): _distance(results, pair, end, models) for pair in combinations(results, 2)}
     ranked = sorted(_groups(list(results), {pair for pair, far in apart.items() if far <= AGREE}), key=_weight)[::-1]
     main = ranked[0]
     if len(ranked) > 1 and _weight(main) > _weight(ranked[1]):
@@ -68,7 +68,7 @@ def odd_one(results: Mapping[str, Result], end: float, models: float = 0.0) -> s
     return f"{ODD}, though not by much: {far}, on average {mean[far]:.2%} from the other runs, those {rest:.2%}"
 
 
-def _far(results: Mapping[str, Result], pair: tuple[str, str], end: float, models: float) -> float:
+def _distance(results: Mapping[str, Result], pair: tuple[str, str], end: float, models: float) -> float:
     """Distance of the second run to the first, less the difference of their models; infinite instead of NaN."""
     with np.errstate(all="ignore"):  # a curve of another code may be zero
         far = distance(results[pair[1]], results[pair[0]], end)

@@ -47,7 +47,7 @@ def solve(options: argparse.Namespace) -> int:
     quiet = mpi_rank() > 0
     if not quiet:
         _say_before(prepared, options.fields and options.frames > 0)
-    result, checks = _watched(prepared, out, _kept(options), quiet)
+    result, checks = _with_progress(prepared, out, _kept(options), quiet)
     if not quiet:
         _print_result(result, checks, out)
         _say_after(prepared, result, checks)
@@ -80,7 +80,7 @@ def _accurate(options: argparse.Namespace) -> int:
         say(str(decision))
 
     def solved(level: Scene, method: str, folder: Path, delivers: bool) -> tuple[Result, tuple[Check, ...]]:
-        return _watched(prepare(level, method), folder, _kept(options) if delivers else NO_FIELDS, False)
+        return _with_progress(prepare(level, method), folder, _kept(options) if delivers else NO_FIELDS, False)
 
     found = verified(scene, first, options.accuracy, out, solved)
     last = found.delivered
@@ -127,7 +127,7 @@ def _broken(checks: Sequence[Check]) -> list[str]:
     return [check.name for check in checks if check.state == "broken"]
 
 
-def _watched(prepared: Prepared, folder: Path, keep: Keep, quiet: bool) -> tuple[Result, tuple[Check, ...]]:
+def _with_progress(prepared: Prepared, folder: Path, keep: Keep, quiet: bool) -> tuple[Result, tuple[Check, ...]]:
     """Run with a progress bar over the programme."""
     from verify.runs.run import run
     from verify.support.progress import Progress
@@ -167,7 +167,7 @@ def verify(options: argparse.Namespace) -> int:
     from verify.studies.plane.study import load_plate
     from verify.verification import Subjects, verify, would_run
 
-    _alone("verify")
+    _refuse_ranks("verify")
     scenes, plates, wrong = [], [], []
     for source in options.scenes or verified_scenes(options.full):
         try:
@@ -226,7 +226,7 @@ def _studied(options: argparse.Namespace, command: str) -> Scene:
     from verify.methods.given_meshes import refuse_files
     from verify.scene.load import load_scene
 
-    _alone(command)
+    _refuse_ranks(command)
     scene = load_scene(options.scene, options.overrides)
     refuse_files(scene, f"debond {command}")
     return scene
@@ -239,7 +239,7 @@ def effects(options: argparse.Namespace) -> int:
     from verify.studies.effects.study import effects, would_run
 
     _known_method(options.method, None)
-    _alone("effects")
+    _refuse_ranks("effects")
     scene = load_scene(options.scene, options.overrides)
     try:
         plan = planned(options.scene, scene, options.method, options.overrides)
@@ -389,7 +389,7 @@ def _listed(lines: Sequence[str]) -> int:
     return 0
 
 
-def _alone(command: str) -> None:
+def _refuse_ranks(command: str) -> None:
     from verify.runs.environment import mpi_size
 
     if mpi_size() > 1:

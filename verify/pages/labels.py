@@ -32,8 +32,8 @@ def name_points(axes: Axes, places: Sequence[tuple[float, float]], names: Sequen
         others = [*markers[:number], *markers[number + 1 :], *written]
         sides = _SIDES if point[0] < 0.5 * (left + right) else (_SIDES[3], *_SIDES)
         boxes = [_box(point, side, rise, _LETTER * len(name)) for side, rise in sides]
-        lost = [_lost(box, (left, bottom, right, top), others) for box in boxes]
-        best = lost.index(min(lost))  # the first of them
+        misplaced = [_misplaced(box, (left, bottom, right, top), others) for box in boxes]
+        best = misplaced.index(min(misplaced))  # the first of them
         side, rise = sides[best]
         written.append(boxes[best])
         shift = {"left": _GAP, "right": -_GAP, "center": 0.0}[side], rise
@@ -47,13 +47,13 @@ def _box(point: Sequence[float], side: str, rise: float, width: float) -> Box:
     return left, bottom, left + width, bottom + _LINE
 
 
-def _lost(box: Box, inside: Box, others: Sequence[Box]) -> float:
+def _misplaced(box: Box, inside: Box, others: Sequence[Box]) -> float:
     """Area of a box that lies outside the axes or overlaps other boxes."""
     area = (box[2] - box[0]) * (box[3] - box[1])
-    return sum(_common(box, one) for one in others) + area - _common(box, inside)
+    return sum(_overlap(box, one) for one in others) + area - _overlap(box, inside)
 
 
-def _common(one: Box, other: Box) -> float:
+def _overlap(one: Box, other: Box) -> float:
     """Area that two boxes share."""
     width = min(one[2], other[2]) - max(one[0], other[0])
     height = min(one[3], other[3]) - max(one[1], other[1])

@@ -78,7 +78,7 @@ def run(
     keep_freed_memory()
     solving = _solving(prepared, folder, keep, solver)
     if mpi_rank() > 0:  # all ranks have the same numbers; one of them writes
-        return _silent(solving), ()
+        return _without_files(solving), ()
     folder.mkdir(parents=True, exist_ok=True)
     with alone_in(folder):
         return _recorded(_Run(prepared, folder, keep), on_step, solving)
@@ -89,7 +89,7 @@ def _solving(prepared: Prepared, folder: Path, keep: Keep, solver: Solver | None
     scene, name = prepared.scene, prepared.method.name
     plain = partial(solver, scene, name) if solver is not None else partial(solve_prepared, prepared)
     if keep.frames:
-        return partial(_filmed, plain, Frames(folder, scene, name, keep.frames, writes=mpi_rank() == 0))
+        return partial(_with_frames, plain, Frames(folder, scene, name, keep.frames, writes=mpi_rank() == 0))
     if keep.fields and name == LEAD and solver is None:
         return partial(_with_moments, plain, Moments(scene))
     return plain
@@ -133,7 +133,7 @@ def _recorded(
             on_step(row)
 
     try:
-        result = _explained(one.prepared, solving(record))
+        result = _with_warning(one.prepared, solving(record))
     except KeyboardInterrupt:
         one.finish(one.stopped(rows, "interrupted"))
         raise
@@ -160,7 +160,7 @@ def _why(error: Exception) -> str:
     return f"{type(error).__name__}: {error} (an error in {OURS})"
 
 
-def _explained(prepared: Prepared, result: Result) -> Result:
+def _with_warning(prepared: Prepared, result: Result) -> Result:
     """Put the warning of a mesh too coarse for the process zone into the status of a path that stopped."""
     warning = "" if result.complete else next(iter(zone_resolution.warnings(prepared)), "")
     if not warning:
@@ -169,7 +169,7 @@ def _explained(prepared: Prepared, result: Result) -> Result:
     return replace(result, status=f"stopped: {zone}; {result.status.removeprefix('stopped: ')}")
 
 
-def _filmed(solver: Solver, frames: Frames, on_step: OnRow | None) -> Result:
+def _with_frames(solver: Solver, frames: Frames, on_step: OnRow | None) -> Result:
     result = solver(on_step, on_frame=frames)
     frames.finish()
     return result
@@ -180,7 +180,7 @@ def _with_moments(solver: Solver, moments: Moments, on_step: OnRow | None) -> Re
     return replace(result, between=moments.snapshots())
 
 
-def _silent(solving: Callable[[OnRow | None], Result]) -> Result:
+def _without_files(solving: Callable[[OnRow | None], Result]) -> Result:
     try:
         return solving(None)
     except Exception as error:

@@ -199,7 +199,7 @@ def test_the_way_of_a_programme_adds_up_back_and_forth(tmp_path: Path, monkeypat
     gone: list[float] = []
     monkeypatch.setattr("verify.runs.run.run", made_up)
     monkeypatch.setattr("verify.support.progress.Progress.advance", lambda self, done, news: gone.append(done))
-    commands._watched(prepare(load_scene("dcb-czm1"), "lefm"), tmp_path, NO_FIELDS, True)
+    commands._with_progress(prepare(load_scene("dcb-czm1"), "lefm"), tmp_path, NO_FIELDS, True)
     assert gone == [0.0, 1.0, 1.5, 2.5, 5.0]
 
 

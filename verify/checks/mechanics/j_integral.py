@@ -12,7 +12,7 @@ from verify.scene.schema import Scene
 #: Relative tolerance on a mesh that resolves the process zone.
 J_TOLERANCE = 0.005
 #: Energy at the far end, over G_Ic, up to which the whole deviation counts: half of the tolerance of J.
-HELD_AT_THE_END = 0.5 * J_TOLERANCE
+FAR_END_SHARE = 0.5 * J_TOLERANCE
 
 
 def j_deviation(scene: Scene, steps: Steps) -> float | None:
@@ -29,15 +29,15 @@ def j_deviation(scene: Scene, steps: Steps) -> float | None:
 
     The end faces are those of both bodies; the ones at the far end count negatively. They matter in a short ligament,
     where contact compresses them: with a stiff penalty they store more energy than the contact. The fixed base of a
-    peel contributes nothing. Where the energy at the far end (`held_at_the_end`) exceeds HELD_AT_THE_END, on a spot
+    peel contributes nothing. Where the energy at the far end (`far_end_energy`) exceeds FAR_END_SHARE, on a spot
     that may be smaller than an element, only the deviation beyond that energy counts. Where it does so from the start,
-    the whole deviation counts, and `unresolved.at_the_end` explains a check without a verdict.
+    the whole deviation counts, and `unresolved.far_end_unresolved` explains a check without a verdict.
     """
     found = j_gap(scene, steps)
     if found is None or not (steps["opening"] > 0.0).any():
         return None
-    gap, held = np.where(steps["opening"] >= 0.0, np.abs(found), 0.0), held_at_the_end(scene, steps)
-    return worst(gap if felt_from_the_start(scene, steps) else beyond_the_end(gap, held))
+    gap, held = np.where(steps["opening"] >= 0.0, np.abs(found), 0.0), far_end_energy(scene, steps)
+    return worst(gap if far_end_loaded(scene, steps) else beyond_far_end(gap, held))
 
 
 def j_pressed(scene: Scene, steps: Steps) -> float | None:
@@ -50,20 +50,20 @@ def j_pressed(scene: Scene, steps: Steps) -> float | None:
     return None if gap is None or not pressed.any() else worst(gap[pressed & far_from_end(scene, steps)])
 
 
-def beyond_the_end(gap: np.ndarray, held: np.ndarray) -> np.ndarray:
+def beyond_far_end(gap: np.ndarray, held: np.ndarray) -> np.ndarray:
     """The part of a deviation (n_steps,) beyond the energy at the far end."""
-    beyond = np.where(held <= HELD_AT_THE_END, gap, np.maximum(gap - held, 0.0))
+    beyond = np.where(held <= FAR_END_SHARE, gap, np.maximum(gap - held, 0.0))
     return np.where(np.isnan(held), 0.0, beyond)
 
 
-def felt_from_the_start(scene: Scene, steps: Steps) -> bool:
+def far_end_loaded(scene: Scene, steps: Steps) -> bool:
     """Whether the far end carries load before J has reached half of its largest value."""
-    spent = np.nan_to_num(_spent(scene, steps))
-    free = held_at_the_end(scene, steps) <= HELD_AT_THE_END
+    spent = np.nan_to_num(_area_at_tip(scene, steps))
+    free = far_end_energy(scene, steps) <= FAR_END_SHARE
     return bool(np.max(spent, initial=0.0, where=free) < 0.5 * np.max(spent, initial=0.0))
 
 
-def held_at_the_end(scene: Scene, steps: Steps) -> np.ndarray:
+def far_end_energy(scene: Scene, steps: Steps) -> np.ndarray:
     """Energy at the far end over G_Ic (n_steps,), NaN where the law is unknown.
 
     It is the area under the law there and, for a DCB, the strain energy of the end faces, beside which that of the
@@ -87,8 +87,8 @@ def j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     """
     if not has(steps, "face_slope_top", "face_slope_bottom", "face_energy", "tip_opening", "dissipated_energy"):
         return None
-    J = steps["load"] * _turn(scene, steps) / scene.specimen.width - steps["face_energy"]
-    law, spent, tip = law_of(scene), _spent(scene, steps), steps["tip_opening"]
+    J = steps["load"] * _rotation_of_faces(scene, steps) / scene.specimen.width - steps["face_energy"]
+    law, spent, tip = law_of(scene), _area_at_tip(scene, steps), steps["tip_opening"]
     area = spent - law.area(steps.get("end_opening", np.zeros(J.size)))
     scale = np.full(J.size, scene.interface.toughness)
     if "mouth_opening" in steps:
@@ -101,13 +101,13 @@ def j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     return np.where(valid, J - area, 0.0) / scale
 
 
-def _spent(scene: Scene, steps: Steps) -> np.ndarray:
+def _area_at_tip(scene: Scene, steps: Steps) -> np.ndarray:
     """Area under the law up to the gap at the tip of the precrack (n_steps,)."""
     law = law_of(scene)
     return np.where(tip_is_open(scene, steps), law.toughness, law.area(steps["tip_opening"]))
 
 
-def _turn(scene: Scene, steps: Steps) -> np.ndarray:
+def _rotation_of_faces(scene: Scene, steps: Steps) -> np.ndarray:
     """Sum of the rotations of the loaded faces at every step (n_steps,), positive in the sense of opening."""
     top, bottom = steps["face_slope_top"], steps["face_slope_bottom"]
     pressed = top if scene.specimen.clamped else bottom - top

@@ -22,11 +22,11 @@ def growth_load(scene: Scene, steps: Steps) -> float | None:
     / (E h w), 0.2 % in peel-soft. So load max(s, 1) is at least G_Ic w, less the energy at the far end, which is not
     released (see `j_deviation`).
     """
-    steady = growing(scene, steps) & out_of_reach(scene, steps)
+    steady = growing(scene, steps) & away_from_flush_end(scene, steps)
     if not steady.any() or simulated(scene)["kinematics"] == "linear":
         return None
     pull = steps["load"] * np.maximum(np.abs(steps.get("face_slope_top", 1.0)), 1.0)
-    return worst(np.minimum(pull[steady] / _to_release(scene, steps)[steady] - 1.0, 0.0))
+    return worst(np.minimum(pull[steady] / _available_energy(scene, steps)[steady] - 1.0, 0.0))
 
 
 def growth_angle(scene: Scene, steps: Steps) -> float | None:
@@ -36,13 +36,13 @@ def growth_angle(scene: Scene, steps: Steps) -> float | None:
     also contains the energy on the end faces. That on the loaded face is due to the load alone and is subtracted:
     ``P^2 / (2 h w) (sin(theta)^2 / E1 + cos(theta)^2 / G12)`` (Kendall 1975 for theta = 90 degrees).
     """
-    steady = growing(scene, steps) & out_of_reach(scene, steps)
+    steady = growing(scene, steps) & away_from_flush_end(scene, steps)
     if not steady.any() or "face_slope_top" not in steps:
         return None
     last = np.flatnonzero(steady)[-1]
     load, sine = steps["load"][last], abs(steps["face_slope_top"][last])
     pull = load * sine - _end_face_energy(scene, load, sine)
-    return float(pull / _to_release(scene, steps)[last] - 1.0)
+    return float(pull / _available_energy(scene, steps)[last] - 1.0)
 
 
 def _end_face_energy(scene: Scene, load: float, sine: float) -> float:
@@ -53,7 +53,7 @@ def _end_face_energy(scene: Scene, load: float, sine: float) -> float:
     return load**2 / (2.0 * body.loaded_thickness * body.width) * (along / E1 + (1.0 - along) / G12)
 
 
-def _to_release(scene: Scene, steps: Steps) -> np.ndarray:
+def _available_energy(scene: Scene, steps: Steps) -> np.ndarray:
     """Energy per length that a growing crack takes, at every step (n_steps,): G_Ic w less the energy at the far end."""
     end = steps.get("end_opening", np.zeros(steps["opening"].size))
     return (scene.interface.toughness - law_of(scene).area(end)) * scene.specimen.width
@@ -72,7 +72,7 @@ def growing(scene: Scene, steps: Steps) -> np.ndarray:
     return open_ & inside & loading(steps) & far_from_end(scene, steps) & pulled
 
 
-def out_of_reach(scene: Scene, steps: Steps) -> np.ndarray:
+def away_from_flush_end(scene: Scene, steps: Steps) -> np.ndarray:
     """Steps (n_steps,) of a peel whose process zone does not stress the flush end: the distance is at least four decay
     lengths of the strip and twice the thickness of the substrate.
 

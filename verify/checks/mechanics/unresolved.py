@@ -42,7 +42,7 @@ def too_coarse(prepared: Prepared, result: Result, check: Check) -> str:
     return f"the process zone spans {elements:.2g} elements of the mesh; {remedy}"
 
 
-def at_the_end(prepared: Prepared, held: float) -> str:
+def far_end_unresolved(prepared: Prepared, held: float) -> str:
     """The same where the far end carries load from the start and its energy ``held``, over G_Ic, explains it.
 
     Empty for a method without a mesh, whose far end is exact.

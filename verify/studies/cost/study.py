@@ -144,7 +144,8 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
         climb(rungs, partial(runner, seconds=LIMITS.climb), lambda: runner.rows),
         runner(_between(runner.rows), LIMITS.vary),
         runner(
-            [other for one, row in runner.rows.items() if _worth(row) for other in one.with_few_steps()], LIMITS.vary
+            [other for one, row in runner.rows.items() if _nearly_accurate(row) for other in one.with_few_steps()],
+            LIMITS.vary,
         ),
         runner([other for one in _best(runner.rows) for other in one.with_other_steps()], LIMITS.vary),
     ]
@@ -158,7 +159,7 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     if not all(whole):
         reasons.append("The time allowed for a study is over; the same command goes on from here.")
     how = {one.variant: one.job(source, scene).overrides for one in runner.found}
-    study = Study(scene, tuple(_counted(runner)), tuple(reasons), against, how)
+    study = Study(scene, tuple(_with_nonzeros(runner)), tuple(reasons), against, how)
     study.write(out)
     return study
 
@@ -180,12 +181,12 @@ def climb(
         found = rows()
         for family, (done, *rest) in list(left.items()):
             left[family] = rest
-            if not rest or _high_enough(found[done], list(found.values())):
+            if not rest or _finished(found[done], list(found.values())):
                 del left[family]
     return True
 
 
-def _high_enough(last: Row, rows: Sequence[Row]) -> bool:
+def _finished(last: Row, rows: Sequence[Row]) -> bool:
     finest = min(LEVELS.values())
     others = [one for one in rows if one.measured and one.dofs]
     accurate = [one.seconds for one in others if one.curve_error <= finest]
@@ -201,7 +202,7 @@ def _high_enough(last: Row, rows: Sequence[Row]) -> bool:
     return too_slow or beaten or last.curve_error <= LIMITS.enough * finest
 
 
-def _worth(found: Row) -> bool:
+def _nearly_accurate(found: Row) -> bool:
     """Whether a run is accurate enough that fewer steps may make it the cheapest for a level."""
     return found.curve_error <= LIMITS.near * max(LEVELS.values())
 
@@ -233,7 +234,7 @@ def _between(rows: Mapping[Try, Row]) -> list[Try]:
     return list(chosen)
 
 
-def _counted(runner: Runner) -> Iterable[Row]:
+def _with_nonzeros(runner: Runner) -> Iterable[Row]:
     """Rows with the numbers of nonzeros, which ``iga`` runs do not report."""
     for one, found in runner.rows.items():
         job = runner.found[one].job
