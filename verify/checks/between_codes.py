@@ -121,9 +121,9 @@ def no_beam(scene: Scene) -> str:
     """Why the beam cannot judge a scene; empty where it can."""
     if beam_error.tolerance(scene) is None:
         error = f"{100.0 * beam_error.theory_error(scene):.2g} %"
-        return f"on arms as stocky as these, on this bond, no beam is nearer than {error}"
+        return f"the error of beam theory on arms as stocky as these, with this bond, is {error}"
     if scene.load.at == "node" and load_introduction.matters(scene):
-        return "the corner at which the load acts gives way and comes closer to the crack, and no beam has one"
+        return "the load acts at a corner, which deforms locally and moves towards the crack; a beam has no corner"
     return ""
 
 

@@ -126,10 +126,10 @@ def held_against(check: Check, known: Proof) -> Check:
     if robust or value != value or (value <= tolerance and uncertainty <= tolerance):
         return found
     if models > error:
-        own = f"keeps its pairs of points: a difference of models of {models:.2g}; effects.search = false has the same"
+        own = f"keeps its pairs of points, which changes the curve by {models:.2g}; with effects.search = false all do"
         return replace(found, unresolved=f"the DOLFINx reference {own}")
-    own = known.why or f"is off by up to {error:.2g} itself, as its second mesh shows, where {tolerance:g} is asked"
-    remedy = "dolfinx.elements, dolfinx.layers or dolfinx.degree larger resolve it"
+    own = known.why or f"has an error of up to {error:.2g}, as its second mesh shows, where {tolerance:g} is required"
+    remedy = "larger dolfinx.elements, dolfinx.layers or dolfinx.degree resolve it"
     return replace(found, unresolved=f"the DOLFINx reference {own}; {remedy}")
 
 
@@ -138,7 +138,7 @@ def beside_models(check: Check, models: Distance) -> Check:
     apart = models.of(check)
     if check.state != "broken" or not abs(check.value) <= check.tolerance + apart:
         return check
-    why = f"NURBS with a search of the other face and without differ by {apart:.2g}, and the beam has neither model"
+    why = f"NURBS with and without a search of the other face differ by {apart:.2g}, and the beam has neither"
     return replace(check, unresolved=f'{why}; effects.kinematics = "linear" has no such difference')
 
 

@@ -179,6 +179,6 @@ def _unity(report: dict) -> str:
 
 def _continuity(edges: dict[str, int] | None) -> str:
     if edges is None:
-        return "not looked at, as Jacobians vanish or are negative"
+        return "not computed, as Jacobians vanish or are negative"
     words = [f"{name} across {count}" for name, count in edges.items() if count]
     return f"{', '.join(reversed(words))} inner edges" if words else "one element"
