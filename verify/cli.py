@@ -5,7 +5,9 @@ from __future__ import annotations
 import os
 import sys
 
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+from verify.runs.environment import THREADS
+
+for _name in THREADS:
     os.environ.setdefault(_name, "1")  # before NumPy is imported, for comparable times
 
 import argparse  # noqa: E402

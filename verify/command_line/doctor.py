@@ -8,13 +8,13 @@ import shutil
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
 
 from verify.methods.dolfinx import DOLFINX_WAYS, NEWEST, OLDEST, dolfinx_installed, supported
 from verify.methods.names import NotRun
 from verify.methods.plugins import Plugin, plugins
+from verify.runs.environment import package_version
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def _cache() -> tuple[str, str]:
 
 def _package(package: Package) -> str:
     if _present(package.module):
-        return _row(package.module, _version(package.distribution), package.purpose)
+        return _row(package.module, package_version(package.distribution) or "present", package.purpose)
     way = f"debond[{package.extra}]" if package.extra else package.distribution
     return _row(package.module, "missing", f"{package.purpose}; pip install '{way}'")
 
@@ -97,14 +97,14 @@ def _package(package: Package) -> str:
 def _dolfinx() -> Iterator[str]:
     window = f"{OLDEST[0]}.{OLDEST[1]} to {NEWEST[0]}.{NEWEST[1]}"
     if dolfinx_installed():
-        found = _version("fenics-dolfinx")
+        found = package_version("fenics-dolfinx") or "present"
         known = found == "present" or supported(found)
         yield _row(
             "dolfinx", found, f"method dolfinx{'' if known else f': not tried with this one, but with {window}'}"
         )
     else:
         yield _row("dolfinx", "missing", f"method dolfinx, {window}")
-    mpi = _version("mpi4py") if _present("mpi4py") else "missing"
+    mpi = (package_version("mpi4py") or "present") if _present("mpi4py") else "missing"
     yield _row("mpi4py", mpi, "method dolfinx on many ranks")
     yield _row("mpirun", "present" if shutil.which("mpirun") else "missing", shutil.which("mpirun") or "comes with MPI")
 
@@ -124,10 +124,3 @@ def _row(name: str, found: str, note: str) -> str:
 
 def _present(module: str) -> bool:
     return find_spec(module) is not None
-
-
-def _version(distribution: str) -> str:
-    try:
-        return version(distribution)
-    except PackageNotFoundError:
-        return "present"

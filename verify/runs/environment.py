@@ -25,12 +25,12 @@ def mpi_size() -> int:
 def versions() -> dict[str, str]:
     """Versions of debond, Python and the installed packages."""
     names = ("numpy", "scipy", "pydantic", "fenics-dolfinx", "petsc4py", "mpi4py")
-    found = {name: number for name in names if (number := _version(name))}
+    found = {name: number for name in names if (number := package_version(name))}
     return {"debond": __version__, "python": platform.python_version(), **found}
 
 
 @cache
-def _version(name: str) -> str:
+def package_version(name: str) -> str:
     """Version of a package, empty if not installed; cached, as every fingerprint needs it and it takes milliseconds."""
     try:
         return version(name)

@@ -116,23 +116,21 @@ def dry_run(plan: Sequence[Job], out: Path, jobs: int) -> list[str]:
 
 def left_out(job: Job) -> str:
     """Why a job cannot be done on this machine, or empty."""
-    try:
-        require(prepare(job.solved, job.method))
-    except (NotRun, Refusal) as error:
-        text = str(error)
-        return text if text.startswith("not run") else f"not run: {text}"
-    return ""
+    text = str(_obstacle(job) or "")
+    return text if not text or text.startswith("not run") else f"not run: {text}"
 
 
 def is_missing(job: Job) -> bool:
     """Whether a job is possible but this machine lacks its method."""
+    return isinstance(_obstacle(job), NotRun)
+
+
+def _obstacle(job: Job) -> NotRun | Refusal | None:
     try:
         require(prepare(job.solved, job.method))
-    except NotRun:
-        return True
-    except Refusal:
-        pass
-    return False
+    except (NotRun, Refusal) as error:
+        return error
+    return None
 
 
 def outcome(job: Job, done: Done) -> Outcome:

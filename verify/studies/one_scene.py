@@ -52,7 +52,7 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     checks: list[Check] = []
     for outcome in outcomes:
         if outcome.result is not None:
-            on = _with_its_mesh(scene, outcome.job)
+            on = given_meshes.own_mesh(scene) if given_meshes.OWN in outcome.job.overrides else scene
             checks += [c for c in run_checks(on, outcome.result, outcome.job.variant) if outcome.job.meant_for(c)]
         elif outcome.failed:
             meaning = "The run ended with a result."
@@ -69,11 +69,6 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     )
     checks += cross_checks(scene, results)
     return SceneReport(scene, runs, tuple(checks), (*noted, *odd_one_out(scene, checks, results)))
-
-
-def _with_its_mesh(scene: Scene, job: Job) -> Scene:
-    """The scene, without its mesh files where the job does not use them."""
-    return given_meshes.own_mesh(scene) if given_meshes.OWN in job.overrides else scene
 
 
 def convergence(reports: Sequence[SceneReport]) -> list[str]:

@@ -37,7 +37,8 @@ def load_opening(scene: Scene, runs: Sequence[Entry], key: str) -> Panel:
                 axes.plot(*end, "x", color=colour(entry.line.colour), zorder=6)
         ceiling = min(1.06 * max(float(np.nanmax(entry.result.load)) for entry in runs), 1.4 * top)
         _name_lefm(axes, runs, ceiling)
-        axes.set(xlim=(0, None), ylim=(min(0.0, _lowest_load(runs)), ceiling))
+        lowest = min(float(np.nanmin(entry.result.load)) for entry in runs)
+        axes.set(xlim=(0, None), ylim=(min(0.0, 1.05 * lowest), ceiling))
         svg = to_svg(figure, key, f"Load against opening, all methods, {scene.name}")
     return Panel(svg, "Load against opening. A cross marks the end of a run that stopped early.")
 
@@ -190,10 +191,6 @@ def _top_load(runs: Sequence[Entry]) -> float:
     """Largest load of all curves except LEFM, which may exceed the axes."""
     own = [d for d in runs if d.method != "lefm"] or list(runs)
     return max(float(np.nanmax(d.result.load)) for d in own) or 1.0
-
-
-def _lowest_load(runs: Sequence[Entry]) -> float:
-    return 1.05 * min(float(np.nanmin(d.result.load)) for d in runs)
 
 
 def _name_lefm(axes: Axes, runs: Sequence[Entry], ceiling: float) -> None:
