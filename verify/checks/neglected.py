@@ -191,7 +191,7 @@ def _other_arm(prepared: Prepared, result: Result) -> Neglected | None:
     from verify.methods.given_meshes import given_meshes
 
     upper, lower = given_meshes(prepared.scene)
-    ours, theirs = (_sorted(mesh.P_AI) for mesh in (upper, upside_down(lower)))
+    ours, theirs = (P_AI[np.lexsort(np.round(P_AI, 9).T)] for P_AI in (upper.P_AI, upside_down(lower).P_AI))
     apart = float(np.max(np.abs(ours - theirs))) if ours.shape == theirs.shape else nan
     same = apart <= SAME_CONTROL_POINT * specimen.loaded_thickness
     seen = "the meshes of the arms mirror each other" if same else "the lower arm has another mesh, which was left out"
@@ -208,8 +208,3 @@ def _tilt(prepared: Prepared, result: Result) -> Neglected | None:
     tilt = f"{degrees(found.tilt):.2g} degrees"
     seen = f"half way between the faces the bond tilts by up to {tilt}, worth {found.bound:.2%} of G_Ic or of the load"
     return Neglected("search", found.bound, found.valid, seen)
-
-
-def _sorted(P_AI: np.ndarray) -> np.ndarray:
-    rounded = np.round(P_AI, 9)
-    return P_AI[np.lexsort(rounded.T)]

@@ -110,7 +110,8 @@ def _cases(
     yield f'    case "{command} $previous" in'
     for one in found:
         for words, spellings in _grouped(one.values).items():
-            yield f"        {opening}{_either(one.name, spellings)})"
+            pattern = "|".join(f'"{one.name} {spelling}"' for spelling in spellings)
+            yield f"        {opening}{pattern})"
             yield f"            {answer(words)}"
             yield "            return ;;"
     yield from ("    esac", f'    case "{command}" in')
@@ -120,11 +121,6 @@ def _cases(
         yield f"            else {answer(one.places)}"
         yield "            fi ;;"
     yield "    esac"
-
-
-def _either(name: str, spellings: list[str]) -> str:
-    """A pattern for the command with one of these options before the cursor."""
-    return "|".join(f'"{name} {spelling}"' for spelling in spellings)
 
 
 def _bash_words(words: tuple[str, ...]) -> str:
@@ -171,13 +167,8 @@ def _fish(found: tuple[Command, ...]) -> Iterator[str]:
             yield f"{start}{_fish_words(one.places)}"
         for spelling, text in one.options.items():
             flag = f"-l {spelling[2:]}" if spelling.startswith("--") else f"-s {spelling[1:]}"
-            yield f"{start} {flag}{_fish_values(one, spelling)} -d {_quoted(text)}"
-
-
-def _fish_values(one: Command, spelling: str) -> str:
-    if spelling not in one.values:
-        return ""
-    return f" -r{_fish_words(one.values[spelling])}"
+            values = f" -r{_fish_words(one.values[spelling])}" if spelling in one.values else ""
+            yield f"{start} {flag}{values} -d {_quoted(text)}"
 
 
 def _fish_words(words: tuple[str, ...]) -> str:

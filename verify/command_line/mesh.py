@@ -156,16 +156,11 @@ def _lines(report: dict) -> list[str]:
 
 def _sets(report: dict) -> str:
     sides = [part for part in report["sets"] if part["kind"] == "side"]
-    chains = report["chains"]
+    whole = {name.removesuffix("-1") for name in report["chains"]} | set(report["chains"])
     words = [
-        f"{part['name']} ({part['entries']} sides{'' if _is_chain(part['name'], chains) else ', no chain'})"
-        for part in sides
+        f"{part['name']} ({part['entries']} sides{'' if part['name'] in whole else ', no chain'})" for part in sides
     ]
     return f"; side sets {', '.join(words)}" if words else ""
-
-
-def _is_chain(name: str, chains: dict[str, int]) -> bool:
-    return name in chains or f"{name}-1" in chains
 
 
 def _unity(report: dict) -> str:

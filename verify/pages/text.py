@@ -117,15 +117,10 @@ def span(values: list[float], form: Callable[[float], str]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def programme(scene: Scene) -> tuple[float, ...]:
-    """The openings of the displacement programme."""
-    return tuple(scene.load.opening)
-
-
 def sentence(scene: Scene) -> str:
     """The problem with its effects, in words."""
     units, specimen = Units.of(scene.units), scene.specimen
-    openings = " → ".join(number(v, 4) for v in programme(scene))
+    openings = " → ".join(number(v, 4) for v in scene.load.opening)
     moved = f"to {openings} {units.length}".rstrip()
     law, done = f"a {scene.interface.law} traction law", f"{_body(specimen, units.length)} {moved}"
     return f"{done}, in plane {specimen.plane}, with {law} and {_effects(scene)}."

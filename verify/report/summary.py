@@ -66,12 +66,13 @@ def summarise(sections: Sequence[Section], planes: Sequence[PlaneSection | Rates
     not_held = tuple((anchor, name, check) for anchor, name, check in checks if not check.passed)
     counts = counted(check for _, _, check in checks)
     columns = _columns(sections)
+    no_dolfinx = any(entry.run.left_out == DOLFINX_MISSING for s in sections for entry in s.entries)
     return Summary(
         headline=headline(counts, len(sections), len(planes)),
         tone=tone(counts),
         sentences=(*_sentences(sections), *(Sentence(p.sentence, p.anchor, "its numbers") for p in planes)),
         missing=tuple(_missing(sections)),
-        ways=_ways(sections),
+        ways=DOLFINX_WAYS if no_dolfinx else (),
         tallies=tuple(tally(kind, [check for _, _, check in checks]) for kind in EVIDENCE),
         columns=tuple(Column(method, name) for method, _, name in columns),
         rows=tuple((section, tuple(_cell(section, *column[:2]) for column in columns)) for section in sections),
@@ -160,11 +161,6 @@ def _missing(sections: Sequence[Section]) -> list[str]:
         f"{note} ({'all scenes' if len(names) == everywhere > 1 else ', '.join(names)})"
         for note, names in reasons.items()
     ]
-
-
-def _ways(sections: Sequence[Section]) -> tuple[str, ...]:
-    lacking = any(e.run.left_out == DOLFINX_MISSING for s in sections for e in s.entries)
-    return DOLFINX_WAYS if lacking else ()
 
 
 def _capital(name: str) -> str:

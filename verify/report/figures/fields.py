@@ -57,7 +57,8 @@ def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, sm
             options = {**entry.line.options(), "marker": ".", "markersize": 2.6 if entry.line.width < 3 else 0}
             axes.plot(snapshot.s_q, snapshot.traction_q, **options)
         window = _window(scene, group)
-        low = min(float(np.nanmin(_inside(s.s_q, s.traction_q, window), initial=0.0)) for _, s in group)
+        inside = [s.traction_q[(s.s_q >= window[0]) & (s.s_q <= window[1])] for _, s in group]
+        low = min(float(np.nanmin(traction_q, initial=0.0)) for traction_q in inside)
         top = 1.22 * strength - 0.08 * max(low, -4 * strength)
         axes.set(xlim=window, ylim=(1.1 * max(low, -4 * strength) - 0.05 * strength, top))
         axes.axhline(strength, color=colour("muted"), linewidth=0.6, dashes=(2, 2))
@@ -83,10 +84,6 @@ def _traction_caption(group: Sequence[tuple[Entry, Snapshot]], units: Units) -> 
     if not zones:
         return head + "The interface is still intact everywhere."
     return f"{head}Process zone, damaged and not yet open: {', '.join(zones)}; marked for {names[group[0][0]]}."
-
-
-def _inside(s: np.ndarray, values: np.ndarray, window: tuple[float, float]) -> np.ndarray:
-    return np.asarray(values)[(s >= window[0]) & (s <= window[1])]
 
 
 def _window(scene: Scene, group: Sequence[tuple[Entry, Snapshot]]) -> tuple[float, float]:
