@@ -40,14 +40,26 @@ RUNS = {
 #: Methods that are limits and take part in no check between codes.
 LIMIT_METHODS = {name for name, method in METHODS.items() if method.is_limit}
 
-#: The basis that confirms the NURBS with projection, and the distance within which it does.
-CONFIRMING, CONFIRMED = "tspline", 0.005
-#: Largest plausible difference of the models: 0.0 to 0.7 % were measured on most of 60 random scenes, 2.0 % on stocky
-#: arms with a soft bond whose ends rotate by 23 degrees.
-MOST_OF_MODELS = 0.03
+#: The basis that confirms the NURBS with projection.
+CONFIRMING = "tspline"
 
-#: Uncertainty of the reference, over the tolerance of a check, up to which it does not change a verdict.
-CERTAIN = 0.5
+
+@dataclass(frozen=True)
+class Trust:
+    """When an uncertainty of the reference may excuse a distance; larger values excuse more faults.
+
+    confirmed : distance within which T-splines confirm the NURBS with projection
+    models : largest plausible difference of the models: 0.0 to 0.7 % were measured on most of 60 random scenes, 2.0 %
+        on stocky arms with a soft bond whose ends rotate by 23 degrees
+    certain : uncertainty of the reference, over the tolerance of a check, up to which it does not change a verdict
+    """
+
+    confirmed: float = 0.005
+    models: float = 0.03
+    certain: float = 0.5
+
+
+TRUST = Trust()
 
 
 @dataclass(frozen=True)
@@ -101,9 +113,9 @@ def difference_of_models(results: Mapping[str, Result], end: float) -> Distance:
     if MATCHED not in results or SEARCHING not in results:
         return same
     found = _apart(results[MATCHED], results[SEARCHING], end)
-    if CONFIRMING in results and _apart(results[CONFIRMING], results[SEARCHING], end).curve > CONFIRMED:
+    if CONFIRMING in results and _apart(results[CONFIRMING], results[SEARCHING], end).curve > TRUST.confirmed:
         return same
-    return found if found.curve <= MOST_OF_MODELS else same
+    return found if found.curve <= TRUST.models else same
 
 
 def sampled(result: Result) -> Curve:
@@ -114,7 +126,7 @@ def sampled(result: Result) -> Curve:
 def held_against(check: Check, known: Proof) -> Check:
     """A check against the reference; its uncertainty is the error of the reference plus the difference of models.
 
-    The tolerance is not changed. Where the uncertainty exceeds `CERTAIN` times the tolerance, the check is broken if
+    The tolerance is not changed. Where the uncertainty exceeds ``TRUST.certain`` times the tolerance, the check is broken if
     the value exceeds tolerance plus uncertainty, holds if value and uncertainty are within the tolerance, and is
     unresolved otherwise.
     """
@@ -122,7 +134,7 @@ def held_against(check: Check, known: Proof) -> Check:
     error, models = known.error.of(check), 0.0 if matched else known.models.of(check)
     tolerance, value, uncertainty = check.tolerance, abs(check.value), error + models
     found = replace(check, uncertainty=uncertainty if uncertainty < inf else 0.0)
-    robust = uncertainty <= CERTAIN * tolerance or value > tolerance + uncertainty
+    robust = uncertainty <= TRUST.certain * tolerance or value > tolerance + uncertainty
     if robust or value != value or (value <= tolerance and uncertainty <= tolerance):
         return found
     if models > error:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from verify.methods.plugins import find
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare
@@ -9,12 +11,23 @@ from verify.scene.effects import crack_at_the_end
 from verify.scene.process_zone import bulk_length, slender_length
 from verify.scene.schema import Scene, counted_steps
 
-#: During crack growth a step advances the front by an eighth of the full opening: number of steps per length of the
-#: process zone, and number of other steps. Measured on ``dcb-czm1`` and ``peel-120`` with both codes.
-STEPS_PER_ZONE, STEPS_BESIDES = 8.2, 20
-#: Number of counted steps that take as long as the steps of "auto", each of which ends on a kink of the law and needs
-#: 1.5 times the iterations. Measured on ``dcb-czm1`` (29 steps) and ``peel-120`` (42).
-STEPS_CHOSEN = 50
+
+@dataclass(frozen=True)
+class StepCounts:
+    """Numbers of steps, measured on ``dcb-czm1`` and ``peel-120``.
+
+    per_zone, others : counted steps per length of the process zone, as a step advances the front by an eighth of the
+        full opening, and all other steps; of both codes
+    chosen : counted steps that take as long as those of "auto" (29 and 42), each of which ends on a kink of the law and
+        needs 1.5 times the iterations
+    """
+
+    per_zone: float = 8.2
+    others: int = 20
+    chosen: int = 50
+
+
+STEP_COUNTS = StepCounts()
 
 
 def seconds(scene: Scene, method: str) -> float:
@@ -30,12 +43,12 @@ def seconds(scene: Scene, method: str) -> float:
 def steps(scene: Scene, method: str) -> int:
     """Estimated number of steps: at least those asked for, more where the process zone limits the step length."""
     if scene.discretization.steps == "auto" and find(method).with_dofs:
-        return STEPS_CHOSEN
+        return STEP_COUNTS.chosen
     specimen = scene.specimen
     bond = specimen.extent - specimen.free_length
     grown = min(max(crack_at_the_end(scene) - specimen.free_length, 0.0), bond)
     zones = grown / min(slender_length(scene), bulk_length(scene))
-    return round(max(counted_steps(scene), STEPS_BESIDES + STEPS_PER_ZONE * zones))
+    return round(max(counted_steps(scene), STEP_COUNTS.others + STEP_COUNTS.per_zone * zones))
 
 
 def unknowns(scene: Scene, method: str) -> int:

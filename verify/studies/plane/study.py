@@ -33,12 +33,30 @@ from verify.theory.plane_fields import PlaneField, kirsch, smooth, uniform
 from verify.verdict import Check
 
 SOLID: Mapping[str, Any] = {"young": 1.0, "poisson": 0.3, "plane": "stress"}
-CUTS, MOST_UNKNOWNS = 3, 100_000  # number of refinements, and the largest number of unknowns
-PATCH_TOLERANCE = 1e-10
-ERROR_TOLERANCE = 1e-3
-RATE_TOLERANCE, SETTLED = 0.25, 0.25  # difference to the expected rate, and of the last two rates
-FALL_TOLERANCE = 1e-6
 _GRID = 7  # sampling points per direction of an element
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Size of the study, and tolerances of its checks.
+
+    cuts, unknowns : largest numbers of refinements and of unknowns
+    patch : error of the patch test, which is rounding
+    error : relative L2 error of the displacement on the finest mesh
+    rate, settled : difference to the expected rate; difference of the last two rates up to which the last is checked
+    growth : relative growth of the error in energy on nested spaces, which is rounding
+    """
+
+    cuts: int = 3
+    unknowns: int = 100_000
+    patch: float = 1e-10
+    error: float = 1e-3
+    rate: float = 0.25
+    settled: float = 0.25
+    growth: float = 1e-6
+
+
+PLANE_LIMITS = Limits()
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +138,7 @@ def study(plate: Plate) -> PlaneStudy:
 def settled(levels: tuple[Level, ...]) -> bool:
     """Whether the last two rates agree, so that the last one is asymptotic."""
     rates = [level.rate for level in levels[-2:]]
-    return len(rates) == 2 and abs(rates[1] - rates[0]) <= SETTLED
+    return len(rates) == 2 and abs(rates[1] - rates[0]) <= PLANE_LIMITS.settled
 
 
 def lines(found: PlaneStudy) -> list[str]:
@@ -162,7 +180,7 @@ def _field(plate: Plate) -> tuple[PlaneField, str]:
 def _levels(plate: Plate, field: PlaneField) -> Iterator[Level]:
     """The mesh of the file, its Bezier elements with shared control points, and these halved repeatedly."""
     mesh, last = plate.mesh, (float("nan"),) * 2
-    for cuts in range(-1, CUTS):
+    for cuts in range(-1, PLANE_LIMITS.cuts):
         if cuts >= 0:
             mesh = bezier_refined(mesh, 0 if cuts == 0 else 1)
         boundary = replace(plate, mesh=mesh).boundary
@@ -173,23 +191,23 @@ def _levels(plate: Plate, field: PlaneField) -> Iterator[Level]:
         yield Level(name, mesh.elements, 2 * len(mesh.P_AI), found, *rates)
         last = here
         p = max(max(block.degrees) for block in mesh.blocks)
-        if 2 * (2 if cuts >= 0 else 1) ** 2 * mesh.elements * p**2 > MOST_UNKNOWNS:
+        if 2 * (2 if cuts >= 0 else 1) ** 2 * mesh.elements * p**2 > PLANE_LIMITS.unknowns:
             return
 
 
 def _checks(name: str, patch: Errors, levels: tuple[Level, ...], order: int) -> Iterator[Check]:
     worst = max(patch.displacement, patch.stress)
-    yield Check("patch-test", name, worst, PATCH_TOLERANCE, "exact", "A constant stress is found exactly.")
+    yield Check("patch-test", name, worst, PLANE_LIMITS.patch, "exact", "A constant stress is found exactly.")
     energy = np.array([level.errors.energy for level in levels])
     growth = float(np.max(np.append(energy[1:] / energy[:-1] - 1.0, 0.0)))
     meaning = "The spaces are nested: the error in energy never grows."
-    yield Check("nested-energy", name, growth, FALL_TOLERANCE, "exact", meaning)
+    yield Check("nested-energy", name, growth, PLANE_LIMITS.growth, "exact", meaning)
     finest = levels[-1].errors.displacement
     meaning = "Displacement on the finest mesh against the exact field, relative L2."
-    yield Check("exact-field", name, finest, ERROR_TOLERANCE, "analytical", meaning)
+    yield Check("exact-field", name, finest, PLANE_LIMITS.error, "analytical", meaning)
     if settled(levels):
         meaning = "The rate in L2 under refinement is p + 1."
-        yield Check("rate", name, levels[-1].rate - order, RATE_TOLERANCE, "analytical", meaning)
+        yield Check("rate", name, levels[-1].rate - order, PLANE_LIMITS.rate, "analytical", meaning)
 
 
 def _unity(plate: Plate) -> Check:
