@@ -126,9 +126,9 @@ def sampled(result: Result) -> Curve:
 def held_against(check: Check, known: Proof) -> Check:
     """A check against the reference; its uncertainty is the error of the reference plus the difference of models.
 
-    The tolerance is not changed. Where the uncertainty exceeds ``TRUST.certain`` times the tolerance, the check is broken if
-    the value exceeds tolerance plus uncertainty, holds if value and uncertainty are within the tolerance, and is
-    unresolved otherwise.
+    The tolerance is not changed. Where the uncertainty exceeds ``TRUST.certain`` times the tolerance, the check is
+    broken if the value exceeds tolerance plus uncertainty, holds if value and uncertainty are within the tolerance, and
+    is unresolved otherwise.
     """
     matched = check.subject.startswith(MATCHED)
     error, models = known.error.of(check), 0.0 if matched else known.models.of(check)
