@@ -216,6 +216,37 @@ def test_values_are_frozen(folder: str) -> None:
     assert classes > 5 and mutable == []
 
 
+#: Names of constants that still have several values.
+AMBIGUOUS = frozenset(
+    {"BEAM", "CASES", "CODES", "FAMILIES", "LAWS", "METHOD", "METHODS", "REFERENCE", "REFINEMENT", "SAME_POINT"}
+)
+
+
+def constants(project: Path) -> dict[str, set[str]]:
+    """Name -> values, as source text, of every constant that a module of the product sets."""
+    found: dict[str, set[str]] = {}
+    for file in modules(project).values():
+        for node in ast.parse(file.read_text()).body:
+            if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
+                for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+                    for name in ast.walk(target):
+                        if isinstance(name, ast.Name) and name.id.isupper():
+                            found.setdefault(name.id, set()).add(ast.unparse(node.value))
+    return found
+
+
+def test_a_name_of_a_constant_has_one_value() -> None:
+    """Readers and searches of the tree find one thing by one name."""
+    assert {name for name, values in constants(PROJECT).items() if len(values) > 1} <= AMBIGUOUS
+
+
+def test_a_second_value_of_a_constant_is_found(tmp_path: Path) -> None:
+    for name, text in (("iga/a", "STEPS = 1\nSAME = 2\n"), ("verify/b", "STEPS, MOST = 1, 2\nSAME: int = 2\n")):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / f"{name}.py").write_text(text)
+    assert {name for name, values in constants(tmp_path).items() if len(values) > 1} == {"STEPS"}
+
+
 def test_no_module_gives_a_constant_a_second_value() -> None:
     """The later value would hold for the functions above it, too."""
     twice = []

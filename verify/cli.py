@@ -1,12 +1,14 @@
-"""The command line. Everything that a user can get wrong is refused here, before any work, with exit code 2."""
+"""The command line. Invalid input is refused before any work, with exit code 2."""
 
 from __future__ import annotations
 
 import os
 import sys
 
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(_name, "1")  # before NumPy is imported; timings would mean little otherwise
+from verify.runs.environment import THREADS
+
+for _name in THREADS:
+    os.environ.setdefault(_name, "1")  # before NumPy is imported, for comparable times
 
 import argparse  # noqa: E402
 import errno  # noqa: E402
@@ -42,16 +44,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         say(f"interrupted{_how_to_go_on(options)}")
         return INTERRUPTED
-    except BrokenPipeError:  # the reader of our output has left: no more of it, and no complaint at exit
+    except BrokenPipeError:  # the reader of the output has closed it: write no more, and no message at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except OSError as error:
-        from verify.runs.folder import NO_ROOM  # here, as it brings NumPy along
+        from verify.runs.folder import NO_ROOM  # here, as it imports NumPy
 
         if error.errno not in (*NO_ROOM, errno.EACCES):
             raise
         say(f"{error.filename or 'the output'}: cannot be written: {error.strerror}{_how_to_go_on(options)}")
-        if error.filename is None:  # maybe standard output itself, which is not to be tried again at exit
+        if error.filename is None:  # possibly standard output itself, which must not be flushed at exit
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
 

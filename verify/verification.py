@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from verify.checks.foreign_curves import Curve, joined
@@ -31,44 +32,57 @@ from verify.support.say import say, write_page
 STUDIES_SECONDS, PLATE_SECONDS = 15.0, 3.0
 
 
-def verify(
-    scenes: Sequence[tuple[str, Scene]],
-    out: Path,
-    jobs: int,
-    full: bool = False,
-    plates: Sequence[Plate] = (),
-    scheduler: str | None = None,
-    included: Sequence[Included] = (),
-    text: bool = False,
-    curves: Sequence[Curve] = (),
-    demands: Demands = NO_DEMANDS,
-) -> bool:
-    """Run everything, write ``out``/verdict.json and report.html, print the checks; whether the verification passes.
-
-    It passes where no check is broken and nothing is left out that ``demands`` ask for.
+@dataclass(frozen=True)
+class Subjects:
+    """What a verification is about.
 
     Parameters
     ----------
     scenes : each with the name or path that it was loaded from
-    jobs : runs at a time; with the address of a dask ``scheduler`` its workers do them
-    full : finer and coarser meshes as well, the study of the interface rules, the figures of the paper, and the
-        rates of the bases in plane elasticity
+    full : also finer and coarser meshes, the study of the interface rules, the figures of the paper, and the
+        convergence rates of the bases in plane elasticity
     plates : meshes from CAD, on which plane problems with exact solutions are solved
-    curves : of other codes, each a run in the report of every scene
-    included : studies of other commands for the report to show, besides those in folders of ``out``
+    curves : curves of other codes, each a run in the report of every scene
+    included : studies of other commands that the report shows, besides those in folders of the output folder
+    """
+
+    scenes: Sequence[tuple[str, Scene]]
+    full: bool = False
+    plates: Sequence[Plate] = ()
+    curves: Sequence[Curve] = ()
+    included: Sequence[Included] = ()
+
+
+def verify(
+    subjects: Subjects,
+    out: Path,
+    jobs: int,
+    scheduler: str | None = None,
+    text: bool = False,
+    demands: Demands = NO_DEMANDS,
+) -> bool:
+    """Run everything, write ``out``/verdict.json and report.html, print the checks; whether the verification passes.
+
+    It passes where no check is broken and everything that ``demands`` ask for was judged.
+
+    Parameters
+    ----------
+    jobs : runs at a time; with the address of a dask ``scheduler`` its workers do the runs
     text : whether report.md is written, too
     """
-    plan, *figures = _plans(scenes, full)
+    full, plates = subjects.full, subjects.plates
+    plan, *figures = _plans(subjects)
     outcomes = {outcome.job: outcome for outcome in run_all(_all_jobs(plan, *figures), out, jobs, scheduler)}
-    own = [scene_report(scene, [outcomes[job] for job in plan if job.scene is scene], out) for _, scene in scenes]
-    reports = tuple(joined(report, curves, out) for report in own)
+    done = [(scene, [outcomes[job] for job in plan if job.scene is scene]) for _, scene in subjects.scenes]
+    reports = tuple(joined(scene_report(*runs, out), subjects.curves, out) for runs in done)
     page = out / "report.html"
     with telling("studies", STUDIES_SECONDS * full + PLATE_SECONDS * len(plates)):
         quadrature = study() if full else None
         paper, peels = (measured(figure, outcomes) if full else None for figure in figures)
         planes = tuple(plane_study(plate) for plate in plates)
         bases = rates() if full else ()
-    studies = tuple({(study.command, study.folder.resolve()): study for study in (*found_in(out), *included)}.values())
+    included = (*found_in(out), *subjects.included)
+    studies = tuple({(study.command, study.folder.resolve()): study for study in included}.values())
     others = [(found.name, check) for found in planes for check in found.checks]
     others += [("plane elasticity", check) for check in rate_checks(bases)]
     judgement = judged(reports, others, demands)
@@ -84,18 +98,19 @@ def verify(
             print("\n".join(lines(title, found)))
     for gap in judgement.lacking:
         say(f"{gap.scene}: {gap.check or gap.subject} must have been judged: {gap.why}")
-    print(f"{judgement.in_short()}: {page if written else out / verdict_file.NAME}")
+    print(f"{judgement.in_short()}: {page if written else out / verdict_file.VERDICT_FILE}")
     return judgement.passed
 
 
-def would_run(scenes: Sequence[tuple[str, Scene]], out: Path, jobs: int, full: bool = False) -> list[str]:
+def would_run(subjects: Subjects, out: Path, jobs: int) -> list[str]:
     """The runs of a verification with their times, a line each; nothing is run."""
-    return dry_run(_all_jobs(*_plans(scenes, full)), out, jobs)
+    return dry_run(_all_jobs(*_plans(subjects)), out, jobs)
 
 
-def _plans(scenes: Sequence[tuple[str, Scene]], full: bool) -> tuple[list[Job], Plan, Plan]:
-    plan = [job for source, scene in scenes for job in planned(source, scene, full)]
-    return plan, beams(scenes if full else ()), strips(scenes if full else ())
+def _plans(subjects: Subjects) -> tuple[list[Job], Plan, Plan]:
+    plan = [job for source, scene in subjects.scenes for job in planned(source, scene, subjects.full)]
+    in_figures = subjects.scenes if subjects.full else ()
+    return plan, beams(in_figures), strips(in_figures)
 
 
 def _all_jobs(plan: Sequence[Job], *figures: Plan) -> list[Job]:

@@ -28,7 +28,7 @@ from verify.scene.schema import Scene
 from verify.studies import one_scene
 from verify.studies.one_scene import convergence, planned
 from verify.verdict import Check, Run, SceneReport
-from verify.verification import verify
+from verify.verification import Subjects, verify
 
 LINEAR = "dcb-czm1-linear"
 
@@ -71,7 +71,7 @@ def test_good_runs_make_a_report_and_exit_zero(
     scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     only(monkeypatch, Job(LINEAR, scene, "beam", "beam"), Job(LINEAR, scene, "lefm", "lefm"))
-    assert verify([(LINEAR, scene)], tmp_path, jobs=2)
+    assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=2)
     (report,) = reports
     assert [run.method for run in report.runs] == ["beam", "lefm"]
     assert all(run.result.complete for run in report.runs)
@@ -86,7 +86,7 @@ def test_a_crash_costs_one_run_and_fails(
     scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     only(monkeypatch, Job("gone.toml", scene, "nurbs", "nurbs"), Job(LINEAR, scene, "lefm", "lefm"))
-    assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     (report,) = reports
     assert report.runs[0].result is None and report.runs[0].left_out.startswith("failed: ")
     assert report.runs[1].result is not None
@@ -99,7 +99,7 @@ def test_a_killed_process_is_named_by_its_signal(
 ) -> None:
     monkeypatch.setattr(sweep, "call", lambda *how: -11)
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
-    assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     assert reports[0].runs[0].left_out == "failed: signal 11"
 
 
@@ -107,18 +107,18 @@ def test_an_earlier_result_does_not_pass_for_a_crashed_run(
     scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
-    assert verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     monkeypatch.setattr(sweep, "call", lambda *how: -9)
-    assert verify([(LINEAR, scene)], tmp_path, jobs=1), "nothing has changed: there is nothing to run"
+    assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1), "nothing has changed: there is nothing to run"
     monkeypatch.setattr("verify.runs.fingerprint.source", lambda packages, own=(): "another version")
-    assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     assert not (tmp_path / LINEAR / "lefm" / "curve.csv").exists()
 
 
 def test_a_failing_check_fails_the_whole(scene: Scene, reports: list, tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr("verify.checks.identities.ENERGY_TOLERANCE", -1.0)
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
-    assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
 
 
 def test_without_dolfinx_its_rows_say_so_and_nothing_fails(
@@ -126,15 +126,15 @@ def test_without_dolfinx_its_rows_say_so_and_nothing_fails(
 ) -> None:
     monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     only(monkeypatch, Job(LINEAR, scene, "dolfinx", "dolfinx"), Job(LINEAR, scene, "lefm", "lefm"))
-    assert verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     assert reports[0].runs[0].left_out == "not run: DOLFINx is not installed"
     said = capsys.readouterr().out
     assert "not run: DOLFINx is not installed" in said
     assert f"; not judged: dolfinx (DOLFINx is not installed) on {LINEAR}: " in said.splitlines()[-1]
     assert json.loads((tmp_path / "verdict.json").read_text())["not_judged"][0]["subject"] == "dolfinx"
-    assert verify([(LINEAR, scene)], tmp_path, jobs=1, demands=Demands(required=("lefm",)))
+    assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1, demands=Demands(required=("lefm",)))
     for demands in (Demands(required=("dolfinx",)), Demands(strict=True)):
-        assert not verify([(LINEAR, scene)], tmp_path, jobs=1, demands=demands)
+        assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1, demands=demands)
         assert "dolfinx must have been judged: DOLFINx is not installed" in capsys.readouterr().err
 
 
@@ -143,7 +143,7 @@ def test_a_scene_that_a_method_is_not_made_for_is_no_failure(
 ) -> None:
     scene = load_scene(LINEAR, ["load.opening=[1.0, 0.5]"])
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
-    assert verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     assert reports[0].runs[0].left_out.startswith("not run: load.opening: must only increase")
 
 
@@ -171,7 +171,7 @@ def test_runs_are_named_and_kept_with_what_they_were_told(
     plan = [job for job in planned(LINEAR, scene, full=True) if job.overrides]
     only(monkeypatch, *plan)
     monkeypatch.setattr(verification, "run_all", lambda jobs, *how: [Outcome(job, None, "by nobody") for job in jobs])
-    verify([(LINEAR, scene)], tmp_path, jobs=1)
+    verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     runs = reports[0].runs
     assert [run.label for run in runs] == [
         "DOLFINx p=2, second mesh", "DOLFINx p=3", "T-spline p=3, adaptive", "NURBS p=3", "NURBS p=3"
@@ -220,7 +220,7 @@ def test_full_makes_the_figures_of_the_paper_where_their_scenes_are_given(
 
     monkeypatch.setattr(verification, "run_all", run_all)
     monkeypatch.setattr(verification, "study", lambda: None)
-    assert verify([(name, load_scene(name))], tmp_path, jobs=1, full=True)
+    assert verify(Subjects([(name, load_scene(name))], full=True), tmp_path, jobs=1)
     assert len(asked) == len(set(asked)) and len(asked) == len({job.folder(tmp_path) for job in asked})
     said = capsys.readouterr().out
     if name == LINEAR:

@@ -1,5 +1,5 @@
-"""What must hold between runs of one scene: every code against the cohesive beam, the codes against each other, and
-all of them against what others have published for it.
+"""Checks between the runs of one scene: codes against the cohesive beam, codes against each other, and all runs
+against published values.
 
 LEFM appears in no check: it is a limit that a cohesive zone approaches, not a target.
 """
@@ -11,7 +11,7 @@ from dataclasses import replace
 from math import inf
 
 from verify.checks import beam_error, load_introduction
-from verify.checks.proof import REFERENCE, RUNS, beside_models, difference_of_models, drawn, held_against, proof
+from verify.checks.proof import REFERENCE, RUNS, beside_models, difference_of_models, held_against, proof, sampled
 from verify.curves.curve import curve_error, first_drop, from_origin, load_at
 from verify.curves.leg_checks import farthest_check, programme_checks, stiffness_check
 from verify.curves.legs import path
@@ -23,26 +23,28 @@ from verify.scene.published import Published
 from verify.scene.schema import Scene
 from verify.verdict import Check
 
-#: The judge that shares nothing with the codes.
+#: The reference that shares no code and no discretisation with the plane solvers.
 BEAM = "beam"
-#: Distance between the curves of two codes on fine meshes.
-FINE = 0.005
-#: Runs of codes that are held against the reference, with their tolerances: a coarser mesh has its own.
+#: Tolerance for the distance between the curves of two codes on fine meshes.
+CODE_TOLERANCE = 0.005
+#: Tolerance of every run that is compared with the DOLFINx reference; runs on coarse meshes have a larger one.
 CROSS_CODE = {
-    name: max(FINE, method.mesh_error) for name, method in RUNS.items() if method.code not in (REFERENCE, BEAM)
+    name: max(CODE_TOLERANCE, method.mesh_error)
+    for name, method in RUNS.items()
+    if method.code not in (REFERENCE, BEAM)
 }
-#: Largest distance between curves that elements longer than a third of the process zone explain: 17 % were measured.
+#: Largest distance of curves that elements longer than a third of the process zone can explain; 17 % were measured.
 COARSE = 0.2
-#: Part of the peak load by which a load that falls at once is that of a specimen that comes apart.
-APART = 0.1
+#: Sudden fall of the load, over the peak load, that counts as the separation of the specimen.
+SEPARATION_DROP = 0.1
 
 
 def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
-    """Checks of every pair that is there.
+    """Checks of all pairs of runs.
 
     Parameters
     ----------
-    results : method, or its name among several runs of one method ("dolfinx-p3") -> run
+    results : runs by name: the method, or a name such as "dolfinx-p3" where a method has several runs
     """
     usable = {method: result for method, result in results.items() if result.load.size > 1}
     fine = beam_error.tolerance(scene)
@@ -59,10 +61,10 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
 
 
 def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
-    """A check of two runs, unresolved where the mesh of one of them cannot judge.
+    """The check of two runs, marked unresolved where a mesh is too coarse for a verdict.
 
-    The reference has its own error by a second mesh. A run whose elements are too long for the process zone says so
-    before any work; that explains a distance of up to `COARSE`.
+    The error of the DOLFINx reference is known from its second mesh. Elements that are too long for the process zone,
+    which every run warns of, explain distances up to `COARSE`.
     """
     pair, found = check.subject.split(" / "), check
     if pair[-1] == REFERENCE:
@@ -82,7 +84,7 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
 
 
 def pair_checks(scene: Scene, pair: str, a: Result, b: Result, tolerance: float) -> tuple[Check, ...]:
-    """Two codes that share nothing: curve, peak, the farthest point, and every leg of a programme that turns."""
+    """Two codes against each other: curve, peak load, largest distance, and each leg of a programme with reversals."""
     programme = scene.load.opening
     checks: list[Check] = []
     if max(programme) > 0.0:
@@ -93,22 +95,22 @@ def pair_checks(scene: Scene, pair: str, a: Result, b: Result, tolerance: float)
         meaning = "Two codes that share nothing find the same peak load (relative difference)."
         checks.append(Check("peak", pair, ratio, tolerance, "cross-code", meaning))
     curves = (a.opening, a.load), (b.opening, b.load)
-    checks += stiffness_check(pair, drawn(a), drawn(b), programme, tolerance)
+    checks += stiffness_check(pair, sampled(a), sampled(b), programme, tolerance)
     checks += farthest_check(pair, *curves, programme, tolerance)
     return (*checks, *programme_checks(pair, *curves, programme, tolerance))
 
 
 def beam_check(scene: Scene, name: str, result: Result, beam: Result, tolerance: float) -> Check:
-    """A curve against the beam's, with the error of the theory itself.
+    """A curve against the beam's; the error of beam theory is the uncertainty of the check.
 
-    Where the beam comes apart at once, as short bonds do, the curves are compared up to there: a drop that comes a
-    percent earlier on a plane specimen, whose end squeezes and turns, would count by all of its height.
+    Where the beam separates suddenly, as with short bonds, the curves are compared up to the earlier of both drops. A
+    plane specimen may separate a percent earlier, and the L2 distance would contain the whole drop.
     """
     meaning = (
         "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening): "
         f"{beam_error.meaning(scene)}."
     )
-    drops = [first_drop((run.opening, run.load), APART) for run in (beam, result)]
+    drops = [first_drop((run.opening, run.load), SEPARATION_DROP) for run in (beam, result)]
     value = distance(result, beam, min([max(scene.load.opening), *(drops if drops[0] < inf else ())]))
     return Check(
         "beam-curve", f"{name} / {BEAM}", value, tolerance, "analytical", meaning, beam_error.theory_error(scene)
@@ -116,23 +118,23 @@ def beam_check(scene: Scene, name: str, result: Result, beam: Result, tolerance:
 
 
 def no_beam(scene: Scene) -> str:
-    """Why a beam is no judge of a scene; empty where it is one."""
+    """Why the beam cannot judge a scene; empty where it can."""
     if beam_error.tolerance(scene) is None:
         error = f"{100.0 * beam_error.theory_error(scene):.2g} %"
-        return f"on arms as stocky as these, on this bond, no beam is nearer than {error}"
+        return f"the error of beam theory on arms as stocky as these, with this bond, is {error}"
     if scene.load.at == "node" and load_introduction.matters(scene):
-        return "the corner at which the load acts gives way and comes closer to the crack, and no beam has one"
+        return "the load acts at a corner, which deforms locally and moves towards the crack; a beam has no corner"
     return ""
 
 
 def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
-    """What is not judged, and why."""
+    """A sentence where the beam was solved but judges no code."""
     why = no_beam(scene)
     return (f"beam: held against no code: {why}",) if why and BEAM in results else ()
 
 
 def published_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
-    """Every run against every value that the scene carries; a load that a run did not come to is NaN, and fails."""
+    """Every run against every published value of the scene; NaN, which fails, where a run ended before that opening."""
     checks = []
     for name, known in zip(published_names(scene), scene.published, strict=True):
         for method in (name for name in RUNS if name in results):
@@ -142,7 +144,7 @@ def published_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check
 
 
 def published_names(scene: Scene) -> tuple[str, ...]:
-    """One for every value: ``published-peak``, ``published-load-4.5``; numbered from the second of a kind on."""
+    """Names of the checks: ``published-peak``, ``published-load-4.5``; a second value of one name gets a number."""
     plain = [
         "published-peak"
         if known.quantity == "peak"
@@ -153,13 +155,13 @@ def published_names(scene: Scene) -> tuple[str, ...]:
 
 
 def published_load(known: Published, result: Result, programme: Sequence[float] = ()) -> float:
-    """What a run has for a published value; NaN where it did not come so far.
+    """The load of a run that a published value is compared with; NaN where the run ended before.
 
-    ``programme`` is that of the scene, of whose legs a value may be.
+    ``programme`` is the load programme of the scene; a value may belong to one of its legs.
     """
     if known.quantity == "peak" or known.opening is None:
         return peak_load(result)
-    curve = drawn(result)
+    curve = sampled(result)
     if known.leg is None:
         return float(load_at(curve, known.opening))
     legs = path(curve, programme).legs[known.leg - 1 : known.leg]
@@ -167,7 +169,7 @@ def published_load(known: Published, result: Result, programme: Sequence[float] 
 
 
 def published_meaning(known: Published) -> str:
-    """One sentence with its source."""
+    """The published value and its source in a sentence."""
     low, high = known.value
     value = f"{low:g}" if low == high else f"{low:g} to {high:g}"
     what = "The peak load" if known.quantity == "peak" else f"The load at opening {known.opening:g}"
@@ -176,6 +178,6 @@ def published_meaning(known: Published) -> str:
 
 
 def distance(a: Result, b: Result, end: float) -> float:
-    """Curve error of ``a`` against ``b``, of a run that stopped early up to where both have come."""
+    """Curve error of ``a`` against ``b``, up to the largest opening that both runs reached."""
     end = min(end, float(a.opening.max()), float(b.opening.max()))
     return curve_error(from_origin(a.opening, a.load), from_origin(b.opening, b.load), end)

@@ -1,4 +1,4 @@
-"""Curves of other codes in a verification: each judged like one of the methods, by the runs that are there."""
+"""Load curves of other codes in a verification: each is checked against the runs of the built-in methods."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from verify.checks import beam_error, load_introduction
 from verify.checks.between_codes import (
     BEAM,
-    FINE,
+    CODE_TOLERANCE,
     beam_check,
     no_beam,
     pair_checks,
@@ -30,19 +30,21 @@ from verify.curves.read import Reading, read_curve
 from verify.methods.names import METHODS
 from verify.methods.plugins import known_methods
 from verify.result import Result
-from verify.scene.magnitudes import LEAST, MOST
+from verify.scene.magnitudes import LARGEST_NUMBER, SMALLEST_NUMBER
 from verify.scene.schema import Scene
 from verify.support.programme import only_opens, turns
 from verify.support.refusal import Refusal
 from verify.verdict import Check, Run, SceneReport
 
-#: Codes that a curve from elsewhere is held against, with the relative tolerance that holds between them as well.
-CODES: Mapping[str, float] = {name: FINE for name, one in METHODS.items() if one.has_mesh and not one.mesh_error}
+#: Methods that a foreign curve is compared with, each with the tolerance that holds between these methods, too.
+CODES: Mapping[str, float] = {
+    name: CODE_TOLERANCE for name, one in METHODS.items() if one.has_mesh and not one.mesh_error
+}
 
-#: Part of its largest load below which a curve bears nothing any more.
-NOTHING = 0.01
+#: Load, over the peak load, below which a curve counts as that of a separated specimen.
+BEARS_NO_LOAD = 0.01
 
-#: Part of the first leg behind which a curve begins late.
+#: First opening of a curve, over the first leg, above which its beginning is missing.
 LATE = 0.01
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
@@ -50,7 +52,7 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 
 @dataclass(frozen=True)
 class Curve:
-    """Opening and load of another code, read from a file."""
+    """Opening and load of another code, as read from a file."""
 
     name: str
     path: Path
@@ -58,7 +60,7 @@ class Curve:
     result: Result
 
     def command(self, run: Path) -> str:
-        """What compares the file with the folder of a run."""
+        """The shell command that compares the file with the folder of a run."""
         given = {
             "--opening-a": self.reading.opening,
             "--load-a": self.reading.load,
@@ -70,12 +72,12 @@ class Curve:
 
 
 def read_curves(words: Sequence[str], reading: Reading) -> tuple[Curve, ...]:
-    """The curves that ``FILE`` and ``NAME=FILE`` stand for; without a name the file's, or that of a run's folder.
+    """The curves of ``FILE`` and ``NAME=FILE``; the default name is the stem of the file or the name of its folder.
 
     Raises
     ------
-    Refusal : no curve in a file, or numbers beyond all units; a name that is no word, that of a method, or one for two
-        curves.
+    Refusal : a file without a curve, or with numbers outside all units; a name with other characters, of a method, or
+        given twice.
     """
     curves: list[Curve] = []
     taken = known_methods() if words else {}
@@ -87,15 +89,15 @@ def read_curves(words: Sequence[str], reading: Reading) -> tuple[Curve, ...]:
             whose = "another curve's" if name in [curve.name for curve in curves] else "a method's"
             raise Refusal(f"--with: a name must not be {whose}, got {name!r}; NAME={path} gives another")
         opening, load = read_curve(path, reading)
-        _of_some_size(path, opening, load)
+        _refuse_size(path, opening, load)
         curves.append(Curve(name, path, reading, Result(name, {"opening": opening, "load": load})))
     return tuple(curves)
 
 
 def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneReport:
-    """The report with the curves as runs of their own, and with checks of every run of a method that is not ours.
+    """The report with the curves as additional runs, and with checks of all runs of plug-in methods and foreign codes.
 
-    Each curve as it was read stands in ``out``/SCENE/NAME/curve.csv then.
+    Each curve is also written to ``out``/SCENE/NAME/curve.csv.
     """
     for curve in curves:
         _keep(curve, out / report.scene.name / curve.name)
@@ -113,21 +115,23 @@ def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneRepo
     results = {run.name: run.result for run in report.runs if run.result is not None}
     others = {run.method: run.result for run in (*report.runs, *runs) if run.method not in METHODS and run.result}
     checks = [check for name, other in others.items() for check in checks_of(report.scene, name, other, results)]
-    said = [remark for name, other in others.items() for remark in _beginning(report.scene, name, other)]
+    remarks = [remark for name, other in others.items() for remark in _beginning(report.scene, name, other)]
     load = load_introduction.sentence(report.scene) if curves else ""
-    said += [load] if load and load not in report.remarks else []
+    remarks += [load] if load and load not in report.remarks else []
     whole = (*report.checks, *checks)
     odd = odd_one_out(report.scene, whole, results | others)
-    kept = [remark for remark in report.remarks if not remark.startswith(ODD)]  # named again, among more runs
-    return replace(report, runs=(*report.runs, *runs), checks=whole, remarks=(*kept, *said, *odd))
+    earlier = [remark for remark in report.remarks if not remark.startswith(ODD)]  # decided anew among more runs
+    return replace(report, runs=(*report.runs, *runs), checks=whole, remarks=(*earlier, *remarks, *odd))
 
 
 def _programme(scene: Scene, curve: Result, runs: Iterable[Result]) -> tuple[float, ...]:
-    """The load programme, as far as there is a specimen: where a run has separated, a curve that ends there, or that
-    bears nothing any more, has come to its end."""
+    """The load programme up to the separation of the specimen in a built-in run.
+
+    A foreign curve whose load has vanished is complete, too: its last opening may be the end of the programme.
+    """
     programme = scene.load.opening
     apart = [float(run.opening.max()) for run in runs if run.complete and run.ending.startswith("separated")]
-    if apart and abs(curve.load[-1]) <= NOTHING * np.max(np.abs(curve.load)):
+    if apart and abs(curve.load[-1]) <= BEARS_NO_LOAD * np.max(np.abs(curve.load)):
         apart.append(float(curve.opening.max()))
     end = min(apart, default=np.inf)
     last = next((i for i, goal in enumerate(programme) if goal > end), None)
@@ -135,7 +139,7 @@ def _programme(scene: Scene, curve: Result, runs: Iterable[Result]) -> tuple[flo
 
 
 def _beginning(scene: Scene, name: str, curve: Result) -> tuple[str, ...]:
-    """What is said of a curve that leaves out more than a small part of the first leg."""
+    """A remark on a curve whose first point lies behind a notable part of the first leg."""
     if curve.load.size == 0:
         return ()
     first, goal = float(curve.opening[0]), turns(scene.load.opening)[0]
@@ -145,11 +149,11 @@ def _beginning(scene: Scene, name: str, curve: Result) -> tuple[str, ...]:
 
 
 def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Result]) -> tuple[Check, ...]:
-    """A curve against the isogeometric codes, DOLFINx and the beam, and against what others published.
+    """A foreign curve against the isogeometric codes, DOLFINx, the beam, and published values.
 
     Parameters
     ----------
-    results : the runs that are there, by name
+    results : the runs of the scene by name
     """
     if curve.load.size < 2:
         return ()
@@ -179,7 +183,7 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
 
 
 def _keep(curve: Curve, folder: Path) -> None:
-    """Write opening and load into a folder of their own, never into one that a run is linked to."""
+    """Write opening and load into a new folder; a link to the folder of a run is replaced, not followed."""
     if folder.is_symlink():
         folder.unlink()
     folder.mkdir(parents=True, exist_ok=True)
@@ -187,14 +191,13 @@ def _keep(curve: Curve, folder: Path) -> None:
     np.savetxt(folder / "curve.csv", rows, "%.17g", ",", header="opening,load", comments="")
 
 
-def _of_some_size(path: Path, opening: np.ndarray, load: np.ndarray) -> None:
-    """Like the numbers of a scene: squares of larger ones overflow, and a page cannot be drawn to their scale."""
+def _refuse_size(path: Path, opening: np.ndarray, load: np.ndarray) -> None:
+    """Refuse numbers outside the range of scenes: squares overflow, and charts cannot be scaled to them."""
     largest = max(float(np.abs(opening).max()), float(np.abs(load).max()))
-    if not (largest <= MOST and opening.max() >= LEAST):
-        got = f"{largest:g}" if largest > MOST else f"openings up to {opening.max():g}"
-        raise Refusal(
-            f"{path}: must hold numbers of a size <= {MOST:g}, and openings up to {LEAST:g} or more, got {got}"
-        )
+    if not (largest <= LARGEST_NUMBER and opening.max() >= SMALLEST_NUMBER):
+        got = f"{largest:g}" if largest > LARGEST_NUMBER else f"openings up to {opening.max():g}"
+        limits = f"numbers of a size <= {LARGEST_NUMBER:g}, and openings up to {SMALLEST_NUMBER:g} or more"
+        raise Refusal(f"{path}: must hold {limits}, got {got}")
 
 
 def _named(word: str) -> tuple[str, Path]:

@@ -1,6 +1,6 @@
-"""What must hold of every single run: identities of mechanics, judged from the columns that the run wrote.
+"""Checks of a single run: identities of mechanics, computed from the columns that the run wrote.
 
-Every value is a relative deviation, the worst over the steps. A column that a method cannot know leaves its check out.
+Every value is the largest relative deviation over the steps. A check is left out where a method lacks its columns.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from verify.checks.mechanics import unresolved as resolution
 from verify.checks.mechanics.columns import Steps, far_from_end, has, peak, scale, worst
 from verify.checks.mechanics.j_integral import (
     J_TOLERANCE,
-    beyond_the_end,
-    felt_from_the_start,
-    held_at_the_end,
+    beyond_far_end,
+    far_end_energy,
+    far_end_loaded,
     j_deviation,
     j_gap,
     j_pressed,
@@ -34,16 +34,16 @@ from verify.scene.schema import Scene
 from verify.theory.law import KNOWN_LAWS
 from verify.verdict import Check, Kind
 
-#: Measured up to 0.05, of a strip that lies on the edge of its substrate; without the contact the deviation is 1.
+#: Up to 0.05 were measured, for a strip that rests on the edge of its substrate; without contact the deviation is 1.
 J_PRESSED_TOLERANCE = 0.1
 ENERGY_TOLERANCE = 0.005
-#: Of load sin(theta) / (G_Ic w): besides the mesh, what the unloaded ends of strip and substrate hold of the energy.
+#: For load sin(theta) / (G_Ic w): error of the mesh, and energy in the unloaded ends of strip and substrate.
 ANGLE_TOLERANCE = 0.01
-REST = 1e-12  # part of the largest work below which there is none
+REST = 1e-12  # external work, over the largest one, that counts as zero
 DISSIPATION_TOLERANCE = 0.02
-#: Between the points that carry contact the faces may be deeper in each other: measured up to 0.1 on coarse meshes.
+#: Between the integration points faces penetrate deeper: up to 0.1 were measured on coarse meshes.
 PENETRATION_TOLERANCE = 0.5
-NO_DEPTH = 1e-6  # part of the thickness of an arm below which faces are not in each other
+NO_DEPTH = 1e-6  # penetration, over the thickness of an arm, that counts as zero
 
 J_OF_LAW = "The J-integral of the specimen is the area under the law."
 J_OF_ANY_LAW = "The J-integral of the specimen is G_Ic once the bond has opened (of this law no check knows the shape)."
@@ -61,16 +61,16 @@ Identity = tuple[str, Callable[[Scene, Steps], float | None], float, str]
 
 
 def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, ...]:
-    """The checks of one run, as far as its columns go; ``subject`` as in `checks_of`."""
+    """The checks of one run that its columns allow; ``subject`` as in `checks_of`."""
     return checks_of(prepare(scene, result.method), result, subject)
 
 
 def checks_of(prepared: Prepared, result: Result, subject: str = "") -> tuple[Check, ...]:
-    """The checks of one run, as far as its columns go.
+    """The checks of one run that its columns allow.
 
     Parameters
     ----------
-    subject : the name of the run in the report; the method's where empty
+    subject : name of the run in the report; default: the method
     """
     scene = prepared.scene
     spread = scene.load.at == "face"
@@ -120,58 +120,58 @@ def _identities(prepared: Prepared, result: Result) -> list[Identity]:
 
 
 def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
-    """Why a check that is beyond its tolerance cannot judge, empty where it can."""
+    """Why a check above its tolerance gives no verdict; empty where it does."""
     if check.name not in OF_THE_ZONE or not abs(check.value) > check.tolerance:
         return ""
     return resolution.too_coarse(prepared, result, check) or end_cannot_judge(prepared, result, check)
 
 
 def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
-    """The same of the J-integral where the far end takes part from the start on and explains what it deviates by."""
+    """The same for the J-integral, where the far end carries load from the start and explains the deviation."""
     scene = prepared.scene
     gap = j_gap(scene, result.steps) if check.name == "j-integral" else None
-    if gap is None or not felt_from_the_start(scene, result.steps):
+    if gap is None or not far_end_loaded(scene, result.steps):
         return ""
-    held = held_at_the_end(scene, result.steps)
-    beyond = worst(beyond_the_end(np.abs(gap), held))
-    return resolution.at_the_end(prepared, float(np.nanmax(held))) if beyond <= check.tolerance else ""
+    held = far_end_energy(scene, result.steps)
+    beyond = worst(beyond_far_end(np.abs(gap), held))
+    return resolution.far_end_unresolved(prepared, float(np.nanmax(held))) if beyond <= check.tolerance else ""
 
 
 def penetration(scene: Scene, steps: Steps) -> float | None:
-    """Worst depth of the faces in each other over what contact gives way under its own pressure, less 1.
+    """Largest penetration of the faces over the one expected under their contact pressure, less 1.
 
-    The pressure over the penalty, and over the stiffness of an arm across: between the points that carry contact a
-    surface bulges by a part of that. None where contact was to be left out, or the programme never goes down; not
-    counted where the specimen turns about its far end (see `far_from_end`).
+    Expected are the pressure over the penalty, and over the stiffness of an arm through its thickness: between the
+    integration points a surface bulges by a part of that. None without contact, or where the programme never unloads;
+    steps at which the specimen rotates about its far end do not count (see `far_from_end`).
     """
     if not simulated(scene)["contact"] or not has(steps, "penetration", "contact_pressure"):
         return None
     specimen, across = scene.specimen, elastic_constants(scene.materials[0])["E2"]
-    gives = steps["contact_pressure"] * (1.0 / scene.interface.penalty + specimen.loaded_thickness / across)
+    expected = steps["contact_pressure"] * (1.0 / scene.interface.penalty + specimen.loaded_thickness / across)
     depth = steps["penetration"]
     deep = (depth > NO_DEPTH * specimen.loaded_thickness) & far_from_end(scene, steps)
-    return worst(np.maximum(np.where(deep, depth / scale(gives) - 1.0, 0.0), 0.0))
+    return worst(np.maximum(np.where(deep, depth / scale(expected) - 1.0, 0.0), 0.0))
 
 
 def energy_gap(scene: Scene, steps: Steps) -> float | None:
-    """Worst |external - stored - dissipated| over the largest external work so far in the run."""
+    """Largest |external work - stored - dissipated| over the largest external work up to that step."""
     if not has(steps, "external_work", "stored_energy", "dissipated_energy"):
         return None
     gap = steps["external_work"] - steps["stored_energy"] - steps["dissipated_energy"]
     work = np.maximum.accumulate(np.abs(steps["external_work"]))
-    # at rest a specimen out of the axes holds some 1e-50 by rounding, against no work at all
+    # a rotated specimen at rest stores some 1e-50 by rounding, while the external work is 0
     return worst(gap / scale(np.maximum(work, REST * np.max(work, initial=0.0))))
 
 
 def interface_gap(scene: Scene, steps: Steps) -> float | None:
-    """Worst difference of load and interface force over the peak load; both in size, whichever arm they act on."""
+    """Largest difference of load and interface force over the peak load; absolute values, as they act on either arm."""
     if not has(steps, "interface_force"):
         return None
     return worst((np.abs(steps["load"]) - np.abs(steps["interface_force"])) / scale(peak(steps["load"])))
 
 
 def moment_gap(scene: Scene, steps: Steps) -> float | None:
-    """Worst sum of the moments on the upper arm over the moment of the peak load about the tip of the precrack."""
+    """Largest sum of the moments on the upper arm over the moment of the peak load about the tip of the precrack."""
     if not has(steps, "load_moment", "interface_moment"):
         return None
     lever = scene.specimen.free_length
@@ -179,34 +179,36 @@ def moment_gap(scene: Scene, steps: Steps) -> float | None:
 
 
 def clamp_gap(scene: Scene, steps: Steps) -> float | None:
-    """Worst sum of the moments of load and clamp over the moment of the peak load about the flush end of a peel."""
+    """Largest sum of the moments of load and clamp over the moment of the peak load about the flush end of a peel."""
     if not has(steps, "load_moment", "clamp_moment"):
         return None
     return worst((steps["load_moment"] + steps["clamp_moment"]) / scale(scene.specimen.extent * peak(steps["load"])))
 
 
 def lengthwise_gap(scene: Scene, steps: Steps) -> float | None:
-    """Worst sum of what acts lengthwise on a strip over the peak load: tractions on a tilted master, and the anchor."""
+    """Largest sum of the axial forces on a strip over the peak load: tractions on a tilted master, and the anchor."""
     if not has(steps, "interface_pull", "anchor_pull"):
         return None
     return worst((steps["interface_pull"] + steps["anchor_pull"]) / scale(peak(steps["load"])))
 
 
 def support_forces(scene: Scene, steps: Steps) -> float | None:
-    """Worst sum of the support reactions, less the load that they carry, over the peak load."""
+    """Largest resultant of the support reactions beyond those that balance the load, over the peak load."""
     if not has(steps, "reaction_x", "reaction_y"):
         return None
     return worst(np.hypot(steps["reaction_x"], steps["reaction_y"]) / scale(peak(steps["load"])))
 
 
 def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: nan) -> float | None:
-    """|slope of dissipated against crack / (G_Ic w) - 1|; none below five thicknesses or three elements of the bond.
+    """|slope of the dissipated energy over the crack length / (G_Ic w) - 1|; None for less than five thicknesses or
+    three elements of new crack.
 
-    Counted from the first growth on, when a whole process zone is already under way: it travels with the crack and
-    drops out of the slope, but for its slow change of length. It is counted until the zone reaches the far end. The
-    slope is that of the straight line nearest to all that lies between (least squares over the crack): from first to
-    last it would hold what the zone has spent beyond the points that see the crack, a few percent on a coarse mesh.
-    ``element`` makes a mesh to tell the longest one, and is asked last.
+    The steps count from the first crack growth on, when the process zone is complete, until the zone reaches the far
+    end. The energy in the zone travels with the crack and drops out of the slope, except for the slow change of the
+    zone's length. The slope is fitted by least squares over the crack length: a difference of the first and the last
+    step would contain the energy dissipated between integration points, a few percent on a coarse mesh.
+
+    ``element`` returns the longest element of the bond; it builds a mesh and is called last.
     """
     if not has(steps, "crack_length", "dissipated_energy"):
         return None
@@ -218,9 +220,9 @@ def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = l
     new_crack = crack[-1] - crack[0]
     if new_crack < 5 * scene.specimen.loaded_thickness or new_crack < 3 * element():
         return None
-    share = np.gradient(crack)  # of the crack that a step stands for: as a whole it counts by its length
-    from_mean = crack - np.average(crack, weights=share)
-    slope = np.sum(share * from_mean * dissipated) / np.sum(share * from_mean**2)
+    weight = np.gradient(crack)  # crack length per step, so that dense steps count no more than others
+    from_mean = crack - np.average(crack, weights=weight)
+    slope = np.sum(weight * from_mean * dissipated) / np.sum(weight * from_mean**2)
     return float(abs(slope / (scene.interface.toughness * scene.specimen.width) - 1))
 
 

@@ -1,4 +1,4 @@
-"""What a verification has judged, what it has not, and whether that is enough for the caller."""
+"""The verdict of a verification: its checks, the gaps between them, and whether the caller allows these gaps."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from verify.verdict import Check, SceneReport, counted
 
 @dataclass(frozen=True)
 class Demands:
-    """What must have been judged for a verification to pass, besides that nothing is broken.
+    """Conditions for a verification to pass, besides that no check is broken.
 
     Parameters
     ----------
-    strict : no gap at all
+    strict : no gap is allowed
     required : methods that must have run on every scene
     """
 
@@ -27,7 +27,7 @@ NO_DEMANDS = Demands()
 
 @dataclass(frozen=True)
 class Gap:
-    """A run for which this machine lacks the method, or a check that is unresolved (``check`` is its name)."""
+    """A run whose method this machine lacks, or an unresolved check (``check`` is its name, else empty)."""
 
     scene: str
     subject: str
@@ -37,7 +37,7 @@ class Gap:
 
 @dataclass(frozen=True)
 class Judgement:
-    """The checks of a verification with the scene or mesh of each, and the gaps between them."""
+    """The checks of a verification, each with its scene or mesh, and the gaps."""
 
     checks: tuple[tuple[str, Check], ...]
     gaps: tuple[Gap, ...]

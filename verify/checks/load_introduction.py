@@ -1,7 +1,7 @@
-"""What it changes to pull at the corner of an end face in place of the whole: the number for a scene, and in words.
+"""Effect of a point load at the corner of the end face, compared with a load that is spread evenly over the face.
 
-A code that pulls a corner node gives way there locally, and its load comes closer to the crack as the end turns. Both
-are as nothing on slender arms; on stocky ones they are worth more than two codes may differ by.
+A point load adds a local compliance, and its point of attack moves towards the crack as the end rotates. Both are
+negligible on slender arms; on stocky arms they exceed the distance that two codes may have.
 """
 
 from __future__ import annotations
@@ -17,30 +17,32 @@ from verify.scene.bodies import axial_modulus, elastic_constants
 from verify.scene.effects import NEGLIGIBLE, simulated
 from verify.scene.schema import Scene
 
-#: Unknowns and steps of the two runs that tell it of stocky arms. With 1956 and 60 the numbers of a0/h = 4 and 7 change
-#: by 0.1 %.
-DOFS, STEPS = 1000, 40
-#: Turn of the end, in radians, beyond which it is not told by the bending of the arm.
-FAR = 0.6
+#: Mesh of the two runs that measure the effect on stocky arms; with 1956 unknowns and 60 steps the results for a0/h = 4
+#: and 7 change by 0.1 %.
+COARSE_MESH = {"dofs": 1000, "steps": 40}
+#: Rotation of the end, in radians, above which the bending of the arm does not determine the lever.
+LARGEST_ROTATION = 0.6
 
 
 @dataclass(frozen=True)
 class Corner:
-    """What a load at the corner changes: initial stiffness and peak load, relative to a load spread over the face."""
+    """Change of initial stiffness and peak load by a load at the corner, relative to a load spread over the face."""
 
     stiffness: float
     peak: float
 
 
 def estimate(scene: Scene) -> Corner:
-    """By beam theory, within a factor of about 2.
+    """The change by beam theory, within a factor of about 2.
 
-    The corner gives way by the size of ``P / sqrt(E2 G12)`` per width, where the arm bends by ``4 P (a/h)^3 / E1``: for
-    a/h = 4.2, 7 and 20 the stiffness was measured 0.9, 1.4 and 0.005 % less, and is 0.5, 1.4 and 0.005 % here. At the
-    load at which a sharp crack grows, ``P a = sqrt(c G w E I)`` with c = 1 of a dcb and 2 of a strip, the end turns by
-    ``theta = P a^2 / (2 E I)``, and the lever of the corner is shorter by ``theta h / 2``: by 2.8 % for a/h = 4.2,
-    where the peak was measured 3.8 % higher. Linear kinematics does not have this. A strip that turns far is pulled and
-    not bent, and its peak is NaN.
+    Stiffness: the local displacement of the corner is of the size ``P / sqrt(E2 G12)`` per width, the deflection of the
+    arm is ``4 P (a/h)^3 / E1``. For a/h = 4.2, 7 and 20 the measured stiffness was 0.9, 1.4 and 0.005 % lower; the
+    estimates are 0.5, 1.4 and 0.005 %.
+
+    Peak load: at the load at which a sharp crack grows, ``P a = sqrt(c G w E I)`` with c = 1 for a DCB and 2 for a
+    strip, the end rotates by ``theta = P a^2 / (2 E I)``, which shortens the lever of the corner by ``theta h / 2``: by
+    2.8 % for a/h = 4.2, where the measured peak was 3.8 % higher. With linear kinematics there is no such change. A
+    strip with a large rotation is under tension and not in bending; its peak is NaN.
     """
     specimen, constants = scene.specimen, elastic_constants(scene.materials[0])
     h, a = specimen.loaded_thickness, max(specimen.free_length, specimen.loaded_thickness)
@@ -48,16 +50,16 @@ def estimate(scene: Scene) -> Corner:
     local = 0.25 * (h / a) ** 3 * modulus / sqrt(constants["E2"] * constants["G12"])
     share = 2.0 / specimen.arms
     theta = 0.5 * a * sqrt(share * scene.interface.toughness / (modulus * h**3 / 12.0))
-    lever = 0.5 * theta * h / a if theta < FAR else nan
+    lever = 0.5 * theta * h / a if theta < LARGEST_ROTATION else nan
     return Corner(-local, lever if simulated(scene)["kinematics"] == "finite" else 0.0)
 
 
 def measured(scene: Scene) -> Corner:
-    """By two runs of a coarse NURBS mesh up to the largest opening; the estimate where they do not come so far."""
+    """The change by two runs on a coarse NURBS mesh up to the largest opening; the estimate where one of them stops."""
     from verify.methods.solve import solve
 
     end = max(scene.load.opening)
-    mesh = scene.discretization.model_copy(update={"dofs": DOFS, "steps": STEPS})
+    mesh = scene.discretization.model_copy(update=COARSE_MESH)
     face, node = (
         solve(_at(scene.model_copy(update={"discretization": mesh}), at, end), SEARCHING) for at in ("face", "node")
     )
@@ -72,13 +74,13 @@ def _peak(run: Result) -> float:
 
 
 def matters(scene: Scene) -> bool:
-    """Whether the estimate is more than two codes may differ by."""
+    """Whether the estimate exceeds the distance that two codes may have."""
     found = estimate(scene)
     return abs(found.stiffness) > NEGLIGIBLE or abs(found.peak) > NEGLIGIBLE
 
 
 def sentence(scene: Scene) -> str:
-    """What to know of the load before a code is compared with this scene; empty where the scene's is a point load."""
+    """A warning for codes with a point load that are compared with this scene; empty where the scene has one itself."""
     if scene.load.at != "face":
         return ""
     solved = matters(scene) and not scene.specimen.clamped and max(scene.load.opening) > 0.0
@@ -91,7 +93,7 @@ def sentence(scene: Scene) -> str:
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
-    """What the report says of it: nothing where it does not matter."""
+    """The sentence in the report; empty where the effect is negligible."""
     return (sentence(scene),) if scene.load.at == "face" and matters(scene) else ()
 
 

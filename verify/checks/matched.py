@@ -1,9 +1,9 @@
-"""What a matched interface leaves out: the tilt of the lower surface, and what the upper one slides along it there.
+"""Error of a matched interface: the rotation of the lower surface and the sliding of the upper one along it.
 
-The DOLFINx model, as every other without ``effects.search``, pairs points for good and measures gap and traction along
-the undeformed normal. Where the lower surface has turned by theta and a pair has slid apart by s lengthwise, the gap g
-along the current normal is g cos(theta) - s sin(theta), and the tractions pull lengthwise by p sin(theta). Both are
-read from the fields that a run keeps, and are a bound of what a code with a moving projection may find otherwise.
+The DOLFINx model, like every model without ``effects.search``, keeps the initial pairs of points and measures gap and
+traction along the undeformed normal. Where the lower surface has rotated by theta and a pair has slid apart by s, the
+gap along the current normal is g cos(theta) - s sin(theta), and the tractions have the axial component p sin(theta).
+Both are computed from the stored fields of a run. They bound the difference to a code that projects the points anew.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from verify.result import Result, Snapshot
 from verify.scene.effects import NEGLIGIBLE
 from verify.theory.law import Law
 
-#: A point pulls where its traction is more than this part of the strength.
-PULLS = 0.01
+#: Traction, over the strength, from which on the rotation at a point counts.
+LEAST_TRACTION = 0.01
 
 
 @dataclass(frozen=True)
 class LeftOut:
-    """The largest values over the fields that were kept.
+    """Largest values over the stored fields.
 
-    ``tilt``: turn of the lower surface in radians, where the interface pulls. ``gap``: change of the gap over g_u, in
-    the process zone. ``pull``: lengthwise resultant of the tractions over the load.
+    ``tilt``: rotation of the lower surface in radians, where the interface carries traction. ``gap``: change of the
+    gap over g_u, in the process zone. ``pull``: axial resultant of the tractions over the load.
     """
 
     tilt: float
@@ -37,7 +37,7 @@ class LeftOut:
 
     @property
     def bound(self) -> float:
-        """Part of G_Ic, or of the load, by which a code that follows the surfaces may differ.
+        """Difference that a code which follows the surfaces may have, over G_Ic or the load.
 
         No traction is above p_max = 2 G_Ic / g_u: a change of the gap by ``gap`` g_u changes the area under the law by
         no more than 2 ``gap`` G_Ic.
@@ -46,18 +46,18 @@ class LeftOut:
 
     @property
     def valid(self) -> bool:
-        """Whether the interface may stay matched; not where the bound is unknown."""
+        """Whether a matched interface is accurate enough; False where the bound is NaN."""
         return self.bound <= NEGLIGIBLE
 
 
 def summary(prepared: Prepared, result: Result) -> dict[str, float]:
-    """What ``result.json`` says of it: tilt, gap and pull, or nothing where the method follows the surfaces."""
+    """The entry of ``result.json``: tilt, gap and pull; empty where the method follows the surfaces."""
     found = of_run(prepared, result)
     return {} if found is None else asdict(found)
 
 
 def of_run(prepared: Prepared, result: Result) -> LeftOut | None:
-    """What a run leaves out; None where its method follows the surfaces, or where no fields were kept."""
+    """The error of a run; None where its method follows the surfaces, or where no fields were stored."""
     method, scene = prepared.method, prepared.scene
     if not (method.has_mesh and "search" in method.fixed(scene) and result.snapshots):
         return None
@@ -68,13 +68,13 @@ def of_run(prepared: Prepared, result: Result) -> LeftOut | None:
 def left_out(
     snapshots: tuple[Snapshot, ...], law: Law, loaded_at: float, width: float = 1.0, between: bool = False
 ) -> LeftOut:
-    """What the fields of a run with a matched interface say of it.
+    """The error of a matched interface in the stored fields of a run.
 
     Parameters
     ----------
-    loaded_at : X of the loaded end, from which the snapshots count distances; the bodies meet on Y = 0.
-    between : the surface half way between both is the one that counts, not the lower one: with arms that are alike
-        tractions act across it, and their tilt is an error of whoever takes the normal of either.
+    loaded_at : X of the loaded end, from which the snapshots measure distances; the bodies meet on Y = 0
+    between : use the surface half way between both faces instead of the lower one. With equal arms the tractions are
+        normal to that surface, and its rotation is the error of a normal taken from either face
     """
     found = [_of(snapshot, law, loaded_at, width, between) for snapshot in snapshots]
     return LeftOut(*(float(np.max(values)) for values in zip(*found, strict=True))) if found else LeftOut(0, 0, 0)
@@ -87,23 +87,25 @@ def _of(snapshot: Snapshot, law: Law, loaded_at: float, width: float, between: b
     turn_q = np.interp(X_q, below_X, turn)
     if between:
         turn_q = 0.5 * (turn_q + np.interp(X_q, above_X, above_turn))
-    slid_q = np.interp(X_q, above_X, above_u[:, 0]) - np.interp(X_q, below_X, below_u[:, 0])
+    slip_q = np.interp(X_q, above_X, above_u[:, 0]) - np.interp(X_q, below_X, below_u[:, 0])
     g_q, p_q = snapshot.gap_q, snapshot.traction_q
     zone_q = (g_q > law.g_peak) & (g_q < law.g_open)
-    change_q = g_q * (1.0 - np.cos(turn_q)) + slid_q * np.sin(turn_q)
+    change_q = g_q * (1.0 - np.cos(turn_q)) + slip_q * np.sin(turn_q)
     order = np.argsort(X_q)
     pull = width * float(trapezoid((p_q * np.sin(turn_q))[order], X_q[order]))
     return (
-        float(np.max(np.abs(turn_q[np.abs(p_q) > PULLS * law.strength]), initial=0.0)),
+        float(np.max(np.abs(turn_q[np.abs(p_q) > LEAST_TRACTION * law.strength]), initial=0.0)),
         float(np.max(np.abs(change_q[zone_q]), initial=0.0)) / law.g_open,
         abs(pull / snapshot.load) if snapshot.load else 0.0,
     )
 
 
 def _surface(snapshot: Snapshot, upper: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """X (n,), displacements (n, 2) and turn (n,) along a body's side of Y = 0, element by element, X rising."""
+    """X (n,) in rising order, displacements (n, 2) and rotations (n,) along the side of a body on Y = 0."""
     X_euvi, u_euvi, v = snapshot.X_euvi, snapshot.u_euvi, 0 if upper else -1
-    if np.ptp(X_euvi[..., 1], axis=1).max() > np.ptp(X_euvi[..., 1], axis=2).max():  # the grid may run across first
+    if (
+        np.ptp(X_euvi[..., 1], axis=1).max() > np.ptp(X_euvi[..., 1], axis=2).max()
+    ):  # the first axis of the grid may run through the thickness
         X_euvi, u_euvi = X_euvi.swapaxes(1, 2), u_euvi.swapaxes(1, 2)
     Y_euv = X_euvi[..., 1]
     on_side = np.all(np.abs(Y_euv[:, :, v]) < 1e-9 * np.ptp(Y_euv), axis=1)

@@ -1,7 +1,7 @@
-"""What a run left out, and whether it was negligible: read afterwards from what the run itself has seen.
+"""Effects that a run neglected, and how large they would have been: estimated from the results of the run.
 
-An effect may have been left out by the scene or by ``auto``; what is found is said in both cases.
-`verify.scene.effects` has the estimates that are made beforehand.
+An effect is neglected by the scene or by its setting ``auto``; the estimates cover both cases. Those that are made
+before a run are in `verify.scene.effects`.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ from verify.scene.effects import GROWING, NEGLIGIBLE, STANDING, stiffer
 from verify.scene.schema import Scene
 from verify.theory.law import Law
 
-#: A bond ahead of a crack is squeezed by 0.6 g_max and no more while the crack grows (measured; 0.2 of the gap at its
-#: tip on an elastic foundation); faces that come further into each other run into each other.
+#: Overlap of the faces, over g_max, above which they penetrate each other. Ahead of a growing crack the bond is
+#: compressed by at most 0.6 g_max (measured; on an elastic foundation 0.2 of the gap at the tip).
 OVERLAP = 1.0
-#: A traction this many times below the strength is none.
-HARDLY = 1e12
-#: Part of the thickness of an arm within which control points are the same.
-SAME = 1e-6
+#: Strength over the smallest traction that counts in a ratio; smaller ones are rounding.
+LARGEST_RATIO = 1e12
+#: Distance, over the thickness of an arm, within which control points of two meshes coincide.
+SAME_CONTROL_POINT = 1e-6
 
 
 @dataclass(frozen=True)
 class Neglected:
-    """One effect that a run did not have.
+    """One effect that a run neglected.
 
-    ``value`` is the part of the load, or of the energy in the bond, that it may be worth, and ``seen`` says what it was
-    read from.
+    ``value`` estimates its share of the load or of the energy in the bond; ``seen`` says in words what the estimate is
+    based on.
     """
 
     key: str
@@ -60,13 +60,16 @@ _NAMES = {
 
 
 def of_run(scene: Scene, result: Result) -> tuple[Neglected, ...]:
-    """Every effect that the run left out and that its columns show."""
+    """All neglected effects that the columns of the run allow to estimate."""
     return of_prepared(prepare(scene, result.method), result)
 
 
 def of_prepared(prepared: Prepared, result: Result) -> tuple[Neglected, ...]:
-    """The same of a prepared scene. A method that is made for one arm, or for fixed pairs of points, leaves nothing out
-    by them; the report names what a fixed pair is worth (`verify.checks.matched`)."""
+    """The same for a prepared scene.
+
+    Symmetry and search do not count for methods that always model one arm or fixed pairs of points; the report gives
+    the error of fixed pairs (`verify.checks.matched`).
+    """
     effects, own = prepared.effects, prepared.method.fixed(prepared.scene)
     rules = {
         _rotation: effects["kinematics"] == "linear",
@@ -82,12 +85,12 @@ def of_prepared(prepared: Prepared, result: Result) -> tuple[Neglected, ...]:
 
 
 def warnings(prepared: Prepared, result: Result) -> tuple[str, ...]:
-    """A sentence for every effect that should not have been left out."""
+    """A sentence for every effect that should not have been neglected."""
     return tuple(one.sentence for one in of_prepared(prepared, result) if not one.negligible)
 
 
 def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
-    """The same of many runs of a scene: one sentence an effect, of the run that it matters most to."""
+    """The same for many runs of a scene: one sentence per effect, with the run in which it is largest."""
     worst: dict[str, list[tuple[Neglected, str]]] = {}
     for name, result in results.items():
         for one in of_run(scene, result):
@@ -108,10 +111,9 @@ def summary(prepared: Prepared, result: Result) -> dict[str, dict[str, object]]:
 
 
 def _rotation(prepared: Prepared, result: Result) -> Neglected | None:
-    """What the largest rotation of the loaded faces means for the load of a beam.
+    """Change of the load by finite kinematics, from the largest rotation theta of the loaded faces by beam theory.
 
-    While the crack stands the load changes by 16/35 theta^2, while it grows by 6/35 theta^2 (see
-    `verify.scene.effects`).
+    16/35 theta^2 before the crack grows, 6/35 theta^2 while it grows (see `verify.scene.effects`).
     """
     steps = result.steps
     if "face_slope_top" not in steps:
@@ -125,11 +127,11 @@ def _rotation(prepared: Prepared, result: Result) -> Neglected | None:
 
 
 def _overlap(prepared: Prepared, result: Result) -> Neglected | None:
-    """What contact would have made of the part of the bond that is squeezed.
+    """Change of the load by contact in the compressed part of the bond.
 
-    The smallest gap is that of the fields that were kept and, at every step, of both ends of the bond, and of all the
-    faces where the programme goes down. In the fields the squeezed bond holds a part of the work; each point of it
-    would have been stiffer by penalty / secant.
+    The smallest gap is that of the stored fields and, at every step, of both ends of the bond, and where the programme
+    unloads that of all the faces. The energy of the compressed bond is computed from the fields; with contact every
+    point of it would be stiffer by the factor penalty / secant.
     """
     scene, steps = prepared.scene, result.steps
     law = law_of(scene)
@@ -150,37 +152,38 @@ def _overlap(prepared: Prepared, result: Result) -> Neglected | None:
 
 
 def _load_of(snapshot: Snapshot, result: Result, law: Law, scene: Scene) -> float:
-    """Change of the load by contact in one configuration, as part of it."""
+    """Relative change of the load by contact in one snapshot."""
     closed_q = snapshot.gap_q < 0.0
     at = int(np.argmax(result.opening >= snapshot.opening))
     work = float(result.steps["external_work"][at])
     if not closed_q.any() or work <= 0.0:
         return 0.0
     g_q, p_q = np.where(closed_q, snapshot.gap_q, -1.0), np.where(closed_q, np.minimum(snapshot.traction_q, 0.0), 0.0)
-    ratio_q = scene.interface.penalty * g_q / np.minimum(p_q, -law.strength / HARDLY)
+    ratio_q = scene.interface.penalty * g_q / np.minimum(p_q, -law.strength / LARGEST_RATIO)
     change_q = p_q * g_q * stiffer(ratio_q)
     order = np.argsort(snapshot.s_q)
     return abs(0.5 * scene.specimen.width * float(trapezoid(change_q[order], snapshot.s_q[order]))) / work
 
 
 def _healing(prepared: Prepared, result: Result) -> Neglected | None:
-    """How much of what a damaged bond had taken it gave back: with irreversible damage it would not have.
+    """Share of the energy of the damaged bond that was recovered on unloading; with irreversible damage none is.
 
-    Without history nothing is dissipated: the work of the bond is the cohesive energy, and that falls where gaps do.
+    Without a history variable nothing is dissipated: the work of the bond is the cohesive energy, which falls as the
+    gaps close.
     """
     steps = result.steps
     if "cohesive_energy" not in steps or "damage_front" not in steps:
         return None
     damaged = np.maximum.accumulate(steps["damage_front"]) > prepared.scene.specimen.free_length
-    taken = np.where(damaged, steps["cohesive_energy"], 0.0)
-    most = np.maximum.accumulate(taken)
-    back = float(np.max((most - taken) / np.where(most > 0.0, most, 1.0)))
+    absorbed = np.where(damaged, steps["cohesive_energy"], 0.0)
+    most = np.maximum.accumulate(absorbed)
+    back = float(np.max((most - absorbed) / np.where(most > 0.0, most, 1.0)))
     seen = f"{back:.2%} of the energy that the damaged bond had taken came back"
     return Neglected("irreversible", back, back <= NEGLIGIBLE, seen)
 
 
 def _other_arm(prepared: Prepared, result: Result) -> Neglected | None:
-    """How far the mesh of the other arm is from the mirror image that stands for it; nothing else can differ."""
+    """Distance of the other arm's mesh from the mirror image of the modelled arm; nothing else can differ."""
     specimen = prepared.scene.specimen
     if not prepared.method.takes_files or len(specimen.mesh) != 2:
         return Neglected("symmetry", 0.0, True, "the arms are alike")
@@ -188,15 +191,15 @@ def _other_arm(prepared: Prepared, result: Result) -> Neglected | None:
     from verify.methods.given_meshes import given_meshes
 
     upper, lower = given_meshes(prepared.scene)
-    ours, theirs = (_sorted(mesh.P_AI) for mesh in (upper, upside_down(lower)))
+    ours, theirs = (P_AI[np.lexsort(np.round(P_AI, 9).T)] for P_AI in (upper.P_AI, upside_down(lower).P_AI))
     apart = float(np.max(np.abs(ours - theirs))) if ours.shape == theirs.shape else nan
-    same = apart <= SAME * specimen.loaded_thickness
+    same = apart <= SAME_CONTROL_POINT * specimen.loaded_thickness
     seen = "the meshes of the arms mirror each other" if same else "the lower arm has another mesh, which was left out"
     return Neglected("symmetry", apart / specimen.loaded_thickness, same, seen)
 
 
 def _tilt(prepared: Prepared, result: Result) -> Neglected | None:
-    """What gaps and tractions across the surface half way between the faces are off by along the undeformed normal."""
+    """Error of gaps and tractions along the undeformed normal, against the surface half way between the faces."""
     effects, specimen = prepared.effects, prepared.scene.specimen
     snapshots = tuple(snapshot for snapshot in result.snapshots if snapshot.X_euvi.size)  # a beam has no faces
     if effects["symmetry"] or effects["kinematics"] == "linear" or not snapshots:
@@ -205,8 +208,3 @@ def _tilt(prepared: Prepared, result: Result) -> Neglected | None:
     tilt = f"{degrees(found.tilt):.2g} degrees"
     seen = f"half way between the faces the bond tilts by up to {tilt}, worth {found.bound:.2%} of G_Ic or of the load"
     return Neglected("search", found.bound, found.valid, seen)
-
-
-def _sorted(P_AI: np.ndarray) -> np.ndarray:
-    rounded = np.round(P_AI, 9)
-    return P_AI[np.lexsort(rounded.T)]

@@ -1,4 +1,4 @@
-"""Which run stands alone where curves disagree: the others agree with each other, and it with none of them."""
+"""Where curves disagree, the run that agrees with no other one, while the others agree with each other."""
 
 from __future__ import annotations
 
@@ -7,31 +7,31 @@ from itertools import combinations
 
 import numpy as np
 
-from verify.checks.between_codes import BEAM, CROSS_CODE, FINE, distance
-from verify.checks.proof import LIMITS, MATCHED, REFERENCE, RUNS, SECOND, proof
+from verify.checks.between_codes import BEAM, CODE_TOLERANCE, CROSS_CODE, distance
+from verify.checks.proof import LIMIT_METHODS, MATCHED, REFERENCE, RUNS, SECOND, proof
 from verify.result import Result
 from verify.scene.schema import Scene
 from verify.verdict import Check
 
-#: The code that a run belongs to. Bases of one code confirm each other less than different codes do.
+#: The code of every run. Agreement of different codes counts more than agreement of bases of one code.
 CODES = {name: method.code for name, method in RUNS.items()} | {SECOND: RUNS[REFERENCE].code}
-#: How every sentence of this module begins.
+#: Beginning of the sentences of this module, by which they are found among remarks.
 ODD = "odd one out"
-#: Runs whose points keep their pairs.
-KEPT = {MATCHED, REFERENCE, SECOND, BEAM}
+#: Runs with fixed pairs of interface points.
+FIXED_PAIRS = {MATCHED, REFERENCE, SECOND, BEAM}
 #: Distance within which two runs agree.
-AGREE = FINE
+AGREE = CODE_TOLERANCE
 
 
 def odd_one_out(scene: Scene, checks: Sequence[Check], results: Mapping[str, Result]) -> tuple[str, ...]:
-    """What to say where a check of two curves is not held: which run is the odd one out.
+    """A sentence that names the odd one out where a check of two curves is not passed; else empty.
 
     Parameters
     ----------
     results : the runs of the scene, by name
     """
     pairs = [check.subject.split(" / ") for check in checks if not check.passed and " / " in check.subject]
-    compared = {name: run for name, run in results.items() if name not in LIMITS and run.load.size > 1}
+    compared = {name: run for name, run in results.items() if name not in LIMIT_METHODS and run.load.size > 1}
     if not pairs or len(compared) < 2 or max(scene.load.opening) <= 0.0:
         return ()
     end = max(scene.load.opening)
@@ -41,18 +41,18 @@ def odd_one_out(scene: Scene, checks: Sequence[Check], results: Mapping[str, Res
 def odd_one(results: Mapping[str, Result], end: float, models: float = 0.0) -> str:
     """A sentence that names the runs which no other code confirms.
 
-    Two runs agree within `AGREE`, and the difference of models where one keeps its pairs of points. They fall into
-    groups whose members agree, by chains of agreement. The group of the most codes, then of the most runs, confirms its
-    members; the runs outside it are odd, unless they are within their own tolerance of it. Where two groups are equal,
-    or all runs are in one, the run farthest from the others is named.
+    Two runs agree if their distance is at most `AGREE`, plus the difference of models where only one of them has fixed
+    pairs of points. Chains of agreement form groups. The group with the most codes, then with the most runs, is taken
+    to be right; runs outside it are odd, unless they are within their own tolerance of it. Where the two largest
+    groups are equal, or all runs form one group, the run with the largest mean distance is named.
 
     Parameters
     ----------
     results : runs to compare, by name
     end : largest opening of the programme
-    models : what keeping pairs of points changes of the curve
+    models : change of the curve by fixed pairs of points
     """
-    apart = {frozenset(pair): _far(results, pair, end, models) for pair in combinations(results, 2)}
+    apart = {frozenset(pair): _distance(results, pair, end, models) for pair in combinations(results, 2)}
     ranked = sorted(_groups(list(results), {pair for pair, far in apart.items() if far <= AGREE}), key=_weight)[::-1]
     main = ranked[0]
     if len(ranked) > 1 and _weight(main) > _weight(ranked[1]):
@@ -68,11 +68,11 @@ def odd_one(results: Mapping[str, Result], end: float, models: float = 0.0) -> s
     return f"{ODD}, though not by much: {far}, on average {mean[far]:.2%} from the other runs, those {rest:.2%}"
 
 
-def _far(results: Mapping[str, Result], pair: tuple[str, str], end: float, models: float) -> float:
-    """Distance of the later run to the earlier one, less what their models differ; infinite where it is no number."""
-    with np.errstate(all="ignore"):  # a curve of another code may bear nothing
+def _distance(results: Mapping[str, Result], pair: tuple[str, str], end: float, models: float) -> float:
+    """Distance of the second run to the first, less the difference of their models; infinite instead of NaN."""
+    with np.errstate(all="ignore"):  # a curve of another code may be zero
         far = distance(results[pair[1]], results[pair[0]], end)
-    far -= models * (len(KEPT & set(pair)) == 1)
+    far -= models * (len(FIXED_PAIRS & set(pair)) == 1)
     return max(0.0, far) if np.isfinite(far) else np.inf
 
 

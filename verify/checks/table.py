@@ -8,7 +8,7 @@ from verify.verdict import Check, SceneReport
 
 
 def check_table(checks: Iterable[Check], scene: str = "") -> list[str]:
-    """One line a check: state, kind, name, subject, value against tolerance; the reason of an unresolved one."""
+    """One line per check: state, kind, name, subject, value, tolerance, and why it is unresolved if it is."""
     lines = []
     for c in checks:
         line = f"{c.state:10} {scene:{18 if scene else 0}} {c.kind:11} {c.name:16} {c.subject:20} {c.value:9.2e} "
@@ -17,7 +17,7 @@ def check_table(checks: Iterable[Check], scene: str = "") -> list[str]:
 
 
 def overview(reports: Iterable[SceneReport]) -> list[str]:
-    """A table for every scene: one line a check, one column a run; ! marks what is broken, ? what is unresolved."""
+    """A table per scene with a line per check and a column per run; ! marks a broken check, ? an unresolved one."""
     lines: list[str] = []
     for report in reports:
         runs = list(dict.fromkeys(_run(check) for check in report.checks))
@@ -26,7 +26,9 @@ def overview(reports: Iterable[SceneReport]) -> list[str]:
         lines.append(f"{report.scene.name:29}" + "".join(f"{run:>{width}}" for run, width in widths.items()))
         for name, kind in names:
             found = sorted((check for check in report.checks if check.name == name), key=_used)
-            cells = {_run(check): _cell(check) for check in found}  # of several the one that is nearest to failing
+            cells = {
+                _run(check): _cell(check) for check in found
+            }  # of several checks the one with the largest share of its tolerance
             lines.append(
                 f"  {name:16} {kind:10}" + "".join(f"{cells.get(run, ''):>{width}}" for run, width in widths.items())
             )
@@ -36,23 +38,23 @@ def overview(reports: Iterable[SceneReport]) -> list[str]:
 
 
 def not_held(checks: Sequence[tuple[str, Check]]) -> list[str]:
-    """The checks that are broken or unresolved, in full."""
+    """The lines of the broken and the unresolved checks."""
     return [line for scene, check in checks if not check.passed for line in check_table([check], scene)]
 
 
 def _run(check: Check) -> str:
-    """The run that a check judges; of a pair the first."""
+    """The run that a check judges: the first of a pair."""
     return check.subject.split(" / ")[0]
 
 
-#: Marks of the states in a table, and their order: the last one is shown where a cell stands for several checks.
-MARKS = {"holds": " ", "unresolved": "?", "broken": "!"}
+#: Marks of the states in a table, from good to bad: a cell for several checks shows the worst.
+STATE_MARKS = {"holds": " ", "unresolved": "?", "broken": "!"}
 
 
 def _used(check: Check) -> tuple[int, float]:
     """Orders checks from well within to far beyond their tolerances."""
-    return list(MARKS).index(check.state), abs(check.value) / check.tolerance if check.tolerance else 0.0
+    return list(STATE_MARKS).index(check.state), abs(check.value) / check.tolerance if check.tolerance else 0.0
 
 
 def _cell(check: Check) -> str:
-    return f"{abs(check.value):.1e}{MARKS[check.state]}"
+    return f"{abs(check.value):.1e}{STATE_MARKS[check.state]}"

@@ -1,1 +1,1 @@
-"""The commands, a file each: options, output, scenes to start from, shell completion."""
+"""The commands: options, output, scene templates, shell completion."""

@@ -7,21 +7,15 @@ import math
 
 
 def positive(text: str) -> int:
-    value = int(text) if text.isascii() and text.isdigit() and len(text) < 10 else 0
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"must be an integer >= 1, got {text!r}")
-    return value
+    return _integer(text, 1)
 
 
 def count(text: str) -> int:
-    value = int(text) if text.isascii() and text.isdigit() and len(text) < 10 else -1
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"must be an integer >= 0, got {text!r}")
-    return value
+    return _integer(text, 0)
 
 
 def seeds(text: str) -> tuple[int, int]:
-    """The first and the last: a number N stands for 0 to N - 1, A-B for A to B."""
+    """First and last seed: N means 0 to N - 1, A-B means A to B."""
     first, dash, last = text.partition("-")
     try:
         ends = (count(first), count(last)) if dash else (0, positive(first) - 1)
@@ -38,17 +32,14 @@ def accuracy(text: str) -> float:
 
 
 def fraction(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0 <= value < float("inf"):
+    value = _float(text)
+    if not value >= 0.0:
         raise argparse.ArgumentTypeError(f"must be a number >= 0, got {text!r}")
     return value
 
 
 def column(text: str) -> str | int:
-    return int(text) if text.isascii() and text.isdigit() and len(text) < 10 else text
+    return int(text) if _is_short_integer(text) else text
 
 
 def scale(text: str) -> float:
@@ -63,10 +54,27 @@ def numbers(text: str) -> list[float]:
 
 
 def number(text: str) -> float:
+    value = _float(text)
+    if math.isnan(value):
+        raise argparse.ArgumentTypeError(f"must be a finite number, got {text!r}")
+    return value
+
+
+def _integer(text: str, least: int) -> int:
+    value = int(text) if _is_short_integer(text) else -1
+    if value < least:
+        raise argparse.ArgumentTypeError(f"must be an integer >= {least}, got {text!r}")
+    return value
+
+
+def _is_short_integer(text: str) -> bool:
+    return text.isascii() and text.isdigit() and len(text) < 10
+
+
+def _float(text: str) -> float:
+    """A finite number, or NaN for any other text."""
     try:
         value = float(text)
     except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"must be a finite number, got {text!r}")
-    return value
+        return math.nan
+    return value if math.isfinite(value) else math.nan

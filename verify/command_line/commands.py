@@ -1,4 +1,4 @@
-"""The commands: each takes its options to the work, refuses what cannot be done, and returns an exit code."""
+"""The commands: each checks its options, does its work, and returns an exit code."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def solve(options: argparse.Namespace) -> int:
     quiet = mpi_rank() > 0
     if not quiet:
         _say_before(prepared, options.fields and options.frames > 0)
-    result, checks = _watched(prepared, out, _kept(options), quiet)
+    result, checks = _with_progress(prepared, out, _kept(options), quiet)
     if not quiet:
         _print_result(result, checks, out)
         _say_after(prepared, result, checks)
@@ -55,7 +55,7 @@ def solve(options: argparse.Namespace) -> int:
 
 
 def _accurate(options: argparse.Namespace) -> int:
-    """Solve to an accuracy: choose method and mesh, say what and for how long, and verify the solution."""
+    """Solve to an accuracy: choose method and mesh, announce them with the expected time, verify the solution."""
     from verify.methods import zone_resolution
     from verify.methods.solve import prepare
     from verify.runs.environment import mpi_size
@@ -80,7 +80,7 @@ def _accurate(options: argparse.Namespace) -> int:
         say(str(decision))
 
     def solved(level: Scene, method: str, folder: Path, delivers: bool) -> tuple[Result, tuple[Check, ...]]:
-        return _watched(prepare(level, method), folder, _kept(options) if delivers else NO_FIELDS, False)
+        return _with_progress(prepare(level, method), folder, _kept(options) if delivers else NO_FIELDS, False)
 
     found = verified(scene, first, options.accuracy, out, solved)
     last = found.delivered
@@ -103,7 +103,7 @@ def _kept(options: argparse.Namespace) -> Keep:
 
 
 def _say_before(prepared: Prepared, frames: bool) -> None:
-    """What was decided, and what the mesh cannot resolve."""
+    """Messages before a run: automatic decisions, and warnings of coarse meshes."""
     from verify.methods import through_thickness, zone_resolution
 
     coarse = (*zone_resolution.warnings(prepared), *through_thickness.warnings(prepared))
@@ -127,8 +127,8 @@ def _broken(checks: Sequence[Check]) -> list[str]:
     return [check.name for check in checks if check.state == "broken"]
 
 
-def _watched(prepared: Prepared, folder: Path, keep: Keep, quiet: bool) -> tuple[Result, tuple[Check, ...]]:
-    """The run with its progress along the programme."""
+def _with_progress(prepared: Prepared, folder: Path, keep: Keep, quiet: bool) -> tuple[Result, tuple[Check, ...]]:
+    """Run with a progress bar over the programme."""
     from verify.runs.run import run
     from verify.support.progress import Progress
 
@@ -165,9 +165,9 @@ def verify(options: argparse.Namespace) -> int:
     from verify.scene.load import load_scene, verified_scenes
     from verify.studies.found import named
     from verify.studies.plane.study import load_plate
-    from verify.verification import verify, would_run
+    from verify.verification import Subjects, verify, would_run
 
-    _alone("verify")
+    _refuse_ranks("verify")
     scenes, plates, wrong = [], [], []
     for source in options.scenes or verified_scenes(options.full):
         try:
@@ -188,16 +188,16 @@ def verify(options: argparse.Namespace) -> int:
     demands = Demands(options.strict, tuple(options.require))
     for method in demands.required:
         _known_method(method, None, "--require")
-    included = named(options.include)
+    subjects = Subjects(scenes, options.full, plates, curves, named(options.include))
     if options.dry_run:
-        return _listed(would_run(scenes, options.out, options.jobs, options.full))
+        return _listed(would_run(subjects, options.out, options.jobs))
     _folder(options.out)
-    what = (options.full, plates, options.scheduler, included, options.format == "md", curves, demands)
-    return 0 if verify(scenes, options.out, options.jobs, *what) else FAILED
+    text = options.format == "md"
+    return 0 if verify(subjects, options.out, options.jobs, options.scheduler, text, demands) else FAILED
 
 
 def _curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curve, ...]:
-    """Those of other codes, with what the options say of their columns."""
+    """The curves of other codes, read with the options for their columns."""
     from verify.checks.foreign_curves import read_curves
     from verify.curves.read import Reading
 
@@ -211,53 +211,54 @@ def _curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curv
 
 
 def cost(options: argparse.Namespace) -> int:
-    from verify.methods.given_meshes import refuse_files
-    from verify.scene.load import load_scene
     from verify.studies.cost.study import cost, would_run
 
-    _alone("cost")
-    scene = load_scene(options.scene, options.overrides)
-    refuse_files(scene, "debond cost")
-    what = (options.scene, scene, options.overrides, options.out, options.jobs)
+    scene = _studied(options, "cost")
     if options.dry_run:
-        return _listed(would_run(*what))
+        return _listed(would_run(options.scene, scene, options.overrides, options.out, options.jobs))
     _folder(options.out)
-    return 0 if cost(*what) is not None else FAILED
+    study = cost(options.scene, scene, options.overrides, options.out, options.jobs)
+    return 0 if study is not None else FAILED
+
+
+def _studied(options: argparse.Namespace, command: str) -> Scene:
+    """The scene of a study that generates its own meshes."""
+    from verify.methods.given_meshes import refuse_files
+    from verify.scene.load import load_scene
+
+    _refuse_ranks(command)
+    scene = load_scene(options.scene, options.overrides)
+    refuse_files(scene, f"debond {command}")
+    return scene
 
 
 def effects(options: argparse.Namespace) -> int:
     from verify.methods.method import NotRun
-    from verify.methods.solve import prepare, require
     from verify.scene.load import load_scene
+    from verify.studies.effects.plan import planned
     from verify.studies.effects.study import effects, would_run
 
     _known_method(options.method, None)
-    _alone("effects")
+    _refuse_ranks("effects")
     scene = load_scene(options.scene, options.overrides)
-    what = (options.scene, scene, options.method, options.overrides, options.out)
     try:
-        if options.dry_run:
-            return _listed(would_run(*what))
-        require(prepare(scene, options.method))
-        _folder(options.out)
-        return 0 if effects(*what, options.jobs, options.scheduler).complete else FAILED
+        plan = planned(options.scene, scene, options.method, options.overrides)
     except NotRun as error:
         return _not_run(error)
+    if options.dry_run:
+        return _listed(would_run(plan, options.out))
+    _folder(options.out)
+    return 0 if effects(plan, options.out, options.jobs, options.scheduler).complete else FAILED
 
 
 def scaling(options: argparse.Namespace) -> int:
-    from verify.methods.given_meshes import refuse_files
-    from verify.scene.load import load_scene
     from verify.studies.scaling.study import scaling, would_run
 
-    _alone("scaling")
-    scene = load_scene(options.scene, options.overrides)
-    refuse_files(scene, "debond scaling")
-    what = (options.scene, scene, options.overrides, options.out)
+    scene = _studied(options, "scaling")
     if options.dry_run:
-        return _listed(would_run(*what))
+        return _listed(would_run(options.scene, scene, options.overrides, options.out))
     _folder(options.out)
-    return 0 if scaling(*what).complete else FAILED
+    return 0 if scaling(options.scene, scene, options.overrides, options.out).complete else FAILED
 
 
 def hard(options: argparse.Namespace) -> int:
@@ -388,7 +389,7 @@ def _listed(lines: Sequence[str]) -> int:
     return 0
 
 
-def _alone(command: str) -> None:
+def _refuse_ranks(command: str) -> None:
     from verify.runs.environment import mpi_size
 
     if mpi_size() > 1:
@@ -411,7 +412,7 @@ def _known_method(method: str, dofs: int | None, option: str = "--method") -> No
 
 
 def _folder(path: Path) -> None:
-    """Make the output folder now, so that hours of work do not end at a closed door."""
+    """Create the output folder now, so that a folder without write permission is refused before the work."""
     try:
         path.mkdir(parents=True, exist_ok=True)
         (path / ".writable").touch()

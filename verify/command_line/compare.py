@@ -1,4 +1,4 @@
-"""`debond compare`: two curves on the screen, in a page, and as an exit code."""
+"""`debond compare`: comparison of two curves on the screen, as a page, and as JSON."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ PAGE, NUMBERS = "comparison.html", "comparison.json"
 
 @dataclass(frozen=True)
 class Source:
-    """A curve as given on the command line."""
+    """A curve of the command line."""
 
     path: Path
     reading: Reading
 
     @property
     def label(self) -> str:
-        """Its name with that of its folder, as most curves are called the same."""
+        """File name with folder, as many curves have the same file name."""
         return "/".join(self.path.parts[-2:]) or str(self.path)
 
 
@@ -42,7 +42,7 @@ def held_against(
 
     Raises
     ------
-    CurveError : a file that holds no curve, nothing in common, an opening outside.
+    CurveError : a file without a curve, no common range, or an opening outside of it.
     """
     curves = read_curve(a.path, a.reading), read_curve(b.path, b.reading)
     comparison = compare(*curves, end, begin=begin, programme=programme)
@@ -76,7 +76,7 @@ def numbers(
     loads: Sequence[tuple[float, float, float]],
     found: Sequence[Check],
 ) -> dict[str, object]:
-    """All results as plain numbers and words; undefined values are null in the file."""
+    """The content of comparison.json; undefined values become null."""
     worst = dict(zip(("opening", "load_a", "load_b"), comparison.worst, strict=True))
     judged = {
         check.name: {"value": check.value, "tolerance": check.tolerance, "kind": check.kind, "passed": check.passed}

@@ -1,7 +1,8 @@
-"""Scripts of completion for bash, zsh and fish, made from the parser.
+"""Completion scripts for bash, zsh and fish, generated from the parser.
 
-The scripts contain all words, so that a key press starts no Python, as it would with argcomplete. In zsh shtab 1.13
-completes the first scene of `debond verify A B` alone and needs `eval`; in bash it adds a blank after `key=`.
+The scripts contain all words, so that completion does not start Python, as it would with argcomplete. shtab 1.13 was
+not sufficient: in zsh it completes only the first scene of `debond verify A B` and needs `eval`; in bash it adds a
+blank after `key=`.
 """
 
 from __future__ import annotations
@@ -11,19 +12,19 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-#: Values that are files or folders, which every shell completes by itself.
+#: Stands for files and folders, which every shell completes itself.
 PATHS = ("FILES",)
 
 
 @dataclass(frozen=True)
 class Command:
-    """A command with its options and words.
+    """A command with its options and their values.
 
     Parameters
     ----------
-    options : every spelling with its help
-    values : spelling -> words that may follow it, ``PATHS``, or nothing where they are endless
-    places : the same for the arguments without an option
+    options : spelling -> help
+    values : spelling -> possible values, ``PATHS``, or empty where any value is possible
+    places : possible values of the positional arguments
     """
 
     name: str
@@ -47,7 +48,7 @@ def script(parser: argparse.ArgumentParser, shell: str) -> str:
 
 
 def _known() -> Mapping[str, tuple[str, ...]]:
-    """Where an argument's values go -> words that it may have."""
+    """Destination of an argument -> its possible values."""
     from verify.export.command import FORMATS
     from verify.methods.plugins import known_methods
     from verify.scene.keys import SPECIMENS, dotted_keys
@@ -97,19 +98,20 @@ def _bash(found: tuple[Command, ...]) -> Iterator[str]:
 def _cases(
     found: tuple[Command, ...], command: str, opening: str, answer: Callable[[tuple[str, ...]], str], options: str
 ) -> Iterator[str]:
-    """The lines common to bash and zsh: words after an option, else options after a dash, else arguments.
+    """The lines common to bash and zsh: values after an option, else options after a dash, else arguments.
 
     Parameters
     ----------
     command : the expression for the command on the line
-    opening : an optional first character of a pattern
-    answer : the shell command that offers words
-    options : the shell command that offers the options in place of ``{}``
+    opening : first character of a pattern, if the shell needs one
+    answer : returns the shell command that offers words
+    options : the shell command that offers options, with ``{}`` in their place
     """
     yield f'    case "{command} $previous" in'
     for one in found:
         for words, spellings in _grouped(one.values).items():
-            yield f"        {opening}{_either(one.name, spellings)})"
+            pattern = "|".join(f'"{one.name} {spelling}"' for spelling in spellings)
+            yield f"        {opening}{pattern})"
             yield f"            {answer(words)}"
             yield "            return ;;"
     yield from ("    esac", f'    case "{command}" in')
@@ -121,13 +123,8 @@ def _cases(
     yield "    esac"
 
 
-def _either(name: str, spellings: list[str]) -> str:
-    """A pattern for the command with any of these options before the cursor."""
-    return "|".join(f'"{name} {spelling}"' for spelling in spellings)
-
-
 def _bash_words(words: tuple[str, ...]) -> str:
-    """A command that sets the answer."""
+    """The shell command that offers words."""
     plain = " ".join(word for word in words if word not in PATHS)
     files = " -f" if words[-1:] == PATHS else ""
     if not plain and not files:
@@ -155,8 +152,8 @@ def _zsh(found: tuple[Command, ...]) -> Iterator[str]:
 def _zsh_words(words: tuple[str, ...]) -> str:
     plain = [word for word in words if word not in PATHS]
     tight = "-S '' " if plain and plain[-1].endswith("=") else ""
-    said = [f"compadd {tight}-- {' '.join(plain)}"] * bool(plain) + ["_files"] * (words[-1:] == PATHS)
-    return "; ".join(said) or ":"
+    offers = [f"compadd {tight}-- {' '.join(plain)}"] * bool(plain) + ["_files"] * (words[-1:] == PATHS)
+    return "; ".join(offers) or ":"
 
 
 def _fish(found: tuple[Command, ...]) -> Iterator[str]:
@@ -170,13 +167,8 @@ def _fish(found: tuple[Command, ...]) -> Iterator[str]:
             yield f"{start}{_fish_words(one.places)}"
         for spelling, text in one.options.items():
             flag = f"-l {spelling[2:]}" if spelling.startswith("--") else f"-s {spelling[1:]}"
-            yield f"{start} {flag}{_fish_values(one, spelling)} -d {_quoted(text)}"
-
-
-def _fish_values(one: Command, spelling: str) -> str:
-    if spelling not in one.values:
-        return ""
-    return f" -r{_fish_words(one.values[spelling])}"
+            values = f" -r{_fish_words(one.values[spelling])}" if spelling in one.values else ""
+            yield f"{start} {flag}{values} -d {_quoted(text)}"
 
 
 def _fish_words(words: tuple[str, ...]) -> str:
@@ -189,7 +181,7 @@ def _quoted(text: str) -> str:
 
 
 def _grouped(values: Mapping[str, tuple[str, ...]]) -> Mapping[tuple[str, ...], list[str]]:
-    """Options that the same words may follow, together."""
+    """Spellings grouped by their values."""
     groups: dict[tuple[str, ...], list[str]] = {}
     for spelling, words in values.items():
         groups.setdefault(words, []).append(spelling)

@@ -8,13 +8,13 @@ import shutil
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
 
 from verify.methods.dolfinx import DOLFINX_WAYS, NEWEST, OLDEST, dolfinx_installed, supported
 from verify.methods.names import NotRun
 from verify.methods.plugins import Plugin, plugins
+from verify.runs.environment import package_version
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ PACKAGES = (
 
 
 def examine() -> tuple[list[str], bool]:
-    """Lines for the user, and whether the main job can run at all."""
+    """Lines for the user, and whether all required packages are installed."""
     needed = all(_present(package.module) for package in PACKAGES if not package.extra)
     report = all(map(_present, ("jinja2", "matplotlib", "PIL")))
     lines = [*_machine(), "", *map(_package, PACKAGES), *_dolfinx(), "", *map(_state, plugins().values())]
@@ -70,7 +70,7 @@ def _machine() -> Iterator[str]:
 
 
 def _memory() -> tuple[str, str]:
-    """In all, and what is free of it."""
+    """Total and free memory."""
     found = Path("/proc/meminfo")
     sizes = dict(re.findall(r"(\w+): +(\d+) kB", found.read_text())) if found.exists() else {}
     total, free = (int(sizes.get(key, 0)) / 1024**2 for key in ("MemTotal", "MemAvailable"))
@@ -78,7 +78,7 @@ def _memory() -> tuple[str, str]:
 
 
 def _cache() -> tuple[str, str]:
-    """Whether the folder in which ./debond keeps what it builds can be written to."""
+    """Whether the folder for the environments of ./debond is writable, and its path."""
     home = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
     folder = Path(os.environ.get("DEBOND_CACHE") or home / "debond").expanduser().absolute()
     there = next(path for path in (folder, *folder.parents) if path.exists())
@@ -89,7 +89,7 @@ def _cache() -> tuple[str, str]:
 
 def _package(package: Package) -> str:
     if _present(package.module):
-        return _row(package.module, _version(package.distribution), package.purpose)
+        return _row(package.module, package_version(package.distribution) or "present", package.purpose)
     way = f"debond[{package.extra}]" if package.extra else package.distribution
     return _row(package.module, "missing", f"{package.purpose}; pip install '{way}'")
 
@@ -97,14 +97,14 @@ def _package(package: Package) -> str:
 def _dolfinx() -> Iterator[str]:
     window = f"{OLDEST[0]}.{OLDEST[1]} to {NEWEST[0]}.{NEWEST[1]}"
     if dolfinx_installed():
-        found = _version("fenics-dolfinx")
+        found = package_version("fenics-dolfinx") or "present"
         known = found == "present" or supported(found)
         yield _row(
             "dolfinx", found, f"method dolfinx{'' if known else f': not tried with this one, but with {window}'}"
         )
     else:
         yield _row("dolfinx", "missing", f"method dolfinx, {window}")
-    mpi = _version("mpi4py") if _present("mpi4py") else "missing"
+    mpi = (package_version("mpi4py") or "present") if _present("mpi4py") else "missing"
     yield _row("mpi4py", mpi, "method dolfinx on many ranks")
     yield _row("mpirun", "present" if shutil.which("mpirun") else "missing", shutil.which("mpirun") or "comes with MPI")
 
@@ -124,10 +124,3 @@ def _row(name: str, found: str, note: str) -> str:
 
 def _present(module: str) -> bool:
     return find_spec(module) is not None
-
-
-def _version(distribution: str) -> str:
-    try:
-        return version(distribution)
-    except PackageNotFoundError:
-        return "present"

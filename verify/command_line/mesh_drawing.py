@@ -19,7 +19,7 @@ from verify.pages.style import PALETTE
 #: Inches: width of the picture, its largest height, margin, and height of title and legend.
 _WIDTH, _MOST_HEIGHT, _SHEET_MARGIN, _TITLE_HEIGHT = 7.0, 7.0, 0.15, 0.45
 
-#: Points on a curved side, and how little of its length a side may bend to be drawn straight.
+#: Points on a curved side; deviation, over the length, below which a side is drawn straight.
 _SIDE_SAMPLES, _STRAIGHT_SIDE = 17, 1e-6
 
 _SHEET_STYLE = {"font.family": "sans-serif", "font.size": 8.0, "svg.fonttype": "none", "svg.hashsalt": "debond"}
@@ -70,7 +70,7 @@ def draw(axes: Axes, facts: MeshFacts, control: bool = False, ink: Callable[[str
 
 
 def mesh_figure(facts: MeshFacts, title: str, control: bool = False) -> Figure:
-    """The mesh on a page of its own, with a legend."""
+    """A figure of the mesh with a legend."""
     X = np.concatenate([curve for curve in _curves(facts)])
     if control:
         X = np.concatenate([X, facts.mesh.P_AI])
@@ -93,7 +93,7 @@ def mesh_figure(facts: MeshFacts, title: str, control: bool = False) -> Figure:
 
 
 def save(facts: MeshFacts, path: Path, title: str, control: bool = False) -> None:
-    """Write the picture in the format that the ending of the path asks for: svg, png or pdf.
+    """Write the picture in the format of the suffix: svg, png or pdf.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def save(facts: MeshFacts, path: Path, title: str, control: bool = False) -> Non
 
 
 def _curves(facts: MeshFacts) -> list[np.ndarray]:
-    """Points (n, 2) on every side: its ends where it is straight, more where it bends."""
+    """Points (n, 2) on every side: two on a straight side, more on a curved one."""
     sides = facts.sides
     t, k = np.linspace(0.0, 1.0, _SIDE_SAMPLES), np.arange(len(sides.H_kbI))
     X_knI = sides.points(np.repeat(k, _SIDE_SAMPLES), np.tile(t, len(k)))[:, :2].reshape(len(k), _SIDE_SAMPLES, 2)
@@ -118,6 +118,6 @@ def _curves(facts: MeshFacts) -> list[np.ndarray]:
 
 
 def _outline(curves: list[np.ndarray], e: int) -> np.ndarray:
-    """Closed polygon around one element: its sides bottom, right, top and left, each walked with it on the left."""
+    """Closed polygon around one element, counter-clockwise: sides bottom, right, top and left."""
     number = {name: len(SIDES) * e + i for i, name in enumerate(SIDES)}
     return np.concatenate([curves[number[name]] for name in ("BOTTOM", "RIGHT", "TOP", "LEFT")])

@@ -1,4 +1,4 @@
-"""Facts of any extracted mesh: its elements, T-junctions, extraordinary points, and whether it is sound."""
+"""Facts of any extracted mesh: elements, T-junctions, extraordinary points, and whether a solver can use it."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from iga.mesh.quadrature import gauss, square
 from iga.mesh.rank import coefficients, rank
 from iga.mesh.soundness import faults, unity_fault
 
-#: A jump below this is rounding; functions are of size one, lengths relative to the element.
+#: Largest jump that counts as continuous; functions are of size 1, lengths are relative to the element.
 CONTINUOUS = 1e-6
 
-#: No derivatives in space where the Jacobian is this part of the mean of its element.
+#: Jacobian, over the mean of its element, below which there are no spatial derivatives.
 FLAT = 1e-9
 
 _CORNERS = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)])
@@ -27,7 +27,7 @@ _CORNERS = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)])
 
 @dataclass(frozen=True)
 class MeshFacts:
-    """The facts of one mesh, each computed when it is asked for."""
+    """The facts of one mesh, each computed on first access."""
 
     mesh: Mesh
 
@@ -37,7 +37,7 @@ class MeshFacts:
 
     @cached_property
     def kinds(self) -> list[tuple[tuple[int, int], int, int]]:
-        """Degrees, number of functions and how many elements are so."""
+        """Kinds of elements: degrees, number of functions, number of elements."""
         count: Counter[tuple[tuple[int, int], int]] = Counter()
         for block in self.mesh.blocks:
             p, q = map(int, block.degrees)
@@ -46,19 +46,19 @@ class MeshFacts:
 
     @cached_property
     def _vertices(self) -> tuple[np.ndarray, np.ndarray]:
-        """Number of element corners at each vertex, and its place (n, 2)."""
+        """Number of element corners at each vertex, and positions (n, 2)."""
         vertex_k = self.sides.vertex_kv[:, 0]  # every corner is the start of one side
         _, first = np.unique(vertex_k, return_index=True)
         return np.bincount(vertex_k), self.sides.points(first, np.zeros(len(first)))[:, :2]
 
     @cached_property
     def junctions(self) -> np.ndarray:
-        """Places (n, 2) of the T-junctions: vertices inside a side of another element."""
+        """Positions (n, 2) of the T-junctions: vertices inside a side of another element."""
         return self._vertices[1][np.unique(self.sides.hanging[:, 0])]
 
     @cached_property
     def extraordinary(self) -> list[tuple[int, np.ndarray]]:
-        """Valence and place of every vertex inside the body, no T-junction, at which other than four corners meet."""
+        """Valence and position of every inner vertex with other than four corners that is no T-junction."""
         corners_v, X_vI = self._vertices
         ordinary = corners_v == 4
         ordinary[self.sides.hanging[:, 0]] = True
@@ -67,12 +67,12 @@ class MeshFacts:
 
     @cached_property
     def loops(self) -> int:
-        """Closed chains of the boundary; 0 where it touches itself."""
+        """Number of closed chains of the boundary; 0 where it touches itself."""
         return len(chains_of(self.sides, np.flatnonzero(~self.sides.shared_k)))
 
     @cached_property
     def unity(self) -> float:
-        """Largest ``|sum_a N_a - 1|`` in Bernstein coefficients; a rational basis divides by what is left of it."""
+        """Largest ``|sum_a N_a - 1|`` in Bernstein coefficients; the rational basis is divided by the sum."""
         return max(float(np.abs(block.C_eab.sum(1) - 1.0).max()) for block in self.mesh.blocks)
 
     @cached_property
@@ -85,7 +85,7 @@ class MeshFacts:
 
     @cached_property
     def rank(self) -> int:
-        """Number of functions that are independent of each other: the rank of all extraction rows together."""
+        """Number of linearly independent functions: the rank of all extraction rows."""
         return independent(self.mesh)
 
     @cached_property
@@ -95,7 +95,7 @@ class MeshFacts:
 
     @cached_property
     def smallest_jacobian(self) -> tuple[float, float]:
-        """Smallest determinant at Gauss points, corners and middles of sides; and as a part of its element's mean."""
+        """Smallest Jacobian at Gauss points, corners and middles of sides; smallest ratio to the mean of an element."""
         smallest, relative = [], []
         for number, block in enumerate(self.mesh.blocks):
             points, weights = square(gauss(block.degrees[0] + 1), gauss(block.degrees[1] + 1))
@@ -109,20 +109,20 @@ class MeshFacts:
 
     @cached_property
     def folded(self) -> int:
-        """Elements with a Jacobian that is not positive at a Gauss point."""
+        """Number of elements with a Jacobian that is not positive at a Gauss point."""
         rules = (square(gauss(block.degrees[0] + 1), gauss(block.degrees[1] + 1)) for block in self.mesh.blocks)
         det = (self._jacobian(number, points) for number, (points, _) in enumerate(rules))
         return int(sum(np.count_nonzero(~np.all(det_eq > 0, axis=1)) for det_eq in det))
 
     @cached_property
     def continuity(self) -> dict[str, int] | None:
-        """How many inner edges the functions cross with jumps, C0, C1 and C2 or more; None for a folded mesh."""
+        """Numbers of inner edges with jumps, C0, C1, and C2 or higher continuity; None for a folded mesh."""
         if self.smallest_jacobian[1] <= FLAT:
             return None
         _, other, t = self.sides.opposite
         try:
             k, jump_no = jumps(self.mesh, self.sides)
-        except np.linalg.LinAlgError:  # flat somewhere else
+        except np.linalg.LinAlgError:  # a singular map at another point
             return None
         length, twins = self.sides.length_k, t == 0.5
         once = np.where(twins, k < other, length[k] <= length[other])

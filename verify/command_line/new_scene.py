@@ -1,4 +1,4 @@
-"""A scene to start from: every key with its meaning, dimension, range and default."""
+"""A template of a scene file: every key with its meaning, dimension, range and default."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from verify.scene.parse import SceneError, parse_scene
 from verify.scene.published import Published
 from verify.support.refusal import Refusal
 
-#: A TOML value that no key accepts: its refusal names the values that the key does accept.
+#: A TOML value that no key accepts; its refusal contains the accepted values.
 _OUT_OF_PLACE = date(1, 1, 1)
 
 
@@ -34,8 +34,8 @@ def allowed(raw: Mapping[str, Any], key: Key) -> str:
         parse_scene(wrong)
     except SceneError as error:
         place = key.dotted.replace("published.", "published[0].")
-        said = [one for one in error.sentences if one.startswith(f"{place}: must be ")]
-        return said[0].removeprefix(f"{place}: must be ").removesuffix(f", got {_OUT_OF_PLACE!r}") if said else ""
+        rules = [one for one in error.sentences if one.startswith(f"{place}: must be ")]
+        return rules[0].removeprefix(f"{place}: must be ").removesuffix(f", got {_OUT_OF_PLACE!r}") if rules else ""
     return ""
 
 
@@ -54,7 +54,7 @@ UNITS: Mapping[str, str] = {
     "degrees": "degrees",
 }
 
-#: Numbers of optional and alternative keys.
+#: Example values of alternative and optional keys.
 ORTHOTROPIC = {"E1": 120e3, "E2": 10e3, "G12": 5e3, "nu12": 0.3}
 PUBLISHED = {
     "quantity": "load_at",
@@ -72,7 +72,7 @@ def new_scene(kind: str) -> str:
 
     Raises
     ------
-    Refusal : for a kind of specimen that there is not
+    Refusal : an unknown kind of specimen
     """
     if kind not in SPECIMENS:
         hint = suggestion(kind, SPECIMENS) or f"the kinds are {', '.join(SPECIMENS)}"
@@ -95,7 +95,7 @@ def new_scene(kind: str) -> str:
 
 
 def _least(kind: str) -> dict[str, Any]:
-    """The example with its required keys alone, and all defaults."""
+    """The example with its required keys, and defaults for all others."""
     example = load_scene(_EXAMPLES[kind]).model_dump()
     tables: dict[str, dict[str, Any]] = {}
     for key in keys(kind):
@@ -106,14 +106,14 @@ def _least(kind: str) -> dict[str, Any]:
 
 
 def _assigned(raw: Mapping[str, Any], key: Key) -> list[str]:
-    """The key with its value; behind a comment sign where the default is not one value for all scenes."""
+    """The key with its value, as a comment where the default depends on the scene."""
     value = (raw[key.table] if key.table else raw)[key.name]
     own = key.field.default_factory is not None or key.field.default == ()
     return [f"{'# ' * own}{key.name} = {_toml(value)}"]
 
 
 def _instead(raw: Mapping[str, Any], table: str) -> list[str]:
-    """The other material."""
+    """The orthotropic alternative as comments."""
     other = {**raw, table: ORTHOTROPIC}
     return ["# or, orthotropic:", *_commented("", other, keys_of(table, Orthotropic), ORTHOTROPIC)]
 
@@ -132,8 +132,8 @@ def _comment(raw: Mapping[str, Any], key: Key, width: int = _LINE_WIDTH) -> Iter
         r"\[([a-z ]+)\]", lambda found: f"[{UNITS[found[1]]}]", " ".join((key.field.description or "").split())
     )
     takes = allowed(raw, key)
-    said = " ".join(filter(None, (what, takes and f"Takes {takes}.")))
-    return (f"# {line}" for line in textwrap.wrap(said, width - 2, break_long_words=False, break_on_hyphens=False))
+    text = " ".join(filter(None, (what, takes and f"Takes {takes}.")))
+    return (f"# {line}" for line in textwrap.wrap(text, width - 2, break_long_words=False, break_on_hyphens=False))
 
 
 def _toml(value: object) -> str:

@@ -1,4 +1,4 @@
-"""The packaged scenes for a terminal: one line each, or one with its numbers and a drawing."""
+"""The packaged scenes for a terminal: a line per scene, or one scene with numbers and a drawing."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ NAME_WIDTH = 24
 
 
 def line(name: str, scene: Scene, width: int) -> str:
-    """The distinctive data of a scene; on a narrow terminal below its name."""
+    """Name and main data of a scene; on a narrow terminal the data are below the name."""
     law, effects = scene.interface, scene.effects
     text = (
         f"{scene.specimen.kind}, {effects.kinematics} kinematics, strength {law.strength:g}, "

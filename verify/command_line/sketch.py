@@ -1,4 +1,4 @@
-"""A specimen drawn with letters: bodies, bond, supports, load and the lengths along it."""
+"""An ASCII drawing of a specimen: bodies, bond, supports, load, lengths."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def _edge(room: int) -> str:
 
 
 def _measure(start: int, end: int, length: float) -> str:
-    """|<--- 14 --->| or, where there is no room for that, the number behind."""
+    """|<--- 14 --->| or, where the number does not fit, the number behind the line."""
     label = f" {_short(length)} "
     inside = end - start - 2
     if inside < len(label):

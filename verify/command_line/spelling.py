@@ -1,4 +1,4 @@
-"""Unknown words on the command line, answered by the nearest known word."""
+"""Parsing of the command line; unknown words are refused with the most similar known word."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from verify.support.refusal import Refusal
 
 
 class Help(argparse.HelpFormatter):
-    """Wraps everything but examples, which are copied from the screen."""
+    """Wraps all texts except examples, which users copy from the screen."""
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
         return text if text.startswith("example: ") else super()._fill_text(text, width, indent)
 
 
 def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:
-    """The options that the words stand for.
+    """Parse the words of the command line.
 
     Raises
     ------
@@ -30,7 +30,7 @@ def parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Na
         raise Refusal(f"{words[0]}: is no command; {hint}")
     options, extra = parser.parse_known_args(words)
     if extra:
-        name = next(word for word in words if word in subs.choices)  # behind options that are none, as it may be
+        name = next(word for word in words if word in subs.choices)  # may follow unknown options
         raise Refusal(_too_much(extra, name, subs.choices[name]))
     return options
 

@@ -16,7 +16,7 @@ from verify.fields.vtk_xml import Grid, write_grid
 LAGRANGE_QUADRILATERAL, BEZIER_QUADRILATERAL = 70, 77
 
 #: Weights that differ from one by less than this are rounding.
-NOTHING = 1e-12
+UNIT_WEIGHT_TOLERANCE = 1e-12
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def bezier_cells(mesh: Mesh, fields: Mapping[str, np.ndarray]) -> list[Cells]:
 
 def grid(cells: Sequence[Cells], whole: Mapping[str, float] | None = None) -> Grid:
     """All cells with their fields, which are the same ones everywhere; RationalWeights where a weight is not one."""
-    rational = any(part.w_eb is not None and np.abs(part.w_eb - 1.0).max() > NOTHING for part in cells)
+    rational = any(part.w_eb is not None and np.abs(part.w_eb - 1.0).max() > UNIT_WEIGHT_TOLERANCE for part in cells)
     orders = [vtk_order(part.degrees) for part in cells]
 
     def points(values: Sequence[np.ndarray]) -> np.ndarray:

@@ -22,7 +22,7 @@ POLY_LINE = 4
 NEAR = 1e-6
 
 #: Folder of the frames, beside the collections of them, and the two series.
-FOLDER, SERIES = "frames", ("fields", "interface")
+FRAMES_FOLDER, SERIES = "frames", ("fields", "interface")
 
 
 #: Makes a frame, see `iga.output.frames`; None on a rank that does not write.
@@ -76,20 +76,20 @@ class Frames:
             return
         number, whole = len(self._times), {"TimeValue": self._time, "opening": made["opening"], "load": made["load"]}
         self._times.append(self._time)
-        (self._folder / FOLDER).mkdir(parents=True, exist_ok=True)
+        (self._folder / FRAMES_FOLDER).mkdir(parents=True, exist_ok=True)
         cells = [solid_cells(part, self._through_bk[part["body"]]) for part in made["cells"]]
         cells = [nodal(part) for part in cells] if self._in_nodes else cells
         grids = (grid(cells, whole), interface_grid(made["bond"], whole))
         for name, found in zip(SERIES, grids, strict=True):
-            write_grid(self._folder / FOLDER / f"{name}_{number:04d}.vtu", found)
-            files = ((time, f"{FOLDER}/{name}_{i:04d}.vtu") for i, time in enumerate(self._times))
+            write_grid(self._folder / FRAMES_FOLDER / f"{name}_{number:04d}.vtu", found)
+            files = ((time, f"{FRAMES_FOLDER}/{name}_{i:04d}.vtu") for i, time in enumerate(self._times))
             write_collection(self._folder / f"{name}.pvd", files)
 
 
 def cleared(folder: Path) -> None:
     """Remove the frames of an earlier run."""
     for name in SERIES:
-        for path in (folder / f"{name}.pvd", *(folder / FOLDER).glob(f"{name}_[0-9]*.vtu")):
+        for path in (folder / f"{name}.pvd", *(folder / FRAMES_FOLDER).glob(f"{name}_[0-9]*.vtu")):
             path.unlink(missing_ok=True)
 
 

@@ -17,7 +17,7 @@ _MEANT = ("RationalWeights", "HigherOrderDegrees")
 _TYPES = {"float64": "Float64", "int64": "Int64", "uint8": "UInt8"}
 #: Versions of the format: since which there are cells of higher order as they are now, and what everybody reads.
 _HIGHER, _PLAIN = "2.2", "1.0"
-_HEAD = 'byte_order="LittleEndian" header_type="UInt64"'
+_BYTE_LAYOUT = 'byte_order="LittleEndian" header_type="UInt64"'
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def write_grid(path: Path | str, grid: Grid) -> None:
     version = _HIGHER if "HigherOrderDegrees" in grid.cell_data else _PLAIN
     lines = [
         '<?xml version="1.0"?>',
-        f'<VTKFile type="UnstructuredGrid" version="{version}" {_HEAD} compressor="vtkZLibDataCompressor">',
+        f'<VTKFile type="UnstructuredGrid" version="{version}" {_BYTE_LAYOUT} compressor="vtkZLibDataCompressor">',
         f"<UnstructuredGrid><FieldData>{''.join(whole)}</FieldData>",
         f'<Piece NumberOfPoints="{len(grid.points)}" NumberOfCells="{len(grid.types)}">',
         *_data("PointData", grid.point_data, first),

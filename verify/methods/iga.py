@@ -12,7 +12,7 @@ from typing import Any
 from verify.methods.method import Look, MeshFacts, Method, OnFrame, OnStep, Prepared, Unsuitable, result_of
 from verify.methods.problems import common_keys, material_keys, taken
 from verify.result import Result
-from verify.scene.schema import STEPS, Scene
+from verify.scene.schema import DEFAULT_STEPS, Scene
 from verify.support.timing import Stopwatch
 
 
@@ -74,7 +74,7 @@ def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Resu
     """The path of a scene; steps are counted where too few interface points share the process zone to choose them."""
     solver, problem = prepared.problem
     if problem.steps is None and not _smooth(prepared):
-        problem = replace(problem, steps=STEPS)
+        problem = replace(problem, steps=DEFAULT_STEPS)
     watch = Stopwatch()
     return result_of(prepared.method.name, solver.solve(problem, on_step, watch.phase, on_frame), watch)
 

@@ -1,1 +1,1 @@
-"""The drawing kit of all pages: style, figures, templates, words."""
+"""Common parts of all pages: style, figures, templates, texts."""

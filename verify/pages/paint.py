@@ -1,7 +1,7 @@
-"""A field on sampling grids as an image: every pixel one colour of the map, however the cells overlap.
+"""A field on sampling grids as an image in which every pixel has one colour of the map.
 
-Semi-transparent cells drawn one by one would blend where they touch. So the values are painted first, opaque and as
-grey levels; the colours, transparent near zero, come after.
+Semi-transparent cells would blend where they touch. So the values are painted first as opaque grey levels, and then
+replaced by the colours, which are transparent near zero.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from verify.pages.style import STRESS_MAP, colour
 
 _DPI = 150
 _CELLS = 2, 8  # colour cells per sampling interval, along the smaller and along the larger variation
-_MANY_ELEMENTS = 900  # from here on outlines become pixels
+_MANY_ELEMENTS = 900  # above this number outlines become pixels
 
 Limits = tuple[float, float]
 
@@ -39,9 +39,9 @@ def paint(
     pixels[..., 3] *= levels[..., 3] > 0
     axes.imshow(pixels, extent=(*x, *y), aspect="auto", interpolation="none", zorder=1)
     many = len(x_euvi) > _MANY_ELEMENTS
-    ink = "#808a96" if many else colour("ink")  # pixels cannot follow the page
+    ink = "#808a96" if many else colour("ink")  # pixels cannot follow the colours of the page
     sides_nki = sides(x_euvi)
-    lines_pi = strokes(sides_nki[seen(sides_nki, frame)])  # one path: a path each would be long
+    lines_pi = strokes(sides_nki[seen(sides_nki, frame)])  # one path takes fewer bytes than many
     axes.plot(*lines_pi.T, color=ink, linewidth=0.25, alpha=0.7, zorder=2, rasterized=many)
     axes.set(xlim=x, ylim=y)
 

@@ -1,13 +1,13 @@
-"""Lines of a mesh as long strokes: each side once, straight on from element to element.
+"""Lines of a mesh as long paths: each side once, continued from element to element.
 
-As outlines of the elements every side would be drawn twice, and be three quarters of the bytes of a page.
+Outlines of elements would draw every side twice and take three quarters of the bytes of a page.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-#: Part of the largest coordinate within which two points are the same.
+#: Distance, over the largest coordinate, within which two points coincide.
 _SAME_PLACE = 1e-7
 
 #: Cosine of the angle between two sides that continue each other.
@@ -25,13 +25,13 @@ def sides(x_euvi: np.ndarray) -> np.ndarray:
 
 
 def strokes(lines_nki: np.ndarray) -> np.ndarray:
-    """Points (n_p, 2) of one path over all lines (n, k, 2), with NaN where the pen is lifted."""
+    """Points (n_p, 2) of one path over all lines (n, k, 2), with NaN between strokes."""
     if not len(lines_nki):
         return np.zeros((0, 2))
     onward, ends = _onward(lines_nki), np.arange(2 * len(lines_nki))
     used: np.ndarray = np.zeros(len(lines_nki), bool)
     parts: list[np.ndarray] = []
-    for start in [*ends[onward < 0], *ends]:  # closed ones come last: they begin anywhere
+    for start in [*ends[onward < 0], *ends]:  # closed strokes come last, as they have no first end
         end = start
         while end >= 0 and not used[end // 2]:
             line = lines_nki[end // 2][:: -1 if end % 2 else 1]
@@ -44,7 +44,7 @@ def strokes(lines_nki: np.ndarray) -> np.ndarray:
 
 
 def _onward(lines_nki: np.ndarray) -> np.ndarray:
-    """Of each end of a line, 2 n and 2 n + 1, the end of another at which it goes straight on, or -1: (2 n,)."""
+    """For each end of a line, 2 n and 2 n + 1, the end of the line that continues it straight, or -1: (2 n,)."""
     names = _names(lines_nki[:, [0, -1]]).reshape(-1, 2)
     points = np.unique(names, axis=0, return_inverse=True)[1].ravel()
     away = np.stack([lines_nki[:, 1] - lines_nki[:, 0], lines_nki[:, -2] - lines_nki[:, -1]], axis=1).reshape(-1, 2)
@@ -65,6 +65,6 @@ def _onward(lines_nki: np.ndarray) -> np.ndarray:
 
 
 def _names(x: np.ndarray) -> np.ndarray:
-    """Whole numbers that are the same for points which are."""
+    """Integer coordinates, equal for coinciding points."""
     largest = float(np.abs(x).max(initial=0.0)) or 1.0
     return np.rint(x / (_SAME_PLACE * largest)).astype(np.int64)

@@ -1,4 +1,4 @@
-"""Colours, line styles and the way a matplotlib figure becomes SVG that follows the page.
+"""Colours, line styles, and conversion of matplotlib figures to SVG that follows the colours of the page.
 
 Figures are drawn with stand-in colours; in the SVG each is replaced by a CSS custom property, so that one figure serves
 the light page, the dark page and the print. The pairs in ``PALETTE`` are the only place where a colour is written.
@@ -54,13 +54,13 @@ METHODS = tuple(sorted(BUILT_IN, key=lambda name: BUILT_IN[name].look.place))
 METHOD_NAMES = {name: one.label + " limit" * one.is_limit for name, one in BUILT_IN.items()}
 SHOWN_PHASES = (*PHASES, "other")
 
-#: Width of a figure in inches; every figure is drawn at the size that makes 8 pt text readable where it is shown.
+#: Widths of figures in inches, for which 8 pt text is readable at the size shown.
 THIRD, HALF, WIDE = 3.3, 4.6, 9.4
 
-#: Inches around the drawing: a browser's font may be a little larger than that of the layout.
-_MARGIN = 0.04
+#: Margin in inches around a drawing, as a browser's font may be larger than that of the layout.
+_FIGURE_PADDING = 0.04
 
-# A stress near zero is transparent: it takes the page's own colour, light or dark.
+# Stresses near zero are transparent and have the colour of the page.
 STRESS_MAP = LinearSegmentedColormap.from_list(
     "stress",
     [(0.0, "#1668b8ff"), (0.25, "#3b8ad6b0"), (0.5, "#8a929c18"), (0.75, "#e5742fb0"), (1.0, "#c8480cff")],
@@ -142,7 +142,7 @@ def line(method: str, repeat: int = 0) -> Line:
 
 
 def colour(name: str) -> str:
-    """The stand-in for a palette colour, to be used in figures."""
+    """The stand-in of a palette colour for figures."""
     return _STAND_IN[name]
 
 
@@ -168,20 +168,20 @@ def panel(width: float, height: float, left: float = 0.57, top: float = 0.17) ->
 
 
 def sheet_of(figure: Figure) -> Bbox:
-    """The sheet in inches: the figure's own, and more where numbers or labels of axes would stick out of it.
+    """Bounding box in inches of the figure with all tick labels and axis labels.
 
-    Units are the user's own words, and numbers are as long as these units make them: no margin is wide enough for all.
-    A label that is longer than its axis is broken into lines first.
+    Units are free text, and the length of numbers depends on them, so no fixed margin is sufficient. Labels that are
+    longer than their axis are broken into lines first.
     """
     for axes in figure.axes:
         size = axes.get_window_extent()
         _broken(axes.xaxis.label, size.width)
         _broken(axes.yaxis.label, size.height)
-    return Bbox.union([figure.bbox_inches, figure.get_tightbbox().padded(_MARGIN)])
+    return Bbox.union([figure.bbox_inches, figure.get_tightbbox().padded(_FIGURE_PADDING)])
 
 
 def _broken(label: Text, room: float) -> None:
-    """Break a label into lines of ``room`` in pixels at most, within words where it must be."""
+    """Break a label into lines of at most ``room`` pixels, within words if necessary."""
     text, columns = label.get_text(), len(label.get_text())
     while not label.get_parse_math() and columns > 1 and _length(label) > room:
         columns -= 1
@@ -189,7 +189,7 @@ def _broken(label: Text, room: float) -> None:
 
 
 def _length(label: Text) -> float:
-    """Along its writing, which goes along its axis."""
+    """Length of a label along its axis."""
     extent = label.get_window_extent()
     return max(extent.width, extent.height)
 

@@ -1,4 +1,4 @@
-"""SVG of matplotlib made fit for a page: without invisible parts, and in few bytes.
+"""SVG of matplotlib reduced for a page: without invisible parts, in few bytes.
 
 Numbers are rounded to visible digits, paths use relative steps, the markers of a series are one path, images are
 lossless WebP, and a style that occurs twice becomes a class.
@@ -61,7 +61,7 @@ def short_numbers(match: re.Match[str]) -> str:
 
 
 def _by_steps(data: str) -> str:
-    """Straight path data as steps from point to point, in tenths of a point; rounding errors do not accumulate."""
+    """Straight path data as relative steps in tenths of a point, without accumulation of rounding errors."""
     pen = start = (0, 0)
     steps: list[tuple[str, int, int]] = []
     for letter, *point in _TRIPLE.findall(data):
@@ -77,7 +77,7 @@ def _by_steps(data: str) -> str:
 
 
 def _written(steps: Iterable[tuple[str, int, int]], unit: int) -> str:
-    """Path data of relative steps M, L and z; ``unit`` of their numbers are one point."""
+    """Path data of relative steps M, L and z, whose numbers are in 1 / ``unit`` of a point."""
     text, before = [], ""
     for letter, dx, dy in steps:
         x, y = (re.sub(r"^(-?)0\.", r"\1.", f"{value / unit:g}") for value in (dx, dy))
@@ -89,7 +89,7 @@ def _written(steps: Iterable[tuple[str, int, int]], unit: int) -> str:
 
 
 def _with_joined_markers(svg: str) -> str:
-    """The markers of one series as one path, where they have one colour, without their definitions."""
+    """Replace the markers of a series by one path where they have one colour; unused definitions are removed."""
     shapes = {name: rest for name, *rest in re.findall(r'<path id="([^"]*)" d="([^"]*)"(?: style="([^"]*)")?/>', svg)}
     most = np.array(_VIEW.findall(svg)[0], float)
 
@@ -112,7 +112,7 @@ def _with_joined_markers(svg: str) -> str:
 
 
 def _series(shape: str, style: dict[str, str], at: list[tuple[int, int]]) -> str:
-    """A shape at places in tenths of a point, as one path; empty where that would look different."""
+    """A shape at positions in tenths of a point as one path; empty where that would look different."""
     fill, stroke = style.get("fill", "black"), style.get("stroke", "none")
     if len({fill, stroke} - {"none"}) > 1:  # one path would show edges that upper markers hide
         return ""
@@ -138,7 +138,7 @@ def _points(data: str) -> list[tuple[str, str, str]]:
 
 
 def _repeated(outline: list[tuple[str, int, int]], at: list[tuple[int, int]]) -> list[tuple[str, int, int]]:
-    """Relative steps of an outline, given by points about the origin, at several places."""
+    """Relative steps of an outline, given by points about the origin, at several positions."""
     pen = start = (0, 0)
     steps = []
     for x0, y0 in at:
@@ -150,7 +150,7 @@ def _repeated(outline: list[tuple[str, int, int]], at: list[tuple[int, int]]) ->
 
 
 def _radius(shape: str) -> float:
-    """Radius of a disc about the origin that is drawn by curves; 0 for any other shape."""
+    """Radius of a disc about the origin given by curves; 0 for any other shape."""
     if set(re.findall("[A-Za-z]", shape)) != {"M", "C", "z"}:
         return 0.0
     numbers = [float(value) for value in re.findall(r"-?\d[\d.]*", shape)]
@@ -166,7 +166,7 @@ def _declared(style: str) -> dict[str, str]:
 
 
 def _without_empty_groups(svg: str) -> str:
-    """Without groups that have no attributes; matplotlib wraps every tick in three of them."""
+    """Remove groups without attributes; matplotlib wraps every tick in three of them."""
     has_attributes: list[bool] = []
 
     def kept(match: re.Match[str]) -> str:
@@ -179,10 +179,10 @@ def _without_empty_groups(svg: str) -> str:
 
 
 def with_classes(page: str) -> str:
-    """Styles that come more than once in the figures of a page as classes, whose rules end its style sheet.
+    """Replace styles that occur more than once in the figures of a page by classes in its style sheet.
 
-    The rules are in the head, as a figure may stand in ``<noscript>``, which a browser with scripts does not read.
-    Two class names let a rule override that of the page for all paths, as a style attribute would.
+    The rules are in the head, as a browser with scripts ignores figures in ``<noscript>``. With two class names a rule
+    overrides that of the page for all paths, as a style attribute would.
 
     Raises
     ------
@@ -207,7 +207,7 @@ def with_classes(page: str) -> str:
 
 
 def _as_webp(match: re.Match[str]) -> str:
-    """A PNG image as lossless WebP: the same pixels to be seen in fewer bytes."""
+    """A PNG image as lossless WebP, which has the same pixels in fewer bytes."""
     if not features.check("webp"):
         return match[0]
     made = io.BytesIO()
@@ -217,9 +217,11 @@ def _as_webp(match: re.Match[str]) -> str:
 
 
 def _private_ids(svg: str, key: str) -> str:
-    """Without unreferenced ids; the others are made unique in the page."""
+    """Remove unreferenced ids and make the others unique in the page."""
     used = dict.fromkeys(re.findall(r'(?:url\(#|href="#)([^)"]+)', svg))
-    short = {name: f"p{crc32(key.encode()):x}-{i}" for i, name in enumerate(used)}  # hundreds of markers repeat them
+    short = {
+        name: f"p{crc32(key.encode()):x}-{i}" for i, name in enumerate(used)
+    }  # short, as hundreds of markers repeat them
 
     def rename(match: re.Match[str]) -> str:
         return f' id="{short[match[1]]}"' if match[1] in used else ""

@@ -1,4 +1,4 @@
-"""Pages from templates: texts are escaped, and a name that is not there is an error."""
+"""Pages from templates: texts are escaped, and undefined names are errors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _CSS = Path(__file__).with_name("page.css")
 
 
 def rendered(package: str, template: str, filters: Mapping[str, Callable], /, **content: object) -> str:
-    """The page that a template of a package makes.
+    """Render a template of a package.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def rendered(package: str, template: str, filters: Mapping[str, Callable], /, **
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    # drawings are made by this package, which has escaped their texts
+    # drawings are safe: `verify.pages` has escaped their texts
     jinja.filters |= {"svg": Markup, "number": number, "tone": tone, **filters}
     page = jinja.get_template(template).render(
         light=Markup(custom_properties(dark=False)),

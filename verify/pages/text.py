@@ -1,4 +1,4 @@
-"""Numbers, units and sentences of the page."""
+"""Numbers, units and sentences of the pages."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NO_VALUE = "no value"
 
 @dataclass(frozen=True)
 class Units:
-    """Unit labels, empty where the scene's label does not separate them."""
+    """Unit labels; empty where the scene's label has not three parts."""
 
     force: str = ""
     length: str = ""
@@ -112,20 +112,15 @@ def seconds(value: float | None, unknown: str = NO_VALUE) -> str:
 
 
 def span(values: list[float], form: Callable[[float], str]) -> str:
-    """``form`` of the smallest and the largest value, once if they read the same."""
+    """The smallest and the largest value by ``form``; only one if their texts are equal."""
     low, high = form(min(values)), form(max(values))
     return low if low == high else f"{low} to {high}"
-
-
-def programme(scene: Scene) -> tuple[float, ...]:
-    """The openings of the displacement programme."""
-    return tuple(scene.load.opening)
 
 
 def sentence(scene: Scene) -> str:
     """The problem with its effects, in words."""
     units, specimen = Units.of(scene.units), scene.specimen
-    openings = " → ".join(number(v, 4) for v in programme(scene))
+    openings = " → ".join(number(v, 4) for v in scene.load.opening)
     moved = f"to {openings} {units.length}".rstrip()
     law, done = f"a {scene.interface.law} traction law", f"{_body(specimen, units.length)} {moved}"
     return f"{done}, in plane {specimen.plane}, with {law} and {_effects(scene)}."
@@ -209,7 +204,7 @@ def _points(mesh: Discretization) -> str:
 
 
 def _moduli(material: Material, units: Units) -> list[tuple[str, float, str]]:
-    """Elastic constants as they are given."""
+    """The elastic constants of the scene file."""
     names = (
         ("young", "Young's modulus", units.stress),
         ("poisson", "Poisson's ratio", ""),

@@ -10,7 +10,7 @@ __all__ = ["Findings", "write"]
 
 
 def write(findings: Findings, path: Path, text: bool = False) -> None:
-    """``verify.report.page.write``; its module is imported here, as it needs matplotlib and Jinja."""
+    """``verify.report.page.write``, imported on the first call, as it needs matplotlib and Jinja."""
     from verify.report import page
 
     page.write(findings, path, text)

@@ -31,8 +31,8 @@ def page(
     Parameters
     ----------
     labels : names of A and B
-    rows : name, name of its check, value of A, of B, and difference
-    found : the checks that were asked for
+    rows : quantity, name of its check, value of A, value of B, difference
+    found : the requested checks
     remarks : sentences above the numbers
     """
     return rendered(

@@ -1,4 +1,4 @@
-"""Convergence tables: the limits of a scene's sequences of meshes."""
+"""Convergence tables: values on the sequences of meshes of a scene, and their limits."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class ConvergenceTable:
 
 
 def tables(report: SceneReport, entries: tuple[Entry, ...]) -> tuple[ConvergenceTable, ...]:
-    """The tables of all methods with three meshes or more."""
+    """The tables of all methods with at least three meshes."""
     return tuple(_table(report.scene, one, entries) for one in sequences(report))
 
 

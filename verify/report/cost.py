@@ -23,7 +23,7 @@ def total_seconds(result: Result) -> float:
 
 
 def phase_seconds(result: Result) -> dict[str, float]:
-    """The named phases; whatever the total has besides them counts as ``other``."""
+    """Time by phase; ``other`` is the rest of the total."""
     times = dict(result.seconds or {})
     named = {name: float(times.get(name, 0.0)) for name in SHOWN_PHASES}
     if "other" not in times and "total" in times:
@@ -32,7 +32,7 @@ def phase_seconds(result: Result) -> dict[str, float]:
 
 
 def timing(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
-    """Stacked bars, one a run."""
+    """Stacked bars of the time by phase, one per run; None where nothing was timed."""
     timed = [entry for entry in runs if total_seconds(entry.result) > 0]
     if not timed:
         return None

@@ -1,4 +1,4 @@
-"""The results of a verification, which its page shows. Imports no drawing library."""
+"""The results of a verification for its page. Imports no drawing library."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class Findings:
     ----------
     reports : one for each scene, in the order of the page
     environment : versions and machine, name to value
-    quadrature : the study of the interface rules, where it was made
-    paper : the runs behind Figures 6 to 8 of the paper, where they were made
-    planes : the studies of plane problems, one a mesh file
-    rates : the convergence of the bases in plane elasticity, where it was measured
-    peels : the runs behind Figure 9 of the paper, where they were made
+    quadrature : the study of the interface rules, or None
+    paper : Figures 6 to 8 of the paper, or None
+    planes : the studies of plane problems, one per mesh file
+    rates : convergence of the bases in plane elasticity; empty if not computed
+    peels : Figure 9 of the paper, or None
     included : studies of other commands
     """
 

@@ -1,4 +1,4 @@
-"""The report in Markdown: its numbers without its figures, to be read in a terminal and on a forge."""
+"""The report in Markdown, without figures, for terminals and code forges."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from verify.studies.hard.page import Row as HardRow
     from verify.verdict import Check
 
-#: Characters that would be markup; an angle bracket before a space or a digit would not.
+#: Characters that are markup; an angle bracket before a space or a digit is not.
 _SPECIAL = re.compile(r"[\\`*\[\]|]|<(?=[A-Za-z/!?])|&(?=#?\w+;)|~(?=~)|^[>#+-]|(?<!\w)_|_(?!\w)")
 
 
-#: A state as a cell of a table.
+#: Text of a state in a table.
 VERDICTS = {"holds": "✓ holds", "broken": "✗ **broken**", "unresolved": "? unresolved"}
 
 
@@ -36,7 +36,7 @@ def lines(
     included: Sequence[IncludedSection],
     environment: Mapping[str, str],
 ) -> list[str]:
-    """All of the page's texts and tables, a line each."""
+    """All texts and tables of the page as lines."""
     text = ["# Verification report", "", f"**{plain(summary.headline)}.**", "", *_summary(summary)]
     for section in sections:
         text += ["", *_scene(section)]
@@ -51,12 +51,12 @@ def lines(
 
 
 def plain(text: object) -> str:
-    """Text without markup, on one line."""
+    """Text on one line, with its markup characters escaped."""
     return _SPECIAL.sub(r"\\\g<0>", re.sub(r"\s*[\r\n]+\s*", " ", str(text)))
 
 
 def code(text: str) -> str:
-    """A code span, whatever the text holds."""
+    """A code span, also of a text with backticks."""
     text = re.sub(r"[\r\n]+", " ", text)
     fence = "`" * (1 + max((len(run) for run in re.findall("`+", text)), default=0))
     pad = " " if text[:1] == "`" or text[-1:] == "`" else ""
@@ -64,7 +64,7 @@ def code(text: str) -> str:
 
 
 def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """A table whose columns line up in a terminal as well; cells are Markdown."""
+    """A table with aligned columns; cells are Markdown."""
     widths = [max(3, *(len(row[i]) for row in (heads, *rows))) for i in range(len(heads))]
 
     def line(cells: Iterable[str]) -> str:
@@ -74,7 +74,7 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _summary(summary: Summary) -> Iterator[str]:
-    yield from (f"- {plain(said.text)}" for said in summary.sentences)
+    yield from (f"- {plain(sentence.text)}" for sentence in summary.sentences)
     if summary.missing:
         yield from ("", "Not run, stopped early, or neglected:", "")
         yield from (f"- {plain(text)}" for text in (*summary.missing, *summary.ways))

@@ -1,4 +1,4 @@
-"""The effects that a matched interface neglects in a peel test, a sentence for each such run."""
+"""The error of a matched interface in a peel test, in a sentence per run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from verify.scene.schema import Scene
 
 
 def sentences(scene: Scene, found: Sequence[Entry]) -> tuple[str, ...]:
-    """A sentence for each DOLFINx run of a peel test with finite kinematics; linear kinematics follow no surface."""
+    """A sentence for each DOLFINx run of a peel test with finite kinematics; linear kinematics has no such error."""
     if not scene.specimen.clamped or simulated(scene)["kinematics"] == "linear":
         return ()
     runs = (entry for entry in found if entry.method == "dolfinx" and entry.agreement is not None)
@@ -25,15 +25,15 @@ def _sentence(scene: Scene, entry: Entry) -> str:
     found = matched.of_run(prepare(entry.run.scene or scene, entry.result.method), entry.result)
     how = f"{entry.label} keeps its pairs of points and measures gaps along the undeformed normal"
     if found is None:
-        return f"{how}; what that leaves out is not known, as the run kept no fields"
+        return f"{how}; the error of that is unknown, as the run kept no fields"
     what = (
         f"In the fields that were kept the substrate tilts by at most {number(degrees(found.tilt), 2)}° where it is "
         f"pulled; along its own normal gaps would change by {percent(found.gap)} of g_u in the process zone, and "
         f"tractions would pull lengthwise with {percent(found.pull)} of the load"
     )
     if found.valid:
-        return f"{how}. {what}. For that G_Ic and load are off by no more than {percent(found.bound)}"
+        return f"{how}. {what}. This changes G_Ic and load by at most {percent(found.bound)}"
     return (
-        f"{how}. {what}. Not valid here: for that G_Ic and load may be off by {percent(found.bound)}, more than "
-        f"{percent(matched.NEGLIGIBLE)}, and how far a code that follows the surfaces is from it tells nothing"
+        f"{how}. {what}. Not valid here: this may change G_Ic and load by {percent(found.bound)}, more than "
+        f"{percent(matched.NEGLIGIBLE)}, so its distance to a code that follows the surfaces is not meaningful"
     )

@@ -26,7 +26,7 @@ __all__ = ["write"]
 
 _HERE = Path(__file__).parent
 
-#: Up to so many scenes have more openings than those that all runs keep, of about 120 kB a scene.
+#: Largest number of scenes for which the additional openings of the leading run are drawn, about 120 kB per scene.
 FEW = 5
 
 _FILTERS: Mapping[str, Callable] = {
@@ -40,7 +40,7 @@ _FILTERS: Mapping[str, Callable] = {
 
 
 def write(findings: Findings, path: Path, text: bool = False) -> None:
-    """Write the page, an HTML file whose folder is made; ``text``: beside it the same in Markdown."""
+    """Write the HTML page, and with ``text`` the report in Markdown beside it; their folder is created."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     few = len(findings.reports) <= FEW
@@ -74,7 +74,7 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
 
 
 def _scripts(sections: Sequence[Section], studies: Sequence[IncludedSection]) -> tuple[Markup, ...]:
-    """The scripts that something on the page needs."""
+    """The scripts that the page needs."""
     stepper = (_HERE / "stepper.js").read_text(encoding="utf-8")
     return (
         *((Markup(stepper),) if any(s.frames for s in sections) else ()),

@@ -1,4 +1,4 @@
-"""Published values of a scene beside those of the runs."""
+"""Published values of a scene and the corresponding values of the runs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from verify.scene.schema import Scene
 
 @dataclass(frozen=True)
 class PublishedRow:
-    """A line of the table; ``cells`` are load and deviation of every run that has a curve."""
+    """A line of the table; ``cells`` are load and deviation of every run with a curve."""
 
     quantity: str
     value: str
@@ -24,7 +24,7 @@ class PublishedRow:
 
 
 def compared(found: Sequence[Entry]) -> tuple[Entry, ...]:
-    """The columns: runs with a curve, LEFM among them, which is shown but not judged."""
+    """The columns: runs with a curve, including LEFM, which is shown but not checked."""
     return tuple(entry for entry in found if entry.agreement is not None)
 
 

@@ -1,4 +1,4 @@
-"""One scene of the page: everything that the template prints, computed and drawn."""
+"""One scene of the page: the texts, tables and figures of the template."""
 
 from __future__ import annotations
 
@@ -32,22 +32,22 @@ class Figures:
 @dataclass(frozen=True)
 class CheckRow:
     check: Check
-    runs: tuple[Run, ...]  # that it is about
+    runs: tuple[Run, ...]  # the runs of its subject
     value: str
     tolerance: str
-    used: float  # share of the tolerance, 0 .. 1
+    used: float  # value over tolerance, at most 1
     uncertainty: str = ""  # of the reference
 
     @property
     def parts(self) -> tuple[tuple[str, Run | None], ...]:
-        """The words of its subject, each with the run that it names."""
+        """The names in its subject, each with its run."""
         named = {run.name: run for run in self.runs}
         return tuple((name, named.get(name)) for name in self.check.subject.split(" / "))
 
 
 @dataclass(frozen=True)
 class CheckGroup:
-    """The checks of one name, each for a run."""
+    """The checks of one name, one per run."""
 
     name: str
     meaning: str
@@ -87,7 +87,7 @@ class Section:
     figures: tuple[Figures, ...]
     checks: tuple[tuple[Tally, tuple[CheckGroup, ...]], ...]
     rows: tuple[RunRow, ...]
-    matched: tuple[str, ...]  # effects that a matched interface neglects
+    matched: tuple[str, ...]  # sentences on the error of matched interfaces
     zones: tuple[zones.ZoneRow, ...]
     published: tuple[published.PublishedRow, ...]
     compared: tuple[Entry, ...]  # columns of the table of published values
@@ -103,7 +103,7 @@ class Section:
 
 
 def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
-    """Compute and draw one scene; ``between``: also at openings that the leading run alone has kept."""
+    """Compute and draw one scene; ``between``: also at openings that only the leading run has stored."""
     found = entries(report)
     drawn = tuple(entry for entry in found if entry.agreement is not None)
     checks = report.checks
@@ -131,7 +131,7 @@ def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
 
 
 def _zone(groups: Sequence[Sequence[tuple[Entry, fields.Snapshot]]]) -> tuple[float, float, float] | None:
-    """The process zone of the leading run at the last opening that has one."""
+    """Process zone of the leading run at the last opening with one, and that opening."""
     for group in reversed(groups):
         if group and (zone := fields.process_zone(group[0][1])) is not None:
             return (*zone, group[0][1].opening)
@@ -182,7 +182,7 @@ def _figures(
 
 
 def _check_groups(kind: str, report: SceneReport) -> tuple[CheckGroup, ...]:
-    """Checks of one kind by name, in the order of their first appearance."""
+    """Checks of one kind, grouped by name in the order of their first appearance."""
     groups: dict[tuple[str, str], list[CheckRow]] = {}
     for c in report.checks:
         if c.kind == kind:
@@ -234,7 +234,7 @@ def _steps(accepted: int, rejected: int) -> str:
 
 
 def _notes(found: Sequence[Entry]) -> list[str]:
-    """Remarks on the runs that qualify the figures."""
+    """Remarks on runs that are missing or stopped, and on a missing reference."""
     notes = []
     for entry in found:
         if entry.run.result is None:

@@ -1,4 +1,4 @@
-"""The top of the page: which methods agree, how closely, in which time, and which checks fail."""
+"""The top of the page: distances and times of the methods, and the checks that fail."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Cell:
     head: str = ""
     tail: str = ""
     tone: str = ""  # "", "reference", "limit", "absent", "stopped"
-    run: str = ""  # its name
+    run: str = ""  # name of the run
 
 
 @dataclass(frozen=True)
@@ -60,18 +60,19 @@ class Summary:
 
 
 def summarise(sections: Sequence[Section], planes: Sequence[PlaneSection | RatesSection] = ()) -> Summary:
-    """Everything above the first scene."""
+    """The part of the page above the first scene."""
     checks = [(s.anchor, s.report.scene.name, check) for s in sections for check in s.report.checks]
     checks += [(p.anchor, p.name, check) for p in planes for check in p.checks]
     not_held = tuple((anchor, name, check) for anchor, name, check in checks if not check.passed)
     counts = counted(check for _, _, check in checks)
     columns = _columns(sections)
+    no_dolfinx = any(entry.run.left_out == DOLFINX_MISSING for s in sections for entry in s.entries)
     return Summary(
         headline=headline(counts, len(sections), len(planes)),
         tone=tone(counts),
         sentences=(*_sentences(sections), *(Sentence(p.sentence, p.anchor, "its numbers") for p in planes)),
         missing=tuple(_missing(sections)),
-        ways=_ways(sections),
+        ways=DOLFINX_WAYS if no_dolfinx else (),
         tallies=tuple(tally(kind, [check for _, _, check in checks]) for kind in EVIDENCE),
         columns=tuple(Column(method, name) for method, _, name in columns),
         rows=tuple((section, tuple(_cell(section, *column[:2]) for column in columns)) for section in sections),
@@ -84,7 +85,7 @@ def _nth(section: Section, method: str, repeat: int) -> Entry | None:
 
 
 def _columns(sections: Sequence[Section]) -> list[tuple[str, int, str]]:
-    """Method, how many runs of it came before, and the heading: the label where a method has several runs."""
+    """Method, number of the run of that method, and heading: the label where a method has several runs."""
     places: dict[tuple[int, str, int], list[Entry]] = {}
     for entry in (entry for section in sections for entry in section.entries):
         places.setdefault((rank(entry.method), entry.method, entry.repeat), []).append(entry)
@@ -118,7 +119,7 @@ def _cell(section: Section, method: str, repeat: int) -> Cell:
 
 
 def _sentences(sections: Sequence[Section]) -> list[Sentence]:
-    """One sentence a method: its largest distance to the reference and its times."""
+    """One sentence per method: its largest distance to the reference, and its times."""
     sentences = []
     for method, repeat, name in _columns(sections):
         there = [(s, e) for s in sections if (e := _nth(s, method, repeat)) is not None]
@@ -150,7 +151,7 @@ def _sentences(sections: Sequence[Section]) -> list[Sentence]:
 
 
 def _missing(sections: Sequence[Section]) -> list[str]:
-    """Reasons why runs are missing or stopped early, each once with its scenes."""
+    """Reasons for missing runs and runs that stopped, each once with its scenes."""
     reasons: dict[str, list[str]] = {}
     for section in sections:
         for note in section.notes:
@@ -160,11 +161,6 @@ def _missing(sections: Sequence[Section]) -> list[str]:
         f"{note} ({'all scenes' if len(names) == everywhere > 1 else ', '.join(names)})"
         for note, names in reasons.items()
     ]
-
-
-def _ways(sections: Sequence[Section]) -> tuple[str, ...]:
-    lacking = any(e.run.left_out == DOLFINX_MISSING for s in sections for e in s.entries)
-    return DOLFINX_WAYS if lacking else ()
 
 
 def _capital(name: str) -> str:

@@ -1,4 +1,4 @@
-"""How many checks of each kind hold, are broken, or are unresolved."""
+"""Numbers of checks by kind and state."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from verify.verdict import Check
 
 
-#: kind: the evidence of a check of that kind
+#: Kind of a check -> the evidence behind it, in words.
 EVIDENCE = {
     "exact": "An identity that any solution must meet. Nothing else is needed to judge it.",
     "analytical": "Against a closed form or the cohesive-beam solution, which rests on beam theory.",
@@ -23,7 +23,7 @@ EVIDENCE = {
 
 @dataclass(frozen=True)
 class Tally:
-    """How many checks there are of one kind, and in which state."""
+    """The numbers of checks of one kind by state."""
 
     kind: str
     meaning: str

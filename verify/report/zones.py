@@ -1,4 +1,4 @@
-"""The process zone run by run: estimated before, measured after, in lengths and in elements."""
+"""The process zone of every run: estimated and measured, as length and in elements."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _NOT_MEASURED = "–"
 
 @dataclass(frozen=True)
 class ZoneRow:
-    """A line of the table; ``resolved`` by the estimate."""
+    """A line of the table; ``resolved`` refers to the estimate."""
 
     entry: Entry
     element: str

@@ -1,6 +1,6 @@
-"""The process of one run: ``python -m verify.runs.child MODULE ARGUMENT ...`` runs a module and dies with its parent.
+"""The process of one run: ``python -m verify.runs.child MODULE ARGUMENT ...`` runs a module and ends with its parent.
 
-Nobody waits for a run whose engine was killed; its folder is not kept, and it would slow down the next runs.
+When the parent is killed, the result of the run is not used, and the process would slow down the next runs.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import runpy
 import signal
 import sys
 
-#: prctl(2): the signal to get when the parent dies. Linux alone has it; elsewhere the run goes on to its end.
+#: prctl(2): sends a signal when the parent dies. Only on Linux; on other systems the run continues to its end.
 PR_SET_PDEATHSIG = 1
 
 

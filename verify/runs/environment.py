@@ -13,7 +13,7 @@ from verify import __version__
 
 
 def mpi_rank() -> int:
-    """Rank of this process by what mpirun puts in the environment: mpi4py is not ours to import."""
+    """Rank of this process, from the environment variables of mpirun, as `verify` does not import mpi4py."""
     return _number("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", default=0)
 
 
@@ -23,15 +23,15 @@ def mpi_size() -> int:
 
 
 def versions() -> dict[str, str]:
-    """Python and those of the packages that are installed."""
+    """Versions of debond, Python and the installed packages."""
     names = ("numpy", "scipy", "pydantic", "fenics-dolfinx", "petsc4py", "mpi4py")
-    found = {name: number for name in names if (number := _version(name))}
+    found = {name: number for name in names if (number := package_version(name))}
     return {"debond": __version__, "python": platform.python_version(), **found}
 
 
 @cache
-def _version(name: str) -> str:
-    """Empty where it is not installed. Finding out takes milliseconds, and every fingerprint asks."""
+def package_version(name: str) -> str:
+    """Version of a package, empty if not installed; cached, as every fingerprint needs it and it takes milliseconds."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -39,12 +39,12 @@ def _version(name: str) -> str:
 
 
 def machine() -> dict[str, Any]:
-    """What the timings were taken on."""
+    """System, processor and cores."""
     return {"system": platform.platform(), "processor": _processor(), "cores": os.cpu_count()}
 
 
 def threads() -> int:
-    """Threads that numerical libraries may take."""
+    """Largest number of threads of numerical libraries."""
     return _number("OMP_NUM_THREADS", default=os.cpu_count() or 1)
 
 
@@ -70,8 +70,8 @@ def _number(*names: str, default: int) -> int:
     return int(values[0]) if values else default
 
 
-#: What the times of a study rest on.
+#: Packages whose source affects the times of all methods.
 ALL_PACKAGES = ("iga", "fem_reference")
 
-#: Variables that keep numerical libraries to one thread.
+#: Environment variables for the number of threads of numerical libraries.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")

@@ -1,6 +1,8 @@
-"""About how long a run takes, before it is made: for bars and for dry runs."""
+"""Estimated time of a run, for progress bars and dry runs."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 from verify.methods.plugins import find
 from verify.methods.reference_mesh import reference_mesh
@@ -9,37 +11,48 @@ from verify.scene.effects import crack_at_the_end
 from verify.scene.process_zone import bulk_length, slender_length
 from verify.scene.schema import Scene, counted_steps
 
-#: While a crack grows the front of the zone goes ahead by an eighth of the full opening a step: so many steps for every
-#: length of the zone, and so many besides. Measured on ``dcb-czm1`` and ``peel-120``, by both codes.
-STEPS_PER_ZONE, STEPS_BESIDES = 8.2, 20
-#: Steps that the path chooses itself, as many as take the same time if they are counted: each ends on a kink of the law
-#: and takes half as many iterations again. Measured on ``dcb-czm1`` (29 steps) and ``peel-120`` (42).
-STEPS_CHOSEN = 50
+
+@dataclass(frozen=True)
+class StepCounts:
+    """Numbers of steps, measured on ``dcb-czm1`` and ``peel-120``.
+
+    per_zone, others : counted steps per length of the process zone, as a step advances the front by an eighth of the
+        full opening, and all other steps; of both codes
+    chosen : counted steps that take as long as those of "auto" (29 and 42), each of which ends on a kink of the law and
+        needs 1.5 times the iterations
+    """
+
+    per_zone: float = 8.2
+    others: int = 20
+    chosen: int = 50
+
+
+STEP_COUNTS = StepCounts()
 
 
 def seconds(scene: Scene, method: str) -> float:
-    """Estimated time of a run: that besides the steps, and a step's in proportion to the unknowns.
+    """Estimated time of a run: a fixed time, plus a time per step that is proportional to the unknowns.
 
-    The times of the methods are those on `dcb-czm1`, finite kinematics, on one core of 2023. A rough guide: another
-    machine is as likely to be twice as fast.
+    The times of the methods were measured on `dcb-czm1` with finite kinematics on one core of 2023; other machines may
+    be twice as fast or slow.
     """
     one = find(method)
     return one.besides + steps(scene, method) * one.per_step * unknowns(scene, method) / 1000
 
 
 def steps(scene: Scene, method: str) -> int:
-    """About how many steps a path takes, however many are asked for: the front of the zone asks for its own."""
+    """Estimated number of steps: at least those asked for, more where the process zone limits the step length."""
     if scene.discretization.steps == "auto" and find(method).with_dofs:
-        return STEPS_CHOSEN
+        return STEP_COUNTS.chosen
     specimen = scene.specimen
     bond = specimen.extent - specimen.free_length
     grown = min(max(crack_at_the_end(scene) - specimen.free_length, 0.0), bond)
     zones = grown / min(slender_length(scene), bulk_length(scene))
-    return round(max(counted_steps(scene), STEPS_BESIDES + STEPS_PER_ZONE * zones))
+    return round(max(counted_steps(scene), STEP_COUNTS.others + STEP_COUNTS.per_zone * zones))
 
 
 def unknowns(scene: Scene, method: str) -> int:
-    """Degrees of freedom that a method aims at; 1000 for one that chooses its own."""
+    """Target number of unknowns of a method; 1000 for a method without a mesh."""
     prepared = prepare(scene, method)
     if prepared.method.with_dofs:
         return scene.discretization.dofs // (2 if prepared.effects["symmetry"] else 1)

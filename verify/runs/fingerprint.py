@@ -1,4 +1,4 @@
-"""What a result rests on, as one hash: the same hash, the same result, and on the same machine the same time."""
+"""Hash of everything that affects a result: equal hashes mean equal results, and equal times on one machine."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from verify.scene.schema import Scene
 
 PROJECT = Path(__file__).resolve().parents[2]
 
-#: What every run and its checks rest on; pages, commands and studies take no part in a run.
-GROUND = (
+#: Source that affects every run and its checks; pages, commands and studies do not.
+RUN_SOURCE = (
     *(f"verify/{name}" for name in ("scene", "theory", "curves", "methods", "fields", "checks", "runs", "support")),
     "verify/result.py",
     "verify/verdict.py",
@@ -29,15 +29,15 @@ def fingerprint(scene: Scene, method: str, *besides: str) -> str:
 
     Parameters
     ----------
-    besides : what else tells two runs apart
+    besides : further values that distinguish two runs
     """
     plugged = [] if method in METHODS else plugins.content(method)
-    return digest(_ground(scene, method), besides, source(plugins.find(method).packages), plugged, _here())
+    return digest(_problem(scene, method), besides, source(plugins.find(method).packages), plugged, _here())
 
 
 def source(packages: tuple[str, ...] = ()) -> str:
-    """Hash of the source files of `GROUND` and of whole packages, which are named by their paths in the project."""
-    places = [PROJECT / name for name in (*packages, *GROUND)]
+    """Hash of the source files of `RUN_SOURCE` and of whole packages, given by their paths in the project."""
+    places = [PROJECT / name for name in (*packages, *RUN_SOURCE)]
     files = [path for place in places for path in (sorted(place.rglob("*.py")) if place.is_dir() else [place])]
     return _content(tuple(files))
 
@@ -47,7 +47,7 @@ def digest(*content: object) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:20]
 
 
-def _ground(scene: Scene, method: str) -> list[object]:
+def _problem(scene: Scene, method: str) -> list[object]:
     meshes = [hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in scene.specimen.mesh]
     return [scene.model_dump(mode="json"), method, meshes]
 
@@ -61,5 +61,5 @@ def _content(files: tuple[Path, ...]) -> str:
 
 
 def _here() -> list[object]:
-    """Versions, machine and threads: a time that was taken elsewhere is no answer."""
+    """Versions, machine and threads, as times of another machine are not comparable."""
     return [versions(), machine(), platform.node(), os.environ.get("OMP_NUM_THREADS", "")]

@@ -1,4 +1,4 @@
-"""The folder of a run: curve.csv and evidence.csv as the run goes, result.json and fields when it is over."""
+"""The folder of a run: curve.csv and evidence.csv are written step by step, result.json and fields at the end."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from verify.support.checked_files import ANY, NUMBER, Damaged, number, read_json
 
 FILES = ("curve.csv", "evidence.csv", "result.json", "fields.npz", "moments.npz", "error.log")
 
-#: Numbers of the errors of a disk that is full, over its quota or a limit, read-only or broken.
+#: errno values of a disk that is full, over a quota or limit, read-only, or broken.
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 
 
 class CurveWriter:
-    """Writes every row of a run at once, so that a killed run leaves a valid, shorter file."""
+    """Writes every row immediately, so that a killed run leaves a valid, shorter file."""
 
     def __init__(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
-        for name in FILES:  # nothing of an earlier run may pass for this one
+        for name in FILES:  # files of an earlier run must not be taken for those of this one
             (folder / name).unlink(missing_ok=True)
         self._curve = _opened(folder / "curve.csv", CURVE_COLUMNS)
         self._evidence: FileIO | None = None
@@ -40,7 +40,9 @@ class CurveWriter:
         if self._evidence is None:
             self._columns = tuple(name for name in (*CURVE_COLUMNS, *EVIDENCE_COLUMNS) if name in row)
             self._evidence = _opened(self._evidence_path, self._columns)
-            _append(self._curve, CURVE_COLUMNS, dict.fromkeys(CURVE_COLUMNS, 0.0))  # by contract, the crack included
+            _append(
+                self._curve, CURVE_COLUMNS, dict.fromkeys(CURVE_COLUMNS, 0.0)
+            )  # the contract of curve.csv: all columns start at 0, also the crack length
         else:
             _append(self._curve, CURVE_COLUMNS, dict.fromkeys(CURVE_COLUMNS, math.nan) | dict(row))
         _append(self._evidence, self._columns, row)
@@ -52,19 +54,19 @@ class CurveWriter:
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:
-    """Write beside and rename, so that the file is whole or absent. NaN and infinity, which JSON lacks, become null."""
+    """Write to a temporary file and rename it, so that the file is whole or absent. NaN and infinity become null."""
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     text = json.dumps(_finite(content), indent=2) + "\n"
     try:
         beside.write_text(text)
         beside.replace(path)
-    except OSError as error:  # of a full disk, which does not say where
+    except OSError as error:  # the error of a full disk has no file name
         beside.unlink(missing_ok=True)
         raise OSError(error.errno, error.strerror, str(path)) from None
 
 
 def write_csv(path: Path, kind: type, rows: Iterable[Any]) -> None:
-    """One line a row; the columns are the fields of ``kind``, the dataclass of the rows."""
+    """Write one line per row; the columns are the fields of ``kind``, the dataclass of the rows."""
     with path.open("w", newline="") as stream:
         writer = csv.DictWriter(stream, [field.name for field in fields(kind)])
         writer.writeheader()
@@ -74,20 +76,20 @@ def write_csv(path: Path, kind: type, rows: Iterable[Any]) -> None:
 def write_fields(path: Path, snapshots: tuple[Snapshot, ...]) -> None:
     """All snapshots in one compressed file, keys ``0.gap_q``, ``0.s_q``, ... ``1.gap_q``, ..."""
     arrays = {f"{i}.{key}": value for i, snapshot in enumerate(snapshots) for key, value in asdict(snapshot).items()}
-    beside = path.with_name(f".{os.getpid()}.{path.name}")  # savez insists on the ending
+    beside = path.with_name(f".{os.getpid()}.{path.name}")  # savez adds the suffix if it is missing
     np.savez_compressed(beside, **arrays)
     beside.replace(path)
 
 
 def read_columns(path: Path) -> dict[str, np.ndarray]:
-    """Columns of a CSV file with a header; an incomplete last row, as a killed run may leave, is dropped."""
+    """Columns of a CSV file with a header; an incomplete last row of a killed run is dropped."""
     with path.open(newline="") as stream:
         header, *rows = csv.reader(stream)
     rows = [row for row in rows if len(row) == len(header) and all(row)]
     return {name: np.array([float(row[i]) for row in rows]) for i, name in enumerate(header)}
 
 
-#: What is read of result.json; the rest is for people and their scripts.
+#: Layout of the entries of result.json that are read; the others are for users and their scripts.
 _RESULT = {
     "method": str,
     "status": str,
@@ -105,11 +107,11 @@ _RESULT = {
 
 
 def read_result(folder: Path) -> Result:
-    """The run in a folder. Without result.json it counts as stopped.
+    """The result in the folder of a run; without result.json the run counts as stopped.
 
     Raises
     ------
-    Damaged : a file is not as a run has written it.
+    Damaged : a file is not as a run wrote it.
     """
     evidence = folder / "evidence.csv"
     try:
@@ -141,7 +143,7 @@ def read_result(folder: Path) -> Result:
 
 
 def damage(folder: Path, proof: str) -> str:
-    """The file that cannot be read of a result that was whole once, or nothing; ``proof`` is the one written last."""
+    """Name of a file of a stored result that cannot be read, or empty; ``proof`` is the file that was written last."""
     name, about = proof, {}
     try:
         if proof == "result.json":
@@ -163,11 +165,11 @@ def damage(folder: Path, proof: str) -> str:
 
 
 def read_fields(path: Path) -> tuple[Snapshot, ...]:
-    """The snapshots of ``write_fields``; none where there is no file.
+    """The snapshots of ``write_fields``; empty without the file.
 
     Raises
     ------
-    Damaged : the file holds something else.
+    Damaged : the file has other content.
     """
     if not path.exists():
         return ()
@@ -177,12 +179,12 @@ def read_fields(path: Path) -> tuple[Snapshot, ...]:
             count = len({key.split(".")[0] for key in arrays})
             tables = [{name: arrays[key] for name in names if (key := f"{i}.{name}") in arrays} for i in range(count)]
         return tuple(_snapshot(table) for table in tables)
-    except Exception as error:  # of NumPy, zip and zlib, whatever is in the file
+    except Exception as error:  # NumPy, zip and zlib raise various errors
         raise Damaged(path, error) from None
 
 
 def _snapshot(table: Mapping[str, np.ndarray]) -> Snapshot:
-    """Numbers of the sizes that belong together."""
+    """A snapshot whose arrays have consistent shapes."""
     scalars = ("opening", "load")
     values: dict[str, Any] = {name: float(array) if name in scalars else array for name, array in table.items()}
     found = Snapshot(**values)
@@ -204,8 +206,8 @@ def _append(stream: FileIO, columns: tuple[str, ...], row: Mapping[str, float]) 
 
 
 def _write(stream: FileIO, line: str) -> None:
-    """One write call a row, line end included: a reader or a kill never sees half of one, nor does a full disk leave
-    half of one behind, whose last number would be another.
+    """One write call per row, line end included: neither a reader nor a killed run nor a full disk leaves half a row,
+    whose last number would be wrong.
 
     Raises
     ------

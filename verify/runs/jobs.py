@@ -1,4 +1,4 @@
-"""Runs of ``debond solve``, as a sweep does them, and what became of them."""
+"""Runs of ``debond solve`` as tasks of a sweep, and their outcomes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from verify.runs.estimate import seconds
 from verify.runs.fingerprint import fingerprint
 from verify.runs.folder import read_result
 from verify.runs.pools import pool
-from verify.runs.sweep import FOLDER, Done, Task, listed, sweep
+from verify.runs.sweep import OUTPUT_FOLDER, Done, Task, listed, sweep
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.support.checked_files import Damaged
@@ -28,7 +28,7 @@ from verify.verdict import Check
 class Job:
     """One run to do. ``source`` is the scene as the user named it, ``variant`` the name of the run and its folder.
 
-    ``fields`` are kept of a few steps for the figures; ``repeat`` tells runs apart that are made for their times.
+    ``fields``: store fields of a few steps for the figures. ``repeat`` distinguishes repetitions for timing.
     """
 
     source: str
@@ -50,7 +50,7 @@ class Job:
 
     @property
     def place(self) -> str:
-        """Name of the run, and where it is found under an output folder."""
+        """Name of the run, and its path in an output folder."""
         return f"{self.scene.name}/{self.variant}"
 
     @property
@@ -59,19 +59,19 @@ class Job:
         return parse_scene(self.scene.model_dump(), self.overrides) if self.overrides else self.scene
 
     def task(self) -> Task:
-        """The run as a sweep does it."""
+        """The run as a task of a sweep."""
         scene = self.solved
         return Task(
             self.place,
             fingerprint(scene, self.method, f"fields {self.fields}", f"repeat {self.repeat}"),
-            ("verify.cli", *self._words(FOLDER)),
+            ("verify.cli", *self._words(OUTPUT_FOLDER)),
             "result.json",
             lane=find(self.method).lane,
             seconds=seconds(scene, self.method),
         )
 
     def meant_for(self, check: Check) -> bool:
-        """On coarse meshes what rests on the J-integral measures the mesh and not the solver."""
+        """Whether a check applies: on deliberately coarse meshes those of the J-integral measure the mesh alone."""
         keys = [override.partition("=")[0] for override in self.overrides if override != OWN]
         coarse = keys == ["discretization.dofs"] or "dolfinx.layers" in keys
         return not (coarse and check.name in OF_THE_ZONE)
@@ -82,7 +82,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a job: a result, or why there is none; ``failed`` where that is nobody's choice."""
+    """The outcome of a job: a result, or why it has none; ``failed`` if it should have one."""
 
     job: Job
     result: Result | None
@@ -91,7 +91,7 @@ class Outcome:
 
 
 def run_all(plan: Sequence[Job], out: Path, jobs: int, scheduler: str | None = None) -> Iterator[Outcome]:
-    """Do the jobs, ``jobs`` at a time or through a dask scheduler; every outcome as it comes."""
+    """Yield the outcomes of all jobs as they end, ``jobs`` at a time or by the workers of a dask scheduler."""
     able = []
     for job in plan:
         why = left_out(job)
@@ -106,7 +106,7 @@ def run_all(plan: Sequence[Job], out: Path, jobs: int, scheduler: str | None = N
 
 
 def dry_run(plan: Sequence[Job], out: Path, jobs: int) -> list[str]:
-    """The runs with their times, a line each, and what is left out."""
+    """One line per run with its expected time or the reason why it is left out; nothing is run."""
     able = [job for job in plan if not left_out(job)]
     return [
         *(f"{job.place:60} {left_out(job)}" for job in plan if job not in able),
@@ -115,28 +115,26 @@ def dry_run(plan: Sequence[Job], out: Path, jobs: int) -> list[str]:
 
 
 def left_out(job: Job) -> str:
-    """Why a job cannot be done here, or nothing."""
-    try:
-        require(prepare(job.solved, job.method))
-    except (NotRun, Refusal) as error:
-        text = str(error)
-        return text if text.startswith("not run") else f"not run: {text}"
-    return ""
+    """Why a job cannot be done on this machine, or empty."""
+    text = str(_obstacle(job) or "")
+    return text if not text or text.startswith("not run") else f"not run: {text}"
 
 
 def is_missing(job: Job) -> bool:
-    """Whether this machine lacks the method of a job that it is made for."""
+    """Whether a job is possible but this machine lacks its method."""
+    return isinstance(_obstacle(job), NotRun)
+
+
+def _obstacle(job: Job) -> NotRun | Refusal | None:
     try:
         require(prepare(job.solved, job.method))
-    except NotRun:
-        return True
-    except Refusal:
-        pass
-    return False
+    except (NotRun, Refusal) as error:
+        return error
+    return None
 
 
 def outcome(job: Job, done: Done) -> Outcome:
-    """What became of a job; one that failed with a result has that, and says itself why it stopped."""
+    """The outcome of a job; a run that stopped has a result, whose status is the reason."""
     if not (done.folder / "result.json").exists():
         return Outcome(job, None, done.why, failed=True)
     try:

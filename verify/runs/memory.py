@@ -9,10 +9,10 @@ M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = (-1, 256 << 20), (-3, 32 << 20)
 
 
 def keep_freed_memory() -> None:
-    """Let freed blocks be used again instead of going back to the system.
+    """Let the allocator reuse freed blocks instead of returning them to the system.
 
-    By default glibc returns every large array when it is freed, and the next Newton iteration has the same pages
-    fetched and cleared anew: measured at five times the cost of assembling. Elsewhere than on glibc nothing is done.
+    By default glibc returns every large array when it is freed, and the next Newton iteration fetches and clears the
+    same pages again, which was measured to cost five times the assembly. Without glibc this does nothing.
     """
     try:
         mallopt = ctypes.CDLL(None).mallopt

@@ -1,4 +1,4 @@
-"""Who does the runs: threads of this process, or the workers of a dask cluster."""
+"""Executors of the runs: threads of this process, or the workers of a dask cluster."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ ANSWER_SECONDS = 10
 
 
 class Pool(Protocol):
-    """What a sweep asks for."""
+    """The interface that a sweep needs."""
 
     def slots(self) -> int:
-        """How many runs it can do at once."""
+        """Number of simultaneous runs."""
 
     def submit(self, work: Callable[..., str], *arguments: object) -> Future:
-        """Begin one."""
+        """Begin a run."""
 
     def stop(self) -> None:
-        """Drop what has not begun, and end what runs."""
+        """Drop the runs that have not begun, and end the others."""
 
 
 @dataclass(frozen=True)
 class Local:
-    """Threads that wait for processes of their own."""
+    """Threads, each of which waits for a process."""
 
     jobs: int
     executor: Executor
@@ -54,7 +54,7 @@ class Local:
 
 @dataclass(frozen=True)
 class Cluster:
-    """Workers of dask that see the same files; the runs of one that dies are done by another."""
+    """Workers of dask with access to the same files; the runs of a worker that dies are done by another."""
 
     client: Client
     executor: Executor

@@ -1,4 +1,4 @@
-"""One run into one folder."""
+"""One run, written to one folder."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ from verify.verdict import Check, of_state
 Row = Mapping[str, float]
 OnRow = Callable[[Row], None]
 
-#: Solves a scene by a method, in place of the method itself: tests have some.
+#: Replaces the method of a run; used in tests.
 Solver = Callable[..., Result]
 
-#: Whose an error is of which nothing else is known.
+#: Origin of an unexpected error.
 OURS = "the program: please report it with error.log"
 
 
 @dataclass(frozen=True)
 class Keep:
-    """What is kept of a run beside its curve: fields of a few steps, and so many frames for ParaView on the way along
-    the programme (`verify.fields.frames`)."""
+    """Output of a run beside its curve: fields of a few steps, and a number of frames for ParaView
+    (`verify.fields.frames`)."""
 
     fields: bool = False
     frames: int = 0
@@ -60,36 +60,36 @@ def run(
 ) -> tuple[Result, tuple[Check, ...]]:
     """Solve a prepared scene by its method and write its folder.
 
-    Whatever ends the run, the files are valid: rows are written as they come, and ``result.json`` says in ``status``
-    why a run stopped. An interrupt by the user is recorded and passed on; so is a disk that takes no more.
+    The files are valid however the run ends: rows are written step by step, and ``status`` in ``result.json`` is the
+    reason why a run stopped. An interrupt by the user is recorded and raised again, like the error of a full disk.
 
     Parameters
     ----------
-    folder : made where absent; an earlier run in it is replaced
+    folder : created if absent; an earlier run in it is replaced
     on_step : called after every converged step, for progress
-    solver : called with scene, name of the method and a function for every row; `verify.methods.solve.solve` on the
-        prepared scene where left out
+    solver : called with scene, name of the method and a function for every row; default: the method of the prepared
+        scene
 
     Raises
     ------
     Refusal : another run is at work in the folder.
-    OSError : the folder takes no more; what is in it is valid.
+    OSError : the disk is full; the files are valid.
     """
     keep_freed_memory()
     solving = _solving(prepared, folder, keep, solver)
-    if mpi_rank() > 0:  # the same numbers are on every rank: one of them writes
-        return _silent(solving), ()
+    if mpi_rank() > 0:  # all ranks have the same numbers; one of them writes
+        return _without_files(solving), ()
     folder.mkdir(parents=True, exist_ok=True)
     with alone_in(folder):
         return _recorded(_Run(prepared, folder, keep), on_step, solving)
 
 
 def _solving(prepared: Prepared, folder: Path, keep: Keep, solver: Solver | None) -> Callable[[OnRow | None], Result]:
-    """The solver, with what it is to keep on its way, as a function of who hears of every row."""
+    """The solver with its output of frames or moments, as a function that takes the callback for rows."""
     scene, name = prepared.scene, prepared.method.name
     plain = partial(solver, scene, name) if solver is not None else partial(solve_prepared, prepared)
     if keep.frames:
-        return partial(_filmed, plain, Frames(folder, scene, name, keep.frames, writes=mpi_rank() == 0))
+        return partial(_with_frames, plain, Frames(folder, scene, name, keep.frames, writes=mpi_rank() == 0))
     if keep.fields and name == LEAD and solver is None:
         return partial(_with_moments, plain, Moments(scene))
     return plain
@@ -104,7 +104,7 @@ class _Run:
     keep: Keep
 
     def finish(self, result: Result) -> tuple[Check, ...]:
-        """The checks of its result, which is written with them."""
+        """Compute the checks of a result, and write both."""
         checks = checks_of(self.prepared, result)
         if self.keep.fields and result.snapshots:
             write_fields(self.folder / "fields.npz", result.snapshots)
@@ -114,7 +114,7 @@ class _Run:
         return checks
 
     def stopped(self, rows: list[Row], why: str) -> Result:
-        """The result of a run that an error has ended."""
+        """The result of a run that an error ended."""
         steps = steps_from_rows(rows) if rows else {name: np.zeros(0) for name in CURVE_COLUMNS}
         return Result(self.prepared.method.name, steps, f"stopped: {why}", peak_memory_mb=peak_memory_mb())
 
@@ -133,7 +133,7 @@ def _recorded(
             on_step(row)
 
     try:
-        result = _explained(one.prepared, solving(record))
+        result = _with_warning(one.prepared, solving(record))
     except KeyboardInterrupt:
         one.finish(one.stopped(rows, "interrupted"))
         raise
@@ -154,14 +154,14 @@ def _recorded(
 
 
 def _why(error: Exception) -> str:
-    """An error in a sentence, with whose it is."""
+    """An error and its origin in a sentence."""
     if isinstance(error, Failure):
         return f"{error} (an error in {error.whose})"
     return f"{type(error).__name__}: {error} (an error in {OURS})"
 
 
-def _explained(prepared: Prepared, result: Result) -> Result:
-    """A path that stops on a mesh too coarse for its process zone says so first: no step is small enough for that."""
+def _with_warning(prepared: Prepared, result: Result) -> Result:
+    """Put the warning of a mesh too coarse for the process zone into the status of a path that stopped."""
     warning = "" if result.complete else next(iter(zone_resolution.warnings(prepared)), "")
     if not warning:
         return result
@@ -169,7 +169,7 @@ def _explained(prepared: Prepared, result: Result) -> Result:
     return replace(result, status=f"stopped: {zone}; {result.status.removeprefix('stopped: ')}")
 
 
-def _filmed(solver: Solver, frames: Frames, on_step: OnRow | None) -> Result:
+def _with_frames(solver: Solver, frames: Frames, on_step: OnRow | None) -> Result:
     result = solver(on_step, on_frame=frames)
     frames.finish()
     return result
@@ -180,7 +180,7 @@ def _with_moments(solver: Solver, moments: Moments, on_step: OnRow | None) -> Re
     return replace(result, between=moments.snapshots())
 
 
-def _silent(solving: Callable[[OnRow | None], Result]) -> Result:
+def _without_files(solving: Callable[[OnRow | None], Result]) -> Result:
     try:
         return solving(None)
     except Exception as error:
@@ -188,7 +188,7 @@ def _silent(solving: Callable[[OnRow | None], Result]) -> Result:
 
 
 def _take_down_all_ranks(why: str) -> NoReturn:
-    """End without MPI_Finalize, which would wait for ranks that wait for this one; mpirun then ends those."""
+    """End without MPI_Finalize, which would wait for ranks that wait for this one; mpirun ends them."""
     say(f"rank {mpi_rank()}: {why}")
     sys.stdout.flush()
     os._exit(1)

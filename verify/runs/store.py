@@ -1,4 +1,4 @@
-"""A folder of results by hash: whole or absent, whoever is killed; and readable names that lead to them."""
+"""A store of results by hash, each complete or absent also after a kill, and links to them by readable names."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from pathlib import Path
 
 from verify.support.refusal import Refusal
 
-#: No scene and no case can be called so.
-NAME = "_runs"
+#: Name of the store in an output folder; no scene or case can have it.
+STORE_FOLDER = "_runs"
 
 
 @dataclass(frozen=True)
 class Store:
-    """``root``/KEY holds a whole result, ``root``/KEY.failed what a run that failed has left to read."""
+    """``root``/KEY is a complete result, ``root``/KEY.failed the files of a run that failed."""
 
     root: Path
 
@@ -33,16 +33,16 @@ class Store:
         return self.root / f"{key}.failed"
 
     def set_aside(self, key: str) -> None:
-        """Keep a result that turns out to be damaged for reading, and not as a result."""
+        """Mark a damaged result as failed."""
         shutil.rmtree(self.failed(key), ignore_errors=True)
         self.folder(key).rename(self.failed(key))
 
     def begin(self, key: str) -> Path:
-        """A new folder to work in; nobody takes it for a result."""
+        """A new temporary folder for a run."""
         return Path(tempfile.mkdtemp(prefix=f".{key}.", dir=self.root))
 
     def keep(self, work: Path, key: str) -> None:
-        """Make the work in a folder the result; where another has been faster, its result stays."""
+        """Rename the temporary folder to the result; an existing result of another process stays."""
         work.chmod(0o755)
         try:
             work.rename(self.folder(key))
@@ -53,7 +53,7 @@ class Store:
         shutil.rmtree(self.failed(key), ignore_errors=True)
 
     def give_up(self, work: Path, key: str) -> None:
-        """Keep what there is for reading, and not as a result."""
+        """Rename the temporary folder of a failed run."""
         work.chmod(0o755)
         shutil.rmtree(self.failed(key), ignore_errors=True)
         work.rename(self.failed(key))
@@ -61,11 +61,11 @@ class Store:
 
 @contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
-    """Keep other runs out of a folder; the lock is on the folder itself and leaves no file.
+    """Lock a folder against other runs; the lock is on the folder itself, without a lock file.
 
     Raises
     ------
-    Refusal : another run is at work there.
+    Refusal : another run uses the folder.
     """
     place = os.open(folder, os.O_RDONLY)
     try:
@@ -73,7 +73,7 @@ def alone_in(folder: Path) -> Iterator[None]:
     except BlockingIOError:
         os.close(place)
         raise Refusal(f"--out: must be a folder that no other debond is at work in, got {str(folder)!r}") from None
-    except OSError:  # a file system without locks, as some of a network are
+    except OSError:  # some network file systems have no locks
         pass
     try:
         yield
@@ -83,17 +83,17 @@ def alone_in(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def opened(out: Path) -> Iterator[Store]:
-    """The store in an output folder, for one process at a time; what a killed one has left half done is removed.
+    """The store in an output folder, locked for this process; temporary folders of killed processes are removed.
 
     Raises
     ------
-    Refusal : another process is at work there.
+    Refusal : another process uses the folder.
     """
-    root = out / NAME
+    root = out / STORE_FOLDER
     root.mkdir(parents=True, exist_ok=True)
     with (root / ".lock").open("w") as lock:
         try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)  # given back by the system, however a process ends
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)  # the system releases the lock when the process ends
         except OSError:
             raise Refusal(f"--out: must be a folder that no other debond is at work in, got {str(out)!r}") from None
         for half in root.glob(".*.*"):
@@ -102,9 +102,9 @@ def opened(out: Path) -> Iterator[Store]:
 
 
 def link(out: Path, place: str, target: Path) -> None:
-    """Let ``out``/``place`` lead to a folder in the same ``out``: a relative link, so that ``out`` can be moved.
+    """Link ``out``/``place`` to a folder in ``out``, relatively, so that ``out`` can be moved.
 
-    A folder of that name is moved aside to NAME.earlier; where there are no links it becomes a copy.
+    An existing folder of that name is renamed to NAME.earlier. File systems without links get a copy.
     """
     name = out / place
     name.parent.mkdir(parents=True, exist_ok=True)

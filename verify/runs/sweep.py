@@ -1,8 +1,8 @@
-"""Many independent runs: each a process of its own, its result a folder named by its hash, whole or absent.
+"""Many independent runs, each in its own process; the result is a folder named by its hash, complete or absent.
 
-A crash costs one run, and a second call does only what is missing. Runs go through a `concurrent.futures.Executor`
-(see `verify.runs.pools`): threads of this process, each of which waits for a process, or the workers of a dask cluster
-that see the same files.
+A crash loses one run, and a second call does the missing runs only. The runs are submitted to an executor
+(`verify.runs.pools`): threads of this process, each of which waits for a process, or the workers of a dask cluster with
+access to the same files.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from typing import TextIO
 
 from verify.runs.folder import damage
 from verify.runs.pools import Pool
-from verify.runs.store import NAME, Store, link, opened
+from verify.runs.store import STORE_FOLDER, Store, link, opened
 from verify.support.checked_files import Damaged
 from verify.support.progress import Progress, duration
 
 PROJECT = Path(__file__).resolve().parents[2]
 
-#: Stands in a program for the folder that it is to write into.
-FOLDER = "{folder}"
+#: Placeholder for the output folder in the arguments of a program.
+OUTPUT_FOLDER = "{folder}"
 
 ALIVE_EVERY_SECONDS = 1.0
 
-#: Exit codes of a program that came to its end: all is well, or what it found is not.
+#: Exit codes of a program that ended normally: success, or a failed check.
 ENDED = (0, 1)
 
 
@@ -40,14 +40,14 @@ class Task:
 
     Parameters
     ----------
-    place : where the result is found under the output folder, and the name of the run for people
-    key : what the result rests on, as a hash (`verify.runs.fingerprint`)
-    program : module and arguments; ``FOLDER`` stands for the folder to write into
-    proof : the file that a program writes last
+    place : path of the result in the output folder, and the name of the run in messages
+    key : hash of everything that affects the result (`verify.runs.fingerprint`)
+    program : module and arguments; ``OUTPUT_FOLDER`` stands for the output folder
+    proof : the file that the program writes last
     lane : tasks of one lane, unless it is empty, run one after the other
-    seconds : about how long it takes
-    timeout : after so many seconds it is given up
-    read : reads the result in a folder; what was damaged since it was written is done again
+    seconds : expected time
+    timeout : seconds after which the run is killed
+    read : reads the result in a folder; a damaged result is computed again
     """
 
     place: str
@@ -62,23 +62,23 @@ class Task:
 
 @dataclass(frozen=True)
 class Done:
-    """What became of a task: its folder, and why it failed or nothing.
+    """The outcome of a task: its folder, and why it failed, or empty.
 
-    What a failed one has left, if anything, is in the folder as well.
+    The folder of a failed task has the files that it left.
     """
 
     task: Task
     folder: Path
     why: str = ""
-    at_hand: bool = False  # done by an earlier call
+    at_hand: bool = False  # from an earlier call
 
 
 def sweep(tasks: Sequence[Task], out: Path, pool: Pool, title: str, say: Callable[[Done], str]) -> Iterator[Done]:
-    """Do those of the tasks that ``out`` lacks; every one as it comes, those at hand first.
+    """Yield all tasks: first those whose results are in ``out``, then the others as they end.
 
     Parameters
     ----------
-    say : what to tell of a task that is done, in short
+    say : returns a short message about a task that ended
     """
     with opened(out) as store:
         damaged = {task.key: name for task in tasks if store.whole(task.key) and (name := _damage(task, store))}
@@ -119,8 +119,8 @@ def _damage(task: Task, store: Store) -> str:
 
 
 def listed(tasks: Sequence[Task], out: Path, jobs: int) -> list[str]:
-    """What a sweep would do, one line a run, and about how long it would take."""
-    store = Store(out / NAME)
+    """One line per run of a sweep, and the expected total time; nothing is run."""
+    store = Store(out / STORE_FOLDER)
     lines, missing = [], {}
     for task in tasks:
         at_hand = store.whole(task.key)
@@ -137,7 +137,7 @@ def listed(tasks: Sequence[Task], out: Path, jobs: int) -> list[str]:
 
 
 def _at_once(pool: Pool) -> int:
-    """Runs at a time, which is how many of their seconds pass in one; 0 where nobody answers."""
+    """Number of simultaneous runs; 0 where the scheduler does not answer."""
     try:
         return pool.slots()
     except OSError:
@@ -151,11 +151,10 @@ def _alive(progress: Progress, running: Sequence[Task]) -> None:
 def _done(
     tasks: Sequence[Task], store: Store, pool: Pool, alive: Callable[[Sequence[Task]], None]
 ) -> Iterator[tuple[Task, str]]:
-    """Tasks with why they failed, as they end; of those with the same key only one runs.
+    """Yield tasks as they end, with the reason if they failed; of tasks with the same key only one runs.
 
-    ``alive`` is told every second what is running.
-
-    No more than the pool can do at once are handed over, so that a lane's next task never waits behind all the others.
+    ``alive`` is called every second with the running tasks. Only as many tasks are submitted as the pool can run at
+    once, so that the next task of a lane does not wait behind all others.
     """
     waiting = list({task.key: task for task in tasks}.values())
     running: dict[Future, Task] = {}
@@ -163,7 +162,7 @@ def _done(
         while waiting or running:
             try:
                 room = pool.slots() - len(running)
-            except OSError as error:  # a scheduler that is gone; what it had begun ends by itself
+            except OSError as error:  # the scheduler does not answer; the runs that it began end by themselves
                 room, lost = 0, {task.key for task in waiting}
                 waiting.clear()
                 yield from ((task, f"failed: {error}") for task in tasks if task.key in lost)
@@ -177,13 +176,13 @@ def _done(
                 task = running.pop(future)
                 why = _why(future)
                 yield from ((twin, why) for twin in tasks if twin.key == task.key)
-    except BaseException:  # an interrupt, or a caller that wants no more
+    except BaseException:  # an interrupt, or the caller closes the generator
         pool.stop()
         raise
 
 
 def _next(waiting: Sequence[Task], running: Sequence[Task], room: int) -> list[Task]:
-    """Tasks to begin with: lanes come first, as their tasks cannot be made up for by others at the end."""
+    """Tasks to begin: those of lanes first, as they cannot run in parallel at the end."""
     busy = {task.lane for task in running}
     chosen: list[Task] = []
     for task in sorted(waiting, key=lambda task: not task.lane):
@@ -196,7 +195,7 @@ def _next(waiting: Sequence[Task], running: Sequence[Task], room: int) -> list[T
 def _submitted(task: Task, store: Store, pool: Pool) -> Future:
     try:
         return pool.submit(execute, task, store.root.absolute(), Path.cwd())
-    except Exception as error:  # a cluster that is gone
+    except Exception as error:  # the cluster does not answer
         lost: Future = Future()
         lost.set_exception(error)
         return lost
@@ -212,26 +211,26 @@ def _why(future: Future) -> str:
 
 
 def execute(task: Task, root: Path, cwd: Path, running: set[subprocess.Popen] | None = None) -> str:
-    """Do one task, wherever the files are seen; why it failed, or nothing. ``running`` knows its process meanwhile."""
+    """Do one task; returns why it failed, or empty. ``running`` contains its process meanwhile."""
     store = Store(root)
     work = store.begin(task.key)
-    words = [str(work) if word == FOLDER else word for word in task.program]
+    words = [str(work) if word == OUTPUT_FOLDER else word for word in task.program]
     with (work / "log.txt").open("w+") as log:
         code = call([sys.executable, "-P", "-m", "verify.runs.child", *words], log, cwd, task.timeout, running)
         log.seek(0)
-        said = log.read().strip().splitlines()
+        messages = log.read().strip().splitlines()
     if code in ENDED and (work / task.proof).exists() and not next(work.rglob("error.log"), None):
         store.keep(work, task.key)
         return ""
     store.give_up(work, task.key)
     why = f"signal {-code}" if code < 0 else f"exit {code}"
-    return f"failed: {said[-1]}" if said and code >= 0 else f"failed: {why}"
+    return f"failed: {messages[-1]}" if messages and code >= 0 else f"failed: {why}"
 
 
 def call(
     command: list[str], log: TextIO, cwd: Path, timeout: float, running: set[subprocess.Popen] | None = None
 ) -> int:
-    """Run a command to its end, or kill it where that takes too long; its exit code, -n after signal n."""
+    """Run a command, or kill it after the timeout; returns the exit code, -n after signal n."""
     paths = [str(PROJECT), *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)}
     running = set() if running is None else running

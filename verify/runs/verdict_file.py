@@ -1,4 +1,4 @@
-"""``verdict.json``: what a verification says, for other programs."""
+"""``verdict.json``: the result of a verification, for other programs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from verify.runs.environment import machine, threads, versions
 from verify.runs.folder import write_json
 from verify.verdict import Check, Kind, SceneReport, counted, of_state
 
-NAME = "verdict.json"
+VERDICT_FILE = "verdict.json"
 
 
 def write(out: Path, reports: Sequence[SceneReport], judgement: Judgement, included: Sequence[str] = ()) -> None:
@@ -20,13 +20,13 @@ def write(out: Path, reports: Sequence[SceneReport], judgement: Judgement, inclu
 
     Parameters
     ----------
-    included : folders of studies that the report shows; they take no part in the verdict
+    included : folders of studies that the report shows; they do not affect the verdict
     """
-    write_json(out / NAME, content(reports, judgement, included))
+    write_json(out / VERDICT_FILE, content(reports, judgement, included))
 
 
 def content(reports: Sequence[SceneReport], judgement: Judgement, included: Sequence[str] = ()) -> dict[str, Any]:
-    """What the file holds. A value that is no number, as of a run that ended without one, becomes null."""
+    """The content of the file; a NaN, as for a run that failed, becomes null."""
     checks = [check for _, check in judgement.checks]
     of_scene = {report.scene.name: report for report in reports}
     return {

@@ -29,7 +29,7 @@ STANDING, GROWING = 16.0 / 35.0, 6.0 / 35.0
 RIGID = 1.6
 
 #: Of a method that fixes no effect.
-NOTHING: Mapping[str, Any] = MappingProxyType({})
+NO_FIXED_EFFECTS: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Decision:
         return f"effects.{self.key}: {value}, as {self.why}"
 
 
-def simulated(scene: Scene, fixed: Mapping[str, Any] = NOTHING) -> dict[str, Any]:
+def simulated(scene: Scene, fixed: Mapping[str, Any] = NO_FIXED_EFFECTS) -> dict[str, Any]:
     """The effects as they are simulated: ``auto`` replaced by what it stands for, and those that a method has fixed."""
     found = {**scene.effects.model_dump(), **{one.key: one.value for one in decided(scene)}, **fixed}
     return found if searches(found) else found | {"search": False}
@@ -56,7 +56,7 @@ def searches(effects: Mapping[str, Any]) -> bool:
     return effects["search"] and effects["kinematics"] == "finite" and not effects["symmetry"]
 
 
-def decided(scene: Scene, fixed: Mapping[str, Any] = NOTHING) -> tuple[Decision, ...]:
+def decided(scene: Scene, fixed: Mapping[str, Any] = NO_FIXED_EFFECTS) -> tuple[Decision, ...]:
     """What is chosen for every effect that is ``auto``, but those that a method has fixed."""
     rules: Mapping[str, Callable[[Scene], tuple[str | bool, str]]] = {
         "kinematics": _kinematics,

@@ -14,19 +14,19 @@ from verify.scene.bodies import Isotropic, Material
 from verify.scene.schema import Scene
 
 #: Absolute value of a number that is not 0.
-LEAST, MOST = 1e-30, 1e30
+SMALLEST_NUMBER, LARGEST_NUMBER = 1e-30, 1e30
 
 #: Tables whose numbers have dimensions; the others count.
-TABLES = ("specimen", "material", "strip", "substrate", "interface", "load", "pose", "published")
+TABLES_WITH_UNITS = ("specimen", "material", "strip", "substrate", "interface", "load", "pose", "published")
 
 
 def too_large(raw: Mapping[str, Any]) -> list[str]:
     """A sentence for every number of a scene file that no set of units makes so large or small."""
     return [
-        f"{key}: must be of a size >= {LEAST:g} and <= {MOST:g}, got {_shown(value)}"
-        for table in TABLES
+        f"{key}: must be of a size >= {SMALLEST_NUMBER:g} and <= {LARGEST_NUMBER:g}, got {_shown(value)}"
+        for table in TABLES_WITH_UNITS
         for key, value in _numbers(table, raw.get(table))
-        if value != 0 and not LEAST <= abs(value) <= MOST
+        if value != 0 and not SMALLEST_NUMBER <= abs(value) <= LARGEST_NUMBER
     ]
 
 

@@ -286,10 +286,10 @@ class Scene(Section):
 
 
 #: Steps where the path does not choose them.
-STEPS = 150
+DEFAULT_STEPS = 150
 
 
 def counted_steps(scene: Scene) -> int:
     """Steps for the methods that do not choose their own."""
     steps = scene.discretization.steps
-    return STEPS if steps == "auto" else steps
+    return DEFAULT_STEPS if steps == "auto" else steps

@@ -1,4 +1,4 @@
-"""Random scenes by every method: where all checks hold the plane codes must agree, where they disagree one is named."""
+"""Random scenes by every method: plane codes must agree where all checks hold, else the odd one out must be named."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ from verify.scene.schema import Scene
 from verify.studies.one_scene import planned, scene_report
 from verify.verdict import SceneReport, counted
 
-#: What solves every scene; Lagrange meshes and LEFM are no judges at half a percent.
+#: Runs of every scene; Lagrange elements and LEFM are less accurate than half a percent.
 METHODS = ("tspline", "nurbs", MATCHED, REFERENCE, SECOND, "beam")
-#: Plane codes that solve one model: with the search of the other face, and with the pairs of points kept.
+#: Plane codes with the same model: with projection onto the other face, and with fixed pairs of points.
 SAME_MODEL = (("tspline", "nurbs"), (MATCHED, REFERENCE))
-#: Distance of two plane codes beyond which one of them is wrong.
-APART = 0.005
+#: Distance of two plane codes with one model above which one of them is wrong.
+LARGEST_DISTANCE = 0.005
 
 
 @dataclass(frozen=True)
 class Row:
-    """One scene: what it is, how far the codes are apart, how its checks came out, and what is wrong with that."""
+    """One scene: its parameters, distances of the codes, counts of its checks, and the fault of the verification."""
 
     scene: str
     slenderness: float  # a0 / h
@@ -54,11 +54,11 @@ class Row:
 
 
 def campaign(seeds: Sequence[int], out: Path, jobs: int, scheduler: str | None = None) -> bool:
-    """Run the scenes of the seeds, write ``out``/random.csv, print a table; whether no row has a fault.
+    """Run the scenes of the seeds, write ``out``/random.csv, print a table. Returns whether no row has a fault.
 
-    A fault is *silent* where all checks hold and two plane codes differ by more than `APART` or were not compared,
-    *unnamed* where a check is broken and no run is named as the odd one out, *stopped* where a run did not come to the
-    end of its programme.
+    A fault is *silent* where all checks hold and two plane codes differ by more than `LARGEST_DISTANCE` or were not
+    compared, *unnamed* where a check is broken and no run is named as the odd one out, *stopped* where a run did not
+    come to the end of its programme.
     """
     plan = {seed: list(_jobs(seed)) for seed in seeds}
     outcomes = {
@@ -73,12 +73,12 @@ def campaign(seeds: Sequence[int], out: Path, jobs: int, scheduler: str | None =
 
 
 def would_run(seeds: Sequence[int], out: Path, jobs: int) -> list[str]:
-    """The runs with their times, a line each."""
+    """One line per run with its expected time; nothing is run."""
     return dry_run([job for seed in seeds for job in _jobs(seed)], out, jobs)
 
 
 def row(report: SceneReport) -> Row:
-    """One scene that has been verified."""
+    """The row of a verified scene."""
     scene, counts = report.scene, counted(report.checks)
     results = {run.name: run.result for run in report.runs if run.result is not None and run.result.load.size > 1}
     end = max(scene.load.opening)
@@ -86,7 +86,7 @@ def row(report: SceneReport) -> Row:
     apart = float(np.max([_between(results, pair, end) for pair in pairs])) if pairs else nan  # NaN stays NaN
     odd = next((remark for remark in report.remarks if remark.startswith(ODD)), "")
     stopped = [run.name for run in report.runs if run.name != SECOND and not (run.result and run.result.complete)]
-    silent = counts.held == counts.total and not apart <= APART
+    silent = counts.held == counts.total and not apart <= LARGEST_DISTANCE
     fault = "stopped" if stopped else "silent" if silent else "unnamed" if counts.broken and not odd else ""
     zone = 1.0 / (1.0 / slender_length(scene) + 1.0 / bulk_length(scene))
     return Row(
@@ -109,7 +109,7 @@ def row(report: SceneReport) -> Row:
 
 
 def table(rows: Iterable[Row]) -> list[str]:
-    """One line a scene."""
+    """One line per scene."""
     head = f"{'scene':12}{'a0/h':>6}{'zone/h':>8} material  {'model':15}{'apart':>8}{'beam':>8}  checks"
     return [head, *(_line(one) for one in rows)]
 
@@ -117,10 +117,10 @@ def table(rows: Iterable[Row]) -> list[str]:
 def _line(one: Row) -> str:
     kind = "ortho" if one.orthotropic else "iso"
     judged = f"{one.checks - one.broken - one.unresolved}/{one.checks}"
-    said = "; ".join(filter(None, (one.fault, one.names, one.odd)))
+    notes = "; ".join(filter(None, (one.fault, one.names, one.odd)))
     return (
         f"{one.scene:12}{one.slenderness:6.1f}{one.zone:8.2f} {kind:9} {one.plane + ' ' + one.kinematics:15}"
-        f"{one.apart:8.2%}{one.beam:8.2%}  {judged} {said}"
+        f"{one.apart:8.2%}{one.beam:8.2%}  {judged} {notes}"
     )
 
 
@@ -134,7 +134,7 @@ def _report(plan: Sequence[Job], outcomes: dict[Job, Outcome], out: Path) -> Sce
 
 
 def _models(scene: Scene) -> Sequence[Sequence[str]]:
-    """Groups of runs that solve one model; linear kinematics knows no search."""
+    """Groups of runs with the same model; with linear kinematics nothing is projected and all have the same."""
     return SAME_MODEL if scene.effects.kinematics == "finite" else (("tspline", "nurbs", REFERENCE),)
 
 

@@ -1,4 +1,4 @@
-"""Studies that other commands have left in folders, for the report of a verification to show."""
+"""Studies that other commands have written, found in folders and read for the report of a verification."""
 
 from __future__ import annotations
 
@@ -9,29 +9,45 @@ from pathlib import Path
 from typing import Any
 
 from verify.runs.fingerprint import source
-from verify.support.checked_files import Damaged, Shape, read_json
+from verify.support.checked_files import ANY, NUMBER, Damaged, Shape, read_json, read_table
 from verify.support.refusal import Refusal
 from verify.support.say import say
 
-#: What a folder holds that a command has written; the hard cases leave a verdict a case and basis.
-MARKS: Mapping[str, tuple[str, ...]] = {
+#: Files by which a study is recognised, by command; the hard cases have a verdict for each case and basis.
+STUDY_FILES: Mapping[str, tuple[str, ...]] = {
     "cost": ("cost.json", "cost.csv"),
     "effects": ("effects.json", "effects.csv"),
     "scaling": ("scaling.json", "scaling.csv"),
     "hard": ("*/*/verdict.json",),
 }
 
-#: What is read of the JSON file of every study, beside ``ABOUT`` of its rows.
-_HEAD: Shape = {"scene": {"name": str}, "left_out": [str], "source?": str}
+#: Layout of the entries that are read of the JSON file of any study, and of those of a command alone.
+_SUMMARY: Shape = {"scene": {"name": str}, "left_out": [str], "source?": str}
+_OWN_SUMMARY: Mapping[str, Shape] = {
+    "cost": {
+        "reference": {
+            **{"label": str, "dofs": int, "uncertainty": {"curve": NUMBER}},
+            **{"other_code": str, "other_code_apart": NUMBER},
+        }
+    },
+    "effects": {},
+    "scaling": {
+        "growth": {ANY: {ANY: {"exponent": NUMBER, "standard_error": NUMBER, "factor": NUMBER}}},
+        "strong_scaling": [
+            {"dofs": int, "ranks": int, "speed_up": {ANY: NUMBER}, "serial": {ANY: NUMBER}, "efficiency": NUMBER}
+        ],
+        "sentences": [str],
+    },
+}
 
 
 @dataclass(frozen=True)
 class Included:
-    """A folder with a study, as it was read.
+    """A study that was read from its folder.
 
-    command : what made it, a key of `MARKS`
-    about : what the study says of itself; nothing where it does not
-    rows : its lines, of the ``Row`` of the command; of the hard cases their verdicts
+    command : the command that wrote it, a key of `STUDY_FILES`
+    about : content of its JSON file; empty for the hard cases
+    rows : the ``Row`` objects of its table; for the hard cases their verdicts
     """
 
     command: str
@@ -46,7 +62,7 @@ class Included:
 
 
 def found_in(out: Path) -> list[Included]:
-    """The studies in folders directly under ``out``; of one that is damaged there is a word and no more."""
+    """The studies in folders directly under ``out``; a damaged one is left out with a message."""
     studies = []
     for folder in sorted(path for path in out.glob("*") if path.is_dir() and not path.is_symlink()):
         for command in _commands(folder):
@@ -58,16 +74,16 @@ def found_in(out: Path) -> list[Included]:
 
 
 def named(folders: Iterable[Path]) -> list[Included]:
-    """The studies in some folders.
+    """The studies in the given folders.
 
     Raises
     ------
-    Refusal : one of them holds none, or one that is damaged.
+    Refusal : a folder holds no study, or a damaged one.
     """
     found = []
     for folder in folders:
         if not (commands := _commands(folder)):
-            *first, last = MARKS
+            *first, last = STUDY_FILES
             what = f"must be a folder that debond {', '.join(first)} or {last} has written, with all of its files"
             raise Refusal(f"--include: {what}, got {str(folder)!r}")
         try:
@@ -78,15 +94,15 @@ def named(folders: Iterable[Path]) -> list[Included]:
 
 
 def _commands(folder: Path) -> list[str]:
-    return [name for name, marks in MARKS.items() if all(next(folder.glob(m), None) for m in marks)]
+    return [name for name, marks in STUDY_FILES.items() if all(next(folder.glob(m), None) for m in marks)]
 
 
 def _study(command: str, folder: Path) -> Included:
     if command == "hard":
         return Included(command, folder, {}, tuple(_verdicts(folder)))
-    of_rows = import_module(f"verify.studies.{command}.row")
-    about = read_json(folder / f"{command}.json", {**_HEAD, **of_rows.ABOUT})
-    return Included(command, folder, about, tuple(of_rows.read_csv(folder / f"{command}.csv")))
+    row = import_module(f"verify.studies.{command}.row").Row
+    about = read_json(folder / f"{command}.json", {**_SUMMARY, **_OWN_SUMMARY[command]})
+    return Included(command, folder, about, tuple(read_table(folder / f"{command}.csv", row)))
 
 
 def _verdicts(folder: Path) -> Iterator[Any]:

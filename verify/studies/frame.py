@@ -1,7 +1,7 @@
-"""What the studies of one scene have in common: their runs, rows, and files.
+"""Common parts of the studies of one scene: runs, rows and files.
 
-A study plans its jobs, does them (`run`), makes a row of every run and its repetitions, and writes its `Study`. Runs
-that an earlier call has done are taken from its folder (`verify.runs.sweep`); `would_run` lists the others.
+A study plans its jobs, runs them (`run`), makes a row of each run and its repetitions, and writes its `Study`. Runs of
+an earlier call are read from its folder (`verify.runs.sweep`); `would_run` lists the missing ones.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from verify.support.say import write_page
 
 J = TypeVar("J", bound=Job)
 
-#: Equal runs whose times differ by more than this factor were made on a busy machine.
+#: Ratio of the times of equal runs above which the machine counts as busy.
 BUSY = 1.2
 
 
 @dataclass(frozen=True)
 class Study:
-    """What was found about a scene: ``rows``, and a sentence for everything that is ``left_out``."""
+    """Results for a scene: ``rows``, and a sentence for everything that is ``left_out``."""
 
-    #: Of the command and its files, the type of its rows, and the packages whose source the rows depend on.
+    #: Name of the command and its files, type of the rows, and packages whose source the rows depend on.
     NAME: ClassVar[str]
     ROW: ClassVar[type]
     PACKAGES: ClassVar[tuple[str, ...]] = ALL_PACKAGES
@@ -40,11 +40,11 @@ class Study:
     left_out: tuple[str, ...]
 
     def about(self) -> dict[str, object]:
-        """Entries of ``NAME.json`` beside those of all studies."""
+        """Entries of ``NAME.json`` that only this study has."""
         raise NotImplementedError
 
     def lines(self) -> list[str]:
-        """What is printed."""
+        """The printed lines."""
         raise NotImplementedError
 
     def summary(self) -> dict[str, object]:
@@ -69,33 +69,33 @@ class Study:
 
 
 def one_thread() -> None:
-    """BLAS and OpenMP on one thread, for comparable times."""
+    """Restrict BLAS and OpenMP to one thread, for comparable times."""
     os.environ.update(dict.fromkeys(THREADS, "1"))
 
 
 def run(plan: Sequence[J], out: Path, jobs: int = 1, scheduler: str | None = None) -> dict[J, Outcome]:
-    """Do all jobs, ``jobs`` at a time or by those of a dask ``scheduler``."""
+    """Run all jobs, ``jobs`` at a time or by the workers of a dask ``scheduler``."""
     return {cast(J, outcome.job): outcome for outcome in run_all(plan, out, jobs, scheduler)}
 
 
 def would_run(plan: Sequence[Job], left_out: Iterable[str], out: Path, jobs: int = 1) -> list[str]:
-    """The runs with their times, a line each, and what is left out; nothing is run."""
+    """One line per run with its expected time, and the sentences ``left_out``; nothing is run."""
     return [*dry_run(plan, out, jobs), *left_out]
 
 
 def repeated(jobs: Iterable[J], repeats: Iterable[int]) -> list[J]:
-    """All jobs one after the other, and then again, so that whatever slows the machine down falls upon all."""
+    """Repetitions of all jobs in turn, so that other load on the machine affects all jobs alike."""
     every = list(jobs)
     return [replace(job, repeat=n, variant=f"{job.variant}-again-{n}") if n else job for n in repeats for job in every]
 
 
 def failure(outcome: Outcome) -> str:
-    """Why a run did not come to its end, or nothing."""
+    """Why a run is not complete; empty if it is."""
     if outcome.result is None:
         return outcome.left_out
     return "" if outcome.result.complete else outcome.result.status
 
 
 def unmeasured(kind: type, known: dict[str, Any]) -> Any:
-    """A row of which some fields are known: numbers are NaN, counts are 0."""
+    """A row with the ``known`` fields; the other numbers are NaN, the other counts 0."""
     return kind(**{field.name: nan if field.type == "float" else 0 for field in fields(kind)} | known)

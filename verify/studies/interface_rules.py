@@ -1,8 +1,8 @@
 """Traction oscillation against the interface rule, its number of points and the initial stiffness.
 
-A stiff cohesive law couples the openings of neighbouring points through the functions that they share, and the traction
+A stiff cohesive law couples the openings of neighbouring points through their common shape functions, and the traction
 ahead of the crack alternates. For Lagrange elements Lobatto points at the nodes help (Schellekens and de Borst 1993);
-for splines they do not, and lumping at the control points does (Vignollet, May, de Borst 2015).
+for splines they do not, but lumping at the control points does (Vignollet, May, de Borst 2015).
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from verify.scene.schema import Scene
 METHODS = ("nurbs", "lagrange")
 RULES = (("gauss", 2), ("gauss", 4), ("gauss", 8), ("lobatto", 2), ("lobatto", 4), ("lobatto", 8), ("lumped", None))
 
-#: g_u / g_max: from the scene's own to an interface that is stiffer than the arm is across (E / h).
+#: g_u / g_max: from that of the scene to an interface that is stiffer than the arm through its thickness, E / h.
 DUCTILITIES = (12.5, 50.0, 500.0, 50_000.0)
 
-#: One arm, bonded just as far as the crack path goes, so that all elements along it are alike; about 260 unknowns for
-#: the whole, opened to just past the peak in a few steps.
+#: One arm whose bond is no longer than the crack path, so that all elements along it are equal; about 260 unknowns,
+#: opened to just past the peak in a few steps.
 SMALL = (
     "effects.symmetry=true",
     "effects.kinematics='linear'",
@@ -37,7 +37,7 @@ SMALL = (
 
 @dataclass(frozen=True)
 class Trial:
-    """One run: RMS of the oscillation over its snapshots, and one of them to draw."""
+    """One run: RMS of the oscillation over its snapshots, and the snapshot to draw."""
 
     method: str
     rule: str
@@ -89,7 +89,7 @@ def excess_variation(snapshot: Snapshot, strength: float) -> float:
 
 
 def finding(found: Study) -> str:
-    """What the study says about the stiffest interface, in one sentence, in parts of the strength."""
+    """The result for the stiffest interface in one sentence: oscillations over the strength."""
     ductility, words = max(trial.ductility for trial in found.trials), []
     for method, name in (("nurbs", "NURBS"), ("lagrange", "Lagrange elements")):
         gauss, lobatto, lumped = (
@@ -101,7 +101,7 @@ def finding(found: Study) -> str:
     return f"Traction oscillation relative to the strength at ductility {ductility:g}: {'; '.join(words)}"
 
 
-#: Which snapshot is drawn: at half of the opening the peak traction has just left the precrack.
+#: Index of the snapshot that is drawn: at half of the opening the peak traction has just left the precrack.
 _SHOWN = 2
 
 
@@ -111,14 +111,14 @@ def _trial(method: str, rule: str, points: int | None, ductility: float, exact: 
     scene = _scene(ductility, *keys)
     try:
         result = solve(scene, method)
-    except Exception as error:  # one rule that fails is a finding, and no reason to lose the others
+    except Exception as error:  # a rule that fails is a result, and the other runs go on
         return Trial(method, rule, points, ductility, float("nan"), None, f"failed: {type(error).__name__}: {error}")
     profile = result.snapshots[_SHOWN] if len(result.snapshots) > _SHOWN else None
     return Trial(method, rule, points, ductility, _oscillation(scene, result, exact), profile, result.status)
 
 
 def _oscillation(scene: Scene, result: Result, exact: Sequence[Snapshot]) -> float:
-    """RMS over the snapshots of the variation beyond that of the beam, which has small waves of its own."""
+    """RMS over the snapshots of the excess variation beyond that of the beam's traction, which oscillates a little."""
     if not result.snapshots:
         return float("nan")
     strength = scene.interface.strength
@@ -130,7 +130,7 @@ def _oscillation(scene: Scene, result: Result, exact: Sequence[Snapshot]) -> flo
 
 
 def _scene(ductility: float, *keys: str) -> Scene:
-    """Contact as stiff as the interface, so that nothing changes where the gap closes."""
+    """The scene with the contact penalty equal to the initial stiffness of the law."""
     plain = load_scene("dcb-czm1", [*SMALL, f"interface.ductility={ductility}"])
     g_max = 2.0 * plain.interface.toughness / plain.interface.strength / ductility
     penalty = f"interface.penalty={plain.interface.strength / g_max}"

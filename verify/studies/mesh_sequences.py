@@ -1,6 +1,6 @@
-"""Sequences of meshes among the runs of a scene: what changes from mesh to mesh, and what that says of the limit.
+"""Sequences of meshes among the runs of a scene: convergence of quantities, extrapolated limits, estimated errors.
 
-No check: it estimates an error, and nothing exact stands behind it.
+These are no checks: the errors are estimates without an exact value.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.verdict import Run, SceneReport
 
-#: What is followed from mesh to mesh.
+#: Quantities whose convergence is assessed.
 QUANTITIES: Mapping[str, Callable[[Result], float]] = {
     "peak load": peak_load,
     "dissipated energy at the end": dissipated,
     "work at the end": work,
 }
 
-#: Fewer meshes say nothing of an order.
+#: Smallest number of meshes with an observed order.
 FEWEST = 3
 
 
@@ -29,8 +29,8 @@ FEWEST = 3
 class Sequence:
     """One quantity on the meshes of one method, finest first.
 
-    value : of each of ``runs``
-    found : order, limit, grid convergence index and whether they can be trusted
+    value : value of each run of ``runs``
+    found : order, limit, grid convergence index, and whether the meshes are in the asymptotic range
     """
 
     method: str
@@ -41,13 +41,13 @@ class Sequence:
 
     @property
     def steps(self) -> tuple[float | None, ...]:
-        """How far the value is from that on the next coarser mesh, relative; None on the coarsest."""
+        """Relative change from the next coarser mesh; None on the coarsest."""
         pairs = zip(self.value, self.value[1:], strict=False)
         return (*((a - b) / abs(b) if b else None for a, b in pairs), None)
 
 
 def sequences(report: SceneReport) -> tuple[Sequence, ...]:
-    """Every quantity of every method with three complete runs or more that differ in their meshes alone."""
+    """Every quantity of every method with at least three complete runs that differ only in their meshes."""
     return tuple(
         _sequence(method, quantity, runs)
         for method in dict.fromkeys(run.method for run in report.runs)
@@ -64,12 +64,12 @@ def _sequence(method: str, quantity: str, runs: tuple[Run, ...]) -> Sequence:
 
 
 def _results(runs: tuple[Run, ...]) -> list[Result]:
-    """Of runs that all have one."""
+    """Results of runs that all have one."""
     return [run.result for run in runs if run.result is not None]
 
 
 def _meshes(report: SceneReport, method: str) -> tuple[Run, ...]:
-    """Complete runs of a method, of one degree and at rest, finest first, one for each number of elements."""
+    """Complete runs of a method with one degree and fixed meshes, finest first, one for each number of elements."""
     ours = [(run, run.result) for run in report.runs if run.method == method and run.result is not None]
     whole = [(run, result.elements, _kind(run)) for run, result in ours if result.complete]
     of_elements = {elements: run for run, elements, kind in whole if kind == whole[0][2]}
@@ -77,7 +77,7 @@ def _meshes(report: SceneReport, method: str) -> tuple[Run, ...]:
 
 
 def _kind(run: Run) -> tuple[int, bool]:
-    """Degree, and whether the mesh moves."""
+    """Degree, and whether the mesh is adaptive."""
     if run.scene is None:
         return 0, False
     mesh = run.scene.discretization

@@ -23,12 +23,12 @@ from verify.studies.mesh_sequences import sequences
 from verify.studies.paper.plan import cubic
 from verify.verdict import Check, Run, SceneReport
 
-#: T-splines that follow the process zone, with at most a third of the unknowns that the meshes at rest have.
+#: Overrides for T-splines whose mesh follows the process zone, with at most a third of the unknowns of fixed meshes.
 ADAPTIVE = ("discretization.adaptive=true", "discretization.dofs=700")
 
 
 def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
-    """The runs of one scene; those that do not take its mesh files make meshes of their own."""
+    """The runs of one scene; methods that cannot read its mesh files use generated meshes."""
     own = (given_meshes.OWN,) if scene.specimen.mesh else ()
     for method in known_methods():
         yield Job(source, scene, method, method, () if find(method).takes_files else own)
@@ -52,7 +52,7 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     checks: list[Check] = []
     for outcome in outcomes:
         if outcome.result is not None:
-            on = _with_its_mesh(scene, outcome.job)
+            on = given_meshes.own_mesh(scene) if given_meshes.OWN in outcome.job.overrides else scene
             checks += [c for c in run_checks(on, outcome.result, outcome.job.variant) if outcome.job.meant_for(c)]
         elif outcome.failed:
             meaning = "The run ended with a result."
@@ -61,18 +61,18 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     on_their_own = [o.job.variant for o in outcomes if o.job.variant in results and given_meshes.OWN in o.job.overrides]
     given, own = ({k: r for k, r in results.items() if (k in on_their_own) == other} for other in (False, True))
     left_out = (*neglected.remarks(scene, given), *neglected.remarks(given_meshes.own_mesh(scene), own))
-    said = (*remarks(scene, results), *given_meshes.remarks(on_their_own), *left_out, *load_introduction.remarks(scene))
+    noted = (
+        *remarks(scene, results),
+        *given_meshes.remarks(on_their_own),
+        *left_out,
+        *load_introduction.remarks(scene),
+    )
     checks += cross_checks(scene, results)
-    return SceneReport(scene, runs, tuple(checks), (*said, *odd_one_out(scene, checks, results)))
-
-
-def _with_its_mesh(scene: Scene, job: Job) -> Scene:
-    """The scene as far as its mesh files are concerned: without them where the job is."""
-    return given_meshes.own_mesh(scene) if given_meshes.OWN in job.overrides else scene
+    return SceneReport(scene, runs, tuple(checks), (*noted, *odd_one_out(scene, checks, results)))
 
 
 def convergence(reports: Sequence[SceneReport]) -> list[str]:
-    """Observed order and grid convergence index of the peak load, where there are three meshes or more."""
+    """Observed order and grid convergence index of the peak load, for methods with at least three meshes."""
     return [
         f"{report.scene.name}: {one.quantity} of {len(one.runs)} {find(one.method).label} meshes: order "
         f"{one.found.order:.2f}, limit {one.found.limit:.6g}, GCI {one.found.gci:.2%}; {one.found.verdict}"

@@ -1,1 +1,1 @@
-"""Messages, progress, refusals, timing, checked files."""
+"""Messages, progress, refusals, timing, files with a checked layout."""

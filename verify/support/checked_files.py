@@ -1,4 +1,4 @@
-"""Files of plain values that this toolkit has written and reads again: whether they still are what was written."""
+"""JSON and CSV files of this toolkit, checked against a layout when they are read."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from typing import Any
 
 from verify.support.refusal import Refusal
 
-#: Stands for every key of a mapping whose keys are names of their own; a key that ends in ? may be absent.
+#: Matches every key of a mapping whose keys are free; a key with a trailing ? is optional.
 ANY = "*"
 
-#: A number, or null where it is none, as NaN is written.
+#: A number or null, which stands for NaN.
 NUMBER = (float, type(None))
 
-#: What a value must be: a type (``float`` is finite), a tuple of types, ``{key: shape}``, or ``[shape]`` of all items.
+#: Layout of a value: a type (``float`` means finite), a tuple of types, ``{key: layout}``, or ``[layout]`` for items.
 Shape = Any
 
 _WORDS = {
@@ -30,7 +30,7 @@ _WORDS = {
     dict: "a table",
 }
 
-#: By the types of the fields of a dataclass.
+#: Layout of a field of a dataclass, by its annotation.
 _OF_FIELDS: Mapping[str, Shape] = {"float": NUMBER, "int": int, "str": str, "bool": bool, "Kind": str}
 
 
@@ -43,7 +43,7 @@ _FROM_TEXT: Mapping[str, Callable[[str], Any]] = {
 
 
 class Damaged(Refusal):
-    """A file that is not as it was written; ``path`` is the file."""
+    """A file without the expected layout; ``path`` is the file."""
 
     def __init__(self, path: Path, why: object) -> None:
         self.path = path
@@ -56,7 +56,7 @@ def read_json(path: Path, shape: Shape) -> dict[str, Any]:
 
     Raises
     ------
-    Damaged : it cannot be read, is no JSON, or of another shape.
+    Damaged : the file cannot be read, is no JSON, or has another layout.
     """
     try:
         content = json.loads(path.read_bytes())
@@ -68,11 +68,11 @@ def read_json(path: Path, shape: Shape) -> dict[str, Any]:
 
 
 def read_table(path: Path, kind: type) -> list[Any]:
-    """Rows of a CSV file as a dataclass, which named its columns.
+    """Rows of a CSV file as objects of a dataclass, whose fields are the columns.
 
     Raises
     ------
-    Damaged : it cannot be read, has other columns, or a cell that is not of its field's type.
+    Damaged : the file cannot be read, has other columns, or a cell of another type.
     """
     types = {field.name: _FROM_TEXT[str(field.type)] for field in fields(kind)}
     try:
@@ -86,12 +86,12 @@ def read_table(path: Path, kind: type) -> list[Any]:
 
 
 def shape_of(kind: type) -> Shape:
-    """That of a dataclass of plain fields."""
+    """Layout of a dataclass with fields of plain types."""
     return {field.name: _OF_FIELDS[str(field.type)] for field in fields(kind)}
 
 
 def wrong(value: Any, shape: Shape, place: str = "") -> str:
-    """Where and how a value differs from its shape, at the first such place; nothing where it does not."""
+    """The first difference of a value from its layout, in words; empty if there is none."""
     if isinstance(shape, Mapping):
         if not isinstance(value, dict):
             return _not(value, (dict,), place)
@@ -112,7 +112,7 @@ def wrong(value: Any, shape: Shape, place: str = "") -> str:
 
 
 def number(value: float | None) -> float:
-    """What a file holds for a number: null is NaN."""
+    """A number of a file: null becomes NaN."""
     return math.nan if value is None else value
 
 

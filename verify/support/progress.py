@@ -13,13 +13,13 @@ LINES_EVERY_SECONDS = 10.0
 
 
 class Progress:
-    """Counts up to ``total``; ``advance`` to where the work is now.
+    """Progress of work up to ``total``, set by ``advance``.
 
-    On a terminal with tqdm a bar, otherwise a line when there is news after ten seconds; both with the time left.
+    A bar on a terminal with tqdm, otherwise a line at most every ten seconds; both with the remaining time.
 
     Parameters
     ----------
-    pace : how much of ``total`` is done in a second, as far as that is known before; 0 where it is not
+    pace : expected progress per second; 0 if unknown
     """
 
     def __init__(self, title: str, total: float, quiet: bool = False, pace: float = 0.0) -> None:
@@ -36,7 +36,7 @@ class Progress:
             self._bar.close()
 
     def advance(self, done: float, news: str = "") -> None:
-        """``done`` of ``total``; ``news`` is shown beside the bar."""
+        """Set the progress to ``done``; ``news`` is shown beside the bar."""
         step, self._done, self._reached = done - self._done, done, monotonic()
         if self._bar is not None:
             self._bar.set_postfix_str(news, refresh=False)
@@ -45,14 +45,14 @@ class Progress:
             self.line(f"{self._title}: {done / self._total:4.0%}{self.left} {news}")
 
     def alive(self, news: str) -> None:
-        """Show that the work goes on, though nothing more of it is done."""
+        """Show that the work goes on without progress."""
         if self._bar is not None:
             self._bar.set_postfix_str(f"{news}{self.left}")
         elif not self._quiet and monotonic() - self._said > LINES_EVERY_SECONDS:
             self.line(f"{self._title}: {news}{self.left}")
 
     def line(self, text: str) -> None:
-        """A whole line, above the bar where there is one."""
+        """Print a line, above the bar if there is one."""
         self._said = monotonic()
         if self._bar is not None:
             self._bar.write(text, file=sys.stderr)
@@ -61,12 +61,12 @@ class Progress:
 
     @property
     def left(self) -> str:
-        """The time that the rest takes at the rate so far: ", 3 min 20 s left", or nothing where none can be told.
+        """Remaining time at the mean rate so far, as ", 3 min 20 s left"; empty if unknown.
 
-        The rate is that up to where the work is known to be; since then it has gone on.
+        The rate is that up to the last call of `advance`; the time since then is subtracted.
         """
         since, spent = monotonic() - self._reached, self._reached - self._start
-        if 0.0 < self._done < self._total * (1.0 - 1e-9):  # more than rounding, where times are added up
+        if 0.0 < self._done < self._total * (1.0 - 1e-9):  # up to rounding of added times
             about, left = "", spent * (self._total / self._done - 1.0) - since
         else:
             about, left = "about ", self._total / self._pace - since if self._pace and not self._done else 0.0
@@ -75,7 +75,7 @@ class Progress:
 
 @contextmanager
 def telling(title: str, seconds: float) -> Iterator[None]:
-    """Progress of work that does not say how far it is and takes about so many seconds."""
+    """Progress of work without intermediate results that takes about ``seconds``."""
     over = Event()
 
     def tick(progress: Progress) -> None:
@@ -93,7 +93,7 @@ def telling(title: str, seconds: float) -> Iterator[None]:
 
 
 def duration(seconds: float) -> str:
-    """A time in two units at most: 8.2 s, 3 min 20 s, 2 h 5 min."""
+    """A time in at most two units: 8.2 s, 3 min 20 s, 2 h 5 min."""
     if seconds < 99.5:
         return f"{seconds:.2g} s" if seconds < 9.95 else f"{seconds:.0f} s"
     minutes, rest = divmod(round(seconds), 60)

@@ -1,7 +1,7 @@
-"""Bad input, whoever finds it."""
+"""The error for invalid input."""
 
 from __future__ import annotations
 
 
 class Refusal(ValueError):
-    """What the user gave cannot be used; the message is for the user, with key, range and value."""
+    """Invalid input; the message is for the user, with key, allowed range and value."""

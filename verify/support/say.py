@@ -1,4 +1,4 @@
-"""What is said beside the output: on stderr, at once."""
+"""Messages on stderr, beside the output."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from importlib import import_module
 
 from verify.support.progress import telling
 
-#: About how long a page with its figures takes.
+#: Expected time of a page with its figures.
 PAGE_SECONDS = 5.0
 
 
@@ -16,7 +16,7 @@ def say(text: str) -> None:
 
 
 def write_page(module: str, *what: object) -> bool:
-    """Call ``write`` of a module; False where a package that pages need is missing: the numbers stand without."""
+    """Call ``write`` of a module; False if a package for pages is missing, which is reported and no error."""
     try:
         write = import_module(module).write
     except ModuleNotFoundError as error:

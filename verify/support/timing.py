@@ -1,4 +1,4 @@
-"""Where the time of a run goes, and how much memory it took."""
+"""Time of a run by phase, and its peak memory."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from time import perf_counter
 #: Phases in the order of a run.
 PHASES = ("mesh", "basis", "assembly", "factor", "solve")
 
-#: What DOLFINx compiles at run time, or reads where it was compiled before. It is part of "basis", and told apart too:
-#: it is paid once a machine.
+#: Compilation of DOLFINx forms at run time, or reading of compiled ones. It is a part of "basis" and also reported
+#: separately, as it is needed once per machine.
 COMPILE = "compile"
 
 
 class Stopwatch:
-    """Seconds by phase. A phase inside another takes its time away from the outer one, so that nothing counts twice."""
+    """Seconds by phase. The time of a nested phase does not count for the outer one."""
 
     def __init__(self) -> None:
         self._start = self._mark = perf_counter()
@@ -28,7 +28,7 @@ class Stopwatch:
 
     @contextmanager
     def phase(self, name: str) -> Iterator[None]:
-        """Time the body as ``name``; what is none of ``PHASES`` and not ``COMPILE`` counts as "other"."""
+        """Time the body as ``name``; names other than ``PHASES`` and ``COMPILE`` count as "other"."""
         self._book()
         self._open.append(name)
         try:
@@ -38,7 +38,7 @@ class Stopwatch:
             self._open.pop()
 
     def seconds(self) -> dict[str, float]:
-        """Seconds of every phase so far, of everything else ("other"), and their sum ("total")."""
+        """Seconds of every phase so far, of the rest ("other"), and their sum ("total")."""
         self._book()
         total, named = self._mark - self._start, {name: self._seconds[name] for name in PHASES}
         named["basis"] += self.compile
@@ -46,7 +46,7 @@ class Stopwatch:
 
     @property
     def compile(self) -> float:
-        """Seconds of the phase ``COMPILE`` so far, which "basis" has in it."""
+        """Seconds of the phase ``COMPILE`` so far, which "basis" includes."""
         return self._seconds[COMPILE]
 
     def _book(self) -> None:
@@ -59,7 +59,7 @@ class Stopwatch:
 def peak_memory_mb() -> float:
     """Largest resident size of this process so far, in megabytes (1e6 bytes).
 
-    On Linux getrusage(2) counts in what the process that started this one had then, however much; proc(5) does not.
+    On Linux getrusage(2) includes the memory that the parent process had at the fork; proc(5) does not.
     """
     try:
         status = Path("/proc/self/status").read_text()

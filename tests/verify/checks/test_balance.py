@@ -52,7 +52,9 @@ def test_long_elements_and_slender_arms_raise_no_alarm_and_ten_times_as_much_is_
     found = balances(scene, result)
     assert {check.state for check in found.values()} == {"holds"} and set(found) == set(BALANCES)
     if method != "nurbs":
-        assert max(check.value for check in found.values()) > balance.LEAST, "what one tolerance for all would fail"
+        assert max(check.value for check in found.values()) > balance.RESIDUAL.least, (
+            "what one tolerance for all would fail"
+        )
     peak = abs(result.load).max()
     for check, column in BALANCES.items():
         lever = scene.specimen.free_length if check == "moment-balance" else 1.0
@@ -66,10 +68,10 @@ def test_what_is_allowed_follows_from_the_scene() -> None:
     scene, thin = load_scene("dcb-czm1"), load_scene("dcb-czm1", ["specimen.arm_thickness=0.02"])
     result = replace(solve(scene, "beam"), method="nurbs", dofs=1952, elements=238)
     (force, moment), (of_thin, moment_of_thin) = tolerances(scene, result), tolerances(thin, result)
-    assert force == balance.LEAST < moment < 5.0 * balance.LEAST
-    assert balance.LEAST < of_thin < moment_of_thin <= balance.MOST
+    assert force == balance.RESIDUAL.least < moment < 5.0 * balance.RESIDUAL.least
+    assert balance.RESIDUAL.least < of_thin < moment_of_thin <= balance.RESIDUAL.most
     for method in ("beam", "mycode"):
-        assert tolerances(thin, replace(result, method=method)) == (balance.LEAST, balance.LEAST)
+        assert tolerances(thin, replace(result, method=method)) == (balance.RESIDUAL.least, balance.RESIDUAL.least)
 
 
 def tolerances(scene: Scene, result: Result) -> tuple[float, float]:

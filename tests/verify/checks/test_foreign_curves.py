@@ -17,7 +17,7 @@ from verify.curves.read import Reading, read_curve
 from verify.methods.names import METHODS
 from verify.methods.solve import solve
 from verify.result import Result
-from verify.runs.store import NAME
+from verify.runs.store import STORE_FOLDER
 from verify.scene.load import load_scene
 from verify.studies.one_scene import planned
 from verify.verdict import Check, Run, SceneReport
@@ -68,13 +68,13 @@ def test_a_file_becomes_a_method_of_the_report(
 
     assert "its code knows" in page, "what is behind a file nobody tells"
 
-    before = sorted(path for path in (folder / "out" / NAME).iterdir() if path.is_dir())
+    before = sorted(path for path in (folder / "out" / STORE_FOLDER).iterdir() if path.is_dir())
     times = [path.stat().st_mtime_ns for path in before]
     assert main(["verify", LINEAR, "--out", "out", "--jobs", "1", "--with", "off.csv", *AS]) == 1
     said = capsys.readouterr()
     assert "2 of 2 runs are at hand" in said.err
     assert re.search(rf"broken +{LINEAR} +analytical +beam-curve +off / beam +2\.0\de-02", said.out)
-    assert sorted(path for path in (folder / "out" / NAME).iterdir() if path.is_dir()) == before
+    assert sorted(path for path in (folder / "out" / STORE_FOLDER).iterdir() if path.is_dir()) == before
     assert [path.stat().st_mtime_ns for path in before] == times, "nothing was computed anew"
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from verify.checks.identities import run_checks
 from verify.checks.mechanics.columns import law_of
-from verify.checks.mechanics.peel_growth import growing, out_of_reach
+from verify.checks.mechanics.peel_growth import away_from_flush_end, growing
 from verify.methods.solve import solve
 from verify.result import Result
 from verify.scene.load import load_scene
@@ -164,7 +164,7 @@ def test_a_zone_that_the_flush_end_feels_is_no_steady_growth(method: str) -> Non
     angle = {check.name: check for check in run_checks(scene, result)}["growth-angle"]
     assert angle.state == "holds" and abs(angle.value) < 0.002
     steps, last = result.steps, np.flatnonzero(growing(scene, result.steps))[-1]
-    assert not out_of_reach(scene, steps)[last]
+    assert not away_from_flush_end(scene, steps)[last]
     assert steps["load"][last] * abs(steps["face_slope_top"][last]) < 0.95 * scene.interface.toughness
     for factor in (0.9, 1.1):
         wrong = changed(changed(result, "face_slope_top", factor), "tip_opening", 2.0)

@@ -413,7 +413,7 @@ def test_a_fault_in_the_plane(name: str) -> None:
 @pytest.mark.parametrize("broken", [False, True])
 def test_functions_that_do_not_add_up(broken: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """The rational functions divide by their sum: this check alone finds it."""
-    monkeypatch.setattr(plane_study, "MOST_UNKNOWNS", 3000)
+    monkeypatch.setattr(plane_study, "PLANE_LIMITS", plane_study.Limits(unknowns=3000))
     fault = 2.3 * SIZE * plane_study.UNITY  # the largest coefficient of the function is 1 / 2.3
     body = function_scaled(replace(arch(), chains={}), 1.0 + fault * broken)
     chains = {f"boundary-{i}": chain for i, chain in enumerate(boundary_chains(body))}

@@ -25,6 +25,7 @@ from verify.scene.load import load_scene
 from verify.studies.cost import accuracy
 from verify.studies.cost import study as cost_study
 from verify.studies.effects import study as effects_study
+from verify.studies.effects.plan import planned
 from verify.studies.hard import suite
 from verify.studies.scaling import study as scaling_study
 from verify.support.refusal import Refusal
@@ -63,7 +64,11 @@ def test_a_study_ends_with_what_it_found(name: str, well: bool, studied, tmp_pat
 def test_overrides_reach_the_study_and_its_scene(name: str, studied, tmp_path: Path) -> None:
     asked = studied(True)
     assert main([name, "dcb-czm1", "--set", "interface.strength=5.0", "--out", str(tmp_path)]) == 0
-    source, scene, *rest = asked[0]
+    if name == "effects":
+        base = asked[0][0].base
+        source, scene, rest = base.source, base.scene, [list(base.overrides)]
+    else:
+        source, scene, *rest = asked[0]
     assert source == "dcb-czm1" and scene.interface.strength == 5.0 and ["interface.strength=5.0"] in rest
 
 
@@ -90,7 +95,7 @@ def test_effects_of_what_cannot_be_solved_are_not_begun(
 
 def test_an_unsuitable_scene_is_a_refusal() -> None:
     with pytest.raises(Unsuitable, match="must only increase"):
-        effects_study.would_run("dcb-czm1", load_scene("dcb-czm1", ["load.opening=[1.0, 0.5]"]), "beam", [], Path("x"))
+        planned("dcb-czm1", load_scene("dcb-czm1", ["load.opening=[1.0, 0.5]"]), "beam")
 
 
 @pytest.mark.parametrize("name", ["cost", "effects", "scaling"])
@@ -194,7 +199,7 @@ def test_the_way_of_a_programme_adds_up_back_and_forth(tmp_path: Path, monkeypat
     gone: list[float] = []
     monkeypatch.setattr("verify.runs.run.run", made_up)
     monkeypatch.setattr("verify.support.progress.Progress.advance", lambda self, done, news: gone.append(done))
-    commands._watched(prepare(load_scene("dcb-czm1"), "lefm"), tmp_path, NO_FIELDS, True)
+    commands._with_progress(prepare(load_scene("dcb-czm1"), "lefm"), tmp_path, NO_FIELDS, True)
     assert gone == [0.0, 1.0, 1.5, 2.5, 5.0]
 
 

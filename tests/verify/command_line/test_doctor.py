@@ -65,5 +65,5 @@ def test_the_window_of_dolfinx_is_told(
     found: str, known: bool, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(doctor, "dolfinx_installed", lambda: True)
-    monkeypatch.setattr(doctor, "_version", lambda name: found)
+    monkeypatch.setattr(doctor, "package_version", lambda name: found)
     assert ("not tried" in next(doctor._dolfinx())) is not known

@@ -192,7 +192,7 @@ def test_verify_holds_the_mesh_against_methods_on_meshes_of_their_own(
     monkeypatch.setattr(verification, "planned", lambda *what: [job for job in every(*what) if job.variant in few])
     source = scene_file(tmp_path, [Path(file).name for file in written(tmp_path, *arms)])
     scene = load_scene(source)
-    verification.verify([(source, scene)], tmp_path / "out", 1)
+    verification.verify(verification.Subjects([(source, scene)]), tmp_path / "out", 1)
     (report,) = seen
     runs = {run.method: run for run in report.runs}
     assert set(runs) == set(few) and all(run.result is not None and run.result.complete for run in runs.values())

@@ -24,7 +24,7 @@ from verify.runs.folder import read_columns, read_result
 from verify.runs.jobs import left_out
 from verify.scene.load import load_scene
 from verify.studies.one_scene import planned
-from verify.verification import verify
+from verify.verification import Subjects, verify
 
 LINEAR = "dcb-czm1-linear"
 PROJECT = Path(__file__).resolve().parents[3]
@@ -212,13 +212,13 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
     jobs = [job for job in planned(LINEAR, scene) if job.method in ("beam", "good", "absent", "wrong")]
     jobs = [type(job)(job.source, scene, job.method, job.variant) for job in jobs]
     only("beam", "good", "absent")
-    assert verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     found = {(check.name, check.subject): check for check in seen[-1].checks}
     assert found["beam-curve", "good / beam"].value < 1e-6 and found["beam-curve", "good / beam"].kind == "analytical"
     assert found["end", "good"].passed
     assert "not run: plug-in absent" in capsys.readouterr().out
     only("beam", "wrong")
-    assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
+    assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     failed = [(check.name, check.subject) for check in seen[-1].checks if not check.passed]
     assert failed == [("beam-curve", "wrong / beam"), ("farthest-point", "wrong / beam")]
 

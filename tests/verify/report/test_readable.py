@@ -161,12 +161,12 @@ def test_bars_of_effects_are_their_changes(monkeypatch: pytest.MonkeyPatch) -> N
         assert container.get_label() == name
         for bar, one, tick in zip(container, rows, axes.get_yticks(), strict=True):
             value = abs(getattr(one, column))
-            size = value if value > effects_page.LEAST else effects_page.LEAST  # NaN is drawn as none
+            size = value if value > effects_page.SMALLEST_BAR else effects_page.SMALLEST_BAR  # NaN is drawn as none
             assert bar.get_width() == pytest.approx(100.0 * size)
             assert abs(bar.get_y() + bar.get_height() / 2 - tick) < 0.4, "it stands with its effect"
     inks = [container[0].get_facecolor()[:3] for container in axes.containers]
     assert len(set(inks)) == len(effects_page.BARS)
-    assert axes.get_xscale() == "log" and axes.get_xlim()[0] == pytest.approx(100 * effects_page.LEAST)
+    assert axes.get_xscale() == "log" and axes.get_xlim()[0] == pytest.approx(100 * effects_page.SMALLEST_BAR)
     assert [t.get_text() for t in axes.get_yticklabels()] == [one.effect for one in rows]
     said = {t.get_text() for t in axes.texts}
     assert {"2 %", "+2 %", "0 %"} <= said and "nan" not in " ".join(said)

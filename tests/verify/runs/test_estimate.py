@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from verify.methods.names import METHODS
-from verify.runs.estimate import STEPS_CHOSEN, seconds, steps, unknowns
+from verify.runs.estimate import STEP_COUNTS, seconds, steps, unknowns
 from verify.scene.load import load_scene
 from verify.scene.process_zone import bulk_length, slender_length
 
@@ -46,4 +46,4 @@ def test_steps_beyond_those_of_an_intact_bond_go_with_the_lengths_of_the_zone() 
         zones = bond / min(slender_length(scene), bulk_length(scene))
         assert steps(scene, "nurbs") == round(20 + 8.2 * zones)
     assert len(set(shorter)) == 2, "of slender arms the one length is shorter, of thick ones the other"
-    assert steps(load_scene("dcb-czm1", ["discretization.steps=auto"]), "tspline") == STEPS_CHOSEN
+    assert steps(load_scene("dcb-czm1", ["discretization.steps=auto"]), "tspline") == STEP_COUNTS.chosen

@@ -22,7 +22,7 @@ from verify.methods.solve import prepare
 from verify.result import CURVE_COLUMNS, Result
 from verify.runs.folder import CurveWriter, damage, read_columns, write_json
 from verify.runs.run import run
-from verify.runs.store import NAME, alone_in
+from verify.runs.store import STORE_FOLDER, alone_in
 from verify.scene.load import load_scene
 from verify.support.refusal import Refusal
 from verify.verdict import Check
@@ -169,7 +169,7 @@ def test_a_damaged_result_in_the_store_is_done_again(tmp_path: Path, capsys: pyt
 
     plan = [Job("dcb-czm1-linear", load_scene("dcb-czm1-linear"), "lefm", "lefm", fields=False)]
     (first,) = run_all(plan, tmp_path, 1)
-    stray = tmp_path / NAME / "stray"
+    stray = tmp_path / STORE_FOLDER / "stray"
     stray.write_bytes(b"\0\1")
     about = tmp_path / "dcb-czm1-linear" / "lefm" / "result.json"
     about.write_bytes(about.read_bytes()[:200])

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from verify.runs.store import NAME
+from verify.runs.store import STORE_FOLDER
 
 PROJECT = Path(__file__).resolve().parents[3]
 SMALL = ["--set", "discretization.dofs=200", "--set", "discretization.steps=6", "--set", "load.opening=0.5"]
@@ -31,7 +31,7 @@ def start(command: list[str], out: Path) -> subprocess.Popen:
 
 def whole(out: Path) -> list[Path]:
     """Folders of runs that are done."""
-    return [path for path in (out / NAME).glob("[!.]*") if path.is_dir() and path.suffix != ".failed"]
+    return [path for path in (out / STORE_FOLDER).glob("[!.]*") if path.is_dir() and path.suffix != ".failed"]
 
 
 def interrupted(command: list[str], out: Path) -> str:

@@ -13,7 +13,7 @@ from verify.methods.solve import prepare
 from verify.runs.jobs import Job, _in_short, dry_run, left_out, outcome
 from verify.runs.run import run
 from verify.runs.store import Store
-from verify.runs.sweep import FOLDER, Done
+from verify.runs.sweep import OUTPUT_FOLDER, Done
 from verify.scene.load import load_scene
 from verify.verdict import Check, Counts, Run, SceneReport, counted
 
@@ -36,7 +36,7 @@ def test_a_job_is_repeated_by_its_command() -> None:
     assert replace(JOB, fields=False).command(Path("out")) == [*words, "--out", "out/dcb-czm1/coarse"]
     assert (JOB.solved.discretization.dofs, JOB.solved.load.opening) == (600, (2.0,)) and JOB.scene is SCENE
     task = JOB.task()
-    assert task.program[:2] == ("verify.cli", "solve") and task.program[-1] == FOLDER and task.lane == ""
+    assert task.program[:2] == ("verify.cli", "solve") and task.program[-1] == OUTPUT_FOLDER and task.lane == ""
     assert (task.place, task.proof) == ("dcb-czm1/coarse", "result.json") and task.seconds > 0.0
     assert replace(JOB, method="dolfinx", overrides=()).task().lane == "dolfinx"
     others = (replace(JOB, fields=False), replace(JOB, repeat=1), replace(JOB, overrides=()))

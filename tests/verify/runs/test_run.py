@@ -350,7 +350,7 @@ def test_threads_are_those_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_package_that_is_not_installed_has_no_version() -> None:
-    assert environment._version("no-such-package-at-all") == ""
+    assert environment.package_version("no-such-package-at-all") == ""
     assert "numpy" in environment.versions() and "no-such-package-at-all" not in environment.versions()
 
 

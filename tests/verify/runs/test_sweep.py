@@ -18,8 +18,8 @@ from verify.runs.estimate import steps
 from verify.runs.fingerprint import digest, fingerprint, source
 from verify.runs.jobs import Job
 from verify.runs.pools import pool
-from verify.runs.store import NAME, Store, link, opened
-from verify.runs.sweep import FOLDER, Done, Task, _at_once, _damage, _next, _submitted, _why, listed, sweep
+from verify.runs.store import STORE_FOLDER, Store, link, opened
+from verify.runs.sweep import OUTPUT_FOLDER, Done, Task, _at_once, _damage, _next, _submitted, _why, listed, sweep
 from verify.scene.load import load_scene
 from verify.support.checked_files import Damaged
 from verify.support.progress import duration
@@ -71,7 +71,7 @@ def task(name: str, ending: str, marks: Path, lane: str = "") -> Task:
         beside = marks / f"stand_in.{os.getpid()}"
         beside.write_text(PROGRAM)
         beside.rename(program)
-    return Task(f"scene/{name}", digest(name), ("stand_in", FOLDER, name, str(marks), ending), "proof", lane)
+    return Task(f"scene/{name}", digest(name), ("stand_in", OUTPUT_FOLDER, name, str(marks), ending), "proof", lane)
 
 
 def runs(tasks: list[Task], out: Path, jobs: int, scheduler: str | None = None) -> list[Done]:
@@ -113,7 +113,7 @@ def test_what_is_there_is_not_done_again(tmp_path: Path, marks: Path, capsys: py
     }
     assert len(started(marks, "a")) == len(started(marks, "b")) == 1
     assert (out / "scene" / "a" / "proof").read_text() == "a"
-    assert os.readlink(out / "scene" / "a") == f"../{NAME}/{first[0].key}"
+    assert os.readlink(out / "scene" / "a") == f"../{STORE_FOLDER}/{first[0].key}"
     assert "1 of 2 runs are at hand" in capsys.readouterr().err
 
 
@@ -123,7 +123,9 @@ def test_a_run_that_dies_is_kept_for_reading_and_done_again(tmp_path: Path, mark
     assert "the last words" in (tmp_path / "scene" / "a" / "log.txt").read_text()
     (done,) = runs([task("a", "ends", marks)], tmp_path, 1)
     assert not done.why and len(started(marks, "a")) == 2
-    assert [path.name for path in (tmp_path / NAME).iterdir() if path.is_dir()] == [task("a", "ends", marks).key]
+    assert [path.name for path in (tmp_path / STORE_FOLDER).iterdir() if path.is_dir()] == [
+        task("a", "ends", marks).key
+    ]
 
 
 def test_a_killed_worker_costs_its_run(tmp_path: Path, marks: Path) -> None:
@@ -148,7 +150,7 @@ def test_a_killed_engine_leaves_whole_folders_and_no_process(tmp_path: Path, mar
     engine.kill()
     engine.wait()
     until(lambda: not alive(child))
-    store = Store(tmp_path / NAME)
+    store = Store(tmp_path / STORE_FOLDER)
     assert [store.whole(one.key) for one in tasks] == [True, False, False]
     (marks / "go").touch()
     found = {done.task.place: (done.why, done.at_hand) for done in runs(tasks, tmp_path, 1)}
@@ -214,7 +216,7 @@ def test_a_killed_scheduler_costs_what_was_not_whole(tmp_path: Path, marks: Path
     assert ends == [("scene/a", ""), ("scene/b", "failed:"), ("scene/c", "failed:")]
     (marks / "go").touch()
     assert {done.task.place: done.at_hand for done in runs(tasks, out, 1)}["scene/a"]
-    assert all(Store(out / NAME).whole(one.key) for one in tasks)
+    assert all(Store(out / STORE_FOLDER).whole(one.key) for one in tasks)
 
 
 def test_a_scheduler_that_does_not_answer_is_refused(capsys: pytest.CaptureFixture, tmp_path: Path) -> None:
@@ -401,8 +403,8 @@ def test_what_reads_a_run_names_the_file_that_is_damaged(tmp_path: Path, marks: 
     list(sweep(done, tmp_path, Fading(9), "test", lambda done: done.why))
     (again,) = sweep([replace(done[0], read=lambda folder: None)], tmp_path, Fading(9), "test", lambda done: "")
     assert again.at_hand and len(started(marks, "a")) == 1
-    assert _damage(done[0], Store(tmp_path / NAME)) == ""
-    assert _damage(replace(done[0], read=reader), Store(tmp_path / NAME)) == "curve.csv"
+    assert _damage(done[0], Store(tmp_path / STORE_FOLDER)) == ""
+    assert _damage(replace(done[0], read=reader), Store(tmp_path / STORE_FOLDER)) == "curve.csv"
 
 
 def test_of_a_pool_that_does_not_answer_nothing_runs_at_once() -> None:
@@ -420,5 +422,5 @@ def test_a_pool_that_takes_no_task_has_lost_it(tmp_path: Path) -> None:
 
 def test_a_run_without_its_proof_has_failed_however_it_ends(tmp_path: Path, marks: Path) -> None:
     (marks / "silent.py").write_text(SILENT)
-    (done,) = runs([Task("scene/a", digest("a"), ("silent", FOLDER), "proof")], tmp_path, 1)
+    (done,) = runs([Task("scene/a", digest("a"), ("silent", OUTPUT_FOLDER), "proof")], tmp_path, 1)
     assert done.why == "failed: nothing to do" and not (tmp_path / "scene" / "a" / "proof").exists()

@@ -25,7 +25,7 @@ from verify.scene.parse import SceneError
 from verify.scene.random_scenes import ZONES, random_scene
 from verify.scene.schema import Scene
 from verify.studies import campaign
-from verify.studies.campaign import APART, METHODS, Row, row, table
+from verify.studies.campaign import LARGEST_DISTANCE, METHODS, Row, row, table
 from verify.verdict import Check, Run, SceneReport
 
 FINITE, LINEAR = load_scene("dcb-czm1"), load_scene("dcb-czm1-linear")
@@ -208,13 +208,13 @@ def test_codes_that_differ_while_all_checks_hold_are_silently_wrong() -> None:
     """Both are within the tolerance of the reference, one above and one below it."""
     found = row_of(FINITE, tspline=0.997, nurbs=1.0031, nurbs_matched=1.0)
     assert (found.fault, found.broken, found.unresolved) == ("silent", 0, 0)
-    assert APART < found.apart == pytest.approx(0.0061, rel=0.02)
+    assert LARGEST_DISTANCE < found.apart == pytest.approx(0.0061, rel=0.02)
     assert row_of(FINITE, tspline=0.998, nurbs=1.002).fault == "", "as much as is allowed"
 
 
 def test_codes_that_differ_are_not_silent_where_a_check_says_so() -> None:
     named = row_of(FINITE, nurbs=1.03, nurbs_matched=1.03)
-    assert named.fault == "" and named.broken and "odd one out: nurbs" in named.odd and named.apart > APART
+    assert named.fault == "" and named.broken and "odd one out: nurbs" in named.odd and named.apart > LARGEST_DISTANCE
     assert "curve:nurbs/dolfinx" in named.names
     unsure = row_of(FINITE, dolfinx=1.02)
     assert unsure.fault == "" and unsure.broken == 0 < unsure.unresolved and "odd one out: dolfinx" in unsure.odd
@@ -305,4 +305,4 @@ def test_two_random_scenes_by_every_code(tmp_path: Path, capsys: pytest.CaptureF
     with (tmp_path / "random.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert [one["scene"] for one in rows] == ["random-11", "random-12"]
-    assert all(one["fault"] == "" and float(one["apart"]) <= APART for one in rows), capsys.readouterr().out
+    assert all(one["fault"] == "" and float(one["apart"]) <= LARGEST_DISTANCE for one in rows), capsys.readouterr().out

@@ -1,1 +1,1 @@
-"""What the columns of one run must obey: the J-integral, the growth of a peel, balances of forces."""
+"""Identities in the columns of one run: the J-integral, crack growth in a peel, tolerances of force balances."""

@@ -1,4 +1,4 @@
-"""What the columns of a run say of its path: the law, the steps that load, the ones far from the end."""
+"""Sets of steps of a run: loading steps, steps with an open tip, steps whose crack is far from the end."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ Steps = Mapping[str, np.ndarray]
 
 
 def law_of(scene: Scene) -> Law:
-    """The scene's traction law, in the copy that only checks and beam use; what all laws have where there is none."""
+    """The traction law as checks and beam implement it, independently of the solvers; `Law` itself for unknown laws."""
     i = scene.interface
     return KNOWN_LAWS.get(i.law, Law)(i.strength, i.toughness, i.ductility, i.penalty, simulated(scene)["contact"])
 
 
 def zone_is_new(scene: Scene, steps: Steps) -> np.ndarray:
-    """Steps (n_steps,) at which nothing in the process zone was damaged on an earlier leg of the programme.
+    """Steps (n_steps,) at which no point of the process zone was damaged on an earlier leg of the programme.
 
-    Pressed arms gape in another shape than opened ones: points of an old zone come back to the envelope one after the
-    other, and until the zone has gone on by its own length J is not the area under the law. Of a programme that never
-    goes below zero all come back at once.
+    Arms that were pressed together reopen in another shape: the points of the old zone return to the envelope of the
+    law one after the other, and J is not the area under the law until the zone has advanced by its own length. In a
+    programme without negative openings all points return at once.
     """
     if min(scene.load.opening) >= 0.0 or not has(steps, "crack_length", "damage_front"):
         return np.ones(steps["opening"].size, dtype=bool)
@@ -33,7 +33,7 @@ def zone_is_new(scene: Scene, steps: Steps) -> np.ndarray:
 
 
 def _start_of_leg(scene: Scene, steps: Steps) -> np.ndarray:
-    """The step (n_steps,) at which the leg of the programme began on which each step lies."""
+    """For every step (n_steps,) the first step of its leg of the programme."""
     opening, start, reach = steps["opening"], 0, max(map(abs, scene.load.opening))
     starts = np.zeros(opening.size, dtype=int)
     for goal in scene.load.opening:
@@ -46,23 +46,23 @@ def _start_of_leg(scene: Scene, steps: Steps) -> np.ndarray:
 
 
 def tip_is_open(scene: Scene, steps: Steps) -> np.ndarray:
-    """Steps (n_steps,) at which nothing holds the tip of the bond any more; of a law that is not known, as is told."""
+    """Steps (n_steps,) at which the tip of the precrack is fully open; for unknown laws, those with a grown crack."""
     if scene.interface.law in KNOWN_LAWS:
         return steps["tip_opening"] > law_of(scene).g_open
     return steps.get("crack_length", np.zeros(steps["opening"].size)) > scene.specimen.free_length
 
 
 def far_from_end(scene: Scene, steps: Steps) -> np.ndarray:
-    """Steps before the crack feels the far end: its contact holds less than a hundredth of G_Ic; bool (n_steps,).
+    """Steps (n_steps,) at which the far end carries less than a hundredth of G_Ic.
 
-    After that the specimen turns about its end, on a spot of contact smaller than an element.
+    Later the specimen rotates about its far end, where a spot of contact is smaller than an element.
     """
     end = steps.get("end_opening", np.zeros(steps["opening"].size))
     return np.abs(law_of(scene).area(end)) <= 0.01 * scene.interface.toughness
 
 
 def loading(steps: Steps) -> np.ndarray:
-    """Steps at which damage grows, and those before any: bool (n_steps,)."""
+    """Steps (n_steps,) at which damage grows, and those before any damage."""
     dissipated = steps["dissipated_energy"]
     rounding = 1e-12 * np.max(dissipated, initial=0.0)
     return (np.diff(dissipated, prepend=0.0) > rounding) | (np.maximum.accumulate(dissipated) <= rounding)
@@ -77,7 +77,7 @@ def peak(values: np.ndarray) -> np.ndarray:
 
 
 def scale(values: np.ndarray) -> np.ndarray:
-    """A divisor: where nothing has happened yet, only nothing may deviate."""
+    """The values as a divisor: 0 becomes the smallest float, so that only 0 / 0 is small."""
     return np.where(values == 0, np.finfo(float).tiny, values)
 
 

@@ -1,4 +1,4 @@
-"""The J-integral of a run: the load's against the bond's."""
+"""The J-integral of a run from its loaded faces, against the energy that its bond has taken."""
 
 from __future__ import annotations
 
@@ -9,65 +9,65 @@ from verify.scene import process_zone
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 
-#: Relative, of a mesh that resolves the process zone.
+#: Relative tolerance on a mesh that resolves the process zone.
 J_TOLERANCE = 0.005
-#: Part of G_Ic that the far end may hold for the energies there to be judged with the rest: half of J's tolerance.
-HELD_AT_THE_END = 0.5 * J_TOLERANCE
+#: Energy at the far end, over G_Ic, up to which the whole deviation counts: half of the tolerance of J.
+FAR_END_SHARE = 0.5 * J_TOLERANCE
 
 
 def j_deviation(scene: Scene, steps: Steps) -> float | None:
-    """Worst |J - integral of p dg| / G_Ic over the steps on the way up.
+    """Largest |J - integral of p dg| / G_Ic over the steps with a positive opening.
 
-    J w = load (|s_top| + |s_bottom|) - w sum over the faces of the integral of W dY, with s the mean slope du_y/dX of
-    the loaded face; it equals the area under the law up to the opening at the tip of the precrack (Rice 1968, J. Appl.
-    Mech. 35, with dead tractions on the faces), less the area up to the gap at the far end, which a short ligament has
-    as well. With damage it holds while the interface loads, not while it unloads. Of a law whose shape nobody has
-    stated once more (`verify.theory.law`) the area is known below the strength and once the bond has opened.
+    J w = load (|s_top| + |s_bottom|) - w sum over the end faces of the integral of W dY, with s the mean slope du_y/dX
+    of the loaded face. It equals the area under the law up to the opening at the tip of the precrack (Rice 1968, J.
+    Appl. Mech. 35, with dead tractions on the faces), less the area up to the gap at the far end, which is not 0 in a
+    short ligament. With damage the identity holds while the interface loads, not while it unloads. For a law that
+    `verify.theory.law` does not implement, the area is known below the strength and once the bond is fully open.
 
-    Where faces touch beyond the bond their tractions do work in the same integral, from the mouth of the crack to its
-    tip: ``- integral of p dg/dX = A(g_mouth) - A(g_tip)`` with A the energy of the contact, nothing of an open gap.
+    Where faces touch beyond the bond, their tractions contribute from the mouth of the crack to its tip:
+    ``- integral of p dg/dX = A(g_mouth) - A(g_tip)`` with the energy A of the contact, 0 for an open gap.
 
-    The end faces are both ends of both bodies, but for those at the far end with a minus: contact at the end of a short
-    ligament squeezes them, and with a stiff penalty they hold more than the contact does. The base of a peel gives no
-    term, being fixed. Once the far end holds more than HELD_AT_THE_END, on a spot that may be smaller than an element,
-    only what is more than all of its energy counts (`held_at_the_end`); where it does from the start on, all counts,
-    and `resolution.at_the_end` says what cannot be judged.
+    The end faces are those of both bodies; the ones at the far end count negatively. They matter in a short ligament,
+    where contact compresses them: with a stiff penalty they store more energy than the contact. The fixed base of a
+    peel contributes nothing. Where the energy at the far end (`far_end_energy`) exceeds FAR_END_SHARE, on a spot
+    that may be smaller than an element, only the deviation beyond that energy counts. Where it does so from the start,
+    the whole deviation counts, and `unresolved.far_end_unresolved` explains a check without a verdict.
     """
     found = j_gap(scene, steps)
     if found is None or not (steps["opening"] > 0.0).any():
         return None
-    gap, held = np.where(steps["opening"] >= 0.0, np.abs(found), 0.0), held_at_the_end(scene, steps)
-    return worst(gap if felt_from_the_start(scene, steps) else beyond_the_end(gap, held))
+    gap, held = np.where(steps["opening"] >= 0.0, np.abs(found), 0.0), far_end_energy(scene, steps)
+    return worst(gap if far_end_loaded(scene, steps) else beyond_far_end(gap, held))
 
 
 def j_pressed(scene: Scene, steps: Steps) -> float | None:
-    """The same where the specimen is pressed together, over G_Ic or what the mouth of the crack holds, if that is more.
+    """The same at negative openings, over the larger one of G_Ic and the contact energy at the mouth of the crack.
 
-    What it holds is read off at the edge of a body, where stress varies within an element: it is known as well as the
-    mesh resolves that.
+    That energy is computed at the edge of a body, where the stress varies within an element, and is as accurate as the
+    mesh is there.
     """
     gap, pressed = j_gap(scene, steps), steps["opening"] < 0.0
     return None if gap is None or not pressed.any() else worst(gap[pressed & far_from_end(scene, steps)])
 
 
-def beyond_the_end(gap: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """What of a deviation (n_steps,) the energy that the far end holds cannot explain."""
-    beyond = np.where(held <= HELD_AT_THE_END, gap, np.maximum(gap - held, 0.0))
+def beyond_far_end(gap: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """The part of a deviation (n_steps,) beyond the energy at the far end."""
+    beyond = np.where(held <= FAR_END_SHARE, gap, np.maximum(gap - held, 0.0))
     return np.where(np.isnan(held), 0.0, beyond)
 
 
-def felt_from_the_start(scene: Scene, steps: Steps) -> bool:
-    """Whether the far end takes part before J has come to half of its largest value."""
-    spent = np.nan_to_num(_spent(scene, steps))
-    free = held_at_the_end(scene, steps) <= HELD_AT_THE_END
+def far_end_loaded(scene: Scene, steps: Steps) -> bool:
+    """Whether the far end carries load before J has reached half of its largest value."""
+    spent = np.nan_to_num(_area_at_tip(scene, steps))
+    free = far_end_energy(scene, steps) <= FAR_END_SHARE
     return bool(np.max(spent, initial=0.0, where=free) < 0.5 * np.max(spent, initial=0.0))
 
 
-def held_at_the_end(scene: Scene, steps: Steps) -> np.ndarray:
-    """Part of G_Ic that the far end holds (n_steps,), NaN where the law is not known here.
+def far_end_energy(scene: Scene, steps: Steps) -> np.ndarray:
+    """Energy at the far end over G_Ic (n_steps,), NaN where the law is unknown.
 
-    That is the area under the law there and, of a dcb, the strain energy of its faces, beside which that of the loaded
-    ones is nothing. A traction p that fades through the arms gives them no more than ``p^2 h / E2``.
+    It is the area under the law there and, for a DCB, the strain energy of the end faces, beside which that of the
+    loaded faces is negligible. A traction p that decays through the arms stores at most ``p^2 h / E2`` in them.
     """
     law, body = law_of(scene), scene.specimen
     end = steps.get("end_opening", np.zeros(steps["opening"].size))
@@ -81,14 +81,14 @@ def held_at_the_end(scene: Scene, steps: Steps) -> np.ndarray:
 
 
 def j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
-    """(J - integral of p dg) / G_Ic at every step (n_steps,), 0 where that need not hold.
+    """(J - integral of p dg) / G_Ic at every step (n_steps,), 0 where the identity does not hold; None without columns.
 
-    Where pressed faces hold more than G_Ic it is J less that, a small difference of large terms: over what they hold.
+    Where the contact energy exceeds G_Ic, it is the divisor: the gap is a small difference of large energies.
     """
     if not has(steps, "face_slope_top", "face_slope_bottom", "face_energy", "tip_opening", "dissipated_energy"):
         return None
-    J = steps["load"] * _turn(scene, steps) / scene.specimen.width - steps["face_energy"]
-    law, spent, tip = law_of(scene), _spent(scene, steps), steps["tip_opening"]
+    J = steps["load"] * _rotation_of_faces(scene, steps) / scene.specimen.width - steps["face_energy"]
+    law, spent, tip = law_of(scene), _area_at_tip(scene, steps), steps["tip_opening"]
     area = spent - law.area(steps.get("end_opening", np.zeros(J.size)))
     scale = np.full(J.size, scene.interface.toughness)
     if "mouth_opening" in steps:
@@ -97,18 +97,18 @@ def j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
         scale = np.maximum(scale, touching)
     irreversible = simulated(scene)["irreversible"]
     valid = loading(steps) & zone_is_new(scene, steps) if irreversible else np.ones(J.size, dtype=bool)
-    valid &= ~np.isnan(spent) | np.isnan(tip)  # not on a branch that nobody has stated
+    valid &= ~np.isnan(spent) | np.isnan(tip)  # not on a branch of a law that is not implemented here
     return np.where(valid, J - area, 0.0) / scale
 
 
-def _spent(scene: Scene, steps: Steps) -> np.ndarray:
+def _area_at_tip(scene: Scene, steps: Steps) -> np.ndarray:
     """Area under the law up to the gap at the tip of the precrack (n_steps,)."""
     law = law_of(scene)
     return np.where(tip_is_open(scene, steps), law.toughness, law.area(steps["tip_opening"]))
 
 
-def _turn(scene: Scene, steps: Steps) -> np.ndarray:
-    """How far the loaded faces turn in the sense in which the load opens the specimen, of every step (n_steps,)."""
+def _rotation_of_faces(scene: Scene, steps: Steps) -> np.ndarray:
+    """Sum of the rotations of the loaded faces at every step (n_steps,), positive in the sense of opening."""
     top, bottom = steps["face_slope_top"], steps["face_slope_bottom"]
     pressed = top if scene.specimen.clamped else bottom - top
     return np.where(steps["opening"] < 0.0, pressed, np.abs(top) + np.abs(bottom))

@@ -1,4 +1,4 @@
-"""What a strip that is peeled off a clamped substrate obeys while the crack grows: load and angle."""
+"""Identities of load and peel angle while a strip is peeled off a clamped substrate."""
 
 from __future__ import annotations
 
@@ -10,39 +10,39 @@ from verify.scene.bodies import elastic_constants
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 
-#: Part of the length within which the process zone has come to the far end.
+#: Distance of the damage front from the far end, over the length, within which the zone counts as at the end.
 AT_THE_END = 1e-9
 
 
 def growth_load(scene: Scene, steps: Steps) -> float | None:
-    """Largest part of G_Ic w by which the load falls short of it while the crack of a peel grows.
+    """Largest relative amount by which the load falls below G_Ic w while the crack of a peel grows.
 
-    ``J w = load s - w sum of the face energies = G_Ic w`` with the slope s = du_y/dX = lambda sin(theta) of the loaded
-    face, but for linear kinematics: s <= 1 unless its load stretches an upright strip, lambda = 1 + load / (E h w),
-    0.2 % in peel-soft; so load max(s, 1) is what may not fall short. What the gap at the far end holds is not there to
-    be released (see `j_deviation`).
+    With finite kinematics ``J w = load s - w sum of the face energies = G_Ic w``, with the slope s = du_y/dX =
+    lambda sin(theta) of the loaded face. It is at most 1, unless the load stretches an upright strip: lambda = 1 + load
+    / (E h w), 0.2 % in peel-soft. So load max(s, 1) is at least G_Ic w, less the energy at the far end, which is not
+    released (see `j_deviation`).
     """
-    steady = growing(scene, steps) & out_of_reach(scene, steps)
+    steady = growing(scene, steps) & away_from_flush_end(scene, steps)
     if not steady.any() or simulated(scene)["kinematics"] == "linear":
         return None
     pull = steps["load"] * np.maximum(np.abs(steps.get("face_slope_top", 1.0)), 1.0)
-    return worst(np.minimum(pull[steady] / _to_release(scene, steps)[steady] - 1.0, 0.0))
+    return worst(np.minimum(pull[steady] / _available_energy(scene, steps)[steady] - 1.0, 0.0))
 
 
 def growth_angle(scene: Scene, steps: Steps) -> float | None:
-    """load sin(theta) / (G_Ic w) - 1 at the last step at which the crack of a peel grows out of reach of the flush end.
+    """load sin(theta) / (G_Ic w) - 1 at the last step at which the crack of a peel grows away from the flush end.
 
-    Of an inextensible strip on a rigid substrate (Rivlin 1944 for theta = 90 degrees; elastica). What is left of J is
-    the energy on the end faces. On the loaded one that is of the load itself, and is taken off: ``P^2 / (2 h w)
-    (sin(theta)^2 / E1 + cos(theta)^2 / G12)`` (Kendall 1975 for theta = 90 degrees).
+    It is 0 for an inextensible strip on a rigid substrate (Rivlin 1944 for theta = 90 degrees; elastica). Otherwise J
+    also contains the energy on the end faces. That on the loaded face is due to the load alone and is subtracted:
+    ``P^2 / (2 h w) (sin(theta)^2 / E1 + cos(theta)^2 / G12)`` (Kendall 1975 for theta = 90 degrees).
     """
-    steady = growing(scene, steps) & out_of_reach(scene, steps)
+    steady = growing(scene, steps) & away_from_flush_end(scene, steps)
     if not steady.any() or "face_slope_top" not in steps:
         return None
     last = np.flatnonzero(steady)[-1]
     load, sine = steps["load"][last], abs(steps["face_slope_top"][last])
     pull = load * sine - _end_face_energy(scene, load, sine)
-    return float(pull / _to_release(scene, steps)[last] - 1.0)
+    return float(pull / _available_energy(scene, steps)[last] - 1.0)
 
 
 def _end_face_energy(scene: Scene, load: float, sine: float) -> float:
@@ -53,16 +53,16 @@ def _end_face_energy(scene: Scene, load: float, sine: float) -> float:
     return load**2 / (2.0 * body.loaded_thickness * body.width) * (along / E1 + (1.0 - along) / G12)
 
 
-def _to_release(scene: Scene, steps: Steps) -> np.ndarray:
-    """G_Ic w less what the gap at the far end holds, of every step (n_steps,): what a growing crack takes."""
+def _available_energy(scene: Scene, steps: Steps) -> np.ndarray:
+    """Energy per length that a growing crack takes, at every step (n_steps,): G_Ic w less the energy at the far end."""
     end = steps.get("end_opening", np.zeros(steps["opening"].size))
     return (scene.interface.toughness - law_of(scene).area(end)) * scene.specimen.width
 
 
 def growing(scene: Scene, steps: Steps) -> np.ndarray:
-    """Steps (n_steps,) of a peel at which a whole process zone travels, from the open tip to its front in the bond.
+    """Steps (n_steps,) of a peel with a complete process zone: the tip is open and the damage front is in the bond.
 
-    None of another specimen, or where the columns do not tell.
+    All False for another specimen, or without the columns.
     """
     if not scene.specimen.clamped or not has(steps, "tip_opening", "damage_front", "dissipated_energy"):
         return np.zeros(steps["opening"].size, dtype=bool)
@@ -72,13 +72,14 @@ def growing(scene: Scene, steps: Steps) -> np.ndarray:
     return open_ & inside & loading(steps) & far_from_end(scene, steps) & pulled
 
 
-def out_of_reach(scene: Scene, steps: Steps) -> np.ndarray:
-    """Steps (n_steps,) of a peel whose process zone does not stress the flush end: it is four decay lengths of the
-    strip away, and twice the thickness of the substrate.
+def away_from_flush_end(scene: Scene, steps: Steps) -> np.ndarray:
+    """Steps (n_steps,) of a peel whose process zone does not stress the flush end: the distance is at least four decay
+    lengths of the strip and twice the thickness of the substrate.
 
-    Ahead of the front the strip and what is under it fade as ``exp(-x / l)``, l = (4 E I / K w)^(1/4) of a beam on the
-    foundation K of bond and substrate in series, and the energy on the flush faces, which load sin(theta) lacks, as
-    ``exp(-2 x / l)``: 3e-4 of G_Ic. A substrate that is clamped below fades as ``exp(-pi x / 2 t)`` by itself.
+    Ahead of the front the stresses in strip and substrate decay as ``exp(-x / l)``, l = (4 E I / K w)^(1/4) for a beam
+    on the foundation K of bond and substrate in series. The energy on the flush faces, which load sin(theta) does not
+    contain, decays as ``exp(-2 x / l)``: 3e-4 of G_Ic at four lengths. Those in a substrate that is clamped below decay
+    as ``exp(-pi x / 2 t)``.
     """
     if "damage_front" not in steps or not scene.specimen.clamped:
         return np.zeros(steps["opening"].size, dtype=bool)

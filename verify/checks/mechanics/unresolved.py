@@ -1,4 +1,4 @@
-"""What of a deviation the mesh explains: where the process zone is not resolved, a check cannot judge the solver."""
+"""Deviations that the mesh explains: where the process zone is not resolved, a check gives no verdict on the solver."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from verify.verdict import Check
 
 
 def explained(prepared: Prepared, elements: float) -> float:
-    """Most by which a J-integral deviates, in parts of G_Ic, where so many ``elements`` span the process zone.
+    """Largest deviation of the J-integral, over G_Ic, that is explained by so many ``elements`` in the process zone.
 
-    It falls with the square of their number, since the law is obeyed at the integration points alone: 0.14 to 0.43
-    over n^2 were measured for cubic and higher bases with 0.5 to 8 elements in the zone (0.55 where the zone is shorter
-    than the arms are thick, while it forms beside longer elements of the free arms), 0.12 to 0.70 for quadratic ones,
-    0.03 to 0.06 in DOLFINx (0.28 with linear elements). The linear ones of ``iga`` lock in bending, however many.
+    It falls with the square of their number n, as the law holds at the integration points only. For cubic and higher
+    bases with 0.5 to 8 elements in the zone 0.14 to 0.43 over n^2 were measured (0.55 where the zone is shorter than
+    the arms are thick, while it forms beside longer elements of the free arms), for quadratic ones 0.12 to 0.70, for
+    DOLFINx 0.03 to 0.06 (0.28 with linear elements). Linear elements of ``iga`` lock in bending, however many.
     """
     if prepared.method.code != "iga":
         return (0.15 if reference_mesh(prepared.scene).degree > 1 else 0.5) / elements**2
@@ -27,8 +27,8 @@ def explained(prepared: Prepared, elements: float) -> float:
 
 
 def too_coarse(prepared: Prepared, result: Result, check: Check) -> str:
-    """Why a check that rests on the J-integral cannot judge, and what resolves it; empty where it
-    deviates by more than the mesh explains."""
+    """Why a check that uses the J-integral gives no verdict, and the remedy; empty where the mesh does not explain the
+    deviation."""
     deviation = abs(check.value)
     zone = prepared.zone
     length = measured(result)
@@ -42,9 +42,11 @@ def too_coarse(prepared: Prepared, result: Result, check: Check) -> str:
     return f"the process zone spans {elements:.2g} elements of the mesh; {remedy}"
 
 
-def at_the_end(prepared: Prepared, held: float) -> str:
-    """The same where the far end takes part from the start on, holds ``held`` of G_Ic and explains what J deviates by;
-    empty of a method without a mesh, which knows its end exactly."""
+def far_end_unresolved(prepared: Prepared, held: float) -> str:
+    """The same where the far end carries load from the start and its energy ``held``, over G_Ic, explains it.
+
+    Empty for a method without a mesh, whose far end is exact.
+    """
     if isnan(prepared.element):
         return ""
     return (

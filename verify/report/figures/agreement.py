@@ -1,4 +1,4 @@
-"""How far the curves of a scene are from its reference curve."""
+"""Distances of the curves of a scene to its reference curve."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def usable(run: Run) -> bool:
 
 
 def reference_run(report: SceneReport) -> Run | None:
-    """The curve that the others are held against: DOLFINx, or else the cohesive beam. LEFM is a limit, never this."""
+    """The reference of the scene: DOLFINx, or else the cohesive beam; never LEFM, which is a limit."""
     for method in ("dolfinx", "beam"):
         runs = [run for run in report.runs if run.method == method and usable(run)]
         complete = [run for run in runs if run.result is not None and run.result.complete]
@@ -39,10 +39,10 @@ def reference_run(report: SceneReport) -> Run | None:
 
 
 def path(result: Result, refine: int = 6) -> tuple[np.ndarray, np.ndarray]:
-    """Opening and load to draw: cubic Hermite arcs between converged steps where the method knows the slope.
+    """Opening and load to draw: cubic Hermite arcs between converged steps where the slopes are known.
 
-    A straight line where the arc would leave the chord by more than 1 % of the peak: there the step went over a turn
-    of the path, and the arc would add one. LEFM stays a polygon: its path has a kink.
+    Straight lines where an arc would be more than 1 % of the peak load away from its chord: there the path turns within
+    the step, and the arc would overshoot. LEFM is a polygon, as its path has a kink.
     """
     x, y = np.asarray(result.opening, float), np.asarray(result.load, float)
     if "load_slope" not in result.steps or result.method == "lefm" or len(x) < 2:
@@ -74,7 +74,7 @@ def branch(result: Result, reference: Result) -> tuple[np.ndarray, np.ndarray]:
 
 
 def agreement(run: Run, reference: Run | None) -> Agreement:
-    """The numbers of one run; the comparison is NaN without a reference, for the reference itself and for LEFM."""
+    """The measures of one run; distances are NaN without a reference, for the reference itself and for LEFM."""
     curve = _curve(run)
     top, end = peak(curve), float(np.max(curve[0]))
     if reference is None or run is reference or run.method == "lefm":

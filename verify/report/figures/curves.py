@@ -25,7 +25,7 @@ _LEDGER = {"external_work", "stored_energy", "dissipated_energy"}
 
 
 def load_opening(scene: Scene, runs: Sequence[Entry], key: str) -> Panel:
-    """All curves, from zero to the end."""
+    """Load over opening of all runs."""
     units = Units.of(scene.units)
     with drawing():
         figure, axes = _figure(axis("opening", units.length), axis("load", units.force))
@@ -37,13 +37,14 @@ def load_opening(scene: Scene, runs: Sequence[Entry], key: str) -> Panel:
                 axes.plot(*end, "x", color=colour(entry.line.colour), zorder=6)
         ceiling = min(1.06 * max(float(np.nanmax(entry.result.load)) for entry in runs), 1.4 * top)
         _name_lefm(axes, runs, ceiling)
-        axes.set(xlim=(0, None), ylim=(min(0.0, _lowest_load(runs)), ceiling))
+        lowest = min(float(np.nanmin(entry.result.load)) for entry in runs)
+        axes.set(xlim=(0, None), ylim=(min(0.0, 1.05 * lowest), ceiling))
         svg = to_svg(figure, key, f"Load against opening, all methods, {scene.name}")
     return Panel(svg, "Load against opening. A cross marks the end of a run that stopped early.")
 
 
 def peak(scene: Scene, runs: Sequence[Entry], key: str) -> Panel:
-    """The neighbourhood of the largest load, with the converged steps marked."""
+    """Load over opening near the peak, with the converged steps."""
     units = Units.of(scene.units)
     own = [entry for entry in runs if entry.method != "lefm"] or list(runs)
     tops = [_peak_point(entry.result) for entry in own]
@@ -80,10 +81,10 @@ def oscillation(scene: Scene, runs: Sequence[Entry], reference: Entry, key: str)
 
 
 def j_integral(scene: Scene, result: Result) -> np.ndarray | None:
-    """J / G_Ic at every step, from the end faces alone (n_steps,).
+    """J / G_Ic at every step (n_steps,), from the end faces.
 
     J w = P (abs(s_top) + abs(s_bottom)) - w * face energy, after Rice 1968 on a contour along the end faces and
-    the free surfaces; None where the method does not know the slopes.
+    the free surfaces; None for methods without these slopes.
     """
     steps = result.steps
     if not {"face_slope_top", "face_slope_bottom", "face_energy"} <= set(steps):
@@ -93,7 +94,7 @@ def j_integral(scene: Scene, result: Result) -> np.ndarray | None:
 
 
 def j_figure(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
-    """J / G_Ic against the opening, with its neighbourhood of 1 enlarged."""
+    """J / G_Ic over the opening, with an enlarged range around 1."""
     computed = [(entry, j_integral(scene, entry.result)) for entry in runs]
     known = [(entry, J) for entry, J in computed if J is not None and np.isfinite(J).any()]
     if not known:
@@ -123,7 +124,7 @@ def j_figure(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
 
 
 def energies(scene: Scene, entry: Entry, key: str) -> Panel | None:
-    """The ledger of one run: where the work of the load has gone."""
+    """Energies of one run over the opening, and the work of its load."""
     steps, units = entry.result.steps, Units.of(scene.units)
     keep = _monotone(entry.result.opening)
     x = entry.result.opening[keep]
@@ -148,7 +149,7 @@ def energies(scene: Scene, entry: Entry, key: str) -> Panel | None:
 
 
 def ledger_gap(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
-    """The gap of the energy ledger of each run, relative to the work done so far."""
+    """Gap of the energy ledger of each run, relative to the work up to that step."""
     gaps = []
     for entry in (entry for entry in runs if _LEDGER <= set(entry.result.steps)):
         steps = entry.result.steps
@@ -187,13 +188,9 @@ def _peak_point(result: Result) -> tuple[float, float]:
 
 
 def _top_load(runs: Sequence[Entry]) -> float:
-    """Largest load of all curves but LEFM, which may leave the figure."""
+    """Largest load of all curves except LEFM, which may exceed the axes."""
     own = [d for d in runs if d.method != "lefm"] or list(runs)
     return max(float(np.nanmax(d.result.load)) for d in own) or 1.0
-
-
-def _lowest_load(runs: Sequence[Entry]) -> float:
-    return 1.05 * min(float(np.nanmin(d.result.load)) for d in runs)
 
 
 def _name_lefm(axes: Axes, runs: Sequence[Entry], ceiling: float) -> None:
@@ -207,13 +204,13 @@ def _name_lefm(axes: Axes, runs: Sequence[Entry], ceiling: float) -> None:
 
 
 def _plateau(known: Sequence[tuple[Entry, np.ndarray]]) -> tuple[float, float]:
-    """From where on J has settled in every run, and the largest opening."""
+    """Opening from which on J is constant in every run, and the largest opening."""
     ends = [float(d.result.opening.max()) for d, _ in known]
     first = [d.result.opening[np.argmax(v > 0.985)] for d, v in known if np.nanmax(v) > 0.985]
     return (min(1.12 * float(max(first, default=0.0)), 0.9 * max(ends)), max(ends))
 
 
 def _monotone(x: np.ndarray) -> np.ndarray:
-    """Indices of the points whose opening exceeds all before."""
+    """Indices of the points whose opening exceeds all earlier ones."""
     before = np.append(-np.inf, np.maximum.accumulate(x)[:-1])
     return np.flatnonzero(x > before)

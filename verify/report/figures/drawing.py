@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
 _LOAD_HEIGHT, _DIMENSIONS_HEIGHT = 0.73, 1.03  # for the load and for the dimensions, inches
-_THINNEST = 5.0 / 72.0  # an arm is drawn at least this thick, inches
+_THINNEST = 5.0 / 72.0  # smallest drawn thickness of an arm, inches
 
 
 def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = None) -> Panel:
@@ -24,7 +24,7 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
 
     Parameters
     ----------
-    zone : start and end of the process zone along the specimen and the opening at which it was there
+    zone : start and end of the process zone along the specimen, and the opening
     """
     body, units = scene.specimen, Units.of(scene.units)
     assert isinstance(body, Dcb)
@@ -71,7 +71,7 @@ def _loads(axes: Axes, thickness: float) -> None:
 
 
 def pull(axes: Axes, foot: tuple[float, float], length: float) -> None:
-    """The arrow of a load that acts across the specimen."""
+    """The arrow of a transverse load."""
     arrow = {"arrowstyle": "-|>", "color": colour("bad"), "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", (foot[0], foot[1] + length), foot, arrowprops=arrow, zorder=5)
 
@@ -110,7 +110,7 @@ def measure(axes: Axes, start: float, end: float, y: float, label: str, ink: str
 
 
 def zone_label(zone: tuple[float, float, float], units: Units) -> str:
-    """Its opening and length in words."""
+    """Opening and length of the process zone in words."""
     start, end, opening = zone
     length = quantity(end - start, units.length, 2)
     return f"process zone at opening {quantity(opening, units.length, 3)}: {length} long"

@@ -13,7 +13,7 @@ from verify.verdict import Run, SceneReport
 
 @dataclass(frozen=True, eq=False)
 class Entry:
-    """A run on the page; ``agreement`` is None without a curve."""
+    """A run on the page; ``agreement`` is None for a run without a curve."""
 
     run: Run
     repeat: int  # how many runs of the same method come before, or of methods of other packages and other codes
@@ -36,7 +36,7 @@ class Entry:
 
     @property
     def legend(self) -> str:
-        """The label, with a word where the curve is no solution of the scene."""
+        """The label, marked for LEFM, whose curve is a limit."""
         return f"{self.label} (limit)" if self.method == "lefm" else self.label
 
     @property
@@ -50,12 +50,12 @@ class Entry:
 
 
 def rank(method: str) -> int:
-    """Place of a method in tables and legends."""
+    """Position of a method in tables and legends."""
     return METHODS.index(method) if method in METHODS else len(METHODS)
 
 
 def short_names(among: Sequence[Entry]) -> dict[Entry, str]:
-    """The method's name for each, or the full label where the method occurs more than once."""
+    """The method's name of each run, or its label where several runs have the same method."""
     methods = [entry.method for entry in among]
     return {entry: entry.label if methods.count(entry.method) > 1 else entry.name for entry in among}
 

@@ -1,4 +1,4 @@
-"""Snapshots of the runs side by side, and the traction along the interface."""
+"""Snapshots of the runs grouped by opening, and the traction along the interface."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def shared_snapshots(runs: Sequence[Entry]) -> list[list[tuple[Entry, Snapshot]]
 
 
 def process_zone(snapshot: Snapshot) -> tuple[float, float] | None:
-    """Start and end of the damaged, not yet open part of the interface; None where nothing is damaged."""
+    """Start and end of the damaged part of the interface that is not fully open; None without damage."""
     s, damage = np.asarray(snapshot.s_q), np.asarray(snapshot.damage_q)
     active = (damage > 1e-9) & (damage < 1 - 1e-9)
     if not active.any():
@@ -45,7 +45,7 @@ def process_zone(snapshot: Snapshot) -> tuple[float, float] | None:
 
 
 def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, small: bool) -> Panel:
-    """Traction along the interface at one opening, all methods over each other; ``small`` for three in a row."""
+    """Traction of all methods along the interface at one opening; ``small``: for three panels in a row."""
     units, strength = Units.of(scene.units), scene.interface.strength
     opening = group[0][1].opening
     zone = process_zone(group[0][1])
@@ -57,7 +57,8 @@ def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, sm
             options = {**entry.line.options(), "marker": ".", "markersize": 2.6 if entry.line.width < 3 else 0}
             axes.plot(snapshot.s_q, snapshot.traction_q, **options)
         window = _window(scene, group)
-        low = min(float(np.nanmin(_inside(s.s_q, s.traction_q, window), initial=0.0)) for _, s in group)
+        inside = [s.traction_q[(s.s_q >= window[0]) & (s.s_q <= window[1])] for _, s in group]
+        low = min(float(np.nanmin(traction_q, initial=0.0)) for traction_q in inside)
         top = 1.22 * strength - 0.08 * max(low, -4 * strength)
         axes.set(xlim=window, ylim=(1.1 * max(low, -4 * strength) - 0.05 * strength, top))
         axes.axhline(strength, color=colour("muted"), linewidth=0.6, dashes=(2, 2))
@@ -83,10 +84,6 @@ def _traction_caption(group: Sequence[tuple[Entry, Snapshot]], units: Units) -> 
     if not zones:
         return head + "The interface is still intact everywhere."
     return f"{head}Process zone, damaged and not yet open: {', '.join(zones)}; marked for {names[group[0][0]]}."
-
-
-def _inside(s: np.ndarray, values: np.ndarray, window: tuple[float, float]) -> np.ndarray:
-    return np.asarray(values)[(s >= window[0]) & (s <= window[1])]
 
 
 def _window(scene: Scene, group: Sequence[tuple[Entry, Snapshot]]) -> tuple[float, float]:

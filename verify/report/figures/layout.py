@@ -1,4 +1,4 @@
-"""Rows of a specimen, one a method: the whole of it, and beside it an enlarged part around the process zone."""
+"""Figures with a row per method: the whole specimen, and an enlarged part around the process zone."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ LEAST_HEIGHT, MOST_HEIGHT = 0.8, 2.2
 
 
 def rows(count: int, height: float, below: float) -> tuple[Figure, list[tuple[Axes, Axes]]]:
-    """A figure with one row a method: the whole specimen, and an enlarged part of the same ``height`` in inches.
+    """A figure with ``count`` rows, each of a wide and a narrow pair of axes of the same ``height`` in inches.
 
-    ``below`` inches are left free at the foot.
+    ``below`` inches are free below the rows.
     """
     between = 0.5
     total = below + count * (height + between)
@@ -45,7 +45,7 @@ def rows(count: int, height: float, below: float) -> tuple[Figure, list[tuple[Ax
 
 
 def frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[Limits, Limits]:
-    """Limits along and across that all snapshots fit into, to scale, grown where a row would be too low or too high."""
+    """Limits along x and y that contain all snapshots to scale, enlarged where a row would be too low or too high."""
     x_ni = np.concatenate([(np.asarray(s.X_euvi) + np.asarray(s.u_euvi)).reshape(-1, 2) for s in snapshots])
     pad = 0.01 * scene.specimen.extent
     left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
@@ -55,7 +55,7 @@ def frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[Limits, Limits]:
 
 
 def zoom(scene: Scene, snapshots: Sequence[Snapshot], height: float) -> tuple[Limits, Limits]:
-    """Limits of the enlarged part, around the first process zone; its frame is ``height`` inches high, to scale."""
+    """Limits of the enlarged part around the first process zone, to scale for axes of ``height`` inches."""
     body = scene.specimen
     zone = next((z for s in snapshots if (z := process_zone(s)) is not None), (body.free_length, body.free_length))
     width = min(max(1.7 * (zone[1] - zone[0]), 5 * body.loaded_thickness), 0.3 * body.extent)
@@ -65,7 +65,7 @@ def zoom(scene: Scene, snapshots: Sequence[Snapshot], height: float) -> tuple[Li
 
 
 def mark(axes: Axes, part: tuple[Limits, Limits]) -> None:
-    """Frame the part that is enlarged beside."""
+    """Draw the frame of the part that is enlarged."""
     (x0, x1), (y0, y1) = part
     frame = Rectangle((x0, y0), x1 - x0, y1 - y0, fill=False, edgecolor=colour("muted"), linewidth=0.6, zorder=5)
     axes.add_patch(frame)

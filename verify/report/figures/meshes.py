@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def deformed(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str) -> Panel | None:
-    """Deformed meshes at true scale, one row a method, the process zone enlarged beside each."""
+    """Deformed meshes at true scale, one row per method, with the process zone enlarged; None without stresses."""
     group = [(entry, snapshot) for entry, snapshot in group if np.size(snapshot.stress_euv)]
     if not group:
         return None
@@ -52,7 +52,7 @@ def deformed(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str) ->
 
 
 def _scale(figure: Figure, limit: float, label: str) -> None:
-    """The colour scale, along the foot of the figure."""
+    """The colour scale at the bottom of the figure."""
     height = figure.get_size_inches()[1]
     place = figure.add_axes((LEFT / WIDE, 0.42 / height, WHOLE / WIDE, 0.09 / height))
     bar = figure.colorbar(ScalarMappable(Normalize(-limit, limit), STRESS_MAP), cax=place, orientation="horizontal")

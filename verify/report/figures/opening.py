@@ -1,6 +1,6 @@
-"""The opening crack in frames, one for each opening: stress in the arms, tractions and the place on the curve.
+"""The growing crack in frames, one per opening: stress in the arms, tractions, and the point on the load curve.
 
-All frames have the same scales, so that only the crack moves from one to the next.
+All frames have the same scales.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from verify.result import Snapshot
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
-#: Pixels an inch of the stress, and between the openings that all runs keep.
+#: Pixels per inch of the stress: at openings that all runs have stored, and at those of the leading run alone.
 _FINE, _COARSE = 150, 75
 
-#: Inches: height of the tractions, gap to the arms above, foot, head, and clear space before the load curve.
+#: Inches: height of the tractions, gap to the arms above, bottom and top margins, space before the load curve.
 _TRACTION, _BETWEEN, _BELOW_TRACTION, _ABOVE_ARMS, _CLEAR = 1.25, 0.3, 0.42, 0.24, 0.05
 
 
@@ -38,13 +38,13 @@ class Frame:
     """One opening."""
 
     opening: str
-    said: str  # for the slider: opening, load, where the crack is
+    text: str  # of the slider: opening, load, process zone
     panel: Panel
 
 
 @dataclass(frozen=True)
 class Scales:
-    """Scales of all frames: the largest stress, the limits along and across, and those of the traction."""
+    """Scales of all frames: largest stress, limits along x and y, limits of the traction."""
 
     stress: float
     x: Limits
@@ -59,9 +59,9 @@ def frames(
     key: str,
     between: bool = True,
 ) -> tuple[Frame, ...]:
-    """Frames of the leading run with the tractions of all runs; empty where fewer than two openings were kept.
+    """Frames of the leading run with the tractions of all runs; empty where fewer than two openings were stored.
 
-    With ``between``, where it has more openings, it is drawn at these as well, alone and with fewer pixels.
+    With ``between``, also at the openings that only the leading run has stored, with fewer pixels.
 
     Parameters
     ----------
@@ -90,25 +90,25 @@ def frames(
 
 
 def _lead(group: Sequence[tuple[Entry, Snapshot]]) -> tuple[Entry, Snapshot] | None:
-    """The run whose arms are drawn: NURBS, or else the first that has a stress."""
+    """The run whose arms are drawn: NURBS, or else the first run with stresses."""
     able = [(entry, snapshot) for entry, snapshot in group if np.size(snapshot.stress_euv)]
     return min(able, key=lambda pair: pair[0].method != "nurbs", default=None)
 
 
 def _one(scene: Scene, lead: tuple[Entry, Snapshot], scales: Scales, picture: Figure, sheet: Bbox, key: str) -> Frame:
     """A picture with its caption."""
-    (entry, snapshot), units, said = lead, Units.of(scene.units), _said(scene, lead[1])
+    (entry, snapshot), units, text = lead, Units.of(scene.units), _text(scene, lead[1])
     whose = entry.label if _between(entry, snapshot) else "all runs with fields"
     caption = (
-        f"{said[:1].upper()}{said[1:]}. True scale, stress to ± {quantity(scales.stress, units.stress, 3)}; below, the "
+        f"{text[:1].upper()}{text[1:]}. True scale, stress to ± {quantity(scales.stress, units.stress, 3)}; below, the "
         f"normal traction of {whose} along the same axis, and on the right the place on the curve."
     )
-    svg = to_svg(picture, key, f"The crack of {scene.name}: {said}", sheet=sheet)
-    return Frame(quantity(snapshot.opening, units.length, 3), said, Panel(svg, caption, "wide"))
+    svg = to_svg(picture, key, f"The crack of {scene.name}: {text}", sheet=sheet)
+    return Frame(quantity(snapshot.opening, units.length, 3), text, Panel(svg, caption, "wide"))
 
 
 def _between(entry: Entry, snapshot: Snapshot) -> bool:
-    """Whether this run alone has kept the opening."""
+    """Whether only this run has stored the opening."""
     return any(snapshot is other for other in entry.result.between)
 
 
@@ -119,7 +119,7 @@ def _picture(
     drawn: Sequence[Entry],
     scales: Scales,
 ) -> Figure:
-    """The arms, the tractions below them, and beside both the curve."""
+    """The arms, the tractions below, and the load curve on the right."""
     (entry, snapshot), x, y = lead, scales.x, scales.y
     height = WHOLE * (y[1] - y[0]) / (x[1] - x[0])
     total = _ABOVE_ARMS + height + _BETWEEN + _TRACTION + _BELOW_TRACTION
@@ -144,7 +144,7 @@ def _picture(
 
 
 def _apart(left: Axes, right: Axes) -> None:
-    """Move the right axes until their numbers and label clear the left ones."""
+    """Move the right axes so that their tick labels do not overlap the left axes."""
     figure, ends, begins = right.figure, left.get_tightbbox(), right.yaxis.get_tightbbox()
     if ends is None or begins is None:
         return
@@ -167,7 +167,7 @@ def _tractions(axes: Axes, scene: Scene, group: Sequence[tuple[Entry, Snapshot]]
 
 
 def _place(axes: Axes, scene: Scene, drawn: Sequence[Entry], entry: Entry, snapshot: Snapshot) -> None:
-    """The curve of the run that is drawn, and where on it the frame is."""
+    """The load curve of the leading run with the point of the frame."""
     units, ink = Units.of(scene.units), colour(entry.line.colour)
     axes.plot(*path(entry.result, 2), **entry.line.options())
     axes.plot(snapshot.opening, snapshot.load, "o", color=ink, markersize=6, zorder=6)
@@ -178,7 +178,7 @@ def _place(axes: Axes, scene: Scene, drawn: Sequence[Entry], entry: Entry, snaps
     axes.locator_params(axis="x", nbins=4)
 
 
-def _said(scene: Scene, snapshot: Snapshot) -> str:
+def _text(scene: Scene, snapshot: Snapshot) -> str:
     """Opening, load and the process zone in words."""
     units, zone = Units.of(scene.units), process_zone(snapshot)
     text = f"opening {quantity(snapshot.opening, units.length, 3)}, load {quantity(snapshot.load, units.force, 3)}"

@@ -26,7 +26,7 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
 
     Parameters
     ----------
-    zone : start and end of the process zone, distances from the loaded end, and the opening at which it was there
+    zone : start and end of the process zone as distances from the loaded end, and the opening
     """
     body, units = scene.specimen, Units.of(scene.units)
     assert isinstance(body, Peel)

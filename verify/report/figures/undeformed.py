@@ -1,7 +1,7 @@
-"""Undeformed meshes: the elements of every run, T-meshes and their T-junctions, the process zone to scale.
+"""Undeformed meshes: the elements of every run, T-meshes and their T-junctions, and the process zone.
 
-The bodies are drawn apart by a constant width of ink, so that the T-junctions on both sides of the bond are seen; the
-process zone is a band between them.
+The bodies are drawn with a constant gap between them, so that the T-junctions on both sides of the bond are visible;
+the process zone is a band in the gap.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 #: Keywords of a matplotlib artist.
 Style = Mapping[str, Any]
 
-#: Inches: least height of a row, room at the foot, and distance between the arms as drawn, filled by the process zone.
+#: Inches: smallest height of a row, height of the legend, gap between the arms, which the process zone fills.
 _LEAST_ROW, _LEGEND, _APART = 0.62, 0.68, 5.0 / 72.0
 
-#: Part of the specimen's length within which a point lies on the bond.
+#: Distance from Y = 0, over the specimen's length, within which a point lies on the bond.
 _ON_BOND = 1e-9
 
 _LINES: Style = {"color": colour("ink"), "linewidth": 0.5, "zorder": 3}
@@ -67,7 +67,7 @@ def followed(scene: Scene, drawn: Sequence[Entry], key: str) -> Panel | None:
 
 
 def zone_at(scene: Scene, snapshot: Snapshot) -> Limits | None:
-    """Where the process zone begins and ends along X; None where nothing is damaged."""
+    """Start and end of the process zone along X; None without damage."""
     zone = process_zone(snapshot)
     if zone is None:
         return None
@@ -76,7 +76,7 @@ def zone_at(scene: Scene, snapshot: Snapshot) -> Limits | None:
 
 
 def bond_element(snapshot: Snapshot, zone: Limits) -> float:
-    """Longest element side on the bond, of either body, that reaches into the process zone; NaN where there is none."""
+    """Longest element side on the bond, of either body, that overlaps the process zone; NaN without one."""
     X_eki = _corners(snapshot)
     ends_nki = np.stack([X_eki, np.roll(X_eki, -1, axis=1)], axis=2).reshape(-1, 2, 2)
     near = _ON_BOND * np.ptp(X_eki[..., 0])
@@ -86,7 +86,7 @@ def bond_element(snapshot: Snapshot, zone: Limits) -> float:
 
 
 def draw(axes: Axes, snapshot: Snapshot, ink: str, frame: tuple[Limits, Limits], zone: Limits | None) -> None:
-    """The mesh within a frame, which the axes get as their limits: elements, T-mesh, T-junctions, process zone."""
+    """Draw the mesh within a frame, the limits of the axes: elements, T-mesh, T-junctions, process zone."""
     x, y = frame
     height = inches(axes)[1]
     apart = 0.5 * _APART / (height - _APART) * (y[1] - y[0])
@@ -109,7 +109,7 @@ def draw(axes: Axes, snapshot: Snapshot, ink: str, frame: tuple[Limits, Limits],
 def _picture(
     scene: Scene, titled: Sequence[tuple[Entry, Snapshot, str]], key: str, title: str, moving: bool
 ) -> tuple[str, float]:
-    """The drawing, and how many times too thick the specimen is on the left; ``moving``: a frame of its own each."""
+    """The drawing, and the factor by which the specimen is too thick on the left; ``moving``: a frame per row."""
     units = Units.of(scene.units)
     whole_frame, height, stretch = _frame(scene, [snapshot for _, snapshot, _ in titled])
     with drawing():
@@ -142,7 +142,7 @@ def _explained(titled: Sequence[tuple[Entry, Snapshot, str]], stretch: float) ->
 
 
 def _counted(snapshot: Snapshot, zone: Limits | None, units: Units) -> str:
-    """Elements in all and in the process zone, and T-junctions, in words."""
+    """Numbers of elements in total and in the process zone, and of T-junctions, in words."""
     text = f"{len(snapshot.X_euvi)} elements"
     text += f", {junctions} T-junctions" if (junctions := len(snapshot.junction_ni)) else ""
     if zone is not None and np.isfinite(element := bond_element(snapshot, zone)):
@@ -152,21 +152,21 @@ def _counted(snapshot: Snapshot, zone: Limits | None, units: Units) -> str:
 
 
 def _last(entry: Entry) -> Snapshot | None:
-    """The last snapshot with a mesh, one with a process zone if there is any."""
+    """The last snapshot with a mesh, and with a process zone if there is one."""
     found = [snapshot for snapshot in entry.result.snapshots if np.size(snapshot.X_euvi)]
     zoned = [snapshot for snapshot in found if process_zone(snapshot) is not None]
     return next(reversed(zoned or found), None)
 
 
 def _changes(entry: Entry) -> list[Snapshot]:
-    """The last snapshots on each of the T-meshes of a run."""
+    """The last snapshot on each of the T-meshes of a run."""
     found = [snapshot for snapshot in entry.result.snapshots if len(snapshot.line_nki)]
     pairs = zip(found, found[1:], strict=False)
     return [before for before, after in pairs if not np.array_equal(before.line_nki, after.line_nki)] + found[-1:]
 
 
 def _distinct(shown: Sequence[tuple[Entry, Snapshot]]) -> list[tuple[list[Entry], Snapshot]]:
-    """Runs by mesh: the same elements and the same T-mesh."""
+    """Runs grouped by mesh: equal elements and equal T-meshes."""
     groups: dict[tuple[bytes, bytes], tuple[list[Entry], Snapshot]] = {}
     for entry, snapshot in shown:
         elements, lines = (
@@ -182,13 +182,13 @@ def _names(entries: Sequence[Entry]) -> str:
 
 
 def _corners(snapshot: Snapshot) -> np.ndarray:
-    """Corners (n_e, 4, 2) in walking order."""
+    """Corners (n_e, 4, 2) in cyclic order."""
     X_euvi = np.asarray(snapshot.X_euvi)
     return np.stack([X_euvi[:, 0, 0], X_euvi[:, -1, 0], X_euvi[:, -1, -1], X_euvi[:, 0, -1]], axis=1)
 
 
 def _frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[tuple[Limits, Limits], float, float]:
-    """Limits of the full view, height of a row in inches, and how much the specimen is stretched through its arms."""
+    """Limits of the full view, height of a row in inches, and stretch of the specimen through its thickness."""
     x_ni = np.concatenate([np.asarray(s.X_euvi).reshape(-1, 2) for s in snapshots])
     pad = 0.01 * scene.specimen.extent
     left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
@@ -207,7 +207,7 @@ def _plot(axes: Axes, lines_nki: np.ndarray, frame: tuple[Limits, Limits], label
 
 
 def _of_arm(lines_nki: np.ndarray, side: float) -> np.ndarray:
-    """Lines of the arm above (+1) or below (-1), each once; lines on the bond, Y = 0, belong to both."""
+    """Lines of the upper (+1) or lower (-1) arm, each once; lines on the bond, Y = 0, belong to both."""
     own = np.sign(lines_nki[..., 1].mean(axis=1)) * side >= 0
     return np.unique(lines_nki[own], axis=0) if own.any() else lines_nki[own]
 

@@ -1,4 +1,4 @@
-"""What other commands have found, on the page of a verification: cost, effects, scaling, hard cases."""
+"""Results of other commands on the page of a verification: cost, effects, scaling, hard cases."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ TITLES = {
     "hard": "Hard cases",
 }
 
-#: Columns of the table of growth: what of ``scaling.json``, and its name.
+#: Columns of the table of growth: entry of ``scaling.json``, and heading.
 GROWTH = {"iteration": "time of an iteration", "peak_memory_mb": "peak memory", "model_memory_mb": "less the program's"}
 
 
 @dataclass(frozen=True)
 class Scaling:
-    """How a study found time and memory to grow, and what more ranks gain: rows of texts.
+    """Tables of a study of scaling, as rows of texts.
 
     growth : method, and an exponent with its standard error for each of `GROWTH`
-    shared : unknowns, ranks, speed-up of an iteration, efficiency, part that is not shared, speed-up of each of `PARTS`
+    shared : unknowns, ranks, speed-up of an iteration, efficiency, serial part, speed-up of each of `PARTS`
     """
 
     growth: tuple[tuple[str, ...], ...]
@@ -52,10 +52,10 @@ class Scaling:
 
 @dataclass(frozen=True, eq=False)
 class IncludedSection:
-    """A study as the template prints it: of ``chart``, ``effects``, ``scaling`` and ``hard`` what its command found.
+    """A study for the template; of ``chart``, ``effects``, ``scaling`` and ``hard`` only that of its command is set.
 
-    prefix : leads from the page to the folder of the study
-    runs : and to the runs of its scene
+    prefix : relative path from the page to the folder of the study
+    runs : relative path to the runs of its scene
     """
 
     anchor: str
@@ -78,7 +78,7 @@ class IncludedSection:
 
     @property
     def columns(self) -> dict[str, tuple[str, str]]:
-        """Of the table of effects."""
+        """Columns of the table of effects."""
         return BARS
 
 
@@ -132,7 +132,7 @@ def _scaling(study: Included, anchor: str) -> dict[str, Any]:
 
 
 def _exponent(fit: dict[str, float | None] | None) -> str:
-    """1.02 ± 0.01, where there is a fit."""
+    """1.02 ± 0.01, or no value without a fit."""
     exponent, error = (None, None) if fit is None else (fit["exponent"], fit["standard_error"])
     return NO_VALUE if exponent is None or error is None else power(Fit(exponent, error, 1.0))
 
@@ -167,5 +167,5 @@ def _row(name: str, verdicts: Mapping[tuple[str, str], Verdict]) -> HardRow:
 
 
 def sections(studies: Sequence[Included], out: Path) -> tuple[IncludedSection, ...]:
-    """All of them, in the order in which they are given."""
+    """The sections of all studies, in their order."""
     return tuple(section(study, out, f"study-{i + 1}") for i, study in enumerate(studies))

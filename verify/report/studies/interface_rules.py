@@ -14,7 +14,7 @@ DRAWN = (("gauss", 2, "bad"), ("lobatto", 4, "lagrange"), ("lumped", None, "nurb
 
 @dataclass(frozen=True)
 class StudySection:
-    """A section of its own, after the scenes."""
+    """The section of the study, after those of the scenes."""
 
     anchor: str
     finding: str
@@ -25,7 +25,7 @@ class StudySection:
 
 
 def section(study: Study, anchor: str) -> StudySection:
-    """Everything that the template prints of the study."""
+    """The content of the template."""
     methods = tuple(dict.fromkeys(trial.method for trial in study.trials))
     ductilities = tuple(dict.fromkeys(trial.ductility for trial in study.trials))
     rules = tuple(dict.fromkeys((trial.rule, trial.points) for trial in study.trials))
@@ -55,7 +55,7 @@ def _name(rule: str, points: int | None) -> str:
 
 
 def _tractions(study: Study, method: str, ductility: float, key: str) -> Panel:
-    """Traction ahead of the crack by three rules, over that of the beam."""
+    """Traction ahead of the crack with three rules, and that of the beam."""
     units, strength = Units.of(study.scene.units), study.scene.interface.strength
     beam = dict(study.beams)[ductility]
     with drawing():

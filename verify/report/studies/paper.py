@@ -1,4 +1,4 @@
-"""Figures of the paper on the page: statements with verdicts, converged curves, figures, and tables of all runs."""
+"""Figures of the paper on the page: statements with verdicts, converged curves, figures, tables of all runs."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from verify.studies.paper.statement import Statement, counted
 from verify.studies.paper.statements import identities, statements
 from verify.studies.paper.study import Study, Trial
 
-#: Measure -> heading of its table, of Figures 6 to 8.
-TABLES = {
+#: Measure -> heading of its table, for Figures 6 to 8.
+TABLE_TITLES = {
     "error": "Curve distance to the converged curve",
     "oscillation": "Oscillation on the propagation branch",
 }
@@ -57,13 +57,13 @@ _BELOW_STRIPS = (
 #: The text where there is no value.
 _NONE = "–"
 
-#: The text of a cell, and whether its run stopped.
+#: Text of a cell, and whether its run stopped.
 Cell = tuple[str, bool]
 
 
 @dataclass(frozen=True)
 class Head:
-    """A basis or another name, at the top of a column or the begin of a row; ``folder`` is that of a run."""
+    """The heading of a column or a row, such as a basis with its line style; ``folder`` is that of a run."""
 
     name: str
     line: Line | None = None
@@ -78,7 +78,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Table:
-    """Rows in groups with a name or none; the first of ``heads`` is that of the heads of the rows."""
+    """A table with groups of rows, named or not; the first of ``heads`` is above the headings of the rows."""
 
     heading: str
     caption: str
@@ -89,7 +89,7 @@ class Table:
 
 @dataclass(frozen=True)
 class PaperSection:
-    """What the template prints; nothing but ``left_out`` where there is no run."""
+    """The content of the template; only ``left_out`` where there is no run."""
 
     anchor: str
     title: str
@@ -106,7 +106,7 @@ class PaperSection:
 
 
 def section(study: Study, anchor: str) -> PaperSection:
-    """Everything that the template prints of the study."""
+    """The section of a study."""
     found, stopped = statements(study), [trial for trial in study.trials if not trial.complete]
     beams, some = study.figures is BEAMS, bool(study.trials)
     return PaperSection(
@@ -126,7 +126,7 @@ def section(study: Study, anchor: str) -> PaperSection:
 
 
 def _references(study: Study) -> Iterator[str]:
-    """What the converged curve of every problem is, and how well it is known."""
+    """A sentence on the converged curve of every problem and its error."""
     for scene, penalty in dict.fromkeys(trial.case.problem for trial in study.trials):
         known = study.references.get((scene, penalty))
         name = f"{LAWS[scene]}, penalty {number(penalty)}" if penalty else f"Bond {_bond(study, scene)}"
@@ -138,10 +138,10 @@ def _references(study: Study) -> Iterator[str]:
 
 
 def _by_points(study: Study) -> Iterator[Table]:
-    """A table a measure: a row for every basis and penalty, a cell for every number of points."""
+    """A table per measure: a row per basis and penalty, a cell per number of points."""
     bases, points, penalties = (study.values(name) for name in ("basis", "points", "penalty"))
     heads = (Head("Basis"), Head("Penalty"), *(Head(f"{n} points") for n in points))
-    for measure, title in TABLES.items():
+    for measure, title in TABLE_TITLES.items():
         groups = []
         for law, dofs in product(study.values("scene"), study.values("dofs")):
             rows = []
@@ -155,7 +155,7 @@ def _by_points(study: Study) -> Iterator[Table]:
 
 
 def _by_bond(study: Study) -> Iterator[Table]:
-    """One table: a group of rows a measure, a row for every bond with a cell for every basis."""
+    """One table: a group of rows per measure, a row per bond, a cell per basis."""
     bases = study.values("basis")
     heads = (Head("Bond"), *(Head(METHOD_NAMES[basis], line(basis)) for basis in bases), Head("Converged"))
     columns = {bond: [*(_measured(study, Case(b, bond)) for b in bases), _fine(study, bond)] for bond in study.scenes}
@@ -167,7 +167,7 @@ def _by_bond(study: Study) -> Iterator[Table]:
 
 
 def _lost(trial: Trial | None) -> Cell | None:
-    """The cell of a run that did not come to its end."""
+    """The cell of a run that is missing or stopped; None for a complete run."""
     if trial is None:
         return _NONE, False
     return None if trial.complete else ("no curve" if trial.drawn is None else "stopped", True)
@@ -204,7 +204,7 @@ def _cells(study: Study, bond: str, result: Result, own: tuple[float, float, flo
 
 
 def _all_runs(study: Study) -> Table:
-    """Everything about every run."""
+    """The table of all runs with all measures."""
     rows = []
     for trial in study.trials:
         head = Head(_name(study, trial.case), folder=f"{trial.case.scene}/{trial.case.variant}")
@@ -214,7 +214,7 @@ def _all_runs(study: Study) -> Table:
 
 
 def _texts(trial: Trial) -> tuple[str, ...]:
-    """For each of `_OF_A_RUN` but the last."""
+    """Texts for all columns of `_OF_A_RUN` except the last."""
     measures = map(_percent, (trial.error, trial.oscillation, trial.variation, trial.peak))
     if (result := trial.result) is None:
         return (*measures, *(_NONE,) * 4)

@@ -1,4 +1,4 @@
-"""Figures 6 to 9: load over opening by basis, how far from the converged curve, and what interface points change."""
+"""Figures 6 to 9: load over opening, deviation from the converged curve, influence of the interface points."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from verify.pages.text import Units, axis, percent, quantity, span
 from verify.studies.paper.plan import BEAMS, LAWS, Case
 from verify.studies.paper.study import Reference, Study, Trial, curve
 
-#: The converged curve, whoever computed it; the path of a run, and what displacement control would show of it.
+#: Line of the converged curve; line widths of the path of a run and of its envelope.
 REFERENCE = Line("muted", 3.4, (), 0.45, 2.0)
 PATH_WIDTH, ENVELOPE_WIDTH = 0.6, 1.7
 
@@ -27,7 +27,7 @@ _LOAD_NOTE = (
 )
 _DEVIATION_NOTE = (
     "Deviation of the load on the propagation branch. The band around zero is what a coarser mesh of the converged "
-    "curve differs from it: below that nothing is said."
+    "curve differs from it; smaller deviations are not significant."
 )
 _SWEEP_NOTE = "Envelopes of the paths, stronger with more points, over the converged curve (broad and grey)."
 _POINTS_NOTE = "Solid: the finer mesh. Dashed: the coarser one. A run that stopped leaves a gap."
@@ -37,7 +37,7 @@ _STRIPS_NOTE = (
 )
 _STRIPS_APART_NOTE = (
     "Deviation of the load from 30 % after the peak on. The band around zero is what a coarser mesh of the converged "
-    "curve differs from it: below that nothing is said."
+    "curve differs from it; smaller deviations are not significant."
 )
 
 #: Measure -> label of its axis.
@@ -54,7 +54,7 @@ class FigureGroup:
 
 
 def figures(study: Study, key: str) -> tuple[FigureGroup, ...]:
-    """All groups that have a panel."""
+    """All groups with at least one panel."""
     groups = _of_beams(study, key) if study.figures is BEAMS else _of_strips(study, key)
     return tuple(group for group in groups if group.panels)
 
@@ -147,7 +147,7 @@ def _sweep(study: Study, case: Case, key: str) -> Panel:
 
 
 def _deviation(study: Study, case: Case, key: str) -> Panel:
-    """load / reference - 1 of all bases, and the band in which nothing is said."""
+    """load / reference - 1 of all bases, and the band of the error of the reference."""
     units, beam = Units.of(study.scenes[case.scene].units), study.figures is BEAMS
     known = study.references[case.problem]
     trials = {basis: study.trial(Case(basis, case.scene, case.dofs)) for basis in study.values("basis")}
@@ -216,7 +216,7 @@ def _path(axes: Axes, trial: Trial | None) -> None:
 
 
 def _frame(study: Study, case: Case, axes: Axes) -> None:
-    """The same axes for all bases with one law on one mesh; LEFM is in them, with its peak."""
+    """Set the axes, which are equal for all bases with one law on one mesh and contain LEFM with its peak."""
     units = Units.of(study.scenes[case.scene].units)
     same = [t for t in study.trials if (t.case.scene, t.case.dofs) == (case.scene, case.dofs)]
     loads = [t.drawn.load for t in same if t.drawn is not None] + [load for _, load in study.limits.values()]
@@ -236,7 +236,7 @@ def _below(trial: Trial | None) -> str:
 
 
 def _below_all(trials: Sequence[Trial]) -> str:
-    """The numbers under a panel of all bonds, over those that came to their end."""
+    """The numbers under a panel of all bonds, from the complete runs."""
     done = [t for t in trials if t.complete]
     if not done or not all(isfinite(t.error) for t in done):
         return ""

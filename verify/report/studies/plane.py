@@ -30,7 +30,7 @@ class Row:
 
 @dataclass(frozen=True)
 class PlaneSection:
-    """Everything that the template prints of one file."""
+    """The content of the template for one file."""
 
     anchor: str
     name: str
@@ -143,7 +143,7 @@ def _frame(X_euvi: np.ndarray) -> tuple[Limits, Limits]:
 
 
 def _convergence(study: PlaneStudy, key: str) -> Panel:
-    """Errors over the unknowns per direction, with the expected slopes."""
+    """Errors over the square root of the unknowns, with the expected slopes."""
     h = np.array([level.unknowns for level in study.levels]) ** -0.5
     L2, energy = np.array([(v.errors.displacement, v.errors.energy) for v in study.levels]).T
     with drawing():

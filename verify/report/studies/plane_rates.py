@@ -15,7 +15,7 @@ from verify.verdict import Check, Counts, counted
 
 @dataclass(frozen=True)
 class RatesSection:
-    """Everything that the template prints of the families."""
+    """The content of the template for all families."""
 
     anchor: str
     name: str

@@ -1,9 +1,9 @@
-"""``debond solve --accuracy``: the first guess of method and mesh, and how long a run on it will take.
+"""``debond solve --accuracy``: choice of method and first mesh, and prediction of the time of the run.
 
-Where a study of the same scene is at hand its front decides. Otherwise the elements that must span the process zone
-are read off `known.csv`, which says where its numbers come from; a trial of a few steps on the chosen mesh tells the
-time of an iteration, on this machine and now, and the length of the crack to be grown how many there will be. The guess
-is verified by solving on finer meshes (`verify.studies.cost.verified`).
+Where ``debond cost`` has studied the same scene, its Pareto front decides. Otherwise the number of elements in the
+process zone is interpolated in `known.csv`, whose header has the origin of the numbers. A trial of a few steps on the
+chosen mesh measures the time of an iteration; the number of iterations follows from the expected crack growth. The
+choice is verified by solving on finer meshes (`verify.studies.cost.verified`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from verify.runs.environment import machine
 from verify.runs.estimate import steps
 from verify.runs.fingerprint import source
 from verify.scene.parse import SceneError, parse_scene
-from verify.scene.schema import STEPS, Scene
+from verify.scene.schema import DEFAULT_STEPS, Scene
 from verify.studies.cost.ladder import LADDER
 from verify.support.checked_files import Damaged, read_json
 from verify.support.progress import duration
@@ -41,16 +41,16 @@ METHOD, REFINED = "nurbs", (*WITH_DOFS, "dolfinx")
 
 @dataclass(frozen=True)
 class Guess:
-    """What the first guess rests on.
+    """Constants of the first choice.
 
-    finest, coarsest : accuracies that can be asked for
-    safety : elements that are taken over those of the table
-    largest : unknowns that a scene may have at most
-    through : a quadratic element through an arm is chosen where it costs at most this part of the accuracy
-    bend : for steps "auto": how far off its tangent the load may be, as a part of the accuracy
-    iterations : Newton iterations a step of finite kinematics, as long as those of the trial: 3.0 to 4.0 on random
-        scenes, and those after damage begins take longer. A linear bulk takes one
-    trial, trial_steps : a trial goes this part of the way in about so many steps
+    finest, coarsest : range of accuracies
+    safety : number of elements over that of the table; larger values cost time and make a second choice rarer
+    largest : largest number of unknowns
+    through : part of the accuracy up to which the error of one quadratic element through an arm is allowed
+    bend : for steps "auto": allowed distance of the load from its tangent, over the accuracy
+    iterations : Newton iterations per step with finite kinematics, in units of those of the trial: 3.0 to 4.0 on random
+        scenes, and iterations with damage take longer. A linear bulk needs one
+    trial, trial_steps : part of the programme that a trial runs, and its number of steps
     """
 
     finest: float = 0.0005
@@ -66,7 +66,7 @@ class Guess:
 
 GUESS = Guess()
 
-#: What is read of a study.
+#: Layout of the part of ``cost.json`` that is read.
 _STUDY = {
     "scene": dict,
     "machine": dict,
@@ -84,7 +84,7 @@ _STUDY = {
 
 @dataclass(frozen=True)
 class Choice:
-    """What to run first for an accuracy: overrides of the scene, and the words that say so beforehand."""
+    """The first run for an accuracy: method, overrides of the scene, expected time, and the reasons in words."""
 
     method: str
     overrides: tuple[str, ...]
@@ -93,15 +93,15 @@ class Choice:
 
 
 def choose(scene: Scene, accuracy: float, study: Path) -> Choice:
-    """First guess of method and mesh for a curve error of at most ``accuracy``, with the effects of the scene.
+    """Choice of method and first mesh for a curve error of at most ``accuracy``, with the effects of the scene.
 
     Parameters
     ----------
-    study : a ``cost.json``, which counts if it is of the same scene and machine and of this source
+    study : path of a ``cost.json``; used if it is of the same scene, machine and version of the source
 
     Raises
     ------
-    Refusal : an accuracy beyond what is known, or a scene of which no mesh is fine enough.
+    Refusal : an accuracy out of range, or a scene for which no mesh is fine enough.
     """
     if not GUESS.finest <= accuracy <= GUESS.coarsest:
         raise Refusal(f"--accuracy: must be >= {GUESS.finest:.2%} and <= {GUESS.coarsest:.0%}, got {100 * accuracy:g}%")
@@ -125,7 +125,7 @@ def _from_study(scene: Scene, accuracy: float, path: Path) -> Choice | None:
 
 
 def _same_study(scene: Scene, path: Path) -> Sequence[Mapping[str, Any]]:
-    """Runs of a study of the same problem, machine and source, the quickest first; none of one that is damaged."""
+    """Runs of the study, quickest first; empty if it is damaged or of another problem, machine or source."""
     if not path.exists():
         return ()
     try:
@@ -153,21 +153,21 @@ def _from_table(scene: Scene, accuracy: float) -> Choice:
 
 
 def _steps(scene: Scene, accuracy: float) -> tuple[str, ...]:
-    """At least as many steps as the scene asks for, or steps by accuracy that are as short as the scene's."""
+    """At least the number of steps of the scene, or for steps "auto" a bend no larger than that of the scene."""
     asked = scene.discretization
     if asked.steps == "auto":
         return (f"discretization.bend={min(asked.bend, max(GUESS.bend * accuracy, 1e-5))!r}",)
-    return (f"discretization.steps={max(asked.steps, STEPS)}",)
+    return (f"discretization.steps={max(asked.steps, DEFAULT_STEPS)}",)
 
 
 def iterations(scene: Scene, method: str) -> float:
-    """Newton iterations of a whole run, about."""
+    """Estimated number of Newton iterations of a run."""
     finite = prepare(scene, method).effects["kinematics"] == "finite"
     return (GUESS.iterations if finite else 1.0) * steps(scene, method)
 
 
 def elements_for(accuracy: float) -> float:
-    """Elements that span the process zone where the curve error of every scene in the table is at most this."""
+    """Elements in the process zone for which the curve error of every scene in the table is at most ``accuracy``."""
     with KNOWN.open(newline="") as stream:
         rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
     scenes = dict.fromkeys(row["scene"] for row in rows)
@@ -175,9 +175,9 @@ def elements_for(accuracy: float) -> float:
 
 
 def _crossing(rows: Sequence[Mapping[str, str]], accuracy: float) -> float:
-    """Where the error comes below a value for good; beyond the table on with its slope.
+    """Number of elements from which on the error stays below ``accuracy``; extrapolated beyond the table.
 
-    A mesh that a finer one is worse than is good by chance, and does not count.
+    A mesh with a smaller error than a finer mesh is good by chance and does not count.
     """
     e, error = (np.log([float(row[key]) for row in rows]) for key in ("elements", "curve_error"))
     counts = error == np.maximum.accumulate(error[::-1])[::-1]
@@ -188,9 +188,9 @@ def _crossing(rows: Sequence[Mapping[str, str]], accuracy: float) -> float:
 
 
 def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tuple[str, ...]:
-    """Overrides for a mesh of a method of `iga` with at least so many elements in the process zone.
+    """Overrides for a mesh of an `iga` method with at least ``elements`` elements in the process zone.
 
-    The mesh has the degree through the arms, too: coarse meshes of higher degree are quadratic there.
+    The mesh has this degree through the arms as well, where coarse meshes of higher degree are quadratic.
 
     Raises
     ------
@@ -215,9 +215,9 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
 
 
 def predicted_seconds(scene: Scene, method: str, iterations: float) -> float:
-    """Time of a run of so many Newton iterations, from a few steps on the same mesh.
+    """Time of a run with this number of Newton iterations, from a trial of a few steps on the same mesh.
 
-    An iteration, with what belongs to it, takes the median over these steps; the rest is for what is done once.
+    The time of an iteration is the median over these steps; the rest of the trial is the set-up.
     """
     begun = max(map(abs, scene.load.opening)) * GUESS.trial
     short = (f"load.opening={begun!r}", f"discretization.steps={GUESS.trial_steps}")

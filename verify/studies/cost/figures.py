@@ -38,7 +38,7 @@ def named(row: Row) -> str:
 
 
 def work_precision(rows: Sequence[Row], key: str) -> Panel:
-    """Error against time, for a page without scripts: all runs, and those that no other beats."""
+    """Error against time, for a page without scripts: all runs, and the Pareto front."""
     with drawing():
         figure, axes = panel(HALF * 1.5, 3.6)
         for row in rows:
@@ -102,7 +102,7 @@ def triple(rows: Sequence[Row], key: str) -> tuple[Panel, ...]:
 
 
 def phases(rows: Sequence[Row], key: str) -> Panel:
-    """Where the time of the cheapest runs goes."""
+    """Bars of the time by phase of the cheapest runs."""
     with drawing():
         left_margin = 0.3 + 0.062 * max(len(named(row)) + 7 for row in rows)
         figure, axes = panel(HALF * 1.5, 0.3 * len(rows) + 0.85, left=left_margin, top=0.4)

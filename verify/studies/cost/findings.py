@@ -1,4 +1,4 @@
-"""What the rows say: the cheapest run for every accuracy, ratios, observed orders, growth of the cost."""
+"""Evaluation of the rows: the cheapest run for every accuracy, ratios, observed orders, growth of the cost."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ import numpy as np
 from verify.studies.cost.ladder import LADDER
 from verify.studies.cost.row import Row
 
-#: Errors of the curve that are asked for, as people write them.
+#: Accuracies for which the cheapest runs are found: curve errors by their text.
 LEVELS: Mapping[str, float] = {"1%": 0.01, "0.3%": 0.003, "0.1%": 0.001}
 
-#: A theory with an error of its own, which no mesh makes smaller; it is compared and never called the cheapest.
+#: Methods with an error of their theory, which no mesh reduces: compared, but never the cheapest.
 THEORIES = ("beam",)
 
-#: An order is read off no more rungs than these, the finest ones.
+#: Number of finest meshes from which an order is fitted.
 RUNGS_OF_AN_ORDER = 4
 
 
 @dataclass(frozen=True)
 class Cheapest:
-    """The cheapest run of all methods with a mesh for an accuracy, and of every method.
+    """The cheapest run for an accuracy, over all methods with a mesh and for each method.
 
-    ratio : seconds of every other method's cheapest run over its own; a method that never gets there has none
+    ratio : time of each other method's cheapest run over that of the best; only methods that reach the accuracy
     """
 
     level: str
@@ -63,7 +63,7 @@ def of_equal_steps(rows: Sequence[Row]) -> list[Row]:
 
 
 def pareto(rows: Sequence[Row]) -> list[Row]:
-    """Runs that no other beats in both error and time, the quickest first."""
+    """The Pareto front of error and time, quickest run first."""
     kept: list[Row] = []
     for row in sorted((row for row in rows if row.measured), key=lambda row: (row.seconds, row.curve_error)):
         if not kept or row.curve_error < kept[-1].curve_error:
@@ -81,10 +81,10 @@ def by_family(rows: Sequence[Row]) -> dict[str, list[Row]]:
 
 
 def orders(rows: Sequence[Row], floor: float) -> dict[str, float]:
-    """Observed p of curve error ~ unknowns^-p on the finest rungs of every family; NaN for fewer than three.
+    """Observed order p of curve error ~ unknowns^-p on the finest meshes of every family; NaN for fewer than three.
 
-    Along a thin specimen the unknowns grow as one over the element length. Errors below ``floor``, where the
-    reference's own would be measured, are left out.
+    Along a thin specimen the number of unknowns is proportional to one over the element length. Errors below ``floor``
+    are left out, as they contain the error of the reference.
     """
     found = {}
     for name, ladder in sorted(by_family(rows).items()):
@@ -115,7 +115,7 @@ def slope(rows: Sequence[Row], value: Callable[[Row], float]) -> float:
 
 
 def _sizes(rows: Sequence[Row]) -> int:
-    """How many meshes."""
+    """Number of different meshes."""
     return len({row.dofs for row in rows if row.dofs})
 
 

@@ -1,4 +1,4 @@
-"""Which meshes are tried: for every basis and degree a ladder whose rungs divide the process zone ever more finely."""
+"""The meshes of the study: for every basis and degree a sequence with ever more elements in the process zone."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from verify.scene.schema import Scene
 
 @dataclass(frozen=True)
 class Ladder:
-    """The runs of a family.
+    """Constants of the runs of a family.
 
-    ratio, rungs : the finer of two rungs has so many times the elements of the other, and a ladder so many rungs
-    steps : asked for in the first place, enough for the sharp peak of ``peel-120``
-    few_steps : for every mesh that is accurate. The ``iga`` path chooses its own, few where it is asked to, fewer where
-        they may leave their tangents further; those of the DOLFINx path are counted, and the front adds to them
-    other_steps : for the best meshes
-    more_points : integration points an element on the interface beyond the degree, for the ``iga`` methods. They cost
-        next to nothing: on ``dcb-czm1`` with 500 unknowns 5 points instead of 2 take the error of cubic NURBS from 0.43
-        to 0.17 %, of T-splines from 0.20 to 0.13 %, of Lagrange elements from 3.3 to 0.6 %. DOLFINx has three more
+    ratio, rungs : ratio of the numbers of elements of successive meshes, and number of meshes
+    steps : number of steps of the first runs, enough for the sharp peak of ``peel-120``
+    few_steps : settings of the steps that are tried on accurate meshes to save time. ``iga`` chooses its steps; the
+        number after "auto" is the allowed distance from the tangent. DOLFINx counts steps and adds some for the zone
+    other_steps : numbers of steps that are tried on the best meshes
+    more_points : interface points per element beyond the degree, for the ``iga`` methods. They cost little: on
+        ``dcb-czm1`` with 500 unknowns 5 points instead of 2 reduce the error of cubic NURBS from 0.43 to 0.17 %, of
+        T-splines from 0.20 to 0.13 %, of Lagrange elements from 3.3 to 0.6 %. DOLFINx has three more
     """
 
     ratio: float = 1.4
@@ -41,13 +41,13 @@ LADDER = Ladder()
 
 @dataclass(frozen=True)
 class Family:
-    """A method with a degree: the meshes of one ladder.
+    """A method with a degree, and its sequence of meshes.
 
-    ``first`` is the number of elements that span the process zone on the coarsest one.
+    ``first`` is the number of elements in the process zone on the coarsest mesh.
     """
 
-    method: str  # as the tables call it
-    solver: str  # as ``debond solve`` does
+    method: str  # name in the tables
+    solver: str  # name for ``debond solve``
     degree: int
     first: float
 
@@ -68,11 +68,11 @@ BEAM = Family("beam", "beam", 0, 0.0)
 
 @dataclass(frozen=True)
 class Try:
-    """One run of the study: a rung of a ladder, a number of steps asked for, the first or a repeated time."""
+    """One run of the study: a mesh of a family, a setting of the steps, the number of the repetition."""
 
     family: Family
     rung: int
-    size: int  # ``dofs`` or ``elements``, as the method counts
+    size: int  # ``dofs`` or ``elements``, as the method sets its mesh
     steps: int | str
     repeat: int = 0
 
@@ -82,12 +82,12 @@ class Try:
         return f"cost/{self.family.name}{size}-{self.steps}-steps" + (f"-again-{self.repeat}" if self.repeat else "")
 
     def job(self, source: str, scene: Scene, given: Sequence[str] = ()) -> Job:
-        """The run; ``given`` are the overrides that the whole study has."""
+        """The job; ``given`` are the overrides of the whole study."""
         own = _overrides(self.family, scene, self.size, self.steps)
         return Job(source, scene, self.family.solver, self.variant, (*given, *own), repeat=self.repeat)
 
     def with_few_steps(self) -> Iterator[Try]:
-        """The same mesh with as few steps as the path takes."""
+        """The same mesh with few steps."""
         if self.family is not BEAM:
             yield from (replace(self, steps=few) for few in self._few_steps)
 
@@ -102,7 +102,7 @@ class Try:
 
 
 def ladder(scene: Scene, family: Family) -> list[Try]:
-    """The rungs of a family on a scene, coarse to fine; none where no mesh is possible."""
+    """The meshes of a family on a scene, coarse to fine; empty where no mesh is possible."""
     if family.solver == "beam":
         return [Try(family, rung, 0, steps) for rung, steps in enumerate((LADDER.steps, *LADDER.other_steps))]
     each = size_of_an_element(scene, family)
@@ -113,7 +113,7 @@ def ladder(scene: Scene, family: Family) -> list[Try]:
 
 
 def ladders(source: str, scene: Scene, given: Sequence[str]) -> tuple[dict[Family, list[Try]], list[str]]:
-    """Rungs of every family of which there is a mesh, and a sentence for every method that cannot solve the scene."""
+    """The meshes of every family with at least one, and a sentence for every method that cannot solve the scene."""
     found: dict[Family, list[Try]] = {}
     reasons: dict[str, str] = {}
     for family in (*FAMILIES, BEAM):
@@ -131,7 +131,7 @@ def ladders(source: str, scene: Scene, given: Sequence[str]) -> tuple[dict[Famil
 
 
 def _overrides(family: Family, scene: Scene, size: int, steps: int | str) -> tuple[str, ...]:
-    """As the DOLFINx model keeps its pairs of points for good, ``iga`` does, too, where the arms are alike."""
+    """Overrides of a mesh. With equal arms ``iga`` has fixed pairs of points like DOLFINx, so that models are equal."""
     asked, _, bend = str(steps).partition("-")
     paced = (f"discretization.steps={asked}", *((f"discretization.bend={bend}",) if bend else ()))
     if family.solver == "beam":
@@ -150,9 +150,9 @@ def _overrides(family: Family, scene: Scene, size: int, steps: int | str) -> tup
 
 
 def size_of_an_element(scene: Scene, family: Family) -> float:
-    """Unknowns, or elements along the specimen, for every element that is to span the process zone; NaN without a mesh.
+    """Unknowns, or elements along the specimen, per element in the process zone; NaN without a mesh.
 
-    Both grow in proportion. Of a mesh that follows the zone only the parts around it count: as many as if it stood.
+    Both are proportional. For an adaptive mesh it is the number of the corresponding fixed mesh.
     """
     now = scene.discretization.dofs if family.solver != "dolfinx" else scene.dolfinx.elements
     given = parse_scene(scene.model_dump(), _overrides(replace(family, method=family.solver), scene, now, LADDER.steps))

@@ -1,4 +1,4 @@
-"""How many entries the tangent of an ``iga`` run has, counted on a mesh built for it: no solver is asked to count."""
+"""Number of nonzero entries of the tangent of an ``iga`` run, counted on its mesh outside of the solver."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from verify.scene.schema import Scene
 
 
 def nonzeros(scene: Scene, method: str) -> int:
-    """Pairs of unknowns that share an element or an interface point, before anything moves; 0 for other methods."""
+    """Pairs of unknowns that share an element or an interface point, undeformed; 0 for other methods."""
     if method not in WITH_DOFS:
         return 0
     solver, problem = prepare(scene, method).problem
     system = solver.build(problem).system
-    together = [np.asarray(solid.basis.conn_ea) for solid in system.solids] + [_touching(system.interface)]
+    connected = [np.asarray(solid.basis.conn_ea) for solid in system.solids] + [_touching(system.interface)]
     n = system.n_dof // 2
-    pairs = [np.unique(conn[:, :, None] * n + conn[:, None, :]) for conn in together]
+    pairs = [np.unique(conn[:, :, None] * n + conn[:, None, :]) for conn in connected]
     return 4 * int(np.unique(np.concatenate(pairs)).size)
 
 

@@ -1,4 +1,4 @@
-"""The study as a page: one self-contained HTML file with a chart that answers questions."""
+"""The study as a page: one self-contained HTML file with an interactive chart."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
 
 _SCRIPT = Path(__file__).with_name("chart.js")
 
-#: What the chart can show on its axes: key of a row, name, factor.
-ACROSS = (
+#: Quantities for the axes of the chart: field of a row, label, factor.
+X_AXES = (
     ("seconds", "seconds", 1),
     ("dofs", "unknowns", 1),
     ("nonzeros", "entries of the tangent", 1),
     ("newton_iterations", "Newton iterations", 1),
     ("peak_memory_mb", "peak memory (MB)", 1),
 )
-UP = (
+Y_AXES = (
     ("curve_error", "curve error (%)", 100),
     ("peak_error", "error of the peak load (%)", 100),
     ("energy_error", "error of the dissipated energy (%)", 100),
@@ -41,7 +41,7 @@ UP = (
 
 @dataclass(frozen=True)
 class Level:
-    """What an accuracy costs, at each method's best number of steps and at the same one."""
+    """The cost of an accuracy: with each method's best number of steps, and with equal steps."""
 
     name: str
     best: Cheapest
@@ -59,7 +59,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Chart:
-    """What the template of the chart prints; ``data`` is for the script, ``static`` for a page without."""
+    """Content of the template of the chart; ``data`` for the script, ``static`` for pages without scripts."""
 
     across: tuple[tuple[str, str, int], ...]
     up: tuple[tuple[str, str, int], ...]
@@ -71,11 +71,11 @@ class Chart:
 def chart(rows: Sequence[Row], key: str) -> Chart:
     """The chart of some runs; ``key`` is unique in the page."""
     methods = {method: METHODS[method] for method in METHODS if any(row.method == method for row in rows)}
-    return Chart(ACROSS, UP, methods, _for_script(rows), work_precision(rows, f"{key}-work-precision"))
+    return Chart(X_AXES, Y_AXES, methods, _for_script(rows), work_precision(rows, f"{key}-work-precision"))
 
 
 def script() -> Markup:
-    """What makes the charts of a page answer."""
+    """The script of the charts."""
     return Markup(_SCRIPT.read_text(encoding="utf-8"))
 
 

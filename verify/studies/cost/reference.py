@@ -1,4 +1,4 @@
-"""The converged curve that every run is held against, with its own uncertainty, and what another code says of it."""
+"""The converged curve with which every run is compared, its uncertainty, and the distance of another code."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from verify.studies.cost.ladder import Family, Try, size_of_an_element
 
 @dataclass(frozen=True)
 class Meshes:
-    """Those of the reference.
+    """Meshes of the reference.
 
-    zone, other_zone : elements that span the process zone, and those of the other code, of degree 3
-    steps : asked for
-    caution : where no order is observed, the distance of the two finest meshes is multiplied by this (Roache 1994)
+    zone, other_zone : elements in the process zone, of the reference and of the other code; both have degree 3
+    steps : number of steps
+    caution : factor on the distance of the two finest meshes where no order is observed (Roache 1994)
     """
 
     zone: tuple[float, ...] = (4.0, 8.0, 16.0)
@@ -37,11 +37,11 @@ MESHES = Meshes()
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """The finest of three meshes.
+    """The result on the finest of three meshes.
 
-    uncertainty : of curve, peak load and dissipated energy, relative; grid convergence index of the three meshes
-    order : observed order of the curve, NaN where there is none
-    apart : relative L2 distance of the other code's finest curve, NaN where there is no other code
+    uncertainty : relative, of curve, peak load and dissipated energy: grid convergence index of the three meshes
+    order : observed order of the curve, NaN if none is observed
+    apart : relative L2 distance of the other code's finest curve, NaN without another code
     other : uncertainty of that curve
     """
 
@@ -60,7 +60,7 @@ class Reference:
 
     @property
     def sentence(self) -> str:
-        """What the reference is and how good."""
+        """The reference and its uncertainty in words."""
         sure = ", ".join(f"{name} {value:.3%}" for name, value in self.uncertainty.items())
         order = f"observed order {self.order:.1f}" if np.isfinite(self.order) else "no order observed"
         text = f"Reference: {self.label}, {self.result.dofs} unknowns; uncertainty (GCI): {sure}; {order}."
@@ -87,7 +87,7 @@ class Reference:
 
 
 def reference_jobs(source: str, scene: Scene, given: Sequence[str]) -> tuple[tuple[Job, ...], tuple[Job, ...]]:
-    """Runs of the reference, coarse to fine, and of the other code: none where DOLFINx is missing."""
+    """Runs of the reference, coarse to fine, and of the other code; the latter empty without DOLFINx."""
     one_arm = scene.specimen.symmetric and scene.discretization.mismatch == 1.0
     halved = ("effects.symmetry=true",) if one_arm else ()
     own = _jobs(source, scene, Family("nurbs", "nurbs", 3, 0.0), MESHES.zone, (*given, *halved))
@@ -107,7 +107,7 @@ def _jobs(source: str, scene: Scene, family: Family, zone: Sequence[float], give
 
 
 def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | None:
-    """What the runs give; None where one of the three of the reference did not come to its end."""
+    """The reference of these runs; None where one of its three runs is not complete."""
     results, second = _complete(own), _complete(other)
     if not results:
         return None
@@ -125,7 +125,7 @@ def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | N
 
 
 def _complete(outcomes: Sequence[Outcome]) -> list[Result]:
-    """The results of runs that all came to their end; empty where one of them did not."""
+    """The results if all runs are complete, else empty."""
     results = [outcome.result for outcome in outcomes if outcome.result is not None and outcome.result.complete]
     return results if len(results) == len(outcomes) else []
 
@@ -133,7 +133,7 @@ def _complete(outcomes: Sequence[Outcome]) -> list[Result]:
 def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, float]:
     """Order and grid convergence index from the distances of two coarser meshes to the finest one.
 
-    Distances to the finest are e(h) - e(h_1) for errors e = C h^p of one shape: p from their ratio.
+    With errors e = C h^p of one shape the distances are e(h) - e(h_1), and their ratio determines p.
     """
     orders = np.linspace(0.5, 8.0, 751)
     ratio = (h[0] ** orders - h[2] ** orders) / (h[1] ** orders - h[2] ** orders)

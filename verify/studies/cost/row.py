@@ -1,11 +1,10 @@
-"""One run of the study, measured."""
+"""Measurements of one run of the study."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite, nan
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,29 +16,20 @@ from verify.runs.jobs import Outcome
 from verify.studies.cost.ladder import BEAM, FAMILIES, Try
 from verify.studies.cost.reference import Reference
 from verify.studies.frame import unmeasured
-from verify.support.checked_files import NUMBER, Damaged, Shape, read_table
 from verify.support.timing import PHASES
-
-#: What is read of ``cost.json`` again.
-ABOUT: Shape = {
-    "reference": {
-        **{"label": str, "dofs": int, "uncertainty": {"curve": NUMBER}},
-        **{"other_code": str, "other_code_apart": NUMBER},
-    }
-}
 
 
 @dataclass(frozen=True)
 class Row:
-    """A line of ``cost.csv``. What cannot be measured, as of a run that stopped, is NaN.
+    """A line of ``cost.csv``; the numbers of a run that stopped are NaN.
 
-    curve_error : the smaller one of ``chords`` and ``cubics``: relative L2 distance of the load to the reference, with
-        straight lines or with the cubics of the exact slopes between the converged points
-    peak_error, energy_error : of the largest load and of the energy dissipated at the end, relative
+    curve_error : relative L2 distance of the load to the reference: the smaller one of ``chords``, with straight lines
+        between the steps, and ``cubics``, with cubics by the exact slopes
+    peak_error, energy_error : relative errors of the peak load and of the energy dissipated at the end
     oscillation : RMS of load / reference - 1 on the propagation branch, mean removed
-    traction_error : RMS over the process zone of the traction halfway, over the strength; zones brought together
-    seconds : wall time without imports and without ``jit_seconds``, the least of ``times`` runs; with its phases
-    asked : steps asked for; ``steps`` are those taken
+    traction_error : RMS error of the tractions in the process zone halfway, over the strength; zones shifted together
+    seconds : wall time without imports and ``jit_seconds``, the least of ``times`` runs; followed by its phases
+    asked : requested steps; ``steps`` is the number of steps taken
     """
 
     method: str
@@ -71,6 +61,10 @@ class Row:
     run: str
     status: str
 
+    def __post_init__(self) -> None:
+        if (self.method, self.degree) not in {(family.method, family.degree) for family in (*FAMILIES, BEAM)}:
+            raise ValueError(f"the method {self.method[:30]!r} of degree {self.degree}")
+
     @property
     def family(self) -> str:
         return f"{self.method}-p{self.degree}" if self.degree else self.method
@@ -81,7 +75,7 @@ class Row:
 
 
 def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int = 0) -> Row:
-    """Measure a run and its repetitions, the first of them first; the errors are those of the first."""
+    """The row of a run with its repetitions; the errors are those of the first run."""
     results = [outcome.result for outcome in outcomes if outcome.result is not None]
     family = one.family
     head: dict[str, Any] = {
@@ -132,10 +126,10 @@ def errors(result: Result, against: Reference) -> dict[str, Any]:
 
 
 def traction_error(snapshots: Sequence[Snapshot], exact: Sequence[Snapshot]) -> float:
-    """RMS of the difference of the tractions over the process zone of the last snapshot but one, over the largest one.
+    """RMS difference of the tractions over the process zone in the last snapshot but one, over the largest traction.
 
-    A run passes the opening of a snapshot at one of its steps: zones are laid over each other where half of the
-    material is damaged.
+    Snapshots are taken at slightly different openings; the zones are shifted so that the points with half of the damage
+    coincide.
     """
     if len(snapshots) < 2 or len(exact) < 2:
         return nan
@@ -148,22 +142,8 @@ def traction_error(snapshots: Sequence[Snapshot], exact: Sequence[Snapshot]) -> 
     return float(np.sqrt(np.mean((found - known.traction_q[zone]) ** 2)) / np.max(known.traction_q))
 
 
-def read_csv(path: Path) -> list[Row]:
-    """Rows that were written.
-
-    Raises
-    ------
-    Damaged : they are not as they were written, or of a method that is not known.
-    """
-    rows = read_table(path, Row)
-    known = {(family.method, family.degree) for family in (*FAMILIES, BEAM)}
-    if strange := [row for row in rows if (row.method, row.degree) not in known]:
-        raise Damaged(path, f"the method {strange[0].method[:30]!r} of degree {strange[0].degree}")
-    return rows
-
-
 def _middle(snapshot: Snapshot) -> float:
-    """Where the damage comes down to one half, going away from the load; NaN where it never is more."""
+    """Position of the damage 0.5, seen from the loaded end; NaN where the damage is smaller everywhere."""
     more = np.flatnonzero(snapshot.damage_q > 0.5)
     if more.size == 0 or more[-1] + 1 == snapshot.s_q.size:
         return nan

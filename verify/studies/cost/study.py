@@ -1,4 +1,4 @@
-"""The sweep: references first, then ever finer meshes of every family, other steps for the best, and repeated times."""
+"""The study: reference, sequences of meshes of every family, other steps on the best meshes, repetitions."""
 
 from __future__ import annotations
 
@@ -25,18 +25,17 @@ from verify.support.say import say
 
 @dataclass(frozen=True)
 class Limits:
-    """What a sweep spends on accuracy.
+    """When the study stops refining and repeating; larger values cost time and find cheaper runs more reliably.
 
-    enough, patience, beaten, longest : a ladder ends below this part of the finest level; where a rung took so many
-        times as long as the cheapest run that is accurate enough; where another degree of the method is as accurate in
-        so much less time; after so many seconds
-    climb, vary, repeat : seconds after which no more of ladders, of other numbers of steps, of repetitions is begun;
-        runs are kept, so that a second call goes further
-    near : fewer steps are tried on meshes whose error is this close to the coarsest level
-    close, once, late, times : runs within the factor ``close`` of a method's cheapest one for a level (``once`` where
-        they were timed once) and ``late`` seconds are timed so many times. On a machine that does something else as
-        well a run is late by such seconds, and one that is timed once by half: 0.36 to 0.63 s were measured for equal
-        runs
+    enough, patience, beaten, longest : a sequence of meshes ends at an error below ``enough`` times the finest level,
+        at ``patience`` times the time of the cheapest run with the finest level, where another degree of the
+        method is as accurate in 1 / ``beaten`` of the time, or at a time of ``longest`` seconds
+    climb, vary, repeat : seconds after which no run of the sequences, with other steps, or for repetition is begun; a
+        second call continues from the stored runs
+    near : fewer steps are tried on meshes whose error is at most ``near`` times the coarsest level
+    close, once, late, times : a run is timed ``times`` times if its time is at most ``close`` (``once`` if it was timed
+        once) times that of the method's cheapest run for a level, plus ``late`` seconds. On a busy machine single times
+        are off by half: 0.36 to 0.63 s were measured for equal runs
     """
 
     enough: float = 0.7
@@ -58,7 +57,7 @@ LIMITS = Limits()
 
 @dataclass(frozen=True)
 class Study(frame.Study):
-    """What was found against a reference; ``how``: overrides with which a run was made, by its name."""
+    """Results; ``against``: the reference; ``how``: overrides of the runs by name."""
 
     NAME: ClassVar[str] = "cost"
     ROW: ClassVar[type] = Row
@@ -81,7 +80,7 @@ class Study(frame.Study):
         }
 
     def _front(self, one: Row) -> dict[str, object]:
-        """A run of the front, with what repeats it."""
+        """A run of the Pareto front, with the overrides that repeat it."""
         keys = ("method", "degree", "dofs", "steps", "curve_error", "seconds", "run")
         solver = {"tspline-adaptive": "tspline"}.get(one.method, one.method)
         return {key: getattr(one, key) for key in keys} | {
@@ -92,7 +91,7 @@ class Study(frame.Study):
 
 @dataclass(frozen=True)
 class Runner:
-    """Does the runs of a study, one at a time, and remembers what came of them."""
+    """Does the runs of a study, one at a time, and stores their outcomes."""
 
     source: str
     scene: Scene
@@ -103,7 +102,7 @@ class Runner:
     start: float = field(default_factory=monotonic)
 
     def __call__(self, tries: Iterable[Try], seconds: float = inf) -> bool:
-        """Do what has not been done; whether all of it was begun within so many seconds after the start."""
+        """Do the runs that are missing. Returns whether all were begun within ``seconds`` after the start."""
         jobs = {one.job(self.source, self.scene, self.given): one for one in tries if one not in self.found}
         for outcome in run_all(list(jobs), self.out, 1):
             self.found[jobs[outcome.job]] = outcome
@@ -113,7 +112,7 @@ class Runner:
 
     @property
     def rows(self) -> dict[Try, Row]:
-        """First runs, each with the times of its repetitions."""
+        """The row of every first run, with the times of its repetitions."""
         firsts = [one for one in self.found if one.repeat == 0]
         return {one: row(one, [self.found[same] for same in self.again(one)], self.against) for one in firsts}
 
@@ -123,12 +122,12 @@ class Runner:
 
 
 def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> Study | None:
-    """Run the study into ``out``: cost.csv, cost.json, report.html; None where there is no reference.
+    """Run the study into ``out``: cost.csv, cost.json, report.html; None without a converged reference.
 
     Parameters
     ----------
-    given : overrides that ``scene`` has, and that every run repeats
-    jobs : runs of the reference at a time; what is timed runs alone
+    given : overrides that ``scene`` contains and every run repeats
+    jobs : runs of the reference at a time; timed runs are done one at a time
     """
     one_thread()
     rungs, reasons = ladders(source, scene, given)
@@ -145,7 +144,8 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
         climb(rungs, partial(runner, seconds=LIMITS.climb), lambda: runner.rows),
         runner(_between(runner.rows), LIMITS.vary),
         runner(
-            [other for one, row in runner.rows.items() if _worth(row) for other in one.with_few_steps()], LIMITS.vary
+            [other for one, row in runner.rows.items() if _nearly_accurate(row) for other in one.with_few_steps()],
+            LIMITS.vary,
         ),
         runner([other for one in _best(runner.rows) for other in one.with_other_steps()], LIMITS.vary),
     ]
@@ -159,7 +159,7 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     if not all(whole):
         reasons.append("The time allowed for a study is over; the same command goes on from here.")
     how = {one.variant: one.job(source, scene).overrides for one in runner.found}
-    study = Study(scene, tuple(_counted(runner)), tuple(reasons), against, how)
+    study = Study(scene, tuple(_with_nonzeros(runner)), tuple(reasons), against, how)
     study.write(out)
     return study
 
@@ -167,12 +167,12 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
 def climb(
     ladders: Mapping[Family, Sequence[Try]], run: Callable[[list[Try]], bool], rows: Callable[[], Mapping[Try, Row]]
 ) -> bool:
-    """Rung after rung of all families, until each is accurate enough, too slow, or at its end.
+    """Run ever finer meshes of all families, until each is accurate enough, too slow, or at its end.
 
     Parameters
     ----------
-    run : does some runs; whether there was time for all
-    rows : all that has been found so far
+    run : does runs; returns whether there was time for all
+    rows : returns all rows so far
     """
     left = {family: list(rungs) for family, rungs in ladders.items() if rungs}
     while left:
@@ -181,12 +181,12 @@ def climb(
         found = rows()
         for family, (done, *rest) in list(left.items()):
             left[family] = rest
-            if not rest or _high_enough(found[done], list(found.values())):
+            if not rest or _finished(found[done], list(found.values())):
                 del left[family]
     return True
 
 
-def _high_enough(last: Row, rows: Sequence[Row]) -> bool:
+def _finished(last: Row, rows: Sequence[Row]) -> bool:
     finest = min(LEVELS.values())
     others = [one for one in rows if one.measured and one.dofs]
     accurate = [one.seconds for one in others if one.curve_error <= finest]
@@ -202,15 +202,15 @@ def _high_enough(last: Row, rows: Sequence[Row]) -> bool:
     return too_slow or beaten or last.curve_error <= LIMITS.enough * finest
 
 
-def _worth(found: Row) -> bool:
-    """Whether a run comes near the coarsest level, so that fewer steps may make it cheaper."""
+def _nearly_accurate(found: Row) -> bool:
+    """Whether a run is accurate enough that fewer steps may make it the cheapest for a level."""
     return found.curve_error <= LIMITS.near * max(LEVELS.values())
 
 
 def _best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late: float = 0.0) -> list[Try]:
-    """The cheapest runs of every method for every level, and those within a factor of them and so many seconds.
+    """The cheapest runs of every method for every level, and those whose time is nearly the same.
 
-    The factor of runs that were timed ``once`` is another.
+    Nearly: at most the factor ``within``, or ``once`` for runs that were timed once, plus ``late`` seconds.
     """
     chosen: dict[Try, None] = {}
     for level, error in LEVELS.items():
@@ -223,7 +223,7 @@ def _best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late:
 
 
 def _between(rows: Mapping[Try, Row]) -> list[Try]:
-    """Meshes between the last that misses a level and the first that meets it, of every method's best family."""
+    """Meshes between the last that misses a level and the first that reaches it, for every method's best family."""
     chosen: dict[Try, None] = {}
     for error in LEVELS.values():
         for one in _best(rows):
@@ -234,8 +234,8 @@ def _between(rows: Mapping[Try, Row]) -> list[Try]:
     return list(chosen)
 
 
-def _counted(runner: Runner) -> Iterable[Row]:
-    """Rows with the entries of their tangents, which the ``iga`` runs do not tell."""
+def _with_nonzeros(runner: Runner) -> Iterable[Row]:
+    """Rows with the numbers of nonzeros, which ``iga`` runs do not report."""
     for one, found in runner.rows.items():
         job = runner.found[one].job
         known = found.nonzeros or not found.measured
@@ -243,7 +243,7 @@ def _counted(runner: Runner) -> Iterable[Row]:
 
 
 def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> list[str]:
-    """The runs at most, with their times, a line each; ladders end sooner, and the best runs are repeated."""
+    """One line per run that may be made, with its expected time; nothing is run."""
     rungs, reasons = ladders(source, scene, given)
     plan: list[Job] = [job for jobs_of in reference_jobs(source, scene, given) for job in jobs_of]
     plan += [one.job(source, scene, given) for ones in rungs.values() for one in ones]

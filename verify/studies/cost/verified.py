@@ -1,8 +1,8 @@
-"""``debond solve --accuracy``, verified: solutions on ever finer meshes until two of them agree.
+"""``debond solve --accuracy``: solutions on ever finer meshes until two successive ones agree.
 
-Level 0 is the first guess (`verify.studies.cost.accuracy`). Every further level has ``ratio`` times the elements along
-the specimen, a higher degree, so that the thickness of the arms is resolved better, too, and another number of steps.
-What bounds the error of the finer one of two levels is said in `bound`.
+Level 0 is the first choice (`verify.studies.cost.accuracy`). Every further level has ``ratio`` times the elements along
+the specimen, a higher degree, which also refines the thickness of the arms, and another number of steps. The error of
+the finer one of two levels is bounded by `bound`.
 """
 
 from __future__ import annotations
@@ -47,17 +47,17 @@ HIGHEST = {"nurbs": 5, "lagrange": 5, "tspline": 3, "dolfinx": 4}
 
 @dataclass(frozen=True)
 class Refinement:
-    """How levels follow each other, and what their distance says of the error.
+    """Constants of the refinement and of the error bound.
 
-    ratio, levels : elements along the specimen over those of the level before, and levels at most
-    straight, more_steps, most_steps : the error of the straight lines between the steps may be this part of the
-        accuracy; the next level has more steps where it is larger, up to the last factor, and some more in any case, so
-        that they end in other places
-    caution, slowest : bound of the error of the finer one of two levels over their distance, at least and at most. On
-        random scenes the error was up to 1.33 times the distance, where the ripple of the integration points on the
-        peak outweighs the rest, and 0.3 times at the median
-    gain : largest factor by which the error falls from one level to the next: up to 57 times on random scenes
-    condensed : power of the unknowns with which the time of a run grows where a linear bulk is condensed
+    ratio, levels : ratio of the elements along the specimen of successive levels, and largest number of levels
+    straight, more_steps, most_steps : allowed error of straight lines between the steps, over the accuracy; the next
+        level has ``more_steps`` times the steps, so that they end elsewhere, and up to ``most_steps`` times where the
+        allowed error is exceeded
+    caution, slowest : smallest and largest ratio of the error bound of the finer level to the distance of two levels.
+        On random scenes the error was up to 1.33 times the distance, where the ripple of the integration points on the
+        peak dominates, and 0.3 times in the median
+    gain : largest factor by which the error falls from one level to the next; up to 57 on random scenes
+    condensed : exponent of the time over the unknowns where a linear bulk is condensed
     """
 
     ratio: float = 1.5
@@ -73,13 +73,13 @@ class Refinement:
 
 REFINEMENT = Refinement()
 
-#: What solves a scene by a method into a folder, the last one, and draws fields where it is asked to.
+#: Solves a scene by a method into a folder; the last argument says whether fields are stored.
 Solve = Callable[[Scene, str, Path, bool], tuple[Result, tuple[Check, ...]]]
 
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """A run: ``distance`` to the level before and ``bound`` of the error, infinite where there is none to compare."""
+    """A run: ``distance`` to the previous level, and ``bound`` of its error; both infinite for the first level."""
 
     folder: str
     scene: Scene
@@ -98,7 +98,7 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class Verified:
-    """The levels of a solution with the accuracy ``asked``, coarse to fine; ``why`` they end before it is reached."""
+    """The levels of a solution, coarse to fine; ``why``: the reason if the accuracy ``asked`` was not reached."""
 
     asked: float
     levels: tuple[Level, ...]
@@ -106,32 +106,32 @@ class Verified:
 
     @property
     def delivered(self) -> Level:
-        """The finest level that came to its end; the last one where no level did."""
+        """The finest complete level; the last one where no level is complete."""
         return next((one for one in reversed(self.levels) if one.result.complete), self.levels[-1])
 
     @property
     def reached(self) -> tuple[float, float] | None:
-        """Interval of the error of the delivered level, None where it is compared with no other level.
+        """Interval of the error of the delivered level; None where no other level was compared with it.
 
-        From below: the distance of two levels is at most ``gain + 1`` times the error of the finer one, for errors that
-        are opposite and fall by ``gain``.
+        Lower end: the distance of two levels is at most ``gain + 1`` times the error of the finer one, which holds for
+        errors of opposite signs that fall by the factor ``gain``.
         """
         last = self.delivered
         return (last.distance / (REFINEMENT.gain + 1.0), last.bound) if isfinite(last.bound) else None
 
     @property
     def close(self) -> bool:
-        """Whether the last two curves are so near each other that the error is within what was asked."""
+        """Whether the error bound is within the accuracy asked for."""
         return self.delivered.bound <= self.asked
 
     @property
     def holds(self) -> bool:
-        """Whether they do, and no identity is broken: on a finer mesh it may hold."""
+        """Whether `close` holds and no identity is broken; a broken one may hold on a finer mesh."""
         return self.close and all(check.state != "broken" for check in self.delivered.checks)
 
     @property
     def sentence(self) -> str:
-        """What was reached, of what was asked."""
+        """The accuracy reached and the accuracy asked for."""
         asked = f"asked {percent(self.asked)}"
         if self.reached is None:
             return f"error of the curve unknown, {asked}"
@@ -154,7 +154,7 @@ class Verified:
 def verified(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Solve) -> Verified:
     """Solve on finer and finer meshes, each in a folder in ``out``, until two bound the error by ``accuracy``.
 
-    The files of the delivered run are moved to ``out`` itself; so are those of a run that is interrupted.
+    The files of the delivered run are moved to ``out``, also those of an interrupted run.
 
     Raises
     ------
@@ -198,10 +198,10 @@ def _refined(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Sol
 
 
 def apart(fine: Result, coarse: Result, programme: Sequence[float]) -> float:
-    """Distance of the curve of a run, straight between its steps, from the path of another, relative.
+    """Relative distance of the curve of a run, with straight lines between the steps, from the path of another.
 
-    The largest one of: L2 of the load over the opening, of every leg where the programme turns; and of the peak loads.
-    Infinite where they cannot be compared.
+    The largest of the L2 distance of the loads, leg by leg for a programme with reversals, and of the difference of the
+    peak loads. Infinite where they cannot be compared.
     """
     if min(len(fine.load), len(coarse.load)) < 2:
         return inf
@@ -219,8 +219,8 @@ def apart(fine: Result, coarse: Result, programme: Sequence[float]) -> float:
 def _curved(result: Result, programme: Sequence[float]) -> Curve:
     """The path of a run, with points between its steps.
 
-    Where a programme turns, steps across which faces begin to touch are straight: their cubics would swing far beyond
-    the turn, as the slopes at both ends have nothing to do with each other.
+    In a programme with reversals, steps at which faces come into contact are straight lines: the slopes at both ends
+    are unrelated, and a cubic would overshoot the reversal.
     """
     (d, P), ends = map(np.asarray, cubics(result)), result.opening
     if only_opens(programme) or len(d) == len(ends):
@@ -235,11 +235,11 @@ def _curved(result: Result, programme: Sequence[float]) -> Curve:
 
 
 def bound(distance: float, before: float = inf) -> float:
-    """Bound of the error of the finer one of two levels from their distance, and from that of the two before them.
+    """Bound of the error of the finer one of two levels, from their distance and from the previous distance.
 
-    ``caution`` times the distance is enough where the coarser one is at least 5/3 times as far off: with ``ratio`` 1.5
-    from an order of 1.3 on. Where distances have fallen more slowly, to the part f, the ones to come add up to
-    f / (1 - f) of the last one, as in a geometric series; more than ``slowest`` is never taken.
+    ``caution`` times the distance is a bound where the error of the coarser level is at least 5/3 of that of the
+    finer one, with ``ratio`` 1.5 for orders above 1.3. Where the distances have fallen more slowly, by the factor f,
+    the following ones add up to f / (1 - f) of the last one, as a geometric series; at most ``slowest`` is used.
     """
     f = distance / before if before > 0.0 else 0.0
     return distance * min(max(REFINEMENT.caution, f / (1.0 - f) if f < 1.0 else inf), REFINEMENT.slowest)
@@ -250,12 +250,12 @@ def finer(scene: Scene, method: str, overrides: Sequence[str], more: float = REF
 
     Parameters
     ----------
-    scene, overrides : of this level, the scene with its overrides
-    more : number of steps over that of this level
+    scene, overrides : the scene of this level, which contains its overrides, and these overrides
+    more : ratio of the numbers of steps
 
     Raises
     ------
-    Refusal : there is no finer mesh.
+    Refusal : no finer mesh is possible.
     """
     asked = scene.discretization
     if method in WITH_DOFS:
@@ -274,17 +274,17 @@ def finer(scene: Scene, method: str, overrides: Sequence[str], more: float = REF
 
 
 def _more_steps(result: Result, programme: Sequence[float], accuracy: float) -> float:
-    """So many times the steps that straight lines between them are good enough."""
+    """Factor on the number of steps for which straight lines between them are accurate enough."""
     straight = apart(result, result, programme)
     wanted = (straight / (REFINEMENT.straight * accuracy)) ** 0.5 if isfinite(straight) else REFINEMENT.most_steps
     return min(max(wanted, REFINEMENT.more_steps), REFINEMENT.most_steps)
 
 
 def growth(scene: Scene, following: Scene, method: str) -> float:
-    """How much longer a run on a finer mesh takes: in proportion to steps and unknowns.
+    """Ratio of the times of runs on a finer mesh and on this one: proportional to steps and unknowns.
 
-    A linear bulk that is condensed onto the interface counts for less: 1.1 to 1.6 times the time for twice the
-    unknowns on random scenes.
+    With a linear bulk, which is condensed onto the interface, the time grows more slowly: 1.1 to 1.6 times for twice
+    the unknowns on random scenes.
     """
     unknowns, steps = (of(following, method) / of(scene, method) for of in (estimate.unknowns, estimate.steps))
     if scene.discretization.steps == "auto":
@@ -294,11 +294,11 @@ def growth(scene: Scene, following: Scene, method: str) -> float:
 
 
 def planned(scene: Scene, first: Choice) -> str:
-    """What is said before the first run: the guess, and the time of the two levels that are needed at least.
+    """The message before the first run: the first choice, and the expected time of the first two levels.
 
     Raises
     ------
-    Refusal : there is no finer mesh to verify it with.
+    Refusal : no finer mesh is possible for the verification.
     """
     guess = parse_scene(scene.model_dump(), first.overrides)
     following = parse_scene(scene.model_dump(), finer(guess, first.method, first.overrides))
@@ -318,7 +318,7 @@ def _announce(level: Level, following: Scene, number: int) -> None:
 
 @contextmanager
 def _kept_if_interrupted(out: Path) -> Iterator[None]:
-    """Move the files of a run that is interrupted, or for which there is no room, to where those of a whole one are."""
+    """Move the files of a run to ``out`` that is interrupted or has no disk space left."""
     try:
         yield
     except (KeyboardInterrupt, OSError):

@@ -1,4 +1,4 @@
-"""What every effect changes and what it costs: each of ``[effects]`` on and off, everything else as the scene says.
+"""The study of effects: changes of the results and of the time by switching each of ``[effects]`` on and off.
 
-Read in this order: `plan` (which runs), `row` (two runs held against each other), `study` (the sweep), `page`.
+Read in this order: `plan` (the runs), `row` (comparison of two runs), `study` (the whole study), `page`.
 """

@@ -16,7 +16,7 @@ from verify.studies.page import write_study
 if TYPE_CHECKING:
     from verify.studies.effects.study import Study
 
-#: Columns that are drawn, with their names and colours of the palette.
+#: Columns of the chart, each with its name and its colour in the palette.
 BARS = {
     "curve_change": ("curve", "accent"),
     "peak_change": (CHANGES["peak_change"], "nurbs"),
@@ -25,8 +25,8 @@ BARS = {
     "work_change": (CHANGES["work_change"], "beam"),
 }
 
-#: Changes below this part are drawn as none.
-LEAST = 1e-5
+#: Left end of the logarithmic axis; smaller changes have no bar.
+SMALLEST_BAR = 1e-5
 
 
 def write(study: Study, path: Path) -> None:
@@ -37,25 +37,25 @@ def write(study: Study, path: Path) -> None:
 
 
 def in_cell(fraction: float, column: str) -> str:
-    """A change in a cell of the table; a distance of curves has no sign."""
+    """A change as text; distances of curves have no sign."""
     text = signed(fraction).replace("-", "−") if np.isfinite(fraction) else "–"
     return text.lstrip("+") if column == "curve_change" else text
 
 
 def changed(rows: Sequence[Row], key: str) -> Panel:
-    """Size of every change on a logarithmic axis; its sign stands beside the bar."""
+    """Bars of the absolute changes on a logarithmic axis, with the signed values beside them."""
     with drawing():
         figure, axes = panel(WIDE, 0.9 * len(rows) + 1.0, left=1.5, top=0.4)
         step = 0.8 / len(BARS)
         for i, (column, (name, ink)) in enumerate(BARS.items()):
             value = np.array([getattr(one, column) for one in rows])
-            size = np.where(np.abs(value) > LEAST, np.abs(value), LEAST)
+            size = np.where(np.abs(value) > SMALLEST_BAR, np.abs(value), SMALLEST_BAR)
             at = np.arange(len(rows))[::-1] + 0.4 - (i + 0.5) * step
             axes.barh(at, 100 * size, 0.9 * step, color=colour(ink), linewidth=0, label=name)
             for y, x, change in zip(at, size, value, strict=True):
                 text = in_cell(change, column) if np.isfinite(change) else ""
                 axes.annotate(text, (100 * x, y), (3, 0), textcoords="offset points", va="center", size=6.5)
-        axes.set(xscale="log", xlabel="change with the effect (%)", xlim=(100 * LEAST, None))
+        axes.set(xscale="log", xlabel="change with the effect (%)", xlim=(100 * SMALLEST_BAR, None))
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.set_xlim(right=8 * axes.get_xlim()[1])
         _named(axes, rows)
@@ -65,7 +65,7 @@ def changed(rows: Sequence[Row], key: str) -> Panel:
 
 
 def times(rows: Sequence[Row], key: str) -> Panel:
-    """Time with every effect over that without it."""
+    """Bars of the time with each effect over the time without it."""
     with drawing():
         figure, axes = panel(WIDE, 0.35 * len(rows) + 0.9, left=1.5)
         at, ratio = np.arange(len(rows))[::-1], np.array([one.time_ratio for one in rows])

@@ -1,24 +1,24 @@
-"""Which runs tell what effects do: the scene as it is, and once for every effect with that one switched."""
+"""Runs of the study: the scene as it is, and for every effect the scene with that one effect switched."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from verify.methods.solve import prepare
+from verify.methods.solve import prepare, require
 from verify.runs.jobs import Job, left_out
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
 from verify.studies.frame import repeated
 from verify.support.refusal import Refusal
 
-#: A run is made once for its curve and so many times for its time, alone.
+#: Every run is repeated this many times for its wall time, alone on the machine.
 TIMES = 3
 
 
 @dataclass(frozen=True)
 class Switch:
-    """One effect: its key in ``[effects]``, what it is called, and its two values."""
+    """One effect: its key in ``[effects]``, its name in reports, and its two values."""
 
     key: str
     name: str
@@ -49,7 +49,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class Plan:
-    """The scene as it is, a pair for every effect that it admits, and a sentence for every other one."""
+    """The run of the scene as it is, a pair per effect that can be switched, a sentence per other effect."""
 
     base: Job
     pairs: tuple[Pair, ...]
@@ -62,17 +62,18 @@ class Plan:
 
     @property
     def timed(self) -> list[Job]:
-        """The runs that are made for their times."""
+        """The runs that are repeated for their wall times."""
         return repeated(self.jobs, range(1, TIMES + 1))
 
 
 def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -> Plan:
-    """The runs of a scene by one method; ``given`` are the overrides that all of them have.
+    """The runs of a scene with one method; ``given`` are overrides that ``scene`` has and that every run repeats.
 
     Raises
     ------
     NotRun, Refusal : the method cannot solve the scene as it is.
     """
+    require(prepare(scene, method))
     base = Job(source, scene, method, f"effects/{method}", tuple(given), fields=False)
     pairs, reasons = [], []
     for switch in SWITCHES:
@@ -84,7 +85,12 @@ def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -
 
 
 def _pair(base: Job, switch: Switch) -> Pair:
-    """The scene as it is beside the same with one effect switched; Refusal, with the reason, where that cannot be."""
+    """The scene as it is and the scene with one effect switched.
+
+    Raises
+    ------
+    Refusal : the effect cannot be switched, with the reason.
+    """
     now = _value(base.scene, base.method, switch)
     other = switch.off if now == switch.on else switch.on
     override = f"effects.{switch.key}={other}"
@@ -101,5 +107,5 @@ def _pair(base: Job, switch: Switch) -> Pair:
 
 
 def _value(scene: Scene, method: str, switch: Switch) -> str:
-    """What a method makes of the effect, as the scene file would write it."""
+    """The value of the effect in a method's simulation, as in a scene file."""
     return str(prepare(scene, method).effects[switch.key]).lower()

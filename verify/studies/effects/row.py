@@ -1,11 +1,10 @@
-"""Two runs that differ by one effect, held against each other."""
+"""Comparison of two runs that differ by one effect."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, nan
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,12 +15,11 @@ from verify.result import Result, run_seconds
 from verify.runs.jobs import Job, Outcome
 from verify.studies.effects.plan import Pair
 from verify.studies.frame import BUSY, failure, unmeasured
-from verify.support.checked_files import Shape, read_table
 
-#: Part of the work, or of the largest load, that counts as none.
-NOTHING = 1e-9
+#: Value, over the work or the peak load, that counts as zero.
+ZERO = 1e-9
 
-#: Changes by the name of their column, in the words of the table.
+#: Names of the changes in the table, by column.
 CHANGES: Mapping[str, str] = {
     "peak_change": "peak load",
     "end_change": "load at the end",
@@ -30,21 +28,17 @@ CHANGES: Mapping[str, str] = {
 }
 
 
-#: What is read of ``effects.json`` again.
-ABOUT: Shape = {}
-
-
 @dataclass(frozen=True)
 class Row:
-    """A line of ``effects.csv``. What cannot be told is NaN.
+    """A line of ``effects.csv``; unknown values are NaN.
 
-    scene_has : whether the scene as it is has the effect
-    curve_change : relative L2 distance of the load with the effect to that without it, along the programme
-    peak_change, end_change, dissipated_change, work_change : with over without, less 1: of the largest load, of the
-        load, of the energy dissipated and of the external work at the end; NaN where there is nothing without it
-    seconds_with, seconds_without : wall time without imports and without what is compiled, the least of ``times`` runs
-    time_ratio : with over without
-    time_spread : largest over least time of equal runs; far from 1 the machine was busy, and the ratio says little
+    scene_has : whether the scene has the effect
+    curve_change : relative L2 distance of the loads with and without the effect, along the programme
+    peak_change, end_change, dissipated_change, work_change : value with the effect over value without it, minus 1, of
+        the peak load and, at the end, of load, dissipated energy and external work; NaN for 0 without the effect
+    seconds_with, seconds_without : least wall time of ``times`` runs, without imports and compilation
+    time_ratio : time with the effect over time without it
+    time_spread : largest over least time of equal runs; well above 1 the machine was busy and the ratio is inaccurate
     """
 
     effect: str
@@ -87,13 +81,8 @@ class Row:
         return f"{self.time_ratio:.2g} x time{busy}"
 
 
-def read_csv(path: Path) -> list[Row]:
-    """Rows that were written."""
-    return read_table(path, Row)
-
-
 def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[Outcome]]) -> Row:
-    """Compare the two runs of a pair; times are those of the repetitions ``again``."""
+    """Compare the two runs of a pair; the times are those of the repetitions ``again``."""
     sides = {"with": pair.with_it, "without": pair.without}
     took = {side: _seconds(again[job]) for side, job in sides.items()}
     least = {side: min(seconds, default=nan) for side, seconds in took.items()}
@@ -117,7 +106,7 @@ def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[O
 
 
 def changes(with_it: Result, without: Result, programme: Sequence[float]) -> dict[str, Any]:
-    """What one effect makes of curve, peak, end and energies: with over without, less 1."""
+    """Changes of curve, peak, end and energies by one effect: value with it over value without it, minus 1."""
     top = max(abs(peak_load(with_it)), abs(peak_load(without)))
     most = max(abs(work(with_it)), abs(work(without)))
     return {
@@ -130,9 +119,9 @@ def changes(with_it: Result, without: Result, programme: Sequence[float]) -> dic
 
 
 def apart(with_it: Result, without: Result, programme: Sequence[float], n: int = 400) -> float:
-    """Relative L2 distance of the load over the opening: of the envelopes, or leg by leg of a programme that has more.
+    """Relative L2 distance of the loads: of the envelopes, or leg by leg for a programme with several legs.
 
-    What unloads is no part of an envelope, and the whole point of some effects.
+    Envelopes do not contain unloading, which some effects change most.
     """
     ours, theirs = (legs(result, programme) for result in (with_it, without))
     if len(programme) == 1 or min(len(ours), len(theirs)) < len(programme):
@@ -147,7 +136,7 @@ def apart(with_it: Result, without: Result, programme: Sequence[float], n: int =
 
 
 def legs(result: Result, programme: Sequence[float]) -> list[Curve]:
-    """The curve of every leg that was walked to its end, over the way from its start."""
+    """Load over the distance from the start of the leg, for every completed leg of the programme."""
     found, at = [], 0
     for goal, start in zip(programme, (0.0, *programme), strict=False):
         there = np.flatnonzero(np.isclose(result.opening[at + 1 :], goal, rtol=0.0, atol=1e-9 * abs(goal - start)))
@@ -162,14 +151,14 @@ def legs(result: Result, programme: Sequence[float]) -> list[Curve]:
 
 
 def change(value: float, before: float, scale: float) -> float:
-    """value / before - 1: 0 where both are nothing on the ``scale``, NaN where only ``before`` is."""
-    if abs(before) <= NOTHING * scale:
-        return 0.0 if abs(value) <= NOTHING * scale else nan
+    """value / before - 1; 0 where both are negligible on the ``scale``, NaN where only ``before`` is."""
+    if abs(before) <= ZERO * scale:
+        return 0.0 if abs(value) <= ZERO * scale else nan
     return value / before - 1.0
 
 
 def signed(fraction: float) -> str:
-    """+0.69 %, two digits, and no more than five behind the point."""
+    """A percentage with sign, two significant digits and at most five decimals: +0.69 %."""
     per_cent = 100.0 * fraction
     return "0 %" if abs(per_cent) < 1e-5 else f"{float(f'{per_cent:.2g}'):+.6g} %"
 

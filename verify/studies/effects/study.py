@@ -1,22 +1,20 @@
-"""The sweep: every run once, as many at a time as are asked for, and then each alone for its time."""
+"""The study: every run once, several at a time, and then repetitions one at a time for their wall times."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import ClassVar
 
-from verify.methods.solve import prepare, require
-from verify.scene.schema import Scene
+from verify.methods.solve import prepare
 from verify.studies import frame
-from verify.studies.effects.plan import planned
+from verify.studies.effects.plan import Plan
 from verify.studies.effects.row import Row, row
 
 
 @dataclass(frozen=True)
 class Study(frame.Study):
-    """What was found; ``left_out`` says which effects the scene does not admit."""
+    """Results; ``left_out`` has a sentence for each effect that cannot be switched in the scene."""
 
     NAME: ClassVar[str] = "effects"
     ROW: ClassVar[type] = Row
@@ -39,28 +37,23 @@ class Study(frame.Study):
         return [*(one.sentence for one in self.rows), *self.left_out]
 
 
-def effects(
-    source: str, scene: Scene, method: str, given: Sequence[str], out: Path, jobs: int, scheduler: str | None = None
-) -> Study:
+def effects(plan: Plan, out: Path, jobs: int, scheduler: str | None = None) -> Study:
     """Run the study into ``out``: effects.csv, effects.json, report.html.
 
     Parameters
     ----------
-    given : overrides that ``scene`` has, and that every run repeats
-    jobs : runs at a time, or those of a dask ``scheduler``; what is timed runs here, alone
+    jobs : runs at a time, or with a dask ``scheduler`` its workers; timed runs are done here, one at a time
     """
     frame.one_thread()
-    plan = planned(source, scene, method, given)
     first = frame.run(plan.jobs, out, jobs, scheduler)
     timed = frame.run(plan.timed, out)
     again = {job: [o for o in timed.values() if o.job.overrides == job.overrides] for job in plan.jobs}
-    study = Study(scene, tuple(row(pair, first, again) for pair in plan.pairs), plan.left_out, method)
+    rows = tuple(row(pair, first, again) for pair in plan.pairs)
+    study = Study(plan.base.scene, rows, plan.left_out, plan.base.method)
     study.write(out)
     return study
 
 
-def would_run(source: str, scene: Scene, method: str, given: Sequence[str], out: Path) -> list[str]:
-    """The runs with their times, a line each, and what is left out; nothing is run."""
-    require(prepare(scene, method))
-    plan = planned(source, scene, method, given)
+def would_run(plan: Plan, out: Path) -> list[str]:
+    """The runs with their times, a line each, and the effects that are left out; nothing is run."""
     return frame.would_run([*plan.jobs, *plan.timed], plan.left_out, out)

@@ -1,5 +1,5 @@
-"""The hard cases: scenes on which cohesive codes stop or go wrong, each with its criterion as code.
+"""The hard cases: scenes on which cohesive codes stop or give wrong results, each with criteria as code.
 
-``case`` says what a case is, ``cases`` names them all, ``criteria`` holds what every run of every case must show,
-``one`` runs a case on a basis, ``suite`` runs them all and prints the matrix, ``page`` draws it.
+``case`` defines a case, ``cases`` lists them all, ``criteria`` has the criteria of every run, ``one`` runs a case with
+one basis, ``suite`` runs all cases and prints the matrix, ``page`` draws it.
 """

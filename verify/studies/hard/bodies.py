@@ -1,4 +1,4 @@
-"""Bodies that lock, turn over, or hardly resist."""
+"""Cases of the bodies: locking, large rotations, extreme ratios of stiffness and length."""
 
 from __future__ import annotations
 
@@ -7,13 +7,17 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from verify.methods.solve import solve
-from verify.studies.hard.case import Case, Finding, Number, Trials, Variant, variant
+from verify.studies.hard.case import Case, Finding, Number, Trials, Variant, variant, variants
 from verify.verdict import Check
 
-
-def _slender() -> Sequence[Variant]:
-    body = ("specimen.length=200.0", "specimen.precrack=180.0", "interface.toughness=0.001", "interface.strength=1.0")
-    return [variant("1-1000", "dcb-czm1", *body, "load.opening=90.0", "discretization.dofs=2400")]
+_slender = variants(
+    "dcb-czm1",
+    {"1-1000": ("specimen.length=200.0", "specimen.precrack=180.0")},
+    "interface.toughness=0.001",
+    "interface.strength=1.0",
+    "load.opening=90.0",
+    "discretization.dofs=2400",
+)
 
 
 def _judge_slender(trials: Trials) -> Iterator[Finding]:
@@ -23,23 +27,21 @@ def _judge_slender(trials: Trials) -> Iterator[Finding]:
         yield Check("compliance", name, error, 0.005, "analytical", "The initial stiffness is that of the beam.")
 
 
-def _incompressible() -> Sequence[Variant]:
-    body = ("specimen.plane=strain", "material.poisson=0.4999")
-    return [
-        variant("coarse", "dcb-czm1", *body, "discretization.dofs=1200"),
-        variant("fine", "dcb-czm1", *body, "discretization.dofs=2400", "load.opening=0.1"),
-    ]
+_incompressible = variants(
+    "dcb-czm1",
+    {"coarse": ("discretization.dofs=1200",), "fine": ("discretization.dofs=2400", "load.opening=0.1")},
+    "specimen.plane=strain",
+    "material.poisson=0.4999",
+)
 
 
 def _judge_incompressible(trials: Trials) -> Iterator[Finding]:
     coarse, fine = (trials[name].result.steps["load_slope"][0] for name in ("coarse", "fine"))
-    yield Check(
-        "compliance", "coarse", coarse / fine - 1.0, 0.02, "regression", "The initial stiffness of a fine mesh."
-    )
+    meaning = "The initial stiffness of a fine mesh."
+    yield Check("compliance", "coarse", coarse / fine - 1.0, 0.02, "regression", meaning)
 
 
-def _large_rotation() -> Sequence[Variant]:
-    return [variant("upright", "peel-soft", "discretization.dofs=5000", "discretization.interface_points=4")]
+_large_rotation = variants("peel-soft", {"upright": ("discretization.dofs=5000", "discretization.interface_points=4")})
 
 
 def _judge_large_rotation(trials: Trials) -> Iterator[Finding]:
@@ -52,8 +54,7 @@ def _judge_large_rotation(trials: Trials) -> Iterator[Finding]:
         yield Check("end-load", name, steps["load"][-1] * sine / griffith - 1.0, 0.01, "analytical", meaning)
 
 
-def _contrast() -> Sequence[Variant]:
-    return [variant("million", "peel-60", "strip.young=5e9", "discretization.dofs=1200")]
+_contrast = variants("peel-60", {"million": ("strip.young=5e9", "discretization.dofs=1200")})
 
 
 def _judge_contrast(trials: Trials) -> Iterator[Finding]:
@@ -64,10 +65,9 @@ def _judge_contrast(trials: Trials) -> Iterator[Finding]:
         yield Check("condition-known", name, known, 0.0, "exact", "The condition number is reported.")
 
 
-def _short_ligament() -> Sequence[Variant]:
-    return [
-        variant("ligament-0.5", "dcb-czm1", "specimen.precrack=13.5", "load.opening=10.0", "discretization.dofs=480")
-    ]
+_short_ligament = variants(
+    "dcb-czm1", {"ligament-0.5": ("specimen.precrack=13.5", "load.opening=10.0", "discretization.dofs=480")}
+)
 
 
 #: T-splines are cubic.
@@ -81,7 +81,7 @@ def _degrees() -> Sequence[Variant]:
     ]
 
 
-CASES = (
+BODY_CASES = (
     Case("slender", "Arms a thousand times as long as thick lock where shear does.", _slender, _judge_slender),
     Case("incompressible", "Plane strain at Poisson's ratio 0.4999 locks.", _incompressible, _judge_incompressible),
     Case("large-rotation", "A soft strip is peeled until its end is vertical.", _large_rotation, _judge_large_rotation),

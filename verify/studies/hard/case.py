@@ -1,4 +1,4 @@
-"""What a hard case is made of."""
+"""A hard case, its runs, and what its criteria find."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ BASES = ("tspline", "nurbs", "lagrange")
 
 @dataclass(frozen=True)
 class Variant:
-    """One run of a case; the name is that of its folder."""
+    """One run of a case: the name of its folder, and its scene."""
 
     name: str
     scene: Scene
@@ -24,7 +24,7 @@ class Variant:
 
 @dataclass(frozen=True)
 class Trial:
-    """A variant with what came of it."""
+    """A variant with its result."""
 
     variant: Variant
     result: Result
@@ -40,7 +40,7 @@ class Trial:
 
 @dataclass(frozen=True)
 class Number:
-    """Something worth reporting that no tolerance stands behind."""
+    """A number that is reported without a tolerance."""
 
     name: str
     subject: str
@@ -52,8 +52,8 @@ Finding = Check | Number
 Trials = Mapping[str, Trial]
 
 
-def nothing(trials: Trials) -> Iterator[Finding]:
-    """A case that has to show no more than what every case must."""
+def no_judge(trials: Trials) -> Iterator[Finding]:
+    """For a case without criteria beyond those of every case."""
     yield from ()
 
 
@@ -63,25 +63,31 @@ class Case:
 
     Parameters
     ----------
-    hard : one sentence, what is hard
+    hard : the difficulty, in one sentence
     variants : makes the runs
-    judge : findings about all runs together, beyond what every run must show (``criteria.common``)
-    may_stop : runs may end before the programme does, as ``judge`` allows
-    bases : those that can have what the case asks for
+    judge : criteria of all runs together, beside those that every run has to meet (``criteria.common``)
+    may_stop : runs may end before their programme does; ``judge`` decides about their end
+    bases : bases for which the case is defined
     """
 
     name: str
     hard: str
     variants: Callable[[], Sequence[Variant]]
-    judge: Callable[[Trials], Iterator[Finding]] = nothing
+    judge: Callable[[Trials], Iterator[Finding]] = no_judge
     may_stop: bool = False
     bases: tuple[str, ...] = BASES
 
 
-#: One arm on a mesh that resolves the process zone of ``dcb-czm1`` with any basis, at the price of a coarse one.
-FINE = ("effects.symmetry=true", "discretization.dofs=6000")
+#: One arm, on a mesh that resolves the process zone of ``dcb-czm1`` with any basis; it costs no more than a coarse mesh
+#: of both arms.
+ONE_FINE_ARM = ("effects.symmetry=true", "discretization.dofs=6000")
 
 
 def variant(name: str, scene: str, *overrides: str) -> Variant:
-    """A packaged scene with some of its keys replaced, named after what it shows."""
+    """A run of a packaged scene with overrides."""
     return Variant(name, load_scene(scene, overrides))
+
+
+def variants(scene: str, runs: Mapping[str, Sequence[str]], *common: str) -> Callable[[], list[Variant]]:
+    """Makes runs of a packaged scene: name -> overrides, beside those that all runs have in ``common``."""
+    return lambda: [variant(name, scene, *common, *overrides) for name, overrides in runs.items()]

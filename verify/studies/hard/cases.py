@@ -12,21 +12,21 @@ from verify.support.refusal import Refusal
 CASES: dict[str, Case] = {
     case.name: case
     for case in (
-        *strength.CASES,
-        *interfaces.CASES,
-        *bodies.CASES,
-        *programmes.CASES,
-        *invariance.CASES,
+        *strength.STRENGTH_CASES,
+        *interfaces.INTERFACE_CASES,
+        *bodies.BODY_CASES,
+        *programmes.PROGRAMME_CASES,
+        *invariance.INVARIANCE_CASES,
     )
 }
 
 
 def chosen(names: Sequence[str]) -> tuple[Case, ...]:
-    """The named cases, all of them without a name.
+    """The named cases; all of them where no name is given.
 
     Raises
     ------
-    Refusal : for names that are no case's
+    Refusal : a name is not that of a case
     """
     wrong = [name for name in names if name not in CASES]
     if wrong:

@@ -1,8 +1,8 @@
-"""What every run of every hard case must show, and the measures that several cases share."""
+"""Criteria of every run of every hard case, and the measures that several cases share."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -14,27 +14,24 @@ from verify.curves.of_run import cubics
 from verify.methods.solve import prepare
 from verify.methods.zone_resolution import ENOUGH, expected, measured
 from verify.result import Result
-from verify.studies.hard.case import Finding, Number, Trial
-from verify.verdict import Check
+from verify.studies.hard.case import Finding, Number, Trial, Trials
+from verify.verdict import Check, Kind
 
 LEDGER_TOLERANCE = 0.01
 
 
 def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
-    """Completed, no NaN, ledger, and the J-integral: a check where the zone is resolved, a number elsewhere."""
+    """Completeness, finite numbers, energy ledger; the J-integral as a check on resolved zones, else as a number."""
     steps, name = trial.result.steps, trial.name
     if not may_stop:
-        yield Check(
-            "completed", name, missing(trial), 1e-9, "exact", "The programme was run, or the specimen came apart."
-        )
+        meaning = "The programme was completed, or the specimen separated."
+        yield Check("completed", name, missing(trial), 1e-9, "exact", meaning)
     bad = sum(int(np.sum(~np.isfinite(column))) for key, column in steps.items() if key != "load_slope")
     yield Check("finite", name, bad, 0, "exact", "No number of the run is NaN or infinite.")
     if steps["opening"].size < 2:
         return
-    error = ledger(trial.result)
-    yield Check(
-        "ledger", name, error, LEDGER_TOLERANCE, "exact", "Work is stored or dissipated: error over all dissipated."
-    )
+    meaning = "External work is stored or dissipated: error over the dissipated energy."
+    yield Check("ledger", name, ledger(trial.result), LEDGER_TOLERANCE, "exact", meaning)
     deviation = j_deviation(trial.scene, steps)
     if deviation is None:
         return
@@ -52,13 +49,13 @@ def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
 
 
 def _cannot_judge(trial: Trial, check: Check) -> str:
-    """Why the J-integral cannot judge the run: the far end or the mesh explains its deviation; else empty."""
+    """Why the J-integral gives no verdict: the far end or the mesh explains its deviation; else empty."""
     prepared = prepare(trial.scene, trial.result.method)
     return end_cannot_judge(prepared, trial.result, check) or too_coarse(prepared, trial.result, check)
 
 
 def missing(trial: Trial) -> float:
-    """Part of the programme that is left: 0 where it was run to its end or the specimen has separated."""
+    """Part of the programme that was not run; 0 where it was completed or the specimen separated."""
     result, programme = trial.result, np.array(trial.scene.load.opening)
     if result.complete and result.ending.startswith("separated"):
         return 0.0
@@ -70,7 +67,7 @@ def missing(trial: Trial) -> float:
 
 
 def ledger(result: Result) -> float:
-    """Worst |external work - stored - dissipated| over what is dissipated in the end; without any, over the work."""
+    """Largest |external work - stored - dissipated| over the energy dissipated at the end, or if that is 0 the work."""
     steps = result.steps
     gap = np.abs(steps["external_work"] - steps["stored_energy"] - steps["dissipated_energy"]).max()
     lost = abs(float(steps["dissipated_energy"][-1]))
@@ -79,19 +76,37 @@ def ledger(result: Result) -> float:
 
 
 def zone_elements(trial: Trial) -> float:
-    """Elements in the process zone as it was measured; NaN where no crack ran."""
+    """Elements in the process zone as measured in the run; NaN without a crack."""
     return measured(trial.result) / expected(trial.scene, trial.result.method).element
 
 
 def distance(result: Result, reference: Result) -> float:
-    """Relative L2 distance of the envelopes of two runs, on the cubics of their exact slopes."""
+    """Relative L2 distance of the envelopes of two runs, with cubics between the steps."""
     return curve_error(cubics(result), cubics(reference))
 
 
-def difference(result: Result, reference: Result, lengths: float = 1.0, forces: float = 1.0) -> float:
-    """Largest relative difference of two paths, step by step; of their envelopes where they have other steps.
+def equal_curves(
+    reference: str,
+    measure: Callable[[Result, Result], float],
+    tolerance: float,
+    kind: Kind,
+    meaning: str,
+    name: str = "same-curve",
+) -> Callable[[Trials], Iterator[Finding]]:
+    """A judge that compares the curve of every run with that of the run named ``reference``."""
 
-    ``lengths`` and ``forces`` are the sizes of the units of ``result`` in those of ``reference``.
+    def judge(trials: Trials) -> Iterator[Finding]:
+        for other, trial in trials.items():
+            if other != reference:
+                yield Check(name, other, measure(trial.result, trials[reference].result), tolerance, kind, meaning)
+
+    return judge
+
+
+def difference(result: Result, reference: Result, lengths: float = 1.0, forces: float = 1.0) -> float:
+    """Largest relative difference of two paths step by step; distance of the envelopes where their steps differ.
+
+    ``lengths`` and ``forces`` convert the units of ``result`` to those of ``reference``.
     """
     opening, load = result.opening * lengths, result.load * forces
     if opening.size == reference.opening.size:

@@ -1,4 +1,4 @@
-"""Numerical choices at the interface that the answer must not depend on."""
+"""Cases of numerical choices at the interface, on which the results must not depend."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from verify.curves.curve import oscillation
 from verify.curves.of_run import cubics
 from verify.methods.solve import solve
 from verify.result import Result
-from verify.studies.hard.case import FINE, Case, Finding, Number, Trials, Variant, variant
-from verify.studies.hard.criteria import distance
+from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Number, Trials, Variant, variant, variants
+from verify.studies.hard.criteria import distance, equal_curves
 from verify.verdict import Check
 
 
 def _penalties() -> Sequence[Variant]:
-    """All of them where a run costs little, and the extremes, which are hardest to solve, in finite kinematics."""
-    fine = (*FINE, "effects.kinematics=linear")
+    """All penalties with linear kinematics, which is cheap, and the extremes with finite kinematics."""
+    fine = (*ONE_FINE_ARM, "effects.kinematics=linear")
     sweep = [variant(f"penalty-1e{n}", "dcb-czm1", f"interface.penalty=1e{n}", *fine) for n in range(2, 11)]
     coarse = "discretization.dofs=280"
     return sweep + [variant(f"finite-1e{n}", "dcb-czm1", f"interface.penalty=1e{n}", coarse) for n in (2, 6, 8, 10)]
 
 
 def _judge_penalties(trials: Trials) -> Iterator[Finding]:
-    """Contact of 1e4 still gives way by as much as a beam on the same contact does, which is not for a mesh to hide."""
+    """Soft contact changes the curve of the beam as well; that distance is subtracted."""
     stiffest = trials["penalty-1e10"]
     rigid = solve(stiffest.scene, "beam")
     for name, trial in trials.items():
@@ -38,66 +38,51 @@ def _judge_penalties(trials: Trials) -> Iterator[Finding]:
             yield Check("same-curve", name, away - beam, 0.001, "analytical", meaning)
 
 
-def _points() -> Sequence[Variant]:
-    rules = [("gauss", n) for n in range(1, 13)] + [("lobatto", n) for n in range(2, 13)] + [("lumped", 2)]
-    return [
-        variant(
-            rule if rule == "lumped" else f"{rule}-{n}",
-            "dcb-czm1",
-            f"discretization.interface_rule={rule}",
-            f"discretization.interface_points={n}",
-            "discretization.dofs=280",
-        )
-        for rule, n in rules
-    ]
+_RULES = {f"gauss-{n}": ("gauss", n) for n in range(1, 13)} | {f"lobatto-{n}": ("lobatto", n) for n in range(2, 13)}
+_points = variants(
+    "dcb-czm1",
+    {
+        name: (f"discretization.interface_rule={rule}", f"discretization.interface_points={n}")
+        for name, (rule, n) in (_RULES | {"lumped": ("lumped", 2)}).items()
+    },
+    "discretization.dofs=280",
+)
 
 
 def _judge_points(trials: Trials) -> Iterator[Finding]:
     beam = solve(next(iter(trials.values())).scene, "beam")
     for name, trial in trials.items():
         found = oscillation(cubics(trial.result), (beam.opening, beam.load))
-        yield Number(
-            "load-oscillation", name, found["rms"], "Wiggle of the load about the beam's on the propagation branch."
-        )
-        yield Number("traction-variation", name, variation(trial.result), "Ups and downs of the traction over 2 p_max.")
+        meaning = "RMS of the load's oscillation about the beam's on the propagation branch."
+        yield Number("load-oscillation", name, found["rms"], meaning)
+        meaning = "Total variation of the traction over 2 p_max."
+        yield Number("traction-variation", name, variation(trial.result), meaning)
 
 
 def variation(result: Result) -> float:
-    """Total variation of the traction along the bond at the last opening, over that of a single rise and fall."""
+    """Total variation of the traction along the bond in the last snapshot, over that of a single rise and fall."""
     if not result.snapshots:
         return np.nan
     p_q = result.snapshots[-1].traction_q
     return float(np.sum(np.abs(np.diff(p_q))) / (2.0 * np.max(p_q)))
 
 
-def _mismatch() -> Sequence[Variant]:
-    """As many points an element as let the coarser body see the zone with its few elements."""
-    pairs = [(ratio, slave) for ratio in (1.37, 10.0) for slave in ("upper", "lower")]
-    keys = ("load.opening=1.5", "discretization.dofs=3000", "discretization.interface_points=8")
-    return [
-        variant("matched", "dcb-czm1", *keys),
-        *(
-            variant(
-                f"{ratio:g}-{slave}",
-                "dcb-czm1",
-                *keys,
-                f"discretization.mismatch={ratio}",
-                f"discretization.slave={slave}",
-            )
-            for ratio, slave in pairs
-        ),
-    ]
+_MISMATCHED = {f"{ratio:g}-{slave}": (ratio, slave) for ratio in (1.37, 10.0) for slave in ("upper", "lower")}
+_mismatch = variants(
+    "dcb-czm1",
+    {"matched": ()}
+    | {
+        name: (f"discretization.mismatch={ratio}", f"discretization.slave={slave}")
+        for name, (ratio, slave) in _MISMATCHED.items()
+    },
+    "load.opening=1.5",
+    "discretization.dofs=3000",
+    "discretization.interface_points=8",  # that the few elements of the coarser body resolve the process zone
+)
+_judge_mismatch = equal_curves("matched", distance, 0.005, "regression", "The curve is that of matching meshes.")
 
 
-def _judge_mismatch(trials: Trials) -> Iterator[Finding]:
-    matched = trials["matched"].result
-    for name, trial in trials.items():
-        if name != "matched":
-            away = distance(trial.result, matched)
-            yield Check("same-curve", name, away, 0.005, "regression", "The curve is that of matching meshes.")
-
-
-CASES = (
+INTERFACE_CASES = (
     Case(
         "penalty-sweep",
         "Far ahead of the crack gaps alternate in sign at a millionth of the thickness, and contact with them.",

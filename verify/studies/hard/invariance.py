@@ -1,9 +1,8 @@
-"""What must not matter: units, place and direction, rounding."""
+"""Cases of invariance: units, position and orientation, rounding."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,8 +10,8 @@ import numpy as np
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
-from verify.studies.hard.case import Case, Finding, Trials, Variant, variant
-from verify.studies.hard.criteria import difference
+from verify.studies.hard.case import Case, Finding, Trials, Variant, variants
+from verify.studies.hard.criteria import difference, equal_curves
 from verify.verdict import Check
 
 _MESH = "discretization.dofs=280"
@@ -37,7 +36,7 @@ _UNITS = {
 
 
 def every_number(scene: Scene, change: Callable[[str, float], float]) -> Scene:
-    """The scene with ``change(key, value)`` for all of its numbers, which are those that are not whole by nature."""
+    """The scene with every floating-point number replaced by ``change(key, value)``; integers stay."""
 
     def walk(key: str, value: Any) -> Any:
         if isinstance(value, Mapping):
@@ -67,29 +66,22 @@ def _units() -> Sequence[Variant]:
 def _judge_units(trials: Trials) -> Iterator[Finding]:
     for name, (force, length, _) in list(_UNITS.items())[1:]:
         away = difference(trials[name].result, trials["n-mm"].result, 1.0 / length, 1.0 / force)
-        yield Check("same-curve", name, away, 1e-9, "exact", "The curve does not know the units.")
+        yield Check("same-curve", name, away, 1e-9, "exact", "The curve does not depend on the units.")
 
 
-def _poses() -> Sequence[Variant]:
-    poses = {
+_poses = variants(
+    "dcb-czm1",
+    {
+        "plain": (),
         "rotated": ("pose.angle=37.0",),
         "mirrored": ("pose.mirror=true",),
         "moved": ("pose.shift=[1e4, 1e4]",),
         "all": ("pose.angle=37.0", "pose.mirror=true", "pose.shift=[1e4, 1e4]"),
-    }
-    return [variant("plain", "dcb-czm1", _MESH)] + [
-        variant(name, "dcb-czm1", _MESH, *keys) for name, keys in poses.items()
-    ]
+    },
+    _MESH,
+)
 
-
-def _same_curve(trials: Trials, meaning: str) -> Iterator[Finding]:
-    plain = trials["plain"].result
-    for name, trial in trials.items():
-        if name != "plain":
-            away = difference(trial.result, plain)
-            yield Check("same-curve", name, away, 1e-8, "exact", meaning)
-
-
+#: Number of runs with random relative changes of all numbers, and the size of these changes.
 NOISES, NOISE = 20, 1e-14
 
 
@@ -103,10 +95,10 @@ def _noises() -> Sequence[Variant]:
     return [Variant("plain", scene), *(Variant(f"noise-{seed}", noisy(seed)) for seed in range(1, NOISES + 1))]
 
 
-_judge_poses = partial(_same_curve, meaning="The curve does not know where the specimen is.")
-_judge_noises = partial(_same_curve, meaning="The algorithm does not amplify rounding.")
+_judge_poses = equal_curves("plain", difference, 1e-8, "exact", "The curve does not depend on the pose.")
+_judge_noises = equal_curves("plain", difference, 1e-8, "exact", "The algorithm does not amplify rounding.")
 
-CASES = (
+INVARIANCE_CASES = (
     Case("units", "The same scene in N and mm, N and m, kN and inches.", _units, _judge_units),
     Case("pose", "The specimen is rotated by 37 degrees, mirrored, moved by 1e4 mm.", _poses, _judge_poses),
     Case("noise", "Every number of the scene is off by 1e-14 of itself, twenty times.", _noises, _judge_noises),

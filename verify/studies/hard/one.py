@@ -1,4 +1,4 @@
-"""One case on one basis: run all variants, judge them, leave a verdict."""
+"""One case with one basis: run all variants, apply the criteria, write a verdict."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from verify.verdict import Check
 
 @dataclass(frozen=True)
 class Line:
-    """One run in the verdict: what the matrix sums up."""
+    """One run in the verdict; the matrix has sums over these."""
 
     name: str
     status: str
@@ -39,7 +39,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a case showed on a basis."""
+    """The result of a case with one basis."""
 
     case: str
     basis: str
@@ -57,7 +57,7 @@ class Verdict:
 
 
 def run_case(case: Case, basis: str, folder: Path, solver: Solver = solve) -> Verdict:
-    """Run every variant of a case into a folder of its own in ``folder``, and write ``verdict.json`` beside them."""
+    """Run every variant of a case into its own folder in ``folder``, and write ``verdict.json`` beside these."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "verdict.json").unlink(missing_ok=True)
     trials = {}
@@ -77,7 +77,7 @@ def run_case(case: Case, basis: str, folder: Path, solver: Solver = solve) -> Ve
 
 
 def judged(case: Case, trials: Trials) -> Iterator[Finding]:
-    """All findings; a criterion that cannot even be computed is one that fails."""
+    """All findings; a criterion whose computation fails is a failed check."""
     for trial in trials.values():
         yield from common(trial, case.may_stop)
     try:
@@ -88,11 +88,11 @@ def judged(case: Case, trials: Trials) -> Iterator[Finding]:
 
 
 def read_verdict(folder: Path) -> Verdict:
-    """The verdict in the folder of a case and basis.
+    """The verdict in the folder of a case and a basis.
 
     Raises
     ------
-    Damaged : it is not as `run_case` has written it.
+    Damaged : the file is not as `run_case` wrote it.
     """
     kinds = {"runs": Line, "checks": Check, "numbers": Number}
     shape = {"case": str, "basis": str, **{key: [shape_of(kind)] for key, kind in kinds.items()}}
@@ -106,7 +106,7 @@ def read_verdict(folder: Path) -> Verdict:
 
 
 def read_cell(folder: Path) -> Verdict:
-    """The verdict, where the runs that it is about can be read as well."""
+    """The verdict, after the files of its runs have been read, too."""
     verdict = read_verdict(folder)
     for line in verdict.runs:
         if line.steps > 0:
@@ -115,7 +115,7 @@ def read_cell(folder: Path) -> Verdict:
 
 
 def _run(scene: Scene, basis: str, folder: Path, solver: Solver) -> Result:
-    """A run; one that is refused, for a mesh too coarse or a specimen not known, is a run without a step."""
+    """Solve; a scene that the method refuses, such as a mesh that is too coarse, gives a result without steps."""
     try:
         return run(prepare(scene, basis), folder, solver=solver)[0]
     except Unsuitable as error:

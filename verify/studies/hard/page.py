@@ -17,14 +17,14 @@ from verify.studies.hard.case import BASES, Case
 from verify.studies.hard.suite import Cell, totals
 from verify.verdict import Check
 
-#: Points of a drawn curve, about; runs that are named in a legend, at most.
+#: Approximate number of points of a curve; largest number of runs with a legend.
 _POINTS, _NAMED = 600, 8
 _COLOURS = ("nurbs", "lagrange", "dolfinx", "beam", "zone", "tspline", "accent", "bad")
 
 
 @dataclass(frozen=True)
 class Row:
-    """One case: its cells and their figures, ``None`` where there is nothing to draw."""
+    """One case: its cells, each with its figure or None where no run has a step."""
 
     case: Case
     cells: tuple[tuple[Cell, Panel | None], ...]
@@ -59,7 +59,7 @@ def _row(cells: Sequence[Cell], out: Path) -> Row:
 
 
 def _figure(cell: Cell, out: Path) -> Panel | None:
-    """All runs of a cell; those in other units than the first are left to their files."""
+    """The curves of a cell's runs that have the units of the first; None without a run."""
     runs = _drawn(cell, out)
     if not runs:
         return None

@@ -1,4 +1,4 @@
-"""Load programmes: few steps and many, back and forth, to the very end."""
+"""Cases of load programmes: few and many steps, unloading, reversals, complete separation."""
 
 from __future__ import annotations
 
@@ -7,26 +7,24 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from verify.scene.bodies import Dcb, Isotropic
-from verify.studies.hard.case import FINE, Case, Finding, Trial, Trials, Variant, variant
-from verify.studies.hard.criteria import distance
+from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Trial, Trials, Variant, variant, variants
+from verify.studies.hard.criteria import distance, equal_curves
 from verify.verdict import Check
 
-
-def _big_steps() -> Sequence[Variant]:
-    keys = (*FINE, "effects.kinematics=linear")
-    return [variant(f"steps-{n}", "dcb-czm1", f"discretization.steps={n}", *keys) for n in (5, 5000)]
-
-
-def _judge_big_steps(trials: Trials) -> Iterator[Finding]:
-    away = distance(trials["steps-5"].result, trials["steps-5000"].result)
-    yield Check("same-curve", "steps-5", away, 0.002, "regression", "The envelope is that of 5000 steps.")
+_big_steps = variants(
+    "dcb-czm1",
+    {f"steps-{n}": (f"discretization.steps={n}",) for n in (5, 5000)},
+    *ONE_FINE_ARM,
+    "effects.kinematics=linear",
+)
+_judge_big_steps = equal_curves("steps-5000", distance, 0.002, "regression", "The envelope is that of 5000 steps.")
 
 
 _CLOSING = -0.1
 
 
 def _unload() -> Sequence[Variant]:
-    keys = (*FINE, "interface.penalty=1e3")  # soft enough for the mesh to see how it gives way
+    keys = (*ONE_FINE_ARM, "interface.penalty=1e3")  # soft enough for the mesh to resolve the penetration
     return [
         variant(f"{name}-{kinematics}", "dcb-czm1", f"effects.kinematics={kinematics}", f"load.opening={way}", *keys)
         for kinematics in ("linear", "finite")
@@ -57,7 +55,7 @@ def _judge_unload(trials: Trials) -> Iterator[Finding]:
 
 
 def legs(trial: Trial) -> tuple[np.ndarray, np.ndarray]:
-    """Steps of the leg that unloads and of the one that reloads to where it began, both ends included."""
+    """Steps of the unloading leg, and of the reloading leg up to the opening where unloading began, ends included."""
     d = trial.result.opening
     top, low = trial.scene.load.opening[:2]
     scale = 1e-9 * max(trial.scene.load.opening)
@@ -71,7 +69,10 @@ def legs(trial: Trial) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _secant(trial: Trial, down: np.ndarray, linear: bool) -> Finding:
-    """Frozen damage makes a linear specimen positively homogeneous, contact included; a finite one only when closed."""
+    """With constant damage a linear specimen, contact included, is positively homogeneous: it unloads along a secant.
+
+    With finite kinematics only the load at zero opening is known to vanish.
+    """
     d, P = trial.result.opening[down], trial.result.load[down]
     open_ = d >= 0.0
     deviation = float(np.max(np.abs(P[open_] / P[0] - d[open_] / d[0])))
@@ -82,10 +83,10 @@ def _secant(trial: Trial, down: np.ndarray, linear: bool) -> Finding:
 
 
 def _penetration(trial: Trial) -> Iterator[Finding]:
-    """Closed by -P, the ends of the arms press on each other like beams on springs that push and do not pull.
+    """Under a closing load the ends of the arms are beams on one-sided springs, which take compression only.
 
-    Both arms on springs of ``penalty`` between them: k = 2 w penalty an arm (Winkler). Each is a beam, free where it is
-    pressed and clamped where the bond is whole: the pressed part alone could not balance the moment of its load.
+    The springs between the arms have the stiffness ``penalty``: k = 2 w penalty for each arm (Winkler). Each arm is a
+    cantilever, free at the loaded end and clamped where the bond is intact.
     """
     scene, steps = trial.scene, trial.result.steps
     body, solid = scene.specimen, scene.material
@@ -101,7 +102,7 @@ def _penetration(trial: Trial) -> Iterator[Finding]:
 
 
 def pressed_end(load: float, length: float, bending: float, k: float, elements: int = 400) -> float:
-    """Deflection of the end of a cantilever that a load presses there on one-sided springs k; cubic elements."""
+    """Deflection of a cantilever on one-sided springs k under a load at its end, by cubic elements."""
     n, h = elements, length / elements
     K_e = bending / h**3 * np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]], dtype=float)
     K = np.zeros((2 * n + 2, 2 * n + 2))  # deflections and, times h, slopes
@@ -118,17 +119,17 @@ def pressed_end(load: float, length: float, bending: float, k: float, elements: 
         closed = touching
 
 
-def _reversals() -> Sequence[Variant]:
-    tiny = "[0.5, 0.499999999, 1.0, 0.999999, 1.5, 1.499, 2.0]"
-    return [
-        variant(f"reversals-{basis}", "dcb-czm1", f"load.opening={way}", *FINE)
-        for basis, way in (("none", "2.0"), ("tiny", tiny))
-    ]
-
-
-def _judge_reversals(trials: Trials) -> Iterator[Finding]:
-    away = distance(trials["reversals-tiny"].result, trials["reversals-none"].result)
-    yield Check("same-envelope", "tiny", away, 0.002, "regression", "Reversals of no size change nothing.")
+_reversals = variants(
+    "dcb-czm1",
+    {
+        "reversals-none": ("load.opening=2.0",),
+        "reversals-tiny": ("load.opening=[0.5, 0.499999999, 1.0, 0.999999, 1.5, 1.499, 2.0]",),
+    },
+    *ONE_FINE_ARM,
+)
+_judge_reversals = equal_curves(
+    "reversals-none", distance, 0.002, "regression", "Tiny reversals do not change the envelope.", "same-envelope"
+)
 
 
 def _separation() -> Sequence[Variant]:
@@ -141,21 +142,23 @@ def _separation() -> Sequence[Variant]:
 def _judge_separation(trials: Trials) -> Iterator[Finding]:
     for name, trial in trials.items():
         body, result = trial.scene.specimen, trial.result
-        said = result.complete and result.ending.startswith("separated")
-        yield Check("separated", name, 0.0 if said else 1.0, 0.0, "exact", "The run ends by itself and says separated.")
+        separated = result.complete and result.ending.startswith("separated")
+        yield Check(
+            "separated", name, 0.0 if separated else 1.0, 0.0, "exact", "The run ends by itself and says separated."
+        )
         if result.load.size < 2:
             continue
         left = abs(result.load[-1]) / np.max(np.abs(result.load))
-        yield Check("no-load", name, left, 0.01, "exact", "Nothing is carried any more, over the peak load.")
+        yield Check("no-load", name, left, 0.01, "exact", "The load at the end, over the peak load.")
         bond = body.extent - body.free_length
         whole = trial.scene.interface.toughness * body.width * bond
         lost = result.steps["dissipated_energy"][-1] / whole - 1.0
         hinge = 1.0 / result.snapshots[0].s_q.size
-        meaning = "The whole bond was paid for, but for one point, on which the bodies turn without any load."
+        meaning = "The whole bond was dissipated, except for one point, about which the bodies rotate without load."
         yield Check("all-dissipated", name, lost, 0.01 + hinge, "exact", meaning)
 
 
-CASES = (
+PROGRAMME_CASES = (
     Case("big-steps", "The whole programme in 5 requested steps, and in 5000.", _big_steps, _judge_big_steps),
     Case("unload-reload", "The crack closes, presses, and opens again.", _unload, _judge_unload),
     Case("tiny-reversals", "The programme turns back by a billionth and goes on.", _reversals, _judge_reversals),

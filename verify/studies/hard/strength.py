@@ -1,8 +1,8 @@
-"""Strong and brittle interfaces: process zones shorter than an element, and the limit that they tend to."""
+"""Cases of strong and brittle interfaces: process zones shorter than an element, and the limit of LEFM."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -11,18 +11,16 @@ from verify.curves.curve import PROPAGATION, load_at, peak
 from verify.curves.of_run import cubics
 from verify.methods.solve import prepare, solve
 from verify.methods.zone_resolution import warnings
-from verify.studies.hard.case import FINE, Case, Finding, Number, Trial, Trials, Variant, variant
+from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Number, Trial, Trials, variants
 from verify.theory.law import Bilinear
 from verify.verdict import Check
 
-
-def _coarse() -> Sequence[Variant]:
-    return [variant("d0-280", "dcb-czm2", "discretization.dofs=280")]
-
-
-def _under_resolved() -> Sequence[Variant]:
-    sizes = (10, 20, 40)
-    return [variant(f"strength-{p}", "dcb-czm1", f"interface.strength={p}.0", "discretization.dofs=280") for p in sizes]
+_coarse = variants("dcb-czm2", {"d0-280": ("discretization.dofs=280",)})
+_under_resolved = variants(
+    "dcb-czm1",
+    {f"strength-{p}": (f"interface.strength={p}.0",) for p in (10, 20, 40)},
+    "discretization.dofs=280",
+)
 
 
 def _judge_under_resolved(trials: Trials) -> Iterator[Finding]:
@@ -33,16 +31,16 @@ def _judge_under_resolved(trials: Trials) -> Iterator[Finding]:
         if paid > 0.0:
             steps = trial.result.steps
             spent = steps["external_work"][-1] - steps["stored_energy"][-1]
-            meaning = "What the load did and the specimen has not stored, over G_Ic times the new area of crack."
+            meaning = "External work less stored energy, over G_Ic times the new area of crack."
             yield Check("crack-cost", name, spent / paid - 1.0, 0.02, "exact", meaning)
 
 
 def broken_area(trial: Trial) -> tuple[float, float]:
-    """Area of the points that have broken by the end of the run, and what it costs.
+    """Area of the integration points that are fully open at the end of the run, and energy dissipated at all points.
 
-    Where the zone is shorter than the distance of two points, the crack runs from point to point, and a length of crack
-    between them means nothing: what is new is the area of the points with k >= g_u, at G_Ic each. The few that are on
-    their way have cost the part of the law that they have been through.
+    Where the process zone is shorter than the distance of two points, the crack jumps from point to point, and its
+    length between them is undefined. The new crack is the area of the points with k >= g_u. A partly damaged point has
+    dissipated the part of the law up to its k.
     """
     snapshot, mesh, law = trial.result.snapshots[-1], trial.scene.discretization, law_of(trial.scene)
     nodes, weights = np.polynomial.legendre.leggauss(mesh.interface_points)
@@ -55,29 +53,29 @@ def broken_area(trial: Trial) -> tuple[float, float]:
 
 
 def warned(trial: Trial) -> Check:
-    """Whether the user is told before the run that the mesh is too coarse for the process zone."""
+    """Whether a warning before the run says that the mesh is too coarse for the process zone."""
     silent = 0.0 if warnings(prepare(trial.scene, trial.result.method)) else 1.0
     return Check("warned", trial.name, silent, 0.0, "exact", "An under-resolved process zone is announced.")
 
 
-#: Strength, and unknowns with which any basis resolves its process zone.
-_LIMIT = ((4, 5000), (8, 7000), (15, 9000), (30, 13000), (60, 18000))
-#: Two curves of different meshes that are closer than this are the same.
+#: Pairs of a strength and the unknowns with which every basis resolves its process zone.
+_STRENGTHS = ((4, 5000), (8, 7000), (15, 9000), (30, 13000), (60, 18000))
+#: Distance below which curves of different meshes coincide.
 _SAME = 0.002
 
 
-def _toward_lefm() -> Sequence[Variant]:
-    plain = ("effects.kinematics=linear", "effects.symmetry=true")
-    return [
-        variant(f"strength-{p}", "dcb-czm1", *plain, f"interface.strength={p}.0", f"discretization.dofs={dofs}")
-        for p, dofs in _LIMIT
-    ]
+_toward_lefm = variants(
+    "dcb-czm1",
+    {f"strength-{p}": (f"interface.strength={p}.0", f"discretization.dofs={dofs}") for p, dofs in _STRENGTHS},
+    "effects.kinematics=linear",
+    "effects.symmetry=true",
+)
 
 
 def _judge_toward_lefm(trials: Trials) -> Iterator[Finding]:
-    """On the propagation branch: before it the curves differ by what the strength is there for.
+    """Distances on the propagation branch; before it the curves differ by the effect of the finite strength.
 
-    Corrected beam theory is there P = (2/3)^(1/2) (G w)^(3/4) (E I)^(1/4) opening^(-1/2), whatever its correction.
+    On that branch corrected beam theory is P = (2/3)^(1/2) (G w)^(3/4) (E I)^(1/4) opening^(-1/2) for any correction.
     """
     limit = solve(next(iter(trials.values())).scene, "lefm")
     begin, end = PROPAGATION * peak((limit.opening, limit.load))[0], limit.opening[-1]
@@ -93,12 +91,8 @@ def _judge_toward_lefm(trials: Trials) -> Iterator[Finding]:
     yield Check("monotone", "all", float(np.max(ratios)), 1.0, "analytical", meaning)
 
 
-def _brittle() -> Sequence[Variant]:
-    return [variant(f"ductility-{r:g}", "dcb-czm1", f"interface.ductility={r}", *FINE) for r in (1.01, 1e4)]
-
-
-def _as_printed() -> Sequence[Variant]:
-    return [variant("mpa", "peel-as-printed", "discretization.dofs=1200")]
+_brittle = variants("dcb-czm1", {f"ductility-{r:g}": (f"interface.ductility={r}",) for r in (1.01, 1e4)}, *ONE_FINE_ARM)
+_as_printed = variants("peel-as-printed", {"mpa": ("discretization.dofs=1200",)})
 
 
 def _judge_as_printed(trials: Trials) -> Iterator[Finding]:
@@ -110,7 +104,7 @@ def _judge_as_printed(trials: Trials) -> Iterator[Finding]:
         yield warned(trial)
 
 
-CASES = (
+STRENGTH_CASES = (
     Case(
         "coarse-czm2",
         "The mesh only just resolves the process zone: the load-opening path snaps back at every element.",

@@ -1,4 +1,4 @@
-"""All hard cases on all bases, each pair in a process of its own; the matrix."""
+"""All hard cases with all bases, each pair in its own process, and the matrix of the results."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from verify.checks.table import check_table
 from verify.runs.estimate import seconds
 from verify.runs.fingerprint import digest, fingerprint, source
 from verify.runs.pools import pool
-from verify.runs.sweep import FOLDER, Done, Task, listed, sweep
+from verify.runs.sweep import OUTPUT_FOLDER, Done, Task, listed, sweep
 from verify.studies.hard.case import Case
 from verify.studies.hard.one import Verdict, read_cell, read_verdict
 from verify.support.say import write_page
@@ -20,7 +20,7 @@ from verify.support.say import write_page
 
 @dataclass(frozen=True)
 class Cell:
-    """One case on one basis: a verdict, or why there is none."""
+    """One case with one basis: its verdict, or the reason why it has none."""
 
     case: Case
     basis: str
@@ -33,12 +33,12 @@ class Cell:
 
     @property
     def folder(self) -> str:
-        """Relative to the output of the suite."""
+        """Relative to the output folder."""
         return f"{self.case.name}/{self.basis}"
 
 
 def hard(cases: Sequence[Case], out: Path, jobs: int, scheduler: str | None = None) -> bool:
-    """Run the cases, write ``out``/report.html, print the matrix; whether every row holds."""
+    """Run the cases, write ``out``/report.html, print the matrix. Returns whether every case holds with every basis."""
     found = {(cell.case.name, cell.basis): cell for cell in run_all(cases, out, jobs, scheduler)}
     cells = [found[case.name, basis] for case in cases for basis in case.bases]
     write_page("verify.studies.hard.page", cells, out)
@@ -49,7 +49,7 @@ def hard(cases: Sequence[Case], out: Path, jobs: int, scheduler: str | None = No
 
 
 def run_all(cases: Sequence[Case], out: Path, jobs: int, scheduler: str | None = None) -> Iterator[Cell]:
-    """Every case on every basis, ``jobs`` at a time or through a dask scheduler; the cells as they come."""
+    """Yield the cells of all cases and bases as they end, ``jobs`` at a time or by the workers of a dask scheduler."""
     pairs = {task(case, basis): (case, basis) for case in cases for basis in case.bases}
     with pool(jobs, scheduler) as workers:
         for done in sweep(list(pairs), out, workers, "hard", lambda done: _in_short(_cell(*pairs[done.task], done))):
@@ -57,18 +57,18 @@ def run_all(cases: Sequence[Case], out: Path, jobs: int, scheduler: str | None =
 
 
 def dry_run(cases: Sequence[Case], out: Path, jobs: int) -> list[str]:
-    """The cells with their times, a line each."""
+    """One line per cell with its expected time; nothing is run."""
     return listed([task(case, basis) for case in cases for basis in case.bases], out, jobs)
 
 
 def task(case: Case, basis: str) -> Task:
-    """One case on one basis as a sweep does it: all its variants in one process."""
+    """One case with one basis as a task of a sweep: all variants in one process."""
     scenes = [(variant.name, variant.scene) for variant in case.variants()]
     own = source(("verify/studies/hard",))
     return Task(
         f"{case.name}/{basis}",
         digest(case.name, own, [(name, fingerprint(scene, basis)) for name, scene in scenes]),
-        ("verify.studies.hard.one", case.name, basis, FOLDER),
+        ("verify.studies.hard.one", case.name, basis, OUTPUT_FOLDER),
         "verdict.json",
         seconds=sum(seconds(scene, basis) for _, scene in scenes),
         read=read_cell,
@@ -82,7 +82,7 @@ def _cell(case: Case, basis: str, done: Done) -> Cell:
 
 
 def matrix(cells: Sequence[Cell]) -> list[str]:
-    """One line a cell: verdict, runs completed, steps, steps taken back, worst ledger error, condition, time."""
+    """One line per cell: verdict, completed runs, steps, rejected steps, ledger error, condition number, time."""
     names = f"{'complete':>9} {'steps':>6} {'back':>5} {'ledger':>8} {'condition':>9} {'time':>8}"
     head = f"{'case':20} {'basis':9} {'':5} {names}"
     return [head, *(_row(cell) for cell in cells)]
@@ -101,7 +101,7 @@ def _row(cell: Cell) -> str:
 
 @dataclass(frozen=True)
 class Totals:
-    """A cell of the matrix in numbers: sums over the runs of a case, and the worst of them."""
+    """The numbers of a cell: sums and maxima over the runs of a case."""
 
     completed: str
     steps: int
@@ -124,7 +124,7 @@ def totals(verdict: Verdict) -> Totals:
 
 
 def failures(cells: Sequence[Cell]) -> list[str]:
-    """What fails, in full."""
+    """A line for each failed check and each incomplete run."""
     lines = []
     for cell in cells:
         if cell.verdict is not None:

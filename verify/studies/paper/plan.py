@@ -1,4 +1,4 @@
-"""The runs behind the figures, and the fine ones that give their converged curves."""
+"""The runs of the figures, and the runs on fine meshes for the converged curves."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from verify.methods.reference_mesh import reference_mesh
 from verify.runs.jobs import Job
 from verify.scene.schema import Scene
 
-#: Packaged scenes of Figures 6 to 8, each with its law as the paper calls it.
+#: Packaged scenes of Figures 6 to 8, each with the name of its law in the paper.
 LAWS = {"dcb-czm1": "CZM 1", "dcb-czm2": "CZM 2"}
 
-#: Packaged scenes of Figure 9, the shortest bond first, and the scene with the moduli as they are printed.
+#: Packaged scenes of Figure 9, shortest bond first, and the scene with the moduli as printed in the paper.
 BONDS, PRINTED = ("peel-60", "peel-80", "peel-100", "peel-120"), "peel-as-printed"
 
 #: Interface points and penalty of Figures 6 and 7.
 PAPER_POINTS, PAPER_PENALTY = 2, 1e5
 
-#: Without DOLFINx NURBS give the converged curves: unknowns of the two meshes for the beams, where one arm has half of
-#: them, and for the strips as multiples of those of the scene.
+#: Meshes of the converged curves without DOLFINx, by NURBS: unknowns for the beams, of which the modelled arm has half,
+#: and multiples of the scene's unknowns for the strips.
 FINE_BEAM, FINE_STRIP = (8000, 16_000), (2, 3)
 
-#: A scene and a penalty: a soft contact is another problem, with its own converged curve. Strips have the scene's own.
+#: Scene and penalty: each penalty has its own converged curve. None for strips, which have the penalty of the scene.
 Problem = tuple[str, float | None]
 
 
 @dataclass(frozen=True)
 class Figures:
-    """Some figures: packaged scenes, and the meshes of their converged curves by method."""
+    """A group of figures: packaged scenes, and in words the meshes of the converged curves by method."""
 
     scenes: tuple[str, ...]
     fine: Mapping[str, str]
@@ -43,7 +43,7 @@ STRIPS = Figures(BONDS, {"dolfinx": "quadratic DOLFINx elements", "nurbs": "NURB
 
 @dataclass(frozen=True)
 class Case:
-    """One run. With 0 unknowns it is the run of the packaged scene that every verification makes, as for all strips."""
+    """One run. 0 unknowns: the run of the packaged scene as in every verification, which all strips use."""
 
     basis: str
     scene: str
@@ -53,7 +53,7 @@ class Case:
 
     @property
     def of_the_paper(self) -> bool:
-        """Whether it belongs to Figures 6 and 7."""
+        """Whether the run belongs to Figures 6 and 7."""
         return (self.points, self.penalty) == (PAPER_POINTS, PAPER_PENALTY)
 
     @property
@@ -68,7 +68,7 @@ class Case:
 
     @property
     def variant(self) -> str:
-        """Folder of the run in that of its scene."""
+        """Folder of the run in the folder of its scene."""
         if not self.dofs:
             return self.basis
         return f"figures/{self.basis}-{self.dofs}-{self.points}-points-penalty-{self.penalty:g}"
@@ -79,7 +79,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Plan:
-    """Jobs of all cases, and of two fine meshes for every problem, the coarser first."""
+    """Jobs of all cases, and for every problem those on two fine meshes, the coarser first."""
 
     figures: Figures
     scenes: Mapping[str, Scene]
@@ -99,7 +99,7 @@ def beams(
     points: Sequence[int] = tuple(range(2, 9)),
     penalties: Sequence[float] = (1e3, PAPER_PENALTY),
 ) -> Plan:
-    """Figures 6 to 8: all combinations on those of ``scenes`` (name, scene) that are the paper's."""
+    """Figures 6 to 8: all combinations for those of ``scenes`` (name, scene) that are in the paper."""
     known = {name: scene for name, scene in scenes if name in LAWS}
     every = product(known, unknowns, penalties, points, bases)
     cases = [Case(basis, name, dofs, n, penalty) for name, dofs, penalty, n, basis in every]
@@ -108,7 +108,7 @@ def beams(
 
 
 def strips(scenes: Sequence[tuple[str, Scene]], bases: Sequence[str] = WITH_DOFS) -> Plan:
-    """Figure 9: those of ``scenes`` (name, scene) that are the paper's, by all bases."""
+    """Figure 9: all bases for those of ``scenes`` (name, scene) that are in the paper."""
     given = dict(scenes)
     known = {bond: given[bond] for bond in BONDS if bond in given}
     cases = [Case(basis, bond) for bond, basis in product(known, bases)]
@@ -117,7 +117,7 @@ def strips(scenes: Sequence[tuple[str, Scene]], bases: Sequence[str] = WITH_DOFS
 
 
 def cubic(source: str, scene: Scene) -> Job:
-    """DOLFINx with cubic elements on the scene's own mesh."""
+    """DOLFINx with cubic elements on the mesh of the scene."""
     return Job(source, scene, "dolfinx", "dolfinx-p3", ("dolfinx.degree=3",))
 
 

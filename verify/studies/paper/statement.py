@@ -1,4 +1,4 @@
-"""A statement, the comparisons of runs that decide on it, and its verdict."""
+"""A statement, the comparisons of runs that test it, and its verdict."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from typing import Literal
 
 import numpy as np
 
-#: Who expects what is stated; the paper does not give numbers for Figure 9.
+#: Sources of the statements; the paper gives no numbers for Figure 9.
 PAPER, REFINEMENT, READING = "the paper", "convergence", "moduli read as GPa"
 THEORY, J_INTEGRAL, LIMIT = "beam theory", "the J_INTEGRAL-integral", "LEFM, plate limit"
 
 Unit = Literal["ratio", "fraction", "number"]
 
-#: What a number is about, and the number.
+#: Pairs of a subject and its number.
 Found = Iterable[tuple[str, float]]
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """One number; ``holds`` is None where a run is missing or the reference is too coarse to tell."""
+    """One number; ``holds`` is None where a run is missing or the difference is below the error of the reference."""
 
     subject: str
     value: float
@@ -30,7 +30,7 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Statement:
-    """One statement, and every comparison of runs that decides on it; ``source`` says who expects it."""
+    """One statement with the comparisons of runs that test it; ``source`` says where it is from."""
 
     text: str
     measure: str
@@ -47,7 +47,7 @@ class Statement:
 
     @property
     def extent(self) -> str:
-        """In how many comparisons it holds, and the median of their values with the range."""
+        """Number of comparisons in which the statement holds, with median and range of their values."""
         values = [c.value for c in self.comparisons if isfinite(c.value)]
         if not values:
             return "no two runs to compare"
@@ -70,15 +70,15 @@ class Statement:
 
 
 def each(
-    said: tuple[str, str], unit: Unit, found: Found, holds: Callable[[float], bool], source: str = PAPER
+    texts: tuple[str, str], unit: Unit, found: Found, holds: Callable[[float], bool], source: str = PAPER
 ) -> Statement:
-    """Holds for each number by itself; ``said`` is the statement and the name of the number."""
+    """A statement that is tested for each number separately; ``texts`` are the statement and the name of the number."""
     comparisons = (Comparison(subject, n, bool(holds(n)) if isfinite(n) else None) for subject, n in found)
-    return Statement(*said, unit, tuple(comparisons), source)
+    return Statement(*texts, unit, tuple(comparisons), source)
 
 
 def counted(found: Sequence[Statement]) -> str:
-    """How many statements have which verdict, in a sentence without its full stop."""
+    """The numbers of statements by verdict, as a sentence without full stop."""
     verdicts = [s.verdict for s in found]
     kinds = [k for k in ("confirmed", "confirmed in part", "not confirmed", "not tested") if k in verdicts]
     return f"Of {len(found)} statements " + ", ".join(f"{verdicts.count(kind)} {kind}" for kind in kinds)

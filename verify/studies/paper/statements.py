@@ -1,4 +1,4 @@
-"""What the paper states about its figures, and what is expected of them besides, each with the verdict of the runs."""
+"""Statements of the paper about its figures, and further expectations, each tested by the runs."""
 
 from __future__ import annotations
 
@@ -32,27 +32,27 @@ from verify.studies.paper.statement import (
 )
 from verify.studies.paper.study import Study, apart, curve
 
-#: Curves whose relative L2 distance is below this lie within the width of a line drawn in a figure.
+#: Relative L2 distance of curves below which they coincide within the line width of a figure.
 VISIBLE = 0.01
 
 PLURALS = {"tspline": "T-splines", "nurbs": "NURBS", "lagrange": "Lagrange elements"}
 
-#: Measure of a trial -> its name, and what a basis is that has less of it.
+#: Measure of a trial -> its name, and the comparative for a basis with a smaller value.
 MEASURES = {"error": ("curve distance", "closer to the converged curve"), "oscillation": ("oscillation", "smoother")}
 
-#: Runs to compare: the subject, the run that should be better or equal, and the other one.
+#: Comparisons: subject, the run that is expected to be better, the other run.
 Pairs = list[tuple[str, Case, Case]]
 
 
 def statements(study: Study) -> tuple[Statement, ...]:
-    """All of them, the paper's first, in the order of its argument."""
+    """All statements, those of the paper first and in its order."""
     if not study.trials:
         return ()
     return tuple(_of_beams(study) if study.figures is BEAMS else _of_strips(study))
 
 
 def lines(title: str, study: Study) -> list[str]:
-    """One line a statement for the terminal, or why there is none."""
+    """One line per statement for the terminal, or the reason why there are none."""
     if study.left_out:
         return [f"{title} of the paper: {study.left_out}"]
     return [f"{s.verdict:18} {s.text}: {s.extent}" for s in statements(study)]
@@ -79,7 +79,7 @@ def _of_beams(study: Study) -> Iterator[Statement]:
 
 
 def _rankings(study: Study, better: str, worse: str, measure: str) -> Iterator[Statement]:
-    """As in Figures 6 and 7, and over all runs that Figure 8 and the other penalty add."""
+    """For the runs of Figures 6 and 7, and for all runs, with those of Figure 8 and of the other penalty."""
     few, many = _ends(study, "points")
     every = _cases(study, basis=better)
     paper = [case for case in every if case.of_the_paper]
@@ -116,7 +116,7 @@ def _points_idle(study: Study, basis: str) -> Statement:
 
 
 def _penalty(study: Study) -> Statement:
-    """Of every basis, and of the converged curves: what the problem itself owes to it."""
+    """For every basis, and for the converged curves, whose distance is the influence on the problem itself."""
     low, high = _ends(study, "penalty")
     cases = _cases(study, penalty=low) if high > low else []
     off = _distances(study, _pairs(study, cases, {"penalty": high}, "basis", "law", "dofs", "points"))
@@ -166,9 +166,9 @@ def _of_strips(study: Study) -> Iterator[Statement]:
 
 
 def _peaks(study: Study) -> Iterator[Statement]:
-    """The shorter the free length a, the shorter the lever arm: P = sqrt(2 G w E I) / a.
+    """The peak load is inversely proportional to the lever arm, the free length a: P = sqrt(2 G w E I) / a.
 
-    A substrate that gives way and an interface of finite strength make the strip longer than its free length.
+    The compliance of the substrate and a finite strength make the effective length larger than a.
     """
     peaks = {(name, bond): peak_load(result) for name, bond, result in study.complete_runs()}
     known = [
@@ -186,7 +186,7 @@ def _peaks(study: Study) -> Iterator[Statement]:
 
 
 def _one_branch(study: Study) -> Statement:
-    """Of every basis against its own curve with the longest bond: the crack is at the same place there."""
+    """For every basis against its curve with the longest bond: on the branch the crack is at the same place."""
     curves = {(name, bond): curve(result) for name, bond, result in study.complete_runs()}
     longest = next((bond for bond in reversed(BONDS) if bond in study.scenes), "")
     off = [
@@ -199,7 +199,7 @@ def _one_branch(study: Study) -> Statement:
 
 
 def branch_distance(one: Curve, other: Curve) -> float:
-    """Relative L2 distance of two curves where both are on their propagation branch; NaN where that is nowhere."""
+    """Relative L2 distance of two curves where both are on their propagation branch; NaN if they never are."""
     begin = PROPAGATION * max(peak(one)[0], peak(other)[0])
     end = min(float(np.max(one[0])), float(np.max(other[0])))
     if not end > begin:
@@ -220,7 +220,7 @@ def _growth(study: Study) -> Iterator[Statement]:
 
 
 def identities(scene: Scene, result: Result) -> dict[str, float]:
-    """While the crack grows: deviation of J, the least load over G_Ic w, and load sin(theta) over it in the end."""
+    """During crack growth: deviation of J, least load over G_Ic w, and final load sin(theta) over G_Ic w."""
     j, angle, steady = j_deviation(scene, result.steps), growth_angle(scene, result.steps), growing(scene, result.steps)
     least = float(np.min(result.load[steady])) if steady.any() else nan
     return {
@@ -238,12 +238,12 @@ def _ranking(study: Study, text: str, measure: str, pairs: Pairs, bases: tuple[s
 
 
 def _ratios(study: Study, said: tuple[str, str], measure: str, pairs: Pairs, source: str = PAPER) -> Statement:
-    """How many times more of a measure the other run has."""
+    """The ratio of a measure, other run over expected better run, for each pair."""
     return Statement(*said, "ratio", tuple(_ratio(study, measure, *pair) for pair in pairs), source)
 
 
 def _ratio(study: Study, measure: str, subject: str, better: Case, worse: Case) -> Comparison:
-    """Undecided where the difference is within the reference's own."""
+    """Undecided where the difference is smaller than the error of the reference."""
     low, high = (nan if t is None else getattr(t, measure) for t in map(study.trial, (better, worse)))
     if not (isfinite(low) and isfinite(high)):
         return Comparison(subject, nan, None)
@@ -261,7 +261,7 @@ def _unseen(distance: float) -> bool:
 
 
 def _pairs(study: Study, cases: Iterable[Case], other: Mapping[str, Any], *names: str) -> Pairs:
-    """Every case beside the same with ``other`` values, called by the fields ``names``."""
+    """Every case and the case with ``other`` values; the subject consists of the fields ``names``."""
     return [(_where(study, case, *names), case, replace(case, **other)) for case in cases]
 
 
@@ -271,7 +271,7 @@ def _cases(study: Study, **fixed: object) -> list[Case]:
 
 
 def _ends(study: Study, name: str) -> tuple[Any, Any]:
-    """Least and largest value of a field of the cases."""
+    """Smallest and largest value of a field of the cases."""
     values = study.values(name)
     return min(values), max(values)
 

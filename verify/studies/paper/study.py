@@ -1,4 +1,4 @@
-"""What came of the runs behind the figures, each measured against a converged curve of the same problem."""
+"""Measures of the runs of the figures against the converged curves of the same problems."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from verify.theory import lefm
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """The finer of two fine runs; ``error`` and ``oscillation`` are those of the coarser one against it."""
+    """The finer of two runs on fine meshes; ``error`` and ``oscillation`` of the coarser one against it."""
 
     label: str
     result: Result
@@ -34,12 +34,12 @@ class Reference:
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """One run of the figures; what cannot be measured, as of a run that stopped, is NaN.
+    """One run of the figures; the measures of a run that stopped are NaN.
 
     error : relative L2 distance of the load to the reference
     oscillation : RMS of load / reference - 1 on the propagation branch, mean removed
-    variation : total variation of the load there beyond that of a monotone curve, relative to it
-    peak : largest load over that of the reference, minus 1
+    variation : excess of the total variation of the load there over that of a monotone curve, relative
+    peak : peak load over that of the reference, minus 1
     """
 
     case: Case
@@ -56,18 +56,18 @@ class Trial:
 
     @property
     def drawn(self) -> Result | None:
-        """The run, if it has a curve."""
+        """The result if it has a curve."""
         return self.result if self.result is not None and self.result.opening.size > 1 else None
 
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """All trials of some figures.
+    """All trials of a group of figures.
 
-    scenes : by name; ``limits`` are their LEFM curves
-    references : converged curves that are known, by problem
-    zones : elements that span the process zone: of beams as expected, of strips as measured
-    printed : of strips with the printed moduli, as expected, by basis
+    scenes, limits : scenes and their LEFM curves by name
+    references : converged curves by problem
+    zones : elements in the process zone: estimated for beams, measured for strips
+    printed : estimated elements in the zone for strips with the printed moduli, by basis
     """
 
     figures: Figures
@@ -80,7 +80,7 @@ class Study:
 
     @property
     def left_out(self) -> str:
-        """Why there are no trials, where there are none."""
+        """Why there are no trials; empty if there are some."""
         scenes = ", ".join(self.figures.scenes)
         return "" if self.trials else f"left out: none of its scenes ({scenes}) is among those given"
 
@@ -88,16 +88,16 @@ class Study:
         return self._by_case.get(case)
 
     def values(self, name: str) -> tuple:
-        """The different values of a field of the cases: ``study.values("points")``."""
+        """The distinct values of a field of the cases: ``study.values("points")``."""
         return tuple(dict.fromkeys(getattr(trial.case, name) for trial in self.trials))
 
     def bond(self, scene: str) -> float:
-        """Length of the bond of a strip."""
+        """Bond length of a strip; NaN for other specimens."""
         specimen = self.scenes[scene].specimen
         return specimen.bond_length if specimen.kind == "peel" else nan
 
     def complete_runs(self) -> Iterator[tuple[str, str, Result]]:
-        """Basis, scene and result of every complete run, the converged ones last."""
+        """Basis, scene and result of every complete run, then those of the converged curves."""
         for one in self.trials:
             if one.result is not None and one.result.complete:
                 yield one.case.basis, one.case.scene, one.result
@@ -125,7 +125,7 @@ def measured(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Study:
 
 
 def reference(coarse: Outcome, fine: Outcome, names: Mapping[str, str]) -> Reference | None:
-    """The converged curve of two fine runs; None where one of them did not come to its end."""
+    """The converged curve from two runs on fine meshes; None where one of them is not complete."""
     before, result = coarse.result, fine.result
     if before is None or result is None or not (before.complete and result.complete):
         return None
@@ -134,7 +134,7 @@ def reference(coarse: Outcome, fine: Outcome, names: Mapping[str, str]) -> Refer
 
 
 def trial(case: Case, outcome: Outcome, against: Reference | None) -> Trial:
-    """Measure one run; one that stopped, or that has no reference, only keeps its status."""
+    """Measure one run; without a reference or an end of the programme it has its status alone."""
     result = outcome.result
     if result is None:
         return Trial(case, None, outcome.left_out)
@@ -146,29 +146,29 @@ def trial(case: Case, outcome: Outcome, against: Reference | None) -> Trial:
 
 
 def zone(scene: Scene, found: Trial) -> float:
-    """Elements in the process zone as the run has it; NaN without one."""
+    """Measured elements in the process zone; NaN without one."""
     if found.result is None or not found.complete:
         return nan
     return zone_length(found.result) / element_length(scene, found.case.basis)
 
 
 def curve(result: Result) -> Curve:
-    """The converged points as they are.
+    """The converged points, without cubics between them.
 
-    Between them the exact slopes would tell no more: a step ends anywhere in the passage of the front through an
-    element, and the slope there has the ripple of that passage, which a step of the load does not show.
+    A step ends at any position of the front within an element, and the slope there contains the ripple of the passage
+    through that element: cubics by these slopes would be less smooth than the points.
     """
     return result.opening, result.load
 
 
 def limit(scene: Scene) -> Curve:
-    """LEFM by simple beam theory, the curve that the paper draws."""
+    """LEFM by simple beam theory, as in the figures of the paper."""
     rows = lefm.solve(replace(prepare(scene, "lefm").problem, theory="simple")).rows
     return np.array([row["opening"] for row in rows]), np.array([row["load"] for row in rows])
 
 
 def apart(one: Trial | None, other: Trial | None) -> float:
-    """Relative L2 distance of the curves of two trials; NaN where one of them did not come to its end."""
+    """Relative L2 distance of the curves of two trials; NaN where one of them is not complete."""
     if one is None or other is None or one.result is None or other.result is None:
         return nan
     return curve_error(curve(one.result), curve(other.result)) if one.complete and other.complete else nan

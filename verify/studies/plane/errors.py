@@ -1,4 +1,4 @@
-"""Distance of a plane solution to an exact one."""
+"""Errors of a plane solution against an exact field."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from verify.theory.plane_fields import PlaneField
 
 @dataclass(frozen=True)
 class Errors:
-    """Relative errors: displacement in L2, stress in energy, and the largest of the stress over the largest stress."""
+    """Relative errors: displacement in L2, stress in the energy norm, largest stress error over largest stress."""
 
     displacement: float
     energy: float
@@ -23,13 +23,13 @@ class Errors:
 
 
 def errors(mesh: Mesh, D: np.ndarray, u_Ai: np.ndarray, exact: PlaneField, up_to_rigid: bool = False) -> Errors:
-    """Errors at p + 3 or more Gauss points a direction.
+    """Errors by p + 3 or more Gauss points per direction.
 
     Parameters
     ----------
     D : (3, 3) elasticity matrix of the numerical solution.
     u_Ai : (n_A, 2) its control displacements.
-    up_to_rigid : leave out the rigid motion between both, which tractions alone do not determine.
+    up_to_rigid : subtract the rigid motion from the difference, as tractions alone do not determine it.
     """
     parts: list[tuple[np.ndarray, ...]] = []
     for basis in bulk_bases(mesh, 2):
@@ -57,7 +57,7 @@ def _energy(stress_kq: np.ndarray, D: np.ndarray, dV: np.ndarray) -> float:
 
 
 def _without_rigid_motion(u: np.ndarray, X: np.ndarray, dV: np.ndarray) -> np.ndarray:
-    """Less its projection in L2 onto translations and the rotation about the middle."""
+    """The field minus its L2 projection onto translations and the rotation about the centre."""
     x = X - dV @ X / dV.sum()
     turn = np.stack([-x[:, 1], x[:, 0]], -1)
     return u - dV @ u / dV.sum() - turn * (np.sum(turn * u, 1) @ dV) / (np.sum(turn**2, 1) @ dV)

@@ -1,6 +1,6 @@
-"""Rates of convergence in plane elasticity, basis by basis: NURBS, T-splines, and around extraordinary points.
+"""Convergence rates in plane elasticity of NURBS, T-splines, and meshes with an extraordinary point.
 
-The same smooth field, by tractions on the whole boundary, on meshes of 4, 8 and 16 elements a direction.
+One smooth field, prescribed by tractions on the whole boundary, on meshes with 4, 8 and 16 elements per direction.
 """
 
 from __future__ import annotations
@@ -25,13 +25,15 @@ from verify.studies.plane.study import SOLID
 from verify.theory.plane_fields import smooth
 from verify.verdict import Check
 
+#: Elements per direction of the three meshes.
 COUNTS = (4, 8, 16)
-WITHIN = 0.15
+#: Tolerance for the difference of observed and expected order.
+RATE_WITHIN = 0.15
 
 
 @dataclass(frozen=True)
 class Family:
-    """Meshes by their number of elements a direction; ``order`` in L2 is that of theory, None where none is known."""
+    """A sequence of meshes by elements per direction; ``order`` is the theoretical one in L2, None if unknown."""
 
     name: str
     ink: str  # its colour in the palette of the report
@@ -41,7 +43,7 @@ class Family:
 
 @dataclass(frozen=True)
 class Convergence:
-    """What was found of one family."""
+    """Unknowns and errors on the meshes of one family."""
 
     family: Family
     unknowns: tuple[int, ...]
@@ -49,13 +51,13 @@ class Convergence:
 
     @property
     def rates(self) -> tuple[float, float]:
-        """In L2 and in energy, between the last two meshes."""
+        """Rates in L2 and in the energy norm between the last two meshes."""
         a, b = self.errors[-2:]
         return float(np.log2(a.displacement / b.displacement)), float(np.log2(a.energy / b.energy))
 
 
 def half_fine(n: int) -> Mesh:
-    """The unit square, twice as many columns below its middle as above: T-junctions all along it."""
+    """The unit square with twice as many columns in its lower half: T-junctions along the line y = 0.5."""
     mesh = tensor_grid(np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, n + 1))
     for x in (np.arange(n) + 0.5) / n:
         mesh = with_line(mesh, "vertical", float(x), (0.0, 0.5))
@@ -86,7 +88,7 @@ def rate_checks(found: tuple[Convergence, ...]) -> tuple[Check, ...]:
     """The rate of every family whose order is known."""
     meaning = "The rate in L2 is p + 1."
     return tuple(
-        Check("rate", c.family.name, c.rates[0] - c.family.order, WITHIN, "analytical", meaning)
+        Check("rate", c.family.name, c.rates[0] - c.family.order, RATE_WITHIN, "analytical", meaning)
         for c in found
         if c.family.order is not None
     )

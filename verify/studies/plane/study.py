@@ -1,8 +1,8 @@
-"""Plane problems on meshes from CAD: patch test, errors against an exact field, rates under refinement.
+"""Plane problems on meshes from CAD: patch test, errors against an exact field, convergence rates.
 
-A mesh that surrounds a circle about the origin is a piece of an infinite plate with a hole (Kirsch 1898), any other
-one carries a smooth field. The tractions of the exact field act on the whole boundary. The first mesh is the file as
-it is, the others are its Bezier refinements (`iga.mesh.refinement`).
+A mesh around a circle about the origin is solved as a part of an infinite plate with a hole (Kirsch 1898), any other
+mesh with a smooth field. The tractions of the exact field act on the whole boundary. The first mesh is that of the
+file, the others are its Bezier refinements (`iga.mesh.refinement`).
 """
 
 from __future__ import annotations
@@ -33,21 +33,39 @@ from verify.theory.plane_fields import PlaneField, kirsch, smooth, uniform
 from verify.verdict import Check
 
 SOLID: Mapping[str, Any] = {"young": 1.0, "poisson": 0.3, "plane": "stress"}
-CUTS, MOST_UNKNOWNS = 3, 100_000  # refinements of the file, as far as they stay below so many unknowns
-PATCH_TOLERANCE = 1e-10
-ERROR_TOLERANCE = 1e-3
-RATE_TOLERANCE, SETTLED = 0.25, 0.25  # from the expected rate; and between the last two, for the last to be judged
-FALL_TOLERANCE = 1e-6
-_GRID = 7  # sampling points along an element
+_GRID = 7  # sampling points per direction of an element
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Size of the study, and tolerances of its checks.
+
+    cuts, unknowns : largest numbers of refinements and of unknowns
+    patch : error of the patch test, which is rounding
+    error : relative L2 error of the displacement on the finest mesh
+    rate, settled : difference to the expected rate; difference of the last two rates up to which the last is checked
+    growth : relative growth of the error in energy on nested spaces, which is rounding
+    """
+
+    cuts: int = 3
+    unknowns: int = 100_000
+    patch: float = 1e-10
+    error: float = 1e-3
+    rate: float = 0.25
+    settled: float = 0.25
+    growth: float = 1e-6
+
+
+PLANE_LIMITS = Limits()
 
 
 @dataclass(frozen=True, eq=False)
 class Plate:
-    """A body from a file, its whole boundary as the chains ``boundary-0``, ..., and the hole that it surrounds."""
+    """A body from a file; the chains ``boundary-0``, ... are its whole boundary."""
 
     name: str
     mesh: Mesh
-    hole: float | None  # radius, about the origin
+    hole: float | None  # radius of a hole about the origin
 
     @property
     def boundary(self) -> list:
@@ -56,7 +74,7 @@ class Plate:
 
 @dataclass(frozen=True)
 class Level:
-    """One mesh of the sequence; the rates are those from the mesh before, NaN where that one is not of its kind."""
+    """One mesh of the sequence; the rates are those from the previous mesh, NaN where that has other functions."""
 
     name: str
     elements: int
@@ -68,11 +86,11 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class PlaneStudy:
-    """All numbers of one file; ``X_euvi`` (n_e, m, m, 2) and the stress xx there, found and exact (n_e, m, m)."""
+    """Results of one file; at the points ``X_euvi`` (n_e, m, m, 2) numerical and exact stress xx (n_e, m, m)."""
 
     name: str
     problem: str
-    order: int  # expected of the refinements
+    order: int  # expected order in L2 of the refinements
     patch: Errors
     levels: tuple[Level, ...]
     X_euvi: np.ndarray
@@ -86,12 +104,12 @@ def load_plate(source: str) -> Plate:
 
     Raises
     ------
-    Refusal : the file cannot be read, is malformed, or is no mesh of a plane that a solver can use.
+    Refusal : the file cannot be read, is malformed, or holds no plane mesh that a solver can use.
     """
     path = Path(source)
     try:
         mesh = mesh_of(read_iga(path))
-        stiffness(mesh, isotropic(**SOLID))  # refuses elements that are inside out
+        stiffness(mesh, isotropic(**SOLID))  # refuses elements with a negative Jacobian
         if unsound := (*faults(mesh), *dependence(mesh)):
             raise ValueError("; ".join([*unsound, *unity_fault(mesh)]))
         chains = {f"{_BOUNDARY}{i}": chain for i, chain in enumerate(boundary_chains(mesh))}
@@ -118,9 +136,9 @@ def study(plate: Plate) -> PlaneStudy:
 
 
 def settled(levels: tuple[Level, ...]) -> bool:
-    """Whether the last two rates agree, so that the last one is that of the method and not of the coarse meshes."""
+    """Whether the last two rates agree, so that the last one is asymptotic."""
     rates = [level.rate for level in levels[-2:]]
-    return len(rates) == 2 and abs(rates[1] - rates[0]) <= SETTLED
+    return len(rates) == 2 and abs(rates[1] - rates[0]) <= PLANE_LIMITS.settled
 
 
 def lines(found: PlaneStudy) -> list[str]:
@@ -139,7 +157,7 @@ _BOUNDARY = "boundary-"
 
 
 def _hole(mesh: Mesh) -> float | None:
-    """Radius of a circle about the origin on which whole sides lie, the body outside of it."""
+    """Radius of a circle about the origin that has whole sides on it and the body outside; None without one."""
     sides = side_points(mesh, list(mesh.chains.values()), 2)
     radius = min(float(np.linalg.norm(side.X_eqI, axis=-1).min()) for side in sides)
     for side in sides:
@@ -160,9 +178,9 @@ def _field(plate: Plate) -> tuple[PlaneField, str]:
 
 
 def _levels(plate: Plate, field: PlaneField) -> Iterator[Level]:
-    """The file, its Bezier elements with shared control points, and these halved again and again."""
+    """The mesh of the file, its Bezier elements with shared control points, and these halved repeatedly."""
     mesh, last = plate.mesh, (float("nan"),) * 2
-    for cuts in range(-1, CUTS):
+    for cuts in range(-1, PLANE_LIMITS.cuts):
         if cuts >= 0:
             mesh = bezier_refined(mesh, 0 if cuts == 0 else 1)
         boundary = replace(plate, mesh=mesh).boundary
@@ -173,23 +191,23 @@ def _levels(plate: Plate, field: PlaneField) -> Iterator[Level]:
         yield Level(name, mesh.elements, 2 * len(mesh.P_AI), found, *rates)
         last = here
         p = max(max(block.degrees) for block in mesh.blocks)
-        if 2 * (2 if cuts >= 0 else 1) ** 2 * mesh.elements * p**2 > MOST_UNKNOWNS:
+        if 2 * (2 if cuts >= 0 else 1) ** 2 * mesh.elements * p**2 > PLANE_LIMITS.unknowns:
             return
 
 
 def _checks(name: str, patch: Errors, levels: tuple[Level, ...], order: int) -> Iterator[Check]:
     worst = max(patch.displacement, patch.stress)
-    yield Check("patch-test", name, worst, PATCH_TOLERANCE, "exact", "A constant stress is found exactly.")
+    yield Check("patch-test", name, worst, PLANE_LIMITS.patch, "exact", "A constant stress is found exactly.")
     energy = np.array([level.errors.energy for level in levels])
     growth = float(np.max(np.append(energy[1:] / energy[:-1] - 1.0, 0.0)))
     meaning = "The spaces are nested: the error in energy never grows."
-    yield Check("nested-energy", name, growth, FALL_TOLERANCE, "exact", meaning)
+    yield Check("nested-energy", name, growth, PLANE_LIMITS.growth, "exact", meaning)
     finest = levels[-1].errors.displacement
     meaning = "Displacement on the finest mesh against the exact field, relative L2."
-    yield Check("exact-field", name, finest, ERROR_TOLERANCE, "analytical", meaning)
+    yield Check("exact-field", name, finest, PLANE_LIMITS.error, "analytical", meaning)
     if settled(levels):
         meaning = "The rate in L2 under refinement is p + 1."
-        yield Check("rate", name, levels[-1].rate - order, RATE_TOLERANCE, "analytical", meaning)
+        yield Check("rate", name, levels[-1].rate - order, PLANE_LIMITS.rate, "analytical", meaning)
 
 
 def _unity(plate: Plate) -> Check:
@@ -207,7 +225,7 @@ def _errors(mesh: Mesh, u_Ai: np.ndarray, field: PlaneField) -> Errors:
 
 
 def _sampled(mesh: Mesh, u_Ai: np.ndarray, field: PlaneField) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Positions and stress xx on a grid in every element, a little off its sides, where a map may degenerate."""
+    """Points, numerical and exact stress xx on a grid in every element, off its sides, where maps may degenerate."""
     at, ones = np.linspace(1e-4, 1.0 - 1e-4, _GRID), np.ones(_GRID)
     X, found = [], []
     for block in mesh.blocks:

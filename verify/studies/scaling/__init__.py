@@ -1,5 +1,5 @@
-"""How time and memory grow with the unknowns, and what more ranks gain on this machine.
+"""The study of scaling: growth of time and memory with the unknowns, and the speed-up by more MPI ranks.
 
-Read in this order: `plan` (which runs), `ranks` (a run under mpirun), `row` (one run, measured), `growth` (exponents,
-speed-ups), `study` (the sweep), `page`.
+Read in this order: `plan` (the runs), `ranks` (a run under mpirun), `row` (measurements of a run), `growth` (exponents,
+speed-ups), `study` (the whole study), `page`.
 """

@@ -1,4 +1,4 @@
-"""Exponents of growth, value = factor N^exponent, least squares on logarithms; and what more ranks gain."""
+"""Power laws, value = factor N^exponent, by least squares on logarithms; and speed-ups by more ranks."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from verify.studies.scaling.row import PARTS, Row
 
 @dataclass(frozen=True)
 class Fit:
-    """A power law through points (N, value).
+    """A power law fitted to points (N, value).
 
-    exponent, error : of the power, with its standard error; NaN for fewer than three points
+    exponent, error : exponent and its standard error; NaN for fewer than three points
     factor : value at N = 1
     """
 
@@ -29,7 +29,7 @@ class Fit:
 
 
 def fit(n: Sequence[float], value: Sequence[float]) -> Fit:
-    """The power law through at least three points, all positive; without them all is NaN."""
+    """The power law fitted to the positive points; all NaN for fewer than three of them."""
     x, y = np.asarray(n, float), np.asarray(value, float)
     there = (x > 0) & (y > 0) & np.isfinite(x) & np.isfinite(y)
     x, y = np.log(x[there]), np.log(y[there])
@@ -44,9 +44,9 @@ def fit(n: Sequence[float], value: Sequence[float]) -> Fit:
 
 @dataclass(frozen=True)
 class Shared:
-    """A size on some ranks against the same on one.
+    """One size on several ranks, compared with the same size on one rank.
 
-    speed_up, serial : of an iteration ("iteration") and of its parts, with the part of the time that is not shared
+    speed_up, serial : speed-up and serial part of the time, of an iteration ("iteration") and of its parts
     """
 
     dofs: int
@@ -60,7 +60,7 @@ class Shared:
 
 
 def shared(rows: Sequence[Row]) -> list[Shared]:
-    """Every run on more ranks than one against its like on one."""
+    """Every run on several ranks, compared with the run of the same size on one rank."""
     alone = {one.elements: one for one in rows if one.measured and one.ranks == 1 and one.method == "dolfinx"}
     found = []
     for one in rows:
@@ -74,10 +74,10 @@ def shared(rows: Sequence[Row]) -> list[Shared]:
 
 
 def serial_part(speed_up: float, ranks: int) -> float:
-    """Part of the time on one rank that more do not share, from a measured speed-up (Karp and Flatt 1990, Eq. 2).
+    """Serial part of the time on one rank, from a measured speed-up (Karp and Flatt 1990, Eq. 2).
 
-    It holds all that keeps ranks from being that many times as fast: what each repeats, what they wait for, and the
-    memory bandwidth that they share. Above 1 more ranks are slower than one.
+    It contains everything that limits the speed-up: repeated work, waiting, and shared memory bandwidth. Above 1 more
+    ranks are slower than one.
     """
     if not speed_up > 0:
         return inf if speed_up == 0 else nan

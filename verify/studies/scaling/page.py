@@ -1,4 +1,4 @@
-"""The study as a page: growth of time and memory, and what more ranks gain."""
+"""The study as a page: growth of time and memory, and speed-ups."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from verify.studies.scaling.row import PARTS, Row
 if TYPE_CHECKING:
     from verify.studies.scaling.study import Study
 
-#: What is fitted, in the words of the table.
+#: Fitted columns, with their names in the table.
 COLUMNS = {
     "iteration": "an iteration",
     **{name: name for name in PARTS},
@@ -30,7 +30,7 @@ COLUMNS = {
     "model_memory_mb": "less that of the program",
 }
 
-#: Unknowns a rank from which on PETSc's own advice has ranks worth their messages.
+#: Unknowns per rank above which PETSc's documentation recommends parallel runs.
 WORTH = 20_000
 
 _MARKS = {"nurbs": "o", "dolfinx": "s"}
@@ -61,7 +61,7 @@ def power(one: Fit) -> str:
 
 
 def readable(text: str) -> str:
-    """A sentence of the command line with the signs of print."""
+    """A sentence of the command line with typographic signs: ± and ×."""
     return re.sub(r"(?<=\d) x\b", " ×", text.replace("+-", "±"))
 
 
@@ -83,7 +83,7 @@ def time_of_an_iteration(study: Study, key: str) -> Panel:
 
 
 def memory(study: Study, key: str) -> Panel:
-    """Memory over the unknowns: what the mesh adds to the program's."""
+    """Memory over the unknowns: the total, and the part beyond that of the program."""
     with drawing():
         figure, axes = panel(HALF, 3.4)
         for method in study.methods:
@@ -99,7 +99,7 @@ def memory(study: Study, key: str) -> Panel:
 
 
 def strong(rows: Sequence[Row], key: str) -> Panel:
-    """Where the time of an iteration goes on one rank and on more."""
+    """Bars of the time of an iteration by its parts, on one rank and on more."""
     with drawing():
         figure, axes = panel(WIDE, 0.32 * len(rows) + 0.95, left=2.1, top=0.4)
         labels = [f"{row.dofs} unknowns, {ranks(row.ranks)}" for row in rows]
@@ -115,7 +115,7 @@ def ranks(n: int) -> str:
 
 
 def _strong(rows: Sequence[Row]) -> list[Row]:
-    """The sizes that were run on more ranks than one."""
+    """The rows of those sizes that were run on several ranks."""
     ours = [one for one in rows if one.measured and one.method == "dolfinx"]
     sizes = {one.elements for one in ours if one.ranks > 1}
     return sorted((one for one in ours if one.elements in sizes), key=lambda one: (one.dofs, one.ranks))

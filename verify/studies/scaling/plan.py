@@ -1,4 +1,4 @@
-"""Which runs tell how time and memory grow: ladders of sizes, and the largest on more ranks."""
+"""Runs of the study: sequences of sizes on one rank, and some of these sizes on several ranks."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ DEGREES = {"nurbs": 3, "dolfinx": 2}
 
 @dataclass(frozen=True)
 class Sizes:
-    """Which runs are made.
+    """Sizes of the runs.
 
-    smallest, largest, rungs : unknowns of the ladder
-    bare : of one more mesh, so small that its memory is that of the program alone
-    way, steps : the programme is this part of the largest opening: what counts is the time of an iteration
-    ranks, shared : tried as far as there are cores, on these rungs: two sizes tell what every iteration costs whatever
-        the size from what grows with it
-    times : every run is made so many times; the least time counts
+    smallest, largest, rungs : smallest and largest number of unknowns, and how many sizes
+    bare : unknowns of a mesh that is so small that the memory is that of the program
+    way, steps : part of the largest opening that is run, and steps; a few iterations are enough for their mean time
+    ranks, shared : numbers of MPI ranks as far as there are cores, and indices of the sizes that are run on them; two
+        sizes separate the fixed time of an iteration from the part that grows with the size
+    times : number of repetitions, of which the least time counts
     """
 
     smallest: int = 2_000
@@ -49,13 +49,13 @@ SIZES = Sizes()
 
 @dataclass(frozen=True)
 class Run(Job):
-    """A run of the study on some ranks; ``bare`` is the one that tells the memory of the program."""
+    """A run of the study on a number of ranks; ``bare`` marks the small one that measures the memory of the program."""
 
     ranks: int = 1
     bare: bool = False
 
     def task(self) -> Task:
-        """The run as a sweep does it, under mpirun on more than one rank."""
+        """The run as a task of a sweep, under mpirun for more than one rank."""
         alone = super().task()
         if self.ranks == 1:
             return alone
@@ -64,7 +64,7 @@ class Run(Job):
 
 
 def planned(source: str, scene: Scene, given: Sequence[str] = ()) -> tuple[list[Run], tuple[str, ...]]:
-    """Every run once, with the overrides ``given``, and a sentence for what is left out."""
+    """Every run once, with the overrides ``given``, and a sentence for each run that is left out."""
     runs: list[Run] = []
     reasons: list[str] = []
     for method in DEGREES:
@@ -83,12 +83,12 @@ def planned(source: str, scene: Scene, given: Sequence[str] = ()) -> tuple[list[
 
 
 def sizes() -> list[int]:
-    """Unknowns to aim at, evenly spaced on a logarithmic scale."""
+    """Target numbers of unknowns, evenly spaced on a logarithmic scale."""
     return [int(n) for n in np.rint(np.geomspace(SIZES.smallest, SIZES.largest, SIZES.rungs))]
 
 
 def _run(source: str, scene: Scene, method: str, size: int, given: Sequence[str]) -> Run:
-    """One size on one rank, with the effects that the whole programme has: those of a short one might be others."""
+    """One size on one rank, with the effects of the whole programme; ``auto`` might choose others for a short one."""
     effects = (f"effects.{key}={_toml(value)}" for key, value in prepare(scene, method).effects.items())
     mesh = (
         (f"dolfinx.degree={DEGREES[method]}", f"dolfinx.elements={elements(scene, size)}")
@@ -109,12 +109,12 @@ def _toml(value: object) -> str:
 
 
 def elements(scene: Scene, size: int) -> int:
-    """DOLFINx elements along the specimen for about so many unknowns."""
+    """DOLFINx elements along the specimen for about ``size`` unknowns."""
     return max(bisect_left(range(most_elements()), size, lo=2, key=lambda n: _unknowns(scene, n)), 2)
 
 
 def most_elements() -> int:
-    """Elements along the specimen that a scene may ask of DOLFINx."""
+    """Largest number of elements along the specimen that a scene accepts for DOLFINx."""
     return next(rule.le for rule in Dolfinx.model_fields["elements"].metadata if hasattr(rule, "le"))
 
 
@@ -127,7 +127,7 @@ def _unknowns(scene: Scene, n: int) -> int:
 
 
 def _shared(ladder: Sequence[Run]) -> tuple[list[Run], list[str]]:
-    """Two rungs on more ranks than one, as many as there are cores; and why not more."""
+    """The selected sizes on several ranks, as far as there are cores, and sentences for what is left out."""
     if shutil.which("mpirun") is None:
         return [], [f"more than 1 rank: left out: {MPIRUN_MISSING}"]
     rungs = dict.fromkeys(ladder[at] for at in SIZES.shared if len(ladder) >= -at)

@@ -1,6 +1,6 @@
 """``python -m verify.studies.scaling.ranks N ARGUMENT ...``: ``debond ARGUMENT ...`` on N ranks.
 
-mpirun takes the place of this process, so that what ends the one ends all ranks.
+mpirun replaces this process, so that ending the process ends all ranks.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def command(ranks: str, words: Sequence[str]) -> list[str]:
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Become mpirun."""
+    """Replace this process by mpirun."""
     if shutil.which("mpirun") is None:
         raise SystemExit(MPIRUN_MISSING)
     sys.stdout.flush()

@@ -1,11 +1,10 @@
-"""One run and its repetitions, measured."""
+"""Measurements of one run and its repetitions."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,32 +13,21 @@ from verify.result import Result
 from verify.runs.jobs import Outcome
 from verify.studies.frame import failure, unmeasured
 from verify.studies.scaling.plan import DEGREES, Run
-from verify.support.checked_files import ANY, NUMBER, Shape, read_table
 
-#: Parts of a Newton iteration; "other" is all that belongs to none: step control, energies, the rows that are written.
+#: Parts of a Newton iteration; "other" is the rest: step control, energies, writing of rows.
 PARTS = ("assembly", "factor", "solve", "other")
-
-
-#: What is read of ``scaling.json`` again.
-ABOUT: Shape = {
-    "growth": {ANY: {ANY: {"exponent": NUMBER, "standard_error": NUMBER, "factor": NUMBER}}},
-    "strong_scaling": [
-        {"dofs": int, "ranks": int, "speed_up": {ANY: NUMBER}, "serial": {ANY: NUMBER}, "efficiency": NUMBER}
-    ],
-    "sentences": [str],
-}
 
 
 @dataclass(frozen=True)
 class Row:
-    """A line of ``scaling.csv``. What cannot be measured, as of a run that stopped, is NaN.
+    """A line of ``scaling.csv``; the numbers of a run that stopped are NaN.
 
-    iteration : wall seconds of a Newton iteration: all but mesh, basis and compiling, over the iterations; the least of
-        ``times`` runs, with its parts
-    spread : largest over least ``iteration`` of equal runs; far from 1 the machine was busy
-    set_up : seconds of mesh and basis, without compiling
-    peak_memory_mb : of the first rank
-    bare : the run that tells the memory of the program
+    iteration : seconds of a Newton iteration: wall time without mesh, basis and compilation, over the number of
+        iterations; the least of ``times`` runs, followed by its parts
+    spread : largest over least ``iteration`` of equal runs; well above 1 the machine was busy
+    set_up : seconds for mesh and basis, without compilation
+    peak_memory_mb : that of the first rank
+    bare : whether the run measures the memory of the program
     """
 
     method: str
@@ -67,13 +55,8 @@ class Row:
         return isfinite(self.iteration)
 
 
-def read_csv(path: Path) -> list[Row]:
-    """Rows that were written."""
-    return read_table(path, Row)
-
-
 def row(run: Run, outcomes: Sequence[Outcome]) -> Row:
-    """Measure a run, the first of ``outcomes``, and its repetitions."""
+    """The row of a run with its repetitions; ``outcomes`` begins with the run."""
     head: dict[str, Any] = {"method": run.method, "degree": DEGREES[run.method], "ranks": run.ranks, "bare": run.bare}
     head["run"] = run.variant
     results = [o.result for o in outcomes if o.result is not None and o.result.complete and o.result.seconds]

@@ -1,4 +1,4 @@
-"""The sweep: one run at a time, each in a process or under mpirun, and what they say together."""
+"""The study: one run at a time, each in its own process or under mpirun, and the results of all runs."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from verify.studies.scaling.growth import Fit, Shared, fit, shared
 from verify.studies.scaling.plan import SIZES, planned
 from verify.studies.scaling.row import PARTS, Row, row
 
-#: What grows, by the name of the column.
-GROWING = ("iteration", *PARTS, "peak_memory_mb", "model_memory_mb")
+#: Columns whose growth with the unknowns is fitted.
+FITTED_COLUMNS = ("iteration", *PARTS, "peak_memory_mb", "model_memory_mb")
 
 
 @dataclass(frozen=True)
 class Study(frame.Study):
-    """What was found; ``load``: load average of the machine when the study began and when it ended."""
+    """Results; ``load``: load average of the machine at the begin and at the end of the study."""
 
     NAME: ClassVar[str] = "scaling"
     ROW: ClassVar[type] = Row
@@ -38,22 +38,22 @@ class Study(frame.Study):
         return list(dict.fromkeys(one.method for one in self.ladder()))
 
     def ladder(self, method: str = "") -> list[Row]:
-        """Sizes on one rank, small to large, without the one that tells the memory of the program."""
+        """Rows on one rank by size, without the one that measures the memory of the program."""
         ours = (one for one in self.rows if one.measured and one.ranks == 1 and not one.bare)
         return sorted((one for one in ours if method in ("", one.method)), key=lambda one: one.dofs)
 
     def program_mb(self, method: str) -> float:
-        """Memory of a run with next to no mesh: Python, the libraries."""
+        """Memory of a run with a tiny mesh: Python and the libraries."""
         bare = [one.peak_memory_mb for one in self.rows if one.bare and one.method == method and one.measured]
         return min(bare, default=0.0)
 
     @cached_property
     def growth(self) -> Mapping[str, Mapping[str, Fit]]:
-        """Power laws by method: of the time of an iteration, of its parts, and of the memory."""
-        return {method: {what: self._fit(method, what) for what in GROWING} for method in self.methods}
+        """Power laws by method: time of an iteration, its parts, and memory."""
+        return {method: {what: self._fit(method, what) for what in FITTED_COLUMNS} for method in self.methods}
 
     def value(self, one: Row, what: str) -> float:
-        """A number of a row; "model_memory_mb" is what the mesh adds to the memory of the program."""
+        """A number of a row; "model_memory_mb" is the memory beyond that of the program."""
         if what == "model_memory_mb":
             return one.peak_memory_mb - self.program_mb(one.method)
         return getattr(one, what)
@@ -68,7 +68,7 @@ class Study(frame.Study):
 
     @property
     def sentences(self) -> list[str]:
-        """What was found, a sentence each."""
+        """The results in sentences."""
         found = []
         for method, fits in self.growth.items():
             small, large = self.ladder(method)[0], self.ladder(method)[-1]
@@ -87,7 +87,7 @@ class Study(frame.Study):
 
     @property
     def busy(self) -> list[str]:
-        """What makes the times doubtful: equal runs that differ, and ranks that were in each other's way."""
+        """Signs of a busy machine: equal runs with different times, and several ranks that are slower than one."""
         most = max((one.spread for one in self.rows if one.measured), default=1.0)
         found = []
         if most > BUSY:
@@ -122,7 +122,7 @@ def scaling(source: str, scene: Scene, given: Sequence[str], out: Path) -> Study
 
     Parameters
     ----------
-    given : overrides that ``scene`` has, and that every run repeats
+    given : overrides that ``scene`` contains and every run repeats
     """
     one_thread()
     (runs, left_out), before = planned(source, scene, given), _load()
@@ -137,7 +137,7 @@ def scaling(source: str, scene: Scene, given: Sequence[str], out: Path) -> Study
 
 
 def would_run(source: str, scene: Scene, given: Sequence[str], out: Path) -> list[str]:
-    """The runs with their times, a line each, and what is left out; nothing is run."""
+    """One line per run with its expected time, and what is left out; nothing is run."""
     runs, left_out = planned(source, scene, given)
     return frame.would_run(repeated(runs, range(SIZES.times)), left_out, out)
 

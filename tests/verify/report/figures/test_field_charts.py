@@ -121,8 +121,8 @@ def test_frames_have_one_scale_and_hold_all_that_moves(found: list, monkeypatch:
         (dot,) = [one for one in load.lines if len(one.get_xdata()) == 1]
         assert (dot.get_xdata()[0], dot.get_ydata()[0]) == (snapshot.opening, snapshot.load)
         zone = process_zone(snapshot)
-        assert frame.opening == f"{snapshot.opening:.3g}\u00a0mm" and frame.said in title
-        assert f"process zone {zone[0]:.3g} to {zone[1]:.3g}" in frame.said
+        assert frame.opening == f"{snapshot.opening:.3g}\u00a0mm" and frame.text in title
+        assert f"process zone {zone[0]:.3g} to {zone[1]:.3g}" in frame.text
         box = arms.get_window_extent()
         assert box.width / box.height == pytest.approx(np.ptp(arms.get_xlim()) / np.ptp(arms.get_ylim()), rel=1e-6)
     assert frames(scene, shared_snapshots(found)[:1], found, "key") == ()

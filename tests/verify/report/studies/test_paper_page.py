@@ -49,8 +49,8 @@ def study() -> Study:
 @pytest.mark.parametrize("measure", ["error", "oscillation"])
 def test_a_cell_has_what_its_run_has(study: Study, measure: str) -> None:
     section = paper.section(study, "figures")
-    table = section.tables[list(paper.TABLES).index(measure)]
-    assert table.heading == f"{paper.TABLES[measure]} by number of interface points"
+    table = section.tables[list(paper.TABLE_TITLES).index(measure)]
+    assert table.heading == f"{paper.TABLE_TITLES[measure]} by number of interface points"
     laws = {f"{LAWS[law]}, {dofs} unknowns": (law, dofs) for law in LAWS for dofs in (280, 1956)}
     seen = set()
     assert set(dict(table.groups)) == set(laws)

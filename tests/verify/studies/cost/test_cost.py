@@ -20,8 +20,9 @@ from verify.studies.cost.findings import cheapest, growth, of_equal_steps, order
 from verify.studies.cost.ladder import Try
 from verify.studies.cost.nonzeros import nonzeros
 from verify.studies.cost.reference import _index, reference
-from verify.studies.cost.row import Row, errors, read_csv, row, traction_error
+from verify.studies.cost.row import Row, errors, row, traction_error
 from verify.studies.cost.study import LIMITS, Study, _best
+from verify.support.checked_files import read_table
 
 # --- the reference
 
@@ -111,7 +112,7 @@ def test_cost_csv_keeps_its_contract(tmp_path: Path) -> None:
     write_csv(tmp_path / "cost.csv", Row, rows)
     head = (tmp_path / "cost.csv").read_text().splitlines()[0]
     assert head.startswith("method,degree,dofs,curve_error,peak_error,oscillation,seconds,")
-    read = read_csv(tmp_path / "cost.csv")
+    read = read_table(tmp_path / "cost.csv", Row)
     assert replace(read[0], traction_error=0.0) == replace(rows[0], traction_error=0.0)
     assert isnan(read[1].curve_error) and read[1].status == "no, not run"
 

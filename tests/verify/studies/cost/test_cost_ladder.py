@@ -23,8 +23,9 @@ from verify.studies.cost import study as study_of
 from verify.studies.cost.findings import LEVELS, cheapest
 from verify.studies.cost.ladder import BEAM, FAMILIES, LADDER, Family, Try, ladder, ladders
 from verify.studies.cost.reference import reference_jobs
-from verify.studies.cost.row import Row, read_csv
+from verify.studies.cost.row import Row
 from verify.studies.cost.study import climb
+from verify.support.checked_files import read_table
 
 
 def test_rungs_divide_the_process_zone_as_they_say() -> None:
@@ -95,9 +96,9 @@ def test_a_ladder_ends_where_it_is_accurate_or_too_slow() -> None:
 
 def test_a_degree_that_another_beats_by_far_goes_no_further() -> None:
     last = a_row("dolfinx", 0.004, 10.0, degree=4)
-    assert study_of._high_enough(last, [last, a_row("dolfinx", 0.004, 3.9, degree=2)])
-    assert not study_of._high_enough(last, [last, a_row("dolfinx", 0.004, 4.1, degree=2)])
-    assert not study_of._high_enough(last, [last, a_row("nurbs", 0.004, 1.0)]), "methods do not end each other"
+    assert study_of._finished(last, [last, a_row("dolfinx", 0.004, 3.9, degree=2)])
+    assert not study_of._finished(last, [last, a_row("dolfinx", 0.004, 4.1, degree=2)])
+    assert not study_of._finished(last, [last, a_row("nurbs", 0.004, 1.0)]), "methods do not end each other"
 
 
 def test_a_ladder_has_patience_with_the_quickest_accurate_run() -> None:
@@ -107,13 +108,13 @@ def test_a_ladder_has_patience_with_the_quickest_accurate_run() -> None:
     theory = a_row("beam", 0.1 * finest, 0.001, dofs=0)
     for part, ends in ((0.99, False), (1.01, True)):
         last = a_row("dolfinx", 0.02, part * patience * 3.0)
-        assert study_of._high_enough(last, [last, accurate, quick, theory]) == ends
-        assert not study_of._high_enough(last, [last, quick, theory])
+        assert study_of._finished(last, [last, accurate, quick, theory]) == ends
+        assert not study_of._finished(last, [last, quick, theory])
         slow = a_row("dolfinx", 0.02, part * study_of.LIMITS.longest)
-        assert study_of._high_enough(slow, [slow]) == ends
+        assert study_of._finished(slow, [slow]) == ends
     done = a_row("dolfinx", 0.99 * study_of.LIMITS.enough * finest, 1.0)
-    assert study_of._high_enough(done, [done])
-    assert not study_of._high_enough(replace(done, curve_error=1.01 * study_of.LIMITS.enough * finest), [done])
+    assert study_of._finished(done, [done])
+    assert not study_of._finished(replace(done, curve_error=1.01 * study_of.LIMITS.enough * finest), [done])
 
 
 def test_more_is_tried_where_it_may_pay() -> None:
@@ -129,7 +130,7 @@ def test_more_is_tried_where_it_may_pay() -> None:
     job = replace(first, steps="auto-0.02").job("dcb-czm1", SCENE)
     fewer = load_scene(job.source, job.overrides)
     assert fewer.discretization.steps == "auto" and fewer.discretization.bend == 0.02 and fewer.effects.search == "auto"
-    assert [study_of._worth(found) for found in tries.values()] == [False, True, True, True]
+    assert [study_of._nearly_accurate(found) for found in tries.values()] == [False, True, True, True]
     assert [*Try(BEAM, 0, 0, 80).with_few_steps(), *Try(BEAM, 0, 0, 80).with_other_steps()] == []
 
 
@@ -162,7 +163,7 @@ def test_a_study_from_ladder_to_files(seconds: float, tmp_path: Path, monkeypatc
     monkeypatch.setattr(frame, "run_all", run_all)
     monkeypatch.setattr(frame, "write_page", lambda module, study, path: None)
     found = study_of.cost("dcb-czm1", SCENE, (), tmp_path, 2)
-    rows = read_csv(tmp_path / "cost.csv")
+    rows = read_table(tmp_path / "cost.csv", Row)
     assert (tmp_path / "cost.json").exists() and "written: " in capsys.readouterr().out
     if seconds == 0.0:
         assert any("The time allowed" in text for text in found.left_out) and len(asked) < 12
@@ -184,7 +185,7 @@ def test_a_small_study_for_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
     command = ["cost", "dcb-czm1-linear", "--set", "load.opening=1.0", "--out", str(tmp_path)]
     assert main(command) == 0
-    rows = read_csv(tmp_path / "cost.csv")
+    rows = read_table(tmp_path / "cost.csv", Row)
     found = json.loads((tmp_path / "cost.json").read_text())
     assert {one.method for one in rows} == {"nurbs", "tspline", "beam"}
     assert found["reference"]["uncertainty"]["curve"] < 0.001
@@ -194,7 +195,7 @@ def test_a_small_study_for_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     assert next(one.times for one in rows if one.run == best) == study_of.LIMITS.times
     capsys.readouterr()
     assert main(command) == 0
-    assert read_csv(tmp_path / "cost.csv") == rows
+    assert read_table(tmp_path / "cost.csv", Row) == rows
     assert not re.search(r"\b1 of", capsys.readouterr().err), "a run is made again"
 
 

@@ -176,7 +176,7 @@ def test_a_study_from_runs_to_files(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             yield Outcome(job, made_up(0.99 if linear else 1.0, seconds=1.0 if linear else 3.0 + 0.1 * job.repeat))
 
     monkeypatch.setattr(frame, "run_all", run_all)
-    found = effects("dcb-czm1", SCENE, "nurbs", (), tmp_path, 2, "tcp://here:1")
+    found = effects(planned("dcb-czm1", SCENE, "nurbs"), tmp_path, 2, "tcp://here:1")
     assert found.complete and "finite kinematics: curve 1 %, +1 % peak load" in capsys.readouterr().out
     assert {(jobs, scheduler) for job, jobs, scheduler in asked if job.repeat == 0} == {(2, "tcp://here:1")}
     assert {(jobs, scheduler) for job, jobs, scheduler in asked if job.repeat} == {(1, None)}, "timed here, alone"

@@ -24,7 +24,7 @@ FILES = Path(__file__).parents[5] / "shared" / "iga"
 @pytest.fixture
 def written(tmp_path, monkeypatch):
     """A function that writes a mesh as a file and returns its path; refinement ends early."""
-    monkeypatch.setattr(plane_study, "MOST_UNKNOWNS", 3000)
+    monkeypatch.setattr(plane_study, "PLANE_LIMITS", plane_study.Limits(unknowns=3000))
 
     def write(mesh, name="body"):
         path = tmp_path / f"{name}.iga"
@@ -74,7 +74,7 @@ def test_real_files(name, monkeypatch):
     path = FILES / f"{name}.iga"
     if not path.exists():
         pytest.skip(f"the file {path.name} is not at hand")
-    monkeypatch.setattr(plane_study, "MOST_UNKNOWNS", 20_000)
+    monkeypatch.setattr(plane_study, "PLANE_LIMITS", plane_study.Limits(unknowns=20_000))
     plate = load_plate(str(path))
     found = study(plate)
     assert (plate.hole is None) == (name == "square_unstructured")
@@ -128,7 +128,7 @@ def test_verify_takes_files_and_counts_their_checks(written, tmp_path, monkeypat
     assert "triangle: smooth field" in said and "patch-test" in said
     assert "on 1 plane problem" in page and 'id="plane-1-stress-t"' in page and "each cut into 4" in page
     assert page.count("✓ holds") >= 3 and "dcb-czm1" not in page
-    monkeypatch.setattr(plane_study, "PATCH_TOLERANCE", 0.0)
+    monkeypatch.setattr(plane_study, "PLANE_LIMITS", plane_study.Limits(unknowns=3000, patch=0.0))
     assert main(["verify", path, "--out", str(out)]) == FAILED
     assert "broken     triangle" in capsys.readouterr().out
     assert 'href="#plane-1-checks">triangle</a>' in (out / "report.html").read_text()

@@ -249,7 +249,7 @@ def test_one_rank_says_nothing_of_many(two_cores: None, tmp_path: Path, monkeypa
     assert not found.complete and found.shared == []
     pytest.importorskip("matplotlib")
     page = (tmp_path / "report.html").read_text()
-    assert "nothing is said of many" in page and "And on many ranks?" not in page and "stopped: here" in page
+    assert "has no result on many ranks" in page and "And on many ranks?" not in page and "stopped: here" in page
 
 
 def test_bad_input_is_refused_and_a_dry_run_leaves_nothing(
