@@ -6,8 +6,8 @@ import numpy as np
 
 from verify.checks.mechanics.columns import Steps, far_from_end, has, law_of, loading, tip_is_open, worst, zone_is_new
 from verify.scene import process_zone
-from verify.scene.bodies import elastic_constants
 from verify.scene.effects import simulated
+from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 
 #: Part of the length within which the process zone has come to the far end.
