@@ -41,7 +41,7 @@ def solve_debonding(
     comm: MPI.Intracomm = MPI.COMM_WORLD,
     on_frame: Callable[[float, Callable[[], dict[str, Any] | None]], None] | None = None,
 ) -> Solution:
-    """Solve a `fem_reference.problem.dcb.Problem` or a `fem_reference.problem.peel.Problem`.
+    """Solve a problem, like a `fem_reference.problem.delamination.Problem`.
 
     Parameters
     ----------

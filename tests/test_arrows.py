@@ -84,6 +84,7 @@ FLOORS = (
     ("fem_reference.dolfinx_api",),
     ("fem_reference.problem",),
     ("iga.dcb", "iga.peel"),
+    ("iga.delamination",),
     ("iga.run",),
     ("iga.output",),
     ("iga.specimen",),

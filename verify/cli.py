@@ -123,7 +123,7 @@ def _tools(command: Callable[..., Parser]) -> None:
     sub.add_argument("scenes", nargs="*", metavar="SCENE", help="a packaged name or a file; default: the list")
     text = "A scene file to start from: every key with what it is, its unit, its range and its default."
     sub = command(commands.new, text, "new dcb > my.toml", "change it, then: debond solve my.toml")
-    sub.add_argument("kind", metavar="KIND", help="dcb or peel")
+    sub.add_argument("kind", metavar="KIND", help="of the specimen, like dcb or peel")
     text = "What completes commands, options, scenes, methods and keys at the tab key of a shell."
     sub = command(commands.completion, text, "completion bash > ~/.debond-completion", "source it in ~/.bashrc")
     sub.add_argument("shell", metavar="SHELL", help="bash, zsh or fish")

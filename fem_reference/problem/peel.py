@@ -4,15 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
+from fem_reference.problem.delamination import Rectangle, strip_on_base
 from fem_reference.problem.material import Moduli
 from fem_reference.problem.problem import Debonding
-from fem_reference.problem.specimen import LOWER, UPPER, Body, Held, Specimen, lines_by_way_of, point
-
-#: Ratio of the thickness of a layer of the substrate to that of the layer above. The stresses of the process zone decay
-#: with the depth over the length of the zone; a smaller ratio costs unknowns where they have decayed.
-LAYER_RATIO = 2.0
+from fem_reference.problem.specimen import Specimen
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,30 +43,6 @@ class Problem(Debonding):
         self.specimen()
 
     def specimen(self) -> Specimen:
-        """Supports: the base of the substrate is clamped, the strip is held in x at one point of its unloaded end."""
-        upper, lower, bond = self.strip_length, self.substrate_length, self.bond_length
-        X = lines_by_way_of((bond, lower, upper), self.elements)
-        strip_Y = np.linspace(0.0, self.strip_thickness, self.layers + 1)
-        substrate_Y = -layers(self.substrate_thickness, bond / np.count_nonzero(X[1:] <= bond))[::-1]
-        base = (0.0, lower), (-self.substrate_thickness,) * 2
-        return Specimen(
-            bodies=(
-                Body(upper, strip_Y, self.strip.stiffness_IJ(self.plane)),
-                Body(lower, substrate_Y, self.substrate.stiffness_IJ(self.plane)),
-            ),
-            X=X,
-            bond=(bond, 0.0),
-            facing=(min(lower, upper), 0.0),
-            touching=self.presses,
-            loads=(1.0, 0.0),
-            held=(Held(UPPER, point(0.0, 0.0), (0,)), Held(LOWER, base, (0, 1))),
-            hooks=(),
-            loaded_at=upper,
-        )
-
-
-def layers(thickness: float, first: float) -> np.ndarray:
-    """Boundaries (n + 1,) from 0 to ``thickness`` of the fewest layers whose first is no thicker than ``first``."""
-    n = max(1, int(np.ceil(np.log2(thickness / first * (LAYER_RATIO - 1.0) + 1.0) / np.log2(LAYER_RATIO) - 1e-9)))
-    tops = (LAYER_RATIO ** np.arange(n + 1) - 1.0) / (LAYER_RATIO**n - 1.0)
-    return thickness * tops
+        strip = Rectangle(self.strip_length, self.strip_thickness, self.strip)
+        substrate = Rectangle(self.substrate_length, self.substrate_thickness, self.substrate)
+        return strip_on_base(self, (strip, substrate), (self.bond_length, 0.0))

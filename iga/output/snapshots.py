@@ -40,16 +40,13 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
 
 def _tmesh(specimen: Specimen) -> dict[str, np.ndarray]:
     """Edges and T-junctions of the T-meshes, where there are some."""
-    meshes = specimen.layout.tmeshes
+    meshes = specimen.drawn.tmeshes
     if not meshes:
         return {}
     return {
         "line_nki": np.concatenate([mesh.edges() for mesh in meshes]),
         "junction_ni": np.concatenate(
-            [
-                np.stack([m.knots_i[m.junctions[:, 0]], m.knots_j[m.junctions[:, 1]]], -1)
-                for m in specimen.layout.tmeshes
-            ]
+            [np.stack([m.knots_i[m.junctions[:, 0]], m.knots_j[m.junctions[:, 1]]], -1) for m in meshes]
         ),
     }
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 from iga.interface.laws import LAWS, TractionLaw
 from iga.mesh.extraction import Mesh
+from iga.specimen.layout import Layout
 from iga.specimen.pose import Pose
 
 
 @dataclass(frozen=True, kw_only=True)
-class Debonding:
+class Debonding(ABC):
     """Common part of a problem in plain numbers, any consistent units.
 
     ``opening`` is the programme of the displacement of where the load acts, ``load_at``: "face" (a uniform dead
@@ -22,9 +24,13 @@ class Debonding:
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
     body, "upper" or "lower", whose points are projected: in every configuration where ``search`` is set, else once, and
     gaps are measured along the normal there for good. Steps that the path chooses leave the tangent by ``bend`` of the
-    peak load. The specimen is reflected X -> -X where ``mirror`` is set,
-    then turned by ``angle`` degrees counter-clockwise, then moved by ``shift``, with its supports and its load; what is
-    read from it is in its own frame, wherever it lies.
+    peak load.
+
+    ``symmetry`` models the upper one of two equal arms alone against its mirror image. ``adaptive`` T-splines of two
+    equal arms follow the process zone and have at most ``dofs`` unknowns at any time.
+
+    The specimen is reflected X -> -X where ``mirror`` is set, then turned by ``angle`` degrees counter-clockwise, then
+    moved by ``shift``, with its supports and its load; what is read from it is in its own frame, wherever it lies.
     """
 
     strength: float
@@ -46,6 +52,8 @@ class Debonding:
     mismatch: float = 1.0
     slave: str = "upper"
     search: bool = True
+    symmetry: bool = False
+    adaptive: bool = False
     interface_rule: str = "gauss"
     interface_points: int = 2
     steps: int | None = 150
@@ -54,6 +62,11 @@ class Debonding:
     angle: float = 0.0
     mirror: bool = False
     shift: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    @abstractmethod
+    def layout(self) -> Layout:
+        """Bodies, bond, loads and clamps."""
 
     @property
     def law(self) -> TractionLaw:

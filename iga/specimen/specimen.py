@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,26 +15,53 @@ from iga.interface.surface import Surface, surface
 from iga.mesh.extraction import Mesh
 from iga.specimen.body import Body, bodies, slope_row
 from iga.specimen.bond import bond, control_points, faces, probe, slave_number
-from iga.specimen.delamination import Delamination
+from iga.specimen.layout import Layout
 from iga.specimen.load import pulled_row
 from iga.specimen.pose import Pose
 from iga.specimen.problem import Debonding, presses, smooth
 from iga.system.system import System
+from iga.tsplines.tmesh import TMesh
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Meshes of the modelled bodies in the specimen's own frame, upper first, and T-meshes of T-splines.
+
+    They are made for a crack that ends at the distance ``path_end`` from the loaded end.
+    """
+
+    meshes: tuple[Mesh, ...]
+    tmeshes: tuple[TMesh, ...]
+    path_end: float
+
+
+@dataclass(frozen=True)
+class Supports:
+    """What holds a specimen: springs of stiffness spring_r (n_r,) on the displacements ``springs_rd @ u``, and clamps.
+
+    ``free_d`` (n_dof,) is False where a degree of freedom is fixed.
+    """
+
+    springs_rd: np.ndarray
+    spring_r: np.ndarray
+    free_d: np.ndarray
 
 
 @dataclass(frozen=True)
 class Specimen:
-    """A system and what it takes to read it: bodies (upper first), pose, and its layout.
+    """A system and what it takes to read it: bodies (upper first), pose, layout, and the meshes as they were drawn.
 
-    ``load_at`` is where on its end the load acts (see `iga.specimen.load`). ``probe`` has two points, on the tip of the
-    bond and on its far end. ``faces`` are samples of all that the bodies face of each other, bonded or not, where the
-    programme may close it.
+    ``copies`` is 2 where one body stands for both. ``load_at`` is where on its end the load acts (see
+    `iga.specimen.load`). ``probe`` has two points, on the tip of the bond and on its far end. ``faces`` are samples of
+    all that the bodies face of each other, bonded or not, where the programme may close it.
     """
 
     system: System
     bodies: tuple[Body, ...]
     pose: Pose
-    layout: Delamination
+    layout: Layout
+    drawn: Drawn
+    copies: float
     load_at: str
     upper_is_slave: bool
     probe: Interface
@@ -47,19 +75,19 @@ class Specimen:
     def slope_rows(self) -> tuple[np.ndarray, ...]:
         """Rows (n_dof,) of the mean slopes of the bodies' loaded faces, zero without one."""
         n, axes_kI = self.system.n_dof, self.pose.axes_kI
+        loads = (self.layout.load_on(number) for number in range(len(self.bodies)))
         return tuple(
-            slope_row(body.face(end), axes_kI[0], axes_kI[1], n) if end else np.zeros(n)
-            for body, (end, _) in zip(self.bodies, self.layout.loads, strict=True)
+            np.zeros(n) if load is None else slope_row(body.face(load.end), axes_kI[0], axes_kI[1], n)
+            for body, load in zip(self.bodies, loads, strict=True)
         )
 
     @cached_property
     def energy_sides(self) -> tuple[Solid, ...]:
         """The ends whose strain energy enters the J-integral, its sign in what each point stands for."""
-        ends, copies = ("left", "right"), self.layout.copies
-        ends = ends if self.layout.bonded[0] < self.layout.bonded[1] else ends[::-1]
+        ends = ("left", "right") if self.layout.bonded[0] < self.layout.bonded[1] else ("right", "left")
         return joined(
             [
-                Solid(replace(basis, dV_eq=sign * copies * basis.dV_eq), body.D)
+                Solid(replace(basis, dV_eq=sign * self.copies * basis.dV_eq), body.D)
                 for body in self.bodies
                 for end, sign in zip(ends, (1.0, -1.0), strict=True)
                 for basis in body.face(end)
@@ -88,7 +116,8 @@ class Specimen:
     @cached_property
     def face_row(self) -> np.ndarray:
         """Row (n_dof,) of the displacement along the specimen of where the load acts on the upper body."""
-        return pulled_row(self.bodies[0], self.layout.loads[0][0], self.load_at, self.pose, 0, self.system.n_dof)
+        body, end, _ = self.layout.loads[0]
+        return pulled_row(self.bodies[body], end, self.load_at, self.pose, 0, self.system.n_dof)
 
     @cached_property
     def beside_probe(self) -> np.ndarray:
@@ -113,31 +142,48 @@ class Specimen:
         return np.abs(self.pose.own(X)[..., 0] - self.layout.loaded_at)
 
 
-def discretised(problem: Debonding, layout: Delamination) -> Specimen:
+def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body, ...]], Supports]) -> Specimen:
     """Discrete system of a specimen with all that is needed to read results from its states."""
-    pose = problem.pose
+    pose, layout, copies = problem.pose, problem.layout, 2.0 if problem.symmetry else 1.0
     # a mirror image that is not modelled counts in the width, so that forces and energies are those of the whole
-    parts = bodies(layout.meshes, layout.elasticity, pose, layout.copies * problem.width, smooth(problem))
-    P_AI, supports = control_points(parts), layout.supports(parts)
+    parts = bodies(drawn.meshes, _elasticity(problem, drawn), pose, copies * problem.width, smooth(problem))
+    P_AI, held = control_points(parts), supports(parts)
     pulled = [
-        times * pulled_row(body, end, problem.load_at, pose, 1, P_AI.size)
-        for body, (end, times) in zip(parts, layout.loads, strict=True)
-        if end
+        copies * share * pulled_row(parts[body], end, problem.load_at, pose, 1, P_AI.size)
+        for body, end, share in layout.loads
+        if body < len(parts)
     ]
-    touching = layout.face if presses(problem) and layout.face != layout.bonded else None
+    touching = layout.facing if presses(problem) and layout.facing != layout.bonded else None
     system = System(
         solids=joined([solid for body in parts for solid in body.solids]),
         interface=bond(problem, parts, layout.bonded, touching),
         kinematics=problem.kinematics,
         load_d=np.sum(pulled, axis=0),
-        free_d=supports.free_d,
+        free_d=held.free_d,
         x_d=np.repeat(pose.own(P_AI)[:, 0], 2),
-        springs_rd=supports.springs_rd,
-        spring_r=supports.spring_r,
+        springs_rd=held.springs_rd,
+        spring_r=held.spring_r,
     )
-    ends, opposite = probe(problem, parts, layout.bonded, system.interface), faces(problem, parts, layout.face)
-    upper_is_slave = slave_number(problem, parts) == 0
-    return Specimen(system, parts, pose, layout, problem.load_at, upper_is_slave, ends, opposite)
+    return Specimen(
+        system=system,
+        bodies=parts,
+        pose=pose,
+        layout=layout,
+        drawn=drawn,
+        copies=copies,
+        load_at=problem.load_at,
+        upper_is_slave=slave_number(problem, parts) == 0,
+        probe=probe(problem, parts, layout.bonded, system.interface),
+        faces=faces(problem, parts, layout.facing),
+    )
+
+
+def _elasticity(problem: Debonding, drawn: Drawn) -> tuple[np.ndarray, ...]:
+    """Elasticity matrix of every modelled body; bodies of one material share it."""
+    upper, lower = (body.moduli for body in problem.layout.bodies)
+    D = upper.stiffness(problem.plane)
+    both = D, D if lower == upper else lower.stiffness(problem.plane)
+    return both[: len(drawn.meshes)]
 
 
 def element_length(specimen: Specimen) -> float:
@@ -146,7 +192,7 @@ def element_length(specimen: Specimen) -> float:
     for mesh, side in zip(specimen.meshes, ("bottom", "top"), strict=False):
         start_ci, end_ci = _ends(surface(mesh, mesh.chains[side], first), P_AI)
         middle_c = specimen.distance(0.5 * (start_ci + end_ci))
-        met = (middle_c > specimen.layout.free_length) & (middle_c < specimen.layout.path_end)
+        met = (middle_c > specimen.layout.free_length) & (middle_c < specimen.drawn.path_end)
         longest = max(longest, float(np.linalg.norm(end_ci - start_ci, axis=1)[met].max(initial=0.0)))
         first += len(mesh.P_AI)
     return longest

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from specimens import PAPER
 
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.path.follow import follow
 from iga.path.newton import residual_norm
 from iga.path.solver import DEFAULT, Solver

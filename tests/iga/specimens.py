@@ -1,6 +1,6 @@
 """The specimen of the paper (Dimitri, De Lorenzis, Zavarise 2013), first law, on a mesh for tests."""
 
-from iga.dcb.problem import Problem
+from iga.dcb import Problem
 
 E, NU = 120e3, 0.2
 PAPER = Problem(

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import sqrt
 
-from verify.scene.bodies import elastic_constants
 from verify.scene.effects import simulated
+from verify.scene.materials import elastic_constants
 from verify.scene.process_zone import across_modulus, bending_modulus, poisson
 from verify.scene.schema import Scene
 

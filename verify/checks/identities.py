@@ -28,8 +28,8 @@ from verify.checks.mechanics.peel_growth import growth_angle, growth_load
 from verify.methods.method import Prepared
 from verify.methods.solve import prepare
 from verify.result import Result
-from verify.scene.bodies import elastic_constants
 from verify.scene.effects import simulated
+from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 from verify.theory.law import KNOWN_LAWS
 from verify.verdict import Check, Kind

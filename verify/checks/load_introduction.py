@@ -13,8 +13,8 @@ from math import isnan, nan, sqrt
 from verify.checks.proof import SEARCHING
 from verify.curves.curve import peak
 from verify.result import Result
-from verify.scene.bodies import axial_modulus, elastic_constants
-from verify.scene.effects import NEGLIGIBLE, simulated
+from verify.scene.effects import NEGLIGIBLE, opening_share, simulated
+from verify.scene.materials import axial_modulus, elastic_constants
 from verify.scene.schema import Scene
 
 #: Mesh of the two runs that measure the effect on stocky arms; with 1956 unknowns and 60 steps the results for a0/h = 4
@@ -48,8 +48,8 @@ def estimate(scene: Scene) -> Corner:
     h, a = specimen.loaded_thickness, max(specimen.free_length, specimen.loaded_thickness)
     modulus = axial_modulus(scene.materials[0], specimen.plane)
     local = 0.25 * (h / a) ** 3 * modulus / sqrt(constants["E2"] * constants["G12"])
-    share = 2.0 / specimen.arms
-    theta = 0.5 * a * sqrt(share * scene.interface.toughness / (modulus * h**3 / 12.0))
+    share = opening_share(scene)
+    theta = 0.5 * a * sqrt(2.0 * share * scene.interface.toughness / (modulus * h**3 / 12.0))
     lever = 0.5 * theta * h / a if theta < LARGEST_ROTATION else nan
     return Corner(-local, lever if simulated(scene)["kinematics"] == "finite" else 0.0)
 

@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping
 from datetime import date
 from typing import Any
 
-from verify.scene.bodies import Orthotropic
 from verify.scene.complaints import suggestion
 from verify.scene.keys import SPECIMENS, Key, keys, keys_of
 from verify.scene.load import load_scene
+from verify.scene.materials import Orthotropic
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.published import Published
 from verify.support.refusal import Refusal
@@ -41,10 +41,7 @@ def allowed(raw: Mapping[str, Any], key: Key) -> str:
 
 _LINE_WIDTH = 100
 
-#: The packaged scene that supplies the values without a default, by the kind of the specimen.
-_EXAMPLES: Mapping[str, str] = {"dcb": "dcb-czm1", "peel": "peel-60"}
-
-#: Names of dimensions in the schema, and how they are written in the units of ``_EXAMPLES``.
+#: Names of dimensions in the schema, and how they are written in the units of the specimens' examples.
 UNITS: Mapping[str, str] = {
     "length": "mm",
     "stress": "MPa",
@@ -96,7 +93,9 @@ def new_scene(kind: str) -> str:
 
 def _least(kind: str) -> dict[str, Any]:
     """The example with its required keys, and defaults for all others."""
-    example = load_scene(_EXAMPLES[kind]).model_dump()
+    example = load_scene(SPECIMENS[kind].example).model_dump()
+    own = {key.name: key.field.examples[0] for key in keys_of("specimen", SPECIMENS[kind]) if key.field.examples}
+    example["specimen"] |= {"kind": kind} | own
     tables: dict[str, dict[str, Any]] = {}
     for key in keys(kind):
         if key.table and key.field.is_required():

@@ -6,7 +6,7 @@ import textwrap
 
 from verify.command_line.sketch import sketch
 from verify.methods.reference_mesh import reference_mesh
-from verify.scene.bodies import Isotropic, Material
+from verify.scene.materials import Isotropic, Material
 from verify.scene.schema import Scene
 
 NAME_WIDTH = 24
@@ -29,9 +29,7 @@ def page(scene: Scene, width: int) -> str:
     law, mesh, other = scene.interface, scene.discretization, reference_mesh(scene)
     facts = {
         "specimen": f"{scene.specimen.kind}, plane {scene.specimen.plane}, width {scene.specimen.width:g}",
-        **{
-            name: _material(getattr(scene, name)) for name in ("material", "strip", "substrate") if getattr(scene, name)
-        },
+        **{name: _material(getattr(scene, name)) for name in scene.specimen.materials},
         "interface": f"{law.law}, strength {law.strength:g}, toughness {law.toughness:g}, ductility {law.ductility:g}",
         "opening": " -> ".join(f"{opening:g}" for opening in scene.load.opening),
         "effects": ", ".join(_effect(name, getattr(scene.effects, name)) for name in type(scene.effects).model_fields),

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from verify.scene.bodies import Dcb, Peel
 from verify.scene.schema import Scene
+from verify.scene.specimens.delamination import Delamination
 
 #: Width of the notes to the right of a drawing.
 NOTES = 16
@@ -12,39 +12,37 @@ NOTES = 16
 def sketch(scene: Scene, width: int) -> list[str]:
     """Lines of at most ``width`` characters (40 at least) in ASCII."""
     room = min(max(width, 40), 100) - NOTES - 4
-    return _peel(scene, scene.specimen, room) if scene.specimen.kind == "peel" else _dcb(scene, scene.specimen, room)
-
-
-def _dcb(scene: Scene, specimen: Dcb, room: int) -> list[str]:
-    crack = _share(specimen.precrack / specimen.length, room)
-    arm = [_edge(room), f"|{'':{room}}|  {_short(specimen.arm_thickness)} thick", _edge(room)]
-    lines = ["^" + _programme(scene), *arm, f" {'':{crack}}{':' * (room - crack)}   bond", *arm, "v"]
-    lines += [_measure(0, crack, specimen.precrack), _measure(0, room, specimen.length)]
-    return ["  " + line.rstrip() for line in lines]
-
-
-def _peel(scene: Scene, specimen: Peel, room: int) -> list[str]:
-    longest = max(specimen.strip_length, specimen.substrate_length)
-    strip, substrate, bond = (
-        _share(length / longest, room)
-        for length in (specimen.strip_length, specimen.substrate_length, specimen.bond_length)
+    specimen, longest = scene.specimen, max(scene.specimen.lengths)
+    tip, *ends = (_share(length / longest, room) for length in (specimen.tip, *specimen.lengths))
+    start, end = (tip, ends[0]) if specimen.loaded_at == 0.0 else (0, tip)
+    if specimen.loaded_at:
+        ends[0] = max(ends[0], tip + 2)  # the free end can be seen
+    bond = f" {'':{start}}{':' * (end - start)}{' ' * (end == max(ends))}  bond"
+    upper, lower = (
+        [_edge(n), f"|{'':{n}}|  {_short(thickness)} thick", _edge(n)]
+        for n, thickness in zip(ends, specimen.thicknesses, strict=True)
     )
-    strip = max(strip, bond + 2)
-    load = _programme(scene)
-    lines = [f"{load.strip():>{strip}} ^" if len(load) < strip else f"^{load}"]
-    lines += [_edge(strip), f"|{'':{strip}}|  {_short(specimen.strip_thickness)} thick", _edge(strip)]
-    lines += [f" {':' * bond}  bond", _edge(substrate)]
-    lines += [f"|{'':{substrate}}|  {_short(specimen.substrate_thickness)} thick", _edge(substrate)]
-    lines += [f" {'/' * substrate}  fixed", _measure(0, bond, specimen.bond_length)]
-    lines += [
-        _measure(0, substrate, specimen.substrate_length),
-        _measure(0, strip, specimen.strip_length),
-    ]
+    lines = [*_loads(scene, 0, ends[0]), *upper, bond, *lower, *_loads(scene, 1, ends[1]), *_clamps(specimen, ends)]
+    measured = {(specimen.tip, tip), *zip(specimen.lengths, ends, strict=True)}
+    lines += [_measure(0, n, length) for length, n in sorted(measured)]
     return ["  " + line.rstrip() for line in lines]
 
 
-def _programme(scene: Scene) -> str:
-    return " opening " + " -> ".join(map(_short, scene.load.opening))
+def _loads(scene: Scene, body: int, end: int) -> list[str]:
+    """The arrow of the load on a body, with the programme beside that of the upper one."""
+    found = [load for load in scene.specimen.loads if load.body == body]
+    if not found:
+        return []
+    arrow, programme = "^" if found[0].share > 0.0 else "v", " opening " + " -> ".join(map(_short, scene.load.opening))
+    if body == 1:
+        return [arrow]
+    if found[0].end == "left" or len(programme) >= end:
+        return [arrow + programme]
+    return [f"{programme.strip():>{end}} {arrow}"]
+
+
+def _clamps(specimen: Delamination, ends: list[int]) -> list[str]:
+    return [f" {'/' * ends[clamp.body]}  fixed" for clamp in specimen.clamps if clamp.side == "bottom"]
 
 
 def _edge(room: int) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.export.mesh import SceneMesh
 from verify.export.numbers import effects, header, law
-from verify.scene.bodies import Isotropic, Material, elastic_constants
+from verify.scene.materials import Isotropic, Material, elastic_constants
 from verify.scene.schema import Scene, counted_steps
 
 #: Solid elements by plane and degree. Of degree 1 those with incompatible modes: fully integrated ones lock in bending,

@@ -9,8 +9,8 @@ import numpy as np
 
 from verify.checks.load_introduction import sentence
 from verify.export.mesh import SceneMesh
-from verify.scene.bodies import elastic_constants
 from verify.scene.effects import simulated
+from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene, counted_steps
 from verify.theory.law import Bilinear
 

@@ -12,7 +12,7 @@ from iga.mesh.bernstein import bernstein, tensor
 from verify.fields.cells import Cells, grid
 from verify.fields.vtk_xml import Grid, write_collection, write_grid
 from verify.methods.iga import LAGRANGE
-from verify.scene.bodies import elastic_constants
+from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 
 #: VTK_POLY_LINE of vtkCellType.h.

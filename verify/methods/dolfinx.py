@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Mapping
-from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
@@ -23,7 +22,7 @@ from verify.methods.method import (
     Unsuitable,
     result_of,
 )
-from verify.methods.problems import common_keys, known, material_keys
+from verify.methods.problems import common_keys, rectangles
 from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.scene.schema import Scene, counted_steps
@@ -56,24 +55,26 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
 
     Raises
     ------
-    Unsuitable : fewer elements than the specimen has parts, or no node where the load is.
+    Unsuitable : fewer elements than the specimen has parts, no node where the load is, or unequal arms that turn far.
     """
+    from fem_reference.problem.delamination import Problem, Rectangle
     from fem_reference.problem.material import Moduli
 
-    problem = import_module(f"fem_reference.problem.{scene.specimen.kind}").Problem
     mesh = reference_mesh(scene)
-    keys = {
-        **material_keys(scene, Moduli),
-        **common_keys(scene, effects),
-        "steps": counted_steps(scene),
-        "degree": mesh.degree,
-        "elements": mesh.elements,
-        "layers": mesh.layers,
-    }
     try:
-        return problem(**known(problem, keys))
+        return Problem(
+            bodies=rectangles(scene, Rectangle, Moduli),
+            bonded=scene.specimen.bonded,
+            on_base=scene.specimen.clamped,
+            **common_keys(scene, effects),
+            steps=counted_steps(scene),
+            degree=mesh.degree,
+            elements=mesh.elements,
+            layers=mesh.layers,
+        )
     except ValueError as error:
-        raise Unsuitable(f"dolfinx.{error}") from None
+        table = "effects" if str(error).startswith("kinematics") else "dolfinx"
+        raise Unsuitable(f"{table}.{error}") from None
 
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from importlib import import_module
 from types import ModuleType
 from typing import Any
 
 from verify.methods.method import Look, MeshFacts, Method, OnFrame, OnStep, Prepared, Unsuitable, result_of
-from verify.methods.problems import common_keys, material_keys, taken
+from verify.methods.problems import common_keys, rectangles
 from verify.result import Result
 from verify.scene.schema import DEFAULT_STEPS, Scene
 from verify.support.timing import Stopwatch
@@ -34,21 +33,25 @@ LOOKING = Looking()
 
 def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[ModuleType, Any]:
     """The module of ``iga`` that solves a scene, and the problem that it is given."""
-    kind = scene.specimen.kind
-    solver = import_module(f"iga.{kind}.{kind}")
-    mesh, pose = scene.discretization, scene.pose
+    from iga.delamination import solution
+    from iga.delamination.problem import Problem
+    from iga.specimen.layout import Clamp, Load, Moduli, Rectangle
+
+    specimen, mesh = scene.specimen, scene.discretization
+    upper, lower = rectangles(scene, Rectangle, Moduli)
     keys = {
-        **material_keys(scene, getattr(import_module(f"iga.{kind}.problem"), "Moduli", dict)),
         **common_keys(scene, effects),
+        **mesh.model_dump(),
+        **scene.pose.model_dump(),
+        "loads": tuple(Load(*load) for load in specimen.loads),
+        "clamps": tuple(Clamp(*clamp) for clamp in specimen.clamps),
         "symmetry": effects["symmetry"],
         "search": effects["search"],
         "basis": basis,
         "meshes": _given(scene, basis),
-        **mesh.model_dump(),
         "steps": None if mesh.steps == "auto" else mesh.steps,
-        **pose.model_dump(),
     }
-    return solver, solver.Problem(**taken(solver.Problem, keys))
+    return solution, Problem(bodies=(upper, lower), bonded=specimen.bonded, **keys)
 
 
 def _given(scene: Scene, basis: str) -> tuple[Any, ...]:

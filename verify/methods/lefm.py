@@ -50,6 +50,7 @@ LEFM = Method(
     fixed=_sharp,
     code="lefm",
     is_limit=True,
+    equal_arms=True,
     per_step=0.001,
     look=Look(("#6b7280", "#a0a9b5"), 0.8, (4.0, 3.0), 1.0, 1.5, place=5),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from verify.methods.beam import BEAM
 from verify.methods.dolfinx import DOLFINX
@@ -12,7 +12,7 @@ from verify.methods.method import Method, NotRun, Unsuitable
 from verify.scene.schema import Scene
 from verify.scene.tables import one_of
 
-__all__ = ["METHODS", "WITH_DOFS", "NotRun", "Unsuitable", "refuse_law"]
+__all__ = ["METHODS", "WITH_DOFS", "NotRun", "Unsuitable", "refuse_arms", "refuse_law"]
 
 METHODS: Mapping[str, Method] = {method.name: method for method in (TSPLINE, NURBS, LAGRANGE, DOLFINX, BEAM, LEFM)}
 
@@ -23,8 +23,20 @@ WITH_DOFS = tuple(method.name for method in METHODS.values() if method.with_dofs
 def refuse_law(scene: Scene, who: str, has: Sequence[str]) -> None:
     """Raise Unsuitable where ``who`` does not have the law of a scene, naming the built-in methods that do."""
     law = scene.interface.law
-    if law in has:
-        return
-    *head, last = [name for name, other in METHODS.items() if law in other.laws()]
-    able = f"{', '.join(head)} and {last} have it" if head else f"{last} has it"
-    raise Unsuitable(f"interface.law: must be {one_of(has)} for {who}, got {law!r}; {able}")
+    if law not in has:
+        able = _have_it(name for name, other in METHODS.items() if law in other.laws())
+        raise Unsuitable(f"interface.law: must be {one_of(has)} for {who}, got {law!r}; {able}")
+
+
+def refuse_arms(scene: Scene, method: Method) -> None:
+    """Raise Unsuitable where the arms of a scene differ and the method takes equal ones alone."""
+    specimen = scene.specimen
+    if method.equal_arms and specimen.arms == 2 and not specimen.symmetric:
+        able = _have_it(name for name, other in METHODS.items() if not other.equal_arms)
+        text = f"must have arms that are alike for {method.name}, got a {specimen.kind}; {able}"
+        raise Unsuitable(f"specimen: {text}")
+
+
+def _have_it(names: Iterable[str]) -> str:
+    *head, last = names
+    return f"{', '.join(head)} and {last} have it" if head else f"{last} has it"

@@ -6,18 +6,19 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from typing import Any
 
-from verify.scene.bodies import axial_modulus, elastic_constants
-from verify.scene.schema import Discretization, Effects, Pose, Scene, counted_steps
+from verify.scene.materials import axial_modulus, elastic_constants
+from verify.scene.schema import Scene, counted_steps
 
 #: Fractions of the largest opening at which the fields are kept: before and near the peak, under way, at the end.
 SNAPSHOT_FRACTIONS = (0.1, 0.2, 0.5, 1.0)
 
 
 def common_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
-    """Lengths, law, load and effects, which every solver calls by the same names, whatever the specimen."""
+    """Width, plane, law, load and effects, which every solver calls by the same names, whatever the specimen."""
     specimen, interface = scene.specimen, scene.interface
     return {
-        **specimen.model_dump(exclude={"kind", "mesh"}),
+        "width": specimen.width,
+        "plane": specimen.plane,
         "strength": interface.strength,
         "toughness": interface.toughness,
         "ductility": interface.ductility,
@@ -32,11 +33,10 @@ def common_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def material_keys(scene: Scene, moduli: Callable[..., Any]) -> dict[str, Any]:
-    """The elastic constants: of a specimen of one material by themselves, of several in ``moduli`` of each body."""
-    names = scene.specimen.materials
-    found = {name: elastic_constants(getattr(scene, name)) for name in names}
-    return found[names[0]] if len(names) == 1 else {name: moduli(**constants) for name, constants in found.items()}
+def rectangles(scene: Scene, rectangle: Callable[..., Any], moduli: Callable[..., Any]) -> tuple[Any, ...]:
+    """The upper and the lower body in a solver's own terms: length, thickness and elastic constants."""
+    sizes, constants = scene.specimen, [elastic_constants(material) for material in scene.materials]
+    return tuple(map(rectangle, sizes.lengths, sizes.thicknesses, (moduli(**one) for one in constants)))
 
 
 def analytical_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
@@ -66,13 +66,6 @@ def _support(scene: Scene) -> dict[str, Any]:
     _, other = scene.materials
     layer = Layer.of((specimen.lengths[1], specimen.thicknesses[1]), plane=specimen.plane, **elastic_constants(other))
     return {"substrate": layer, "arms": specimen.arms}
-
-
-def taken(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:
-    """``keys`` less those that are the scene's defaults and that this solver does not have."""
-    plain = {**Discretization().model_dump(), **Pose().model_dump(), **Effects().model_dump()}
-    names = {field.name for field in fields(problem)}
-    return {key: value for key, value in keys.items() if key in names or value != plain.get(key)}
 
 
 def known(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from verify.scene.bodies import elastic_constants
+from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene, counted_steps
 
 #: Error of the load curve that the mesh through the thickness may cause: half the tolerance between codes.

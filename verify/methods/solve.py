@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from verify.methods.method import OnFrame, OnStep, Prepared
-from verify.methods.names import refuse_law
+from verify.methods.names import refuse_arms, refuse_law
 from verify.methods.plugins import find
 from verify.result import Result
 from verify.scene.schema import Scene
@@ -51,6 +51,7 @@ def require(prepared: Prepared) -> None:
 
         given_meshes(scene) if method.takes_files else refuse_files(scene, method.name)
     refuse_law(scene, method.name, method.laws())
+    refuse_arms(scene, method)
     method.require(prepared)
 
 

@@ -15,8 +15,9 @@ from verify.methods.solve import prepare
 from verify.scene.effects import simulated
 
 if TYPE_CHECKING:
-    from verify.scene.bodies import Dcb, Material, Peel
+    from verify.scene.materials import Material
     from verify.scene.schema import Discretization, Scene
+    from verify.scene.specimens.delamination import Delamination
     from verify.verdict import Counts
 
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
@@ -126,7 +127,7 @@ def sentence(scene: Scene) -> str:
     return f"{done}, in plane {specimen.plane}, with {law} and {_effects(scene)}."
 
 
-def _body(specimen: Dcb | Peel, unit: str) -> str:
+def _body(specimen: Delamination, unit: str) -> str:
     """The specimen and its load."""
     return specimen.sentence.format(
         **{name: quantity(value, unit) for name, value in specimen if isinstance(value, float)}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from verify.pages.style import METHODS, Panel
 from verify.pages.text import NO_VALUE, Units, inputs, modelled, number, percent, quantity, seconds, sentence
 from verify.report import converged, cost, matched, published, zones
-from verify.report.figures import curves, drawing, fields, meshes, opening, peel_drawing, undeformed
+from verify.report.figures import curves, drawing, fields, meshes, opening, undeformed
 from verify.report.figures.entry import Entry, entries
 from verify.report.tally import EVIDENCE, Tally, headline, tally
 from verify.verdict import Check, Counts, Run, SceneReport, counted
@@ -108,7 +108,6 @@ def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
     drawn = tuple(entry for entry in found if entry.agreement is not None)
     checks = report.checks
     groups = fields.shared_snapshots(drawn)
-    draw_specimen = {"dcb": drawing.specimen, "peel": peel_drawing.specimen}[report.scene.specimen.kind]
     return Section(
         anchor=anchor,
         report=report,
@@ -116,7 +115,7 @@ def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
         sentence=sentence(report.scene),
         headline=headline(counted(checks), 1).removesuffix(" on 1 scene"),
         inputs=tuple((k, tuple(row[1:] for row in g)) for k, g in groupby(inputs(report.scene), itemgetter(0))),
-        specimen=draw_specimen(report.scene, f"{anchor}-specimen", _zone(groups)),
+        specimen=drawing.specimen(report.scene, f"{anchor}-specimen", _zone(groups)),
         frames=opening.frames(report.scene, [g for g in groups if g], drawn, f"{anchor}-frame", between),
         convergence=converged.tables(report, found),
         figures=_figures(report, drawn, groups, anchor),

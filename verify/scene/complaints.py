@@ -10,8 +10,9 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from verify.scene.bodies import SPECIMENS, Isotropic, Orthotropic
+from verify.scene.materials import Isotropic, Orthotropic
 from verify.scene.schema import Scene
+from verify.scene.specimens import SPECIMENS
 from verify.scene.tables import Section, one_of
 
 _MATERIALS: Mapping[str, type[Section]] = {"isotropic": Isotropic, "orthotropic": Orthotropic}

@@ -11,7 +11,7 @@ from math import atan2, degrees, exp, sqrt
 from types import MappingProxyType
 from typing import Any
 
-from verify.scene.bodies import Isotropic, Material
+from verify.scene.materials import Isotropic, Material
 from verify.scene.schema import Scene
 
 FINITE_ABOVE_DEGREES = 5.0
@@ -83,12 +83,11 @@ def end_rotation(scene: Scene) -> float:
 def crack_at_the_end(scene: Scene) -> float:
     """Free length that holds the largest opening in equilibrium, by simple beam theory, however long the specimen is.
 
-    d = a^2/3 sqrt(c w G / (E I)). Of a dcb d is half the opening and c = 1, as two arms share G; a strip is peeled
-    alone, and c = 2.
+    d = a^2/3 sqrt(2 s w G / (E I)) of the more flexible arm, which takes the share s of the opening, and of G: half of
+    both in a dcb, all of a strip, which is peeled alone.
     """
-    specimen = scene.specimen
-    share = 2.0 / specimen.arms
-    return sqrt(3 * _deflection(scene) * sqrt(_bending(scene) / (share * specimen.width * scene.interface.toughness)))
+    released = 2.0 * opening_share(scene) * scene.specimen.width * scene.interface.toughness
+    return sqrt(3 * _deflection(scene) * sqrt(_bending(scene) / released))
 
 
 def load_of_squeezing(scene: Scene) -> float:
@@ -106,7 +105,7 @@ def load_of_squeezing(scene: Scene) -> float:
     across = specimen.loaded_thickness / (2.0 * _modulus(scene.materials[0], 2))
     if specimen.clamped:
         across += specimen.thicknesses[1] / _modulus(scene.materials[1], 2)
-    k, closed = (1.0 / (1.0 / (specimen.arms * bond) + across) for bond in (initial, law.penalty))
+    k, closed = (1.0 / (opening_share(scene) / bond + across) for bond in (initial, law.penalty))
     alpha = specimen.free_length * (k * specimen.width / (4.0 * _bending(scene))) ** 0.25
     return squeezed(alpha) * stiffer(closed / k)
 
@@ -172,10 +171,22 @@ def _search(scene: Scene) -> tuple[bool, str]:
     return not alike, f"{why} and turn alike" if alike else why
 
 
+def opening_share(scene: Scene) -> float:
+    """Share of the opening that the more flexible body takes: half of equal arms, all of a strip on a substrate."""
+    bending = _bending_stiffnesses(scene)
+    return 1.0 / sum(min(bending) / one for one in bending)
+
+
 def _bending(scene: Scene) -> float:
-    """E I of an arm, or of the strip."""
+    """E I of the more flexible arm, or of the strip."""
+    return min(_bending_stiffnesses(scene))
+
+
+def _bending_stiffnesses(scene: Scene) -> list[float]:
+    """E I of the bodies that the load bends."""
     specimen = scene.specimen
-    return _modulus(scene.materials[0], 1) * specimen.width * specimen.loaded_thickness**3 / 12
+    bent = list(zip(scene.materials, specimen.thicknesses, strict=True))[: specimen.arms]
+    return [_modulus(material, 1) * specimen.width * thickness**3 / 12 for material, thickness in bent]
 
 
 def _modulus(material: Material, axis: int) -> float:
@@ -185,5 +196,5 @@ def _modulus(material: Material, axis: int) -> float:
 
 
 def _deflection(scene: Scene) -> float:
-    """Largest deflection of an arm."""
-    return max(map(abs, scene.load.opening)) / scene.specimen.arms
+    """Largest deflection of an arm, the more flexible one."""
+    return max(map(abs, scene.load.opening)) * opening_share(scene)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from pydantic.fields import FieldInfo
 
-from verify.scene.bodies import SPECIMENS, Isotropic, Orthotropic
+from verify.scene.materials import Isotropic, Orthotropic
 from verify.scene.schema import Scene
+from verify.scene.specimens import SPECIMENS
 from verify.scene.tables import Section
 
 
@@ -23,6 +25,12 @@ class Key:
     @property
     def dotted(self) -> str:
         return f"{self.table}.{self.name}" if self.table else self.name
+
+    @property
+    def dimension(self) -> str:
+        """What its description has in brackets, like "stress per length"; empty for a pure number."""
+        found = re.search(r"\[([a-z ]+)\]", " ".join((self.field.description or "").split()))
+        return found[1] if found else ""
 
 
 def tables(kind: str, material: type[Section] = Isotropic) -> Iterator[tuple[str, type[Section]]]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from verify.scene.bodies import Isotropic, Material
+from verify.scene.materials import Isotropic, Material
 from verify.scene.schema import Scene
 
 #: Absolute value of a number that is not 0.
@@ -88,8 +88,7 @@ def _paths(scene: Scene) -> Iterator[Range]:
 
 
 def _materials(scene: Scene) -> list[tuple[str, Material]]:
-    found = ((key, getattr(scene, key)) for key in ("material", "strip", "substrate"))
-    return [(key, material) for key, material in found if material is not None]
+    return [(key, getattr(scene, key)) for key in scene.specimen.materials]
 
 
 def _modulus(material: Material) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy import cos, cosh, sin, sinh
 from scipy.optimize import brentq
 
-from verify.scene.bodies import Material, elastic_constants
+from verify.scene.materials import Material, elastic_constants
 from verify.scene.schema import Scene
 
 #: First root of cosh(x) cos(x) = -1, that of a cantilever's first mode.

@@ -11,9 +11,10 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, ValidationInfo, ValidatorFunctionWrapHandler, field_validator
 from pydantic_core import PydanticCustomError
 
-from verify.scene.bodies import Material, Specimen, definite
 from verify.scene.laws import PLAIN, known
+from verify.scene.materials import Material, definite
 from verify.scene.published import Published
+from verify.scene.specimens import Specimen
 from verify.scene.tables import Positive, Section, one_of, refuse
 from verify.support.programme import turns
 
@@ -77,10 +78,10 @@ class Effects(Section):
     irreversible: bool | Literal["auto"] = True
     """Whether damage stays on unloading."""
     symmetry: bool | Literal["auto"] = False
-    """Whether one arm is modelled for both; not for a peel."""
+    """Whether one arm is modelled for both, where they are alike."""
     search: bool | Literal["auto"] = True
-    """For a dcb: whether points look for the place on the other face that they are opposite to now, or keep the first
-    one and the normal there; linear kinematics always keeps them."""
+    """Whether points look for the place on the other face that they are opposite to now, or keep the first one and the
+    normal there, which two arms that are alike allow; linear kinematics always keeps them."""
 
     @field_validator("contact", "irreversible", "symmetry", "search", mode="before")
     @classmethod
@@ -196,9 +197,9 @@ class Scene(Section):
 
     @property
     def materials(self) -> tuple[Material, ...]:
-        """Of the two bodies: of both arms the same, or of strip and substrate. A scene has no others."""
-        given = (self.material, self.material, self.strip, self.substrate)
-        return tuple(material for material in given if material is not None)
+        """Of the upper and the lower body."""
+        upper, *lower = (getattr(self, name) for name in self.specimen.materials)
+        return (upper, *lower) if lower else (upper, upper)
 
     @field_validator("material", "strip", "substrate", mode="wrap")
     @classmethod

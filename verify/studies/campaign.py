@@ -16,8 +16,8 @@ from verify.checks.proof import MATCHED, REFERENCE, SECOND
 from verify.result import Result
 from verify.runs.folder import write_csv
 from verify.runs.jobs import Job, Outcome, dry_run, run_all
-from verify.scene.bodies import Orthotropic
 from verify.scene.load import load_scene
+from verify.scene.materials import Orthotropic
 from verify.scene.process_zone import bulk_length, slender_length
 from verify.scene.random_scenes import name_of
 from verify.scene.schema import Scene

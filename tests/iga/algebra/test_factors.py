@@ -8,7 +8,7 @@ from specimens import PAPER
 
 from iga.algebra.banded import Band, BandCholesky, BandLU, Skew, number
 from iga.algebra.dense import Dense, DenseCholesky, DenseLU
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.path.follow import follow
 from iga.path.point import Point
 from iga.path.solver import Solver

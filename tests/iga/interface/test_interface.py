@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from iga.bases.lagrange import lagrange_rectangle
-from iga.dcb.dcb import build
-from iga.dcb.problem import Problem
+from iga.dcb import Problem, build
 from iga.interface.closest_point import PROJECTION, closest_points, nearest_samples
 from iga.interface.interface import contact, forces, rounding, settled, stiffness, traction
 from iga.interface.surface import surface

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from iga.bases.lagrange import lagrange_rectangle
-from iga.dcb.dcb import build, solve
-from iga.dcb.meshes import arm_meshes
-from iga.dcb.problem import Problem
+from iga.dcb import Problem, build, solve
+from iga.delamination.meshes import drawn
 from iga.interface.interface import Interface, contact, forces, stiffness, traction
 from iga.interface.lumping import lumped
 from iga.interface.surface import surface
@@ -37,7 +36,7 @@ bases = pytest.mark.parametrize("basis", ["nurbs", "lagrange"])
 
 def gauss_twin(problem: Problem) -> Interface:
     """Gauss points on the same meshes."""
-    meshes = arm_meshes(problem)
+    meshes = drawn(problem).meshes
     rule = replace(problem, interface_rule="gauss", interface_points=problem.degree + 1, meshes=meshes)
     return build(rule).system.interface
 

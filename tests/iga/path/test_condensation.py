@@ -15,7 +15,7 @@ from iga.path.follow import follow
 from iga.path.point import End
 from iga.path.solver import Solver
 from iga.system.system import respond
-from tests.iga.peel.test_peel import PEEL
+from tests.iga.test_peel import PEEL
 
 BEAM = replace(PAPER, kinematics="linear", steps=40, dofs=600, opening=(1.5,))
 STRIP = replace(PEEL, kinematics="linear", steps=40, dofs=900)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from specimens import PAPER, E
 
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.path.control import (
     Prescribed,
     arc_length_control,

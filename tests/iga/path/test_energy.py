@@ -8,9 +8,9 @@ import pytest
 
 from iga.interface.laws import BilinearLaw
 from iga.path.energy import leaks, slid_off
-from iga.peel.peel import solve
+from iga.peel import solve
 from iga.system.state import Energies
-from tests.iga.peel.test_peel import PEEL, column, isotropic
+from tests.iga.test_peel import PEEL, column, isotropic
 
 #: So soft that the bond hardly gives: strip and substrate stretch, slide on each other and tilt.
 SOFT = replace(PEEL, strip=isotropic(250.0, 0.2), substrate=isotropic(5.0, 0.2), dofs=900)

@@ -9,7 +9,7 @@ import pytest
 from specimens import PAPER
 
 from iga.algebra.factors import bordered
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.interface.interface import Contact
 from iga.path import gap_newton
 from iga.path.control import Prescribed, gap_control, opening_control

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.path.control import Prescribed, gap_control
 from iga.path.follow import follow
 from iga.path.kinks import SEVERAL, broken_between, slope_over_arcs, travelled

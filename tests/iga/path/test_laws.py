@@ -7,7 +7,7 @@ import pytest
 from made_up_laws import MADE_UP, TrapezoidalLaw
 from specimens import PAPER
 
-from iga.dcb.dcb import build, solve
+from iga.dcb import build, solve
 from iga.interface.laws import LAWS
 from iga.path.control import dissipation_control
 from iga.path.follow import follow

@@ -9,7 +9,7 @@ from specimens import PAPER
 
 import iga.path.newton
 import iga.system.system
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.path.control import Prescribed, gap_control, load_control, opening_control
 from iga.path.follow import PATH, follow
 from iga.path.newton import Iterate, Line, _holds, _hopeless, _searched, equilibrium, residual_norm

@@ -10,7 +10,7 @@ import pytest
 from paths import column, loads, run
 
 import iga.path.follow
-from iga.dcb.problem import Problem
+from iga.dcb import Problem
 from iga.path.polyline import ACCURACY, Accuracy, Kept, Largest, judged
 
 BEND = 0.005

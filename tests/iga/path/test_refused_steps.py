@@ -12,7 +12,7 @@ import iga.path.energy
 import iga.path.follow
 import iga.path.gap_newton
 import iga.path.step
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.interface.laws import BilinearLaw
 from iga.path.follow import follow
 from iga.path.point import End

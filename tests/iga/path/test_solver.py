@@ -7,7 +7,7 @@ import pytest
 from specimens import PAPER
 
 import iga.path.solver
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.path.follow import follow
 from iga.path.solver import Solver
 

@@ -8,7 +8,7 @@ import pytest
 from specimens import PAPER
 
 import iga.path.step
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.path.follow import follow
 from iga.path.kinks import Kink, StepEnd
 from iga.path.solver import Solver

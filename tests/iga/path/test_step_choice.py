@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from paths import CZM1, column, curve, decided, ledger, loads, run
 
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.path.follow import follow
 from iga.path.solver import DEFAULT, Solver
 from iga.path.step_length import LENGTHS

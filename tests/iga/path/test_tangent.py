@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.path.control import Prescribed, gap_control, opening_control
 from iga.path.follow import follow
 from iga.path.newton import equilibrium

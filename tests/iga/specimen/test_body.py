@@ -7,7 +7,7 @@ import pytest
 from specimens import PAPER
 
 import iga.specimen.body
-from iga.dcb.dcb import build
+from iga.dcb import build
 from iga.elements.bulk import gradient
 from iga.elements.kinematics import KINEMATICS
 from iga.elements.shape_functions import block_basis

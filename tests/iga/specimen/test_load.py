@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from iga.dcb.dcb import build
-from iga.dcb.problem import Problem
+from iga.dcb import Problem, build
 from iga.specimen.bond import control_points
 from iga.specimen.load import pulled_row
 

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.dcb.dcb import build, solve
-from iga.dcb.meshes import arm_meshes, crack_path
+from iga.dcb import build, solve
+from iga.delamination.arms import crack_path
+from iga.delamination.meshes import drawn
 from iga.specimen.specimen import element_length
-from tests.iga.dcb.test_dcb import CZM1
+from tests.iga.test_dcb import CZM1
 
 END = 0.8
 PROBLEM = replace(CZM1, kinematics="linear", opening=(END,), steps=30)
@@ -67,7 +68,7 @@ def longest_on_path(mesh, end):
 def test_length_ratio_and_size_of_the_mesh(mismatch, basis):
     """Lengths along the crack path are in the ratio asked for, to the nearest element of the coarser arm."""
     problem = replace(PROBLEM, basis=basis, mismatch=mismatch, dofs=4000)
-    upper, lower = meshes = arm_meshes(problem)
+    upper, lower = meshes = drawn(problem).meshes
     assert upper.P_AI.size + lower.P_AI.size == pytest.approx(4000, rel=0.02)
     (h_upper, n_upper), (h_lower, n_lower) = (longest_on_path(mesh, crack_path(problem)) for mesh in meshes)
     assert h_lower / h_upper == pytest.approx(mismatch, rel=0.51 / min(n_upper, n_lower))

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.dcb.dcb import build, solve
-from iga.dcb.problem import Problem
+from iga.dcb import Problem, build, solve
 from iga.mesh.mirror import from_behind
 from iga.specimen.pose import Pose
 from tests.iga.elements.test_bulk import D_GENERIC, unit_square, warped

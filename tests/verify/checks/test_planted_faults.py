@@ -31,8 +31,8 @@ from verify.curves.compare import checks, compare
 from verify.curves.legs import TURN_TOLERANCE
 from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene.bodies import elastic_constants
 from verify.scene.load import load_scene
+from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 from verify.studies.plane import study as plane_study
 from verify.studies.plane.errors import Errors

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import errno
 import json
-from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from iga.delamination import solution
+from iga.delamination.problem import Problem
 from verify.cli import INTERRUPTED, REFUSED, main
 from verify.command_line import commands, compare
 from verify.command_line.commands import FAILED
@@ -265,17 +266,15 @@ def test_what_is_written_has_a_place_where_none_is_told(tmp_path: Path, monkeypa
 @pytest.mark.parametrize("name", ["dcb-czm1", "peel-60"])
 def test_a_run_makes_its_problem_once(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Warnings, solver, checks and summary share it. Its mesh is looked at once, and made in the solver's time."""
-    kind = load_scene(name).specimen.kind
-    solver = import_module(f"iga.{kind}.{kind}")
-    made, built, problem, build = [], [], solver.Problem, solver.build
+    made, built, build = [], [], solution.build
 
-    class Counted(problem):
+    class Counted(Problem):
         def __init__(self, **keys) -> None:
             made.append(keys)
             super().__init__(**keys)
 
-    monkeypatch.setattr(solver, "Problem", Counted)
-    monkeypatch.setattr(solver, "build", lambda *given: built.append(given) or build(*given))
+    monkeypatch.setattr("iga.delamination.problem.Problem", Counted)
+    monkeypatch.setattr(solution, "build", lambda *given: built.append(given) or build(*given))
     few = ["--set", "load.opening=0.05", "--set", "discretization.steps=3"]
     main(["solve", name, "--method", "nurbs", *few, "--out", str(tmp_path)])
     assert json.loads((tmp_path / "result.json").read_text())["status"] == "complete"

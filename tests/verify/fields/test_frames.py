@@ -9,7 +9,7 @@ import pytest
 from iga_files import real
 from vtu_files import arrays
 
-from iga.dcb.meshes import arm_meshes
+from iga.delamination.meshes import drawn
 from iga.elements.bulk import gradient
 from iga.elements.kinematics import cauchy_stress
 from iga.elements.shape_functions import block_basis
@@ -133,7 +133,7 @@ CASES = {
 
 def rational(problem):
     """The problem on arms whose weights change through them: the same rectangles, in rational functions."""
-    meshes = arm_meshes(problem)
+    meshes = drawn(problem).meshes
     return replace(problem, meshes=tuple(replace(m, w_A=1.0 + 2.0 * np.abs(m.P_AI[:, 1])) for m in meshes))
 
 

@@ -15,8 +15,7 @@ from time import process_time
 import numpy as np
 import pytest
 
-from iga.dcb.dcb import build
-from iga.dcb.problem import Problem
+from iga.dcb import Problem, build
 from iga.interface import interface as interface_of
 from iga.interface.interface import Contact, Interface
 from iga.interface.laws import BilinearLaw

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from iga_files import from_mesh
 
-from iga.dcb.meshes import arm_meshes
+from iga.delamination.meshes import drawn
+from iga.delamination.on_base import tmeshes as peel_tmeshes
 from iga.files.iga_format import write_iga
 from iga.mesh.extraction import ElementBlock, Mesh
-from iga.peel.meshes import tmeshes as peel_tmeshes
 from iga.tsplines.tspline import tspline_rectangle
 from verify import verification
 from verify.checks.identities import OF_THE_ZONE
@@ -32,7 +32,7 @@ DCB = ("discretization.dofs=400", "load.opening=0.5", "discretization.steps=4")
 
 @pytest.fixture(scope="module")
 def arms() -> tuple[Mesh, ...]:
-    return arm_meshes(prepare(load_scene("dcb-czm1", DCB), "tspline").problem[1])
+    return drawn(prepare(load_scene("dcb-czm1", DCB), "tspline").problem[1]).meshes
 
 
 def written(folder: Path, *meshes: Mesh) -> list[str]:

@@ -15,8 +15,8 @@ from verify.methods.iga import least_dofs
 from verify.methods.method import Failure
 from verify.methods.problems import SNAPSHOT_FRACTIONS
 from verify.methods.solve import prepare, solve
-from verify.scene.bodies import axial_modulus, elastic_constants
 from verify.scene.load import load_scene
+from verify.scene.materials import axial_modulus, elastic_constants
 from verify.scene.parse import parse_scene
 from verify.scene.schema import counted_steps
 

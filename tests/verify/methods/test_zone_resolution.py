@@ -13,8 +13,8 @@ from verify.methods.solve import prepare, solve
 from verify.methods.zone_resolution import Zone, element_length, expected, measured, summary, warnings
 from verify.result import Result
 from verify.runs.run import run
-from verify.scene.bodies import Orthotropic
 from verify.scene.load import load_scene
+from verify.scene.materials import Orthotropic
 from verify.scene.process_zone import CANTILEVER, bulk_length, slender_factor, slender_length
 
 
@@ -83,7 +83,7 @@ def test_elements_are_those_of_the_mesh_maker(method, rule):
     scene = load_scene("dcb-czm1", [f'discretization.interface_rule="{rule}"'])
     solver, problem = prepare(scene, method).problem
     specimen = solver.build(problem)
-    start, end = specimen.layout.free_length, specimen.layout.path_end
+    start, end = specimen.layout.free_length, specimen.drawn.path_end
     assert start == 4.0 and 9.0 < end < 14.0
     if method == "lagrange":
         x = np.unique(np.round(specimen.meshes[0].P_AI[:, 0], 9))
@@ -131,7 +131,7 @@ def test_what_a_warning_says_depends_on_the_method_and_on_the_units():
 
 
 def test_the_printed_peel_test_has_a_zone_far_below_any_element():
-    pytest.importorskip("iga.peel.peel")
+    pytest.importorskip("iga.peel")
     (text,) = warnings(prepare(load_scene("peel-as-printed"), "nurbs"))
     assert text.startswith("process zone 0.014 mm < element 0.")
     assert warnings(prepare(load_scene("peel-120"), "nurbs")) == ()

@@ -35,7 +35,7 @@ from verify.pages import parts  # noqa: E402
 from verify.pages.style import HALF, PALETTE, colour, panel  # noqa: E402
 from verify.pages.style import drawing as settings  # noqa: E402
 from verify.report import cost
-from verify.report.figures import curves, drawing, fields, meshes, opening, peel_drawing, undeformed
+from verify.report.figures import curves, drawing, fields, meshes, opening, undeformed
 from verify.report.figures.entry import entries  # noqa: E402
 from verify.report.section import section  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
@@ -52,7 +52,7 @@ from verify.studies.hard.suite import Cell  # noqa: E402
 from verify.studies.scaling import page as scaling  # noqa: E402
 from verify.verdict import Run, SceneReport  # noqa: E402
 
-PAGE = (cost, curves, drawing, fields, meshes, opening, peel_drawing, undeformed)
+PAGE = (cost, curves, drawing, fields, meshes, opening, undeformed)
 
 
 @pytest.mark.parametrize(

@@ -238,13 +238,13 @@ def test_what_is_said_of_the_turn_is_what_finite_kinematics_changes(opening: flo
 def test_two_meshes_that_differ_are_no_symmetry(tmp_path: Path) -> None:
     from iga_files import from_mesh
 
-    from iga.dcb.meshes import arm_meshes
+    from iga.delamination.meshes import drawn
     from iga.files.iga_format import write_iga
 
     _, problem = prepare(load_scene("dcb-czm1", ["discretization.dofs=400"]), "nurbs").problem
     _, finer = prepare(load_scene("dcb-czm1", ["discretization.dofs=500"]), "nurbs").problem
-    upper, lower = arm_meshes(problem)
-    for name, mesh in (("upper", upper), ("lower", lower), ("other", arm_meshes(finer)[1])):
+    upper, lower = drawn(problem).meshes
+    for name, mesh in (("upper", upper), ("lower", lower), ("other", drawn(finer).meshes[1])):
         write_iga(from_mesh(mesh), tmp_path / f"{name}.iga")
     stub = Result("tspline", {"opening": np.linspace(0.0, 1.0, 3), "load": np.zeros(3)})
     for name, negligible in (("lower", True), ("other", False)):

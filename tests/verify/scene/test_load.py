@@ -9,12 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from verify.scene.bodies import Dcb, Isotropic, Orthotropic, Peel
 from verify.scene.effects import end_rotation, simulated
 from verify.scene.laws import known
 from verify.scene.load import load_scene, packaged_scenes, verified_scenes
+from verify.scene.materials import Isotropic, Orthotropic
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
+from verify.scene.specimens import SPECIMENS
 from verify.scene.tables import one_of
 
 #: The scenes of the paper, which are verified where none is named.
@@ -306,7 +307,7 @@ values = st.recursive(
     max_leaves=6,
 )
 tables = {name: getattr(field.annotation, "model_fields", {}) for name, field in Scene.model_fields.items()}
-tables["specimen"] = Dcb.model_fields | Peel.model_fields
+tables["specimen"] = {name: key for one in SPECIMENS.values() for name, key in one.model_fields.items()}
 tables["material"] = tables["strip"] = tables["substrate"] = Isotropic.model_fields | Orthotropic.model_fields
 places = [*tables, "nonsense", *(f"{table}.{key}" for table, keys in tables.items() for key in [*keys, "nonsense"])]
 

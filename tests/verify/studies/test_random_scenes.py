@@ -19,8 +19,8 @@ from verify.command_line.commands import FAILED
 from verify.methods.zone_resolution import expected
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
-from verify.scene.bodies import Orthotropic
 from verify.scene.load import load_scene
+from verify.scene.materials import Orthotropic
 from verify.scene.parse import SceneError
 from verify.scene.random_scenes import ZONES, random_scene
 from verify.scene.schema import Scene

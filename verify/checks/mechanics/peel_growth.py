@@ -6,8 +6,8 @@ import numpy as np
 
 from verify.checks.mechanics.columns import Steps, far_from_end, has, law_of, loading, tip_is_open, worst, zone_is_new
 from verify.scene import process_zone
-from verify.scene.bodies import elastic_constants
 from verify.scene.effects import simulated
+from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 
 #: Distance of the damage front from the far end, over the length, within which the zone counts as at the end.

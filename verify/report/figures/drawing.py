@@ -1,73 +1,98 @@
-"""The specimen to scale, with its load, supports and interface."""
+"""A specimen to scale, with its load, supports and bond."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
 from verify.pages.style import WIDE, Panel, colour, drawing, to_svg
 from verify.pages.text import Units, number, quantity
-from verify.scene.bodies import Dcb
+from verify.scene.specimens.delamination import Delamination
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
-_LOAD_HEIGHT, _DIMENSIONS_HEIGHT = 0.73, 1.03  # for the load and for the dimensions, inches
-_THINNEST = 5.0 / 72.0  # smallest drawn thickness of an arm, inches
+_THINNEST = 5.0 / 72.0  # smallest drawn thickness of a body, inches
+_ARROW = 0.36  # of a load above or below its body, inches
 
 
 def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = None) -> Panel:
-    """Side view of the double cantilever beam.
+    """Side view of a specimen.
 
     Parameters
     ----------
-    zone : start and end of the process zone along the specimen, and the opening
+    zone : start and end of the process zone as distances from the loaded end, and the opening
     """
-    body, units = scene.specimen, Units.of(scene.units)
-    assert isinstance(body, Dcb)
-    scale = (WIDE - 2.1) / body.length  # inches per unit of length
-    thickness = max(body.arm_thickness * scale, _THINNEST)
+    body, units, free = scene.specimen, Units.of(scene.units), not scene.specimen.clamps
+    # inches for labels beside the bodies, for the load above and for the dimensions below
+    left, right, above, below = (0.9, 1.2, 0.73, 1.03) if free else (0.5, 0.9, 0.75, 0.85)
+    scale = (WIDE - left - right) / max(body.lengths)  # inches per unit of length
+    thicker = max(1.0, _THINNEST / (min(body.thicknesses) * scale))
+    top, bottom = (thickness * scale * thicker for thickness in body.thicknesses)
     with drawing():
-        figure = Figure(figsize=(WIDE, _LOAD_HEIGHT + 2 * thickness + _DIMENSIONS_HEIGHT))
+        figure = Figure(figsize=(WIDE, above + top + bottom + below))
         axes = figure.add_axes((0, 0, 1, 1))
         axes.set_axis_off()
-        # inches from the middle of the loaded end
-        axes.set(xlim=(-0.9, WIDE - 0.9), ylim=(-thickness - _DIMENSIONS_HEIGHT, thickness + _LOAD_HEIGHT))
-        _bodies(axes, body.length * scale, body.precrack * scale, thickness)
-        _loads(axes, thickness)
-        _supports(axes, body.length * scale)
-        _dimensions(axes, body, units, scale, thickness)
+        axes.set(xlim=(-left, WIDE - left), ylim=(-bottom - below, top + above))
+        for length, y, thickness in zip(body.lengths, (0.0, -bottom), (top, bottom), strict=True):
+            _rectangle(axes, length * scale, y, thickness)
+        _bond(axes, body, scale)
+        _loads(axes, body, scale, (top, -bottom))
+        _float(axes, max(body.lengths) * scale) if free else _clamp(axes, body.lengths[1] * scale, -bottom)
+        _dimensions(axes, body, units, scale, -bottom - (0.44 if free else 0.22))
         if zone is not None and zone[1] > zone[0]:
-            mark_zone(axes, zone[0] * scale, zone[1] * scale, thickness + 0.42, zone_label(zone, units))
+            start, end = sorted(body.place(s) * scale for s in zone[:2])
+            mark_zone(axes, start, end, top + 0.42, zone_label(zone, units))
         svg = to_svg(figure, key, f"Side view of the specimen of {scene.name}")
-    exaggeration = thickness / (body.arm_thickness * scale)
-    thick = f"lengths to scale, arms {number(exaggeration, 2)} times too thick" if exaggeration > 1.001 else "to scale"
-    caption = (
-        f"The undeformed specimen, {thick}. The load is a uniform dead traction on each loaded face, its resultant is "
-        "the load P; the opening Δ is the separation of the mean displacements of the two faces. "
-        "The supports carry nothing."
-    )
-    return Panel(svg, caption, "wide")
+    return Panel(svg, _caption(body, thicker), "wide")
 
 
-def _bodies(axes: Axes, length: float, precrack: float, thickness: float) -> None:
-    for y in (0.0, -thickness):
-        axes.add_patch(
-            Rectangle((0, y), length, thickness, facecolor=colour("muted"), alpha=0.28, edgecolor="none", zorder=1)
+def _caption(body: Delamination, thicker: float) -> str:
+    exaggerated = f"lengths to scale, {body.body}s {number(thicker, 2)} times too thick"
+    drawn = f"The undeformed specimen, {exaggerated if thicker > 1.001 else 'to scale'}."
+    if not body.clamps:
+        return (
+            f"{drawn} The load is a uniform dead traction on each loaded face, its resultant is the load P; the "
+            "opening Δ is the separation of the mean displacements of the two faces. The supports carry nothing."
         )
-        frame = Rectangle((0, y), length, thickness, fill=False, edgecolor=colour("ink"), linewidth=0.6, zorder=2)
-        axes.add_patch(frame)
-    axes.plot([0, precrack], [0, 0], color=colour("paper"), linewidth=2.0, zorder=3, solid_capstyle="butt")
-    axes.plot([precrack, length], [0, 0], color=colour("accent"), linewidth=2.0, zorder=3, solid_capstyle="butt")
+    upper, lower = body.bodies
+    return (
+        f"{drawn} The load P is the resultant of a uniform dead traction on the {body.loads[0].end} end of the "
+        f"{upper}; the opening Δ is the mean displacement of that face. The base of the {lower} is clamped; nothing "
+        "else is held across the specimen."
+    )
 
 
-def _loads(axes: Axes, thickness: float) -> None:
-    for sign, label in ((1, "P, +Δ/2"), (-1, "P, −Δ/2")):
-        pull(axes, (0, sign * thickness / 2), sign * (thickness / 2 + 0.36))
-        axes.text(-0.1, sign * (thickness + 0.22), label, ha="right", va="center", color=colour("bad"))
+def _rectangle(axes: Axes, length: float, y: float, thickness: float) -> None:
+    axes.add_patch(
+        Rectangle((0, y), length, thickness, facecolor=colour("muted"), alpha=0.28, edgecolor="none", zorder=1)
+    )
+    frame = Rectangle((0, y), length, thickness, fill=False, edgecolor=colour("ink"), linewidth=0.6, zorder=2)
+    axes.add_patch(frame)
+
+
+def _bond(axes: Axes, body: Delamination, scale: float) -> None:
+    """The bond, and the crack between two arms."""
+    cracked = [((body.loaded_at, body.tip), "paper")] if body.arms == 2 else []
+    for ends, ink in (*cracked, (body.bonded, "accent")):
+        x = [end * scale for end in sorted(ends)]
+        axes.plot(x, [0, 0], color=colour(ink), linewidth=2.0, zorder=3, solid_capstyle="butt")
+
+
+def _loads(axes: Axes, body: Delamination, scale: float, outer: tuple[float, float]) -> None:
+    """Arrows from the middles of the loaded faces to beyond their ``outer`` edges."""
+    for number_of, end, share in body.loads:
+        x, sign, edge = (0.0 if end == "left" else body.lengths[number_of] * scale), np.sign(share), outer[number_of]
+        beyond = _ARROW if body.arms == 2 else 0.4
+        pull(axes, (x, edge / 2), sign * (abs(edge) / 2 + beyond))
+        part = f", {'+' if share > 0 else '−'}Δ/2" if body.symmetric else ", Δ" if body.arms == 1 else ""
+        side, at = (-0.1, "right") if end == "left" else (0.1, "left")
+        y = edge + sign * (0.22 if body.arms == 2 else 0.25)
+        axes.text(x + side, y, f"P{part}", ha=at, va="center", color=colour("bad"))
 
 
 def pull(axes: Axes, foot: tuple[float, float], length: float) -> None:
@@ -76,7 +101,16 @@ def pull(axes: Axes, foot: tuple[float, float], length: float) -> None:
     axes.annotate("", (foot[0], foot[1] + length), foot, arrowprops=arrow, zorder=5)
 
 
-def _supports(axes: Axes, length: float) -> None:
+def _clamp(axes: Axes, length: float, y: float) -> None:
+    """Hatching below the base."""
+    feet = np.linspace(0.0, length, max(round(length / 0.12), 2))
+    axes.plot([0, length], [y, y], color=colour("ink"), linewidth=1.0, zorder=3)
+    for x in feet:
+        axes.plot([x, x - 0.07], [y, y - 0.09], color=colour("muted"), linewidth=0.6)
+
+
+def _float(axes: Axes, length: float) -> None:
+    """The support of a specimen whose loads balance each other."""
     size = 0.11
     axes.add_patch(
         Polygon(
@@ -92,14 +126,20 @@ def _supports(axes: Axes, length: float) -> None:
     axes.text(length + size + 0.06, 0, note, ha="left", va="center", fontsize=7, color=colour("muted"))
 
 
-def _dimensions(axes: Axes, body: Dcb, units: Units, scale: float, thickness: float) -> None:
-    below = -thickness - 0.44
-    a, length = body.precrack * scale, body.length * scale
-    length_of, thick, wide = (quantity(v, units.length) for v in (body.length, body.arm_thickness, body.width))
-    measure(axes, 0, a, below, f"precrack {quantity(body.precrack, units.length)}")
-    measure(axes, a, length, below, f"interface {quantity(body.length - body.precrack, units.length)}", "accent")
-    whole = f"length {length_of}; two arms of thickness {thick}, width {wide}"
-    measure(axes, 0, length, below - 0.25, whole)
+def _dimensions(axes: Axes, body: Delamination, units: Units, scale: float, y: float) -> None:
+    free, bond = ("precrack", "interface") if body.arms == 2 else ("free", "bond")
+    for word, ends, ink in ((free, (body.loaded_at, body.tip), "muted"), (bond, body.bonded, "accent")):
+        start, end = sorted(ends)
+        measure(axes, start * scale, end * scale, y, f"{word} {quantity(end - start, units.length)}", ink)
+    lengths, thicknesses, (width,) = (
+        [quantity(value, units.length) for value in values] for values in (body.lengths, body.thicknesses, [body.width])
+    )
+    if body.symmetric:
+        sizes = f"length {lengths[0]}; two arms of thickness {thicknesses[0]}, width {width}"
+    else:
+        each = zip(body.bodies, lengths, thicknesses, strict=True)
+        sizes = "; ".join([*(f"{name} {length} by {thick}" for name, length, thick in each), f"width {width}"])
+    measure(axes, 0, body.lengths[0] * scale, y - 0.25, sizes)
 
 
 def measure(axes: Axes, start: float, end: float, y: float, label: str, ink: str = "muted") -> None:

@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from verify.scene.keys import keys, keys_of
 from verify.scene.load import load_scene
+from verify.scene.materials import Orthotropic
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.studies.hard.case import Case, Finding, Trials, Variant, variants
@@ -16,16 +18,8 @@ from verify.verdict import Check
 
 _MESH = "discretization.dofs=280"
 
-#: Exponents of force and length of every key of a scene that has units.
-_FORCE_AND_LENGTH = {
-    **dict.fromkeys(("young", "E1", "E2", "G12", "strength"), (1, -2)),
-    **dict.fromkeys(("length", "arm_thickness", "precrack", "width", "opening", "shift"), (0, 1)),
-    **dict.fromkeys(
-        ("strip_length", "strip_thickness", "substrate_length", "substrate_thickness", "bond_length"), (0, 1)
-    ),
-    "toughness": (1, -1),
-    "penalty": (1, -3),
-}
+#: Exponents of force and length of the dimensions that keys of a scene have.
+_FORCE_AND_LENGTH = {"stress": (1, -2), "length": (0, 1), "energy per area": (1, -1), "stress per length": (1, -3)}
 
 #: Sizes of a newton and a millimetre in other units, and their label.
 _UNITS = {
@@ -50,9 +44,11 @@ def every_number(scene: Scene, change: Callable[[str, float], float]) -> Scene:
 
 def in_units(scene: Scene, force: float, length: float, label: str) -> Scene:
     """The scene in units in which a newton is ``force`` and a millimetre ``length``."""
+    known = (*keys(scene.specimen.kind), *keys_of("material", Orthotropic))
+    dimensions = {key.name: key.dimension for key in known}
 
     def convert(key: str, value: float) -> float:
-        forces, lengths = _FORCE_AND_LENGTH.get(key, (0, 0))
+        forces, lengths = _FORCE_AND_LENGTH.get(dimensions.get(key, ""), (0, 0))
         return value * force**forces * length**lengths
 
     return every_number(scene, convert).model_copy(update={"units": label})

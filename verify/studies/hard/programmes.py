@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from verify.scene.bodies import Dcb, Isotropic
+from verify.scene.materials import Isotropic
 from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Trial, Trials, Variant, variant, variants
 from verify.studies.hard.criteria import distance, equal_curves
 from verify.verdict import Check
@@ -90,10 +90,10 @@ def _penetration(trial: Trial) -> Iterator[Finding]:
     """
     scene, steps = trial.scene, trial.result.steps
     body, solid = scene.specimen, scene.material
-    if "mouth_opening" not in steps or not isinstance(body, Dcb) or not isinstance(solid, Isotropic):
+    if "mouth_opening" not in steps or not body.symmetric or not isinstance(solid, Isotropic):
         return
     at = int(np.argmin(steps["opening"]))
-    bending = solid.young * body.width * body.arm_thickness**3 / 12.0
+    bending = solid.young * body.width * body.loaded_thickness**3 / 12.0
     k = 2.0 * body.width * scene.interface.penalty
     wanted = 2.0 * pressed_end(abs(steps["load"][at]), steps["damage_front"][at], bending, k)
     found = -float(steps["mouth_opening"][at])

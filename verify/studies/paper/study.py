@@ -94,7 +94,7 @@ class Study:
     def bond(self, scene: str) -> float:
         """Bond length of a strip; NaN for other specimens."""
         specimen = self.scenes[scene].specimen
-        return specimen.bond_length if specimen.kind == "peel" else nan
+        return specimen.tip if specimen.clamped else nan
 
     def complete_runs(self) -> Iterator[tuple[str, str, Result]]:
         """Basis, scene and result of every complete run, then those of the converged curves."""

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.patches import Polygon, Rectangle  # noqa: E402
 
 from verify.pages.style import colour  # noqa: E402
-from verify.report.figures import drawing, peel_drawing  # noqa: E402
+from verify.report.figures import drawing  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
 from verify.scene.schema import Scene
 
@@ -24,10 +24,10 @@ NUMBER = r"([\d.]+)"
 def drawn(monkeypatch: pytest.MonkeyPatch):
     """The axes that a drawing was made on and its caption."""
 
-    def draw(module, scene: Scene, zone=None) -> tuple[Axes, str]:
+    def draw(scene: Scene, zone=None) -> tuple[Axes, str]:
         figures = []
-        monkeypatch.setattr(module, "to_svg", lambda figure, *words: figures.append(figure) or "")
-        caption = module.specimen(scene, "key", zone).caption
+        monkeypatch.setattr(drawing, "to_svg", lambda figure, *words: figures.append(figure) or "")
+        caption = drawing.specimen(scene, "key", zone).caption
         return figures[0].axes[0], caption
 
     return draw
@@ -79,7 +79,7 @@ def inside(axes: Axes) -> bool:
 @pytest.mark.parametrize("overrides", [(), ("specimen.arm_thickness=1.5",), ("specimen.precrack=9.0",)])
 def test_two_arms_meet_on_the_interface_and_their_lengths_add_up(drawn, overrides: tuple[str, ...]) -> None:
     scene = load_scene("dcb-czm1", ["load.opening=1.0", *overrides])
-    axes, caption = drawn(drawing, scene)
+    axes, caption = drawn(scene)
     specimen, ((x, y, length, thick), lower) = scene.specimen, bodies(axes)
     assert (x, y) == (0, 0) and lower == (0, -thick, length, thick)
     scale = length / specimen.length
@@ -100,7 +100,7 @@ def test_two_arms_meet_on_the_interface_and_their_lengths_add_up(drawn, override
 
 def test_thin_arms_are_drawn_thick_enough_to_be_seen_and_thick_ones_to_scale(drawn) -> None:
     scenes = [load_scene("dcb-czm1", ["load.opening=1", f"specimen.arm_thickness={h}"]) for h in (0.02, 1.5)]
-    (thin, said), (thick, also) = (drawn(drawing, scene) for scene in scenes)
+    (thin, said), (thick, also) = (drawn(scene) for scene in scenes)
     assert bodies(thin)[0][3] == pytest.approx(5.0 / 72.0) and "times too thick" in said
     times = bodies(thin)[0][3] / (bodies(thin)[0][2] * 0.02 / 14.0)
     assert float(re.search(rf"arms {NUMBER} times", said)[1]) == pytest.approx(times, rel=0.05)
@@ -115,7 +115,7 @@ def pulls(axes: Axes) -> list[tuple[float, float, float]]:
 
 
 def test_the_loads_pull_the_arms_apart_and_the_supports_are_at_the_other_end(drawn) -> None:
-    axes, _ = drawn(drawing, load_scene("dcb-czm1"))
+    axes, _ = drawn(load_scene("dcb-czm1"))
     (_, _, length, thick), _ = bodies(axes)
     down, up = sorted(pulls(axes), key=lambda pull: pull[2])
     assert down == pytest.approx((0.0, -thick / 2, -up[2])) and up[:2] == pytest.approx((0.0, thick / 2))
@@ -128,12 +128,12 @@ def test_the_loads_pull_the_arms_apart_and_the_supports_are_at_the_other_end(dra
     assert corners[:, 1].max() == -corners[:, 1].min() > 0.0
 
 
-@pytest.mark.parametrize("module", [drawing, peel_drawing], ids=["dcb", "peel"])
-def test_the_zone_is_marked_on_the_interface_and_named(drawn, module) -> None:
-    scene = load_scene("dcb-czm1" if module is drawing else "peel-80")
+@pytest.mark.parametrize("name", ["dcb-czm1", "peel-80"])
+def test_the_zone_is_marked_on_the_interface_and_named(drawn, name: str) -> None:
+    scene = load_scene(name)
     specimen = scene.specimen
     zone = (specimen.free_length, specimen.free_length + 1.5, 0.75)
-    axes, _ = drawn(module, scene, zone)
+    axes, _ = drawn(scene, zone)
     (marked,) = lengths_of(axes, "zone")
     scale = bodies(axes)[0][2] / specimen.extent
     assert abs(marked[1] - marked[0]) == pytest.approx(1.5 * scale)
@@ -146,13 +146,13 @@ def test_the_zone_is_marked_on_the_interface_and_named(drawn, module) -> None:
     assert "at opening 0.75 mm" in text and text.endswith("1.5 mm long")
     assert label.get_position()[0] == pytest.approx(sum(marked) / 2)
     for nothing in (None, (4.5, 4.5, 0.75)):
-        assert lengths_of(drawn(module, scene, nothing)[0], "zone") == []
+        assert lengths_of(drawn(scene, nothing)[0], "zone") == []
 
 
 @pytest.mark.parametrize("name", ["peel-60", "peel-120"])
 def test_a_strip_lies_on_its_substrate_from_the_flush_end_on(drawn, name: str) -> None:
     scene = load_scene(name)
-    specimen, (axes, _) = scene.specimen, drawn(peel_drawing, scene)
+    specimen, (axes, _) = scene.specimen, drawn(scene)
     (x, y, strip, thick), (left, base, substrate, depth) = bodies(axes)
     scale = strip / specimen.strip_length
     assert (x, y, left) == (0, 0, 0) and base == -depth

@@ -10,9 +10,9 @@ from iga.mesh.quadrature import gauss
 from iga.path.follow import follow
 from iga.path.point import Point
 from iga.path.solver import Solver
-from iga.peel.peel import build, solve
+from iga.peel import build, solve
 from iga.specimen.bond import between, everywhere
-from tests.iga.peel.test_peel import PEEL, column
+from tests.iga.test_peel import PEEL, column
 
 #: The crack runs some 20 mm, and then the strip's end is pressed down on what it has left.
 BACK = replace(PEEL, bond_length=60.0, opening=(5.0, -0.05), dofs=1000, steps=50)

@@ -9,10 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from specimens import PAPER, E
 
-from iga.dcb.dcb import build, solve
-from iga.dcb.meshes import (
+from iga.dcb import build, solve
+from iga.delamination.arms import (
     CRACK_PATH,
-    arm_meshes,
     coarsening,
     crack_path,
     division,
@@ -20,11 +19,12 @@ from iga.dcb.meshes import (
     tmeshes,
     zone_length,
 )
+from iga.delamination.meshes import drawn
+from iga.delamination.on_base import tmeshes as peel_tmeshes
 from iga.interface.surface import surface
-from iga.peel.meshes import tmeshes as peel_tmeshes
 from iga.specimen.grading import GRADING
 from iga.tsplines.tspline import tspline_rectangle
-from tests.iga.peel.test_peel import PEEL
+from tests.iga.test_peel import PEEL
 
 some = settings(max_examples=40, deadline=None)
 BASES = ("tspline", "nurbs", "lagrange")
@@ -58,7 +58,7 @@ def problems(draw, most=50_000):
 def sides(problem):
     """Lengths of the elements along the interface and their middles, a pair an arm, from the control points alone."""
     meshes = [tspline_rectangle(mesh) for mesh in tmeshes(problem)] if problem.basis == "tspline" else ()
-    for mesh, side in zip(meshes or arm_meshes(problem), ("bottom", "top"), strict=False):
+    for mesh, side in zip(meshes or drawn(problem).meshes, ("bottom", "top"), strict=False):
         face = surface(mesh, mesh.chains[side], 0)
         x = face.bezier_points(mesh.P_AI)[:, :, 0]
         yield x[:, -1] - x[:, 0], 0.5 * (x[:, 0] + x[:, -1])
@@ -67,7 +67,7 @@ def sides(problem):
 def unknowns(problem) -> int:
     if problem.basis == "tspline":
         return sum(2 * len(mesh.anchors) for mesh in tmeshes(problem)[: 1 if problem.symmetry else 2])
-    return sum(mesh.P_AI.size for mesh in arm_meshes(problem))
+    return sum(mesh.P_AI.size for mesh in drawn(problem).meshes)
 
 
 @some
@@ -220,7 +220,7 @@ def test_the_process_zone_knows_no_units_and_goes_as_the_powers_of_the_theory():
 @pytest.mark.parametrize("interface_rule", ["gauss", "lumped"])
 def test_equal_elements_on_the_path_where_points_must_meet(interface_rule):
     """Lumping needs them; otherwise an arm may have one element more where that meets the unknowns better."""
-    meshes = [arm_meshes(replace(CZM1, dofs=dofs, interface_rule=interface_rule)) for dofs in range(240, 420, 8)]
+    meshes = [drawn(replace(CZM1, dofs=dofs, interface_rule=interface_rule)).meshes for dofs in range(240, 420, 8)]
     unequal = [
         not all(np.isclose(x, lower.P_AI[:, 0], atol=1e-9).any() for x in upper.P_AI[upper.P_AI[:, 0] > 5.5, 0])
         for upper, lower in meshes
@@ -235,7 +235,7 @@ def made(problem, dofs):
     if problem is PEEL:
         meshes = [tspline_rectangle(mesh) for mesh in peel_tmeshes(replace(PEEL, basis="tspline", dofs=dofs))]
     else:
-        meshes = arm_meshes(replace(problem, basis="tspline", dofs=dofs))
+        meshes = drawn(replace(problem, basis="tspline", dofs=dofs)).meshes
     return process_time() - start, sum(mesh.P_AI.size for mesh in meshes)
 
 
@@ -253,14 +253,14 @@ def test_meshes_of_fifty_thousand_unknowns_take_seconds_and_grow_with_their_size
 
 def test_what_no_mesh_can_be_made_of_is_refused():
     with pytest.raises(ValueError, match="degree must be 3 for T-splines, got 2"):
-        arm_meshes(replace(CZM1, basis="tspline", degree=2))
+        drawn(replace(CZM1, basis="tspline", degree=2))
     with pytest.raises(ValueError, match="degree must be 3 for T-splines, got 4"):
         peel_tmeshes(replace(PEEL, basis="tspline", degree=4))
     with pytest.raises(ValueError, match='basis must be "tspline", "nurbs" or "lagrange", got \'fourier\''):
-        arm_meshes(replace(CZM1, basis="fourier"))
+        drawn(replace(CZM1, basis="fourier"))
     for basis in BASES:
         with pytest.raises(ValueError, match="needs at least [0-9]+ unknowns, got 60"):
-            arm_meshes(replace(CZM1, basis=basis, dofs=60))
+            drawn(replace(CZM1, basis=basis, dofs=60))
     with pytest.raises(ValueError, match="needs at least"):
         build(replace(CZM1, basis="tspline", dofs=60))
 

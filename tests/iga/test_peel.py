@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.peel.peel import build, solve
-from iga.peel.problem import Moduli, Problem
+from iga.peel import Moduli, Problem, build, solve
 
 
 def isotropic(young: float, poisson: float) -> Moduli:

@@ -1,4 +1,4 @@
-"""Meshes of the arms of a double cantilever beam, of any basis, from the number of unknowns.
+"""Meshes of two free arms, of any basis, from the number of unknowns.
 
 The same rule for every basis: one interface element length all along the crack path, as short as the unknowns allow, so
 that it divides the process zone as often as possible; elements up to `coarsening` times longer before and beyond.
@@ -8,20 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from iga.elements.elasticity import orthotropic
 from iga.mesh.extraction import Mesh
 from iga.specimen.grading import GRADING, columns, elements_within, largest, most_halvings, pieces, rectangle, unequal
-from iga.specimen.problem import presses
+from iga.specimen.problem import Debonding, presses
 from iga.specimen.tmesh_strip import Strip, functions_of_halves, strip_tmesh
 from iga.tsplines.tmesh import DEGREE, TMesh
-from iga.tsplines.tspline import tspline_rectangle
-
-if TYPE_CHECKING:
-    from iga.dcb.problem import Problem
 
 
 @dataclass(frozen=True)
@@ -48,29 +42,42 @@ Division = tuple[int, int, int]
 Arm = tuple[int, int]
 
 
-def arm_meshes(problem: Problem) -> tuple[Mesh, ...]:
-    """The arms, upper first: equal elements on the crack path, longer ones before and beyond it.
+def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
+    """NURBS or Lagrange meshes of both arms: equal elements on the crack path, longer ones before and beyond it.
 
-    An element boundary lies at the end of the precrack. The model of one arm gets half of ``dofs``. NURBS and
-    Lagrange meshes are one element thick; one with few elements on the path (`Grading.few`) is quadratic through the
-    arms, all that bending needs, and spends the rest along them. Where two equal arms would miss ``dofs`` by more than
-    `CrackPath.missed`, the lower one has one element more, or there are more elements before the path. T-splines halve
-    the elements towards the interface (see `iga.specimen.tmesh_strip`). Arms that are pressed together have shorter
-    elements at the loaded end.
+    An element boundary lies at the end of the precrack. The meshes are one element thick; one with few elements on the
+    path (`Grading.few`) is quadratic through the arms, all that bending needs, and spends the rest along them. Where
+    the arms would miss ``dofs`` by more than `CrackPath.missed`, the lower one has one element more, or there are more
+    elements before the path. Arms that are pressed together have shorter elements at the loaded end.
 
     Raises
     ------
-    ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or T-splines of another degree than 3.
+    ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or the arms are not those of `require_arms`.
     """
-    if problem.basis == "tspline":
-        meshes = tuple(tspline_rectangle(mesh) for mesh in tmeshes(problem))
-    else:
-        meshes = _rectangles(problem)
-    return meshes[:1] if problem.symmetry else meshes
+    require_arms(problem)
+    q = problem.degree
+    both = _chosen(problem, q)
+    if q > 2 and min(path for path, _ in both) <= GRADING.few:
+        q = 2
+        both = _chosen(problem, q)
+
+    @cache
+    def drawn(arm: Arm, thickness: float) -> Mesh:
+        through = thickness * np.linspace(0.0, 1.0, 2)
+        return rectangle(problem.basis, (problem.degree, q), lines(problem, *arm), through)
+
+    upper, lower = (drawn(arm, body.thickness) for arm, body in zip(both, problem.layout.bodies, strict=True))
+    return upper, replace(lower, P_AI=lower.P_AI - [0.0, lower.P_AI[-1, 1]])  # its top on Y = 0, to the last digit
 
 
-def tmeshes(problem: Problem) -> tuple[TMesh, TMesh]:
-    """T-meshes of the upper and the lower arm; refusals as those of `arm_meshes`."""
+def tmeshes(problem: Debonding) -> tuple[TMesh, TMesh]:
+    """T-meshes of the upper and the lower arm, halved towards the interface (see `iga.specimen.tmesh_strip`).
+
+    Raises
+    ------
+    ValueError : as `rectangles`, and for another degree than 3.
+    """
+    require_arms(problem)
     if problem.degree != DEGREE:
         raise ValueError(f"degree must be {DEGREE} for T-splines, got {problem.degree}")
     both = _strips(problem, 1)
@@ -79,54 +86,73 @@ def tmeshes(problem: Problem) -> tuple[TMesh, TMesh]:
             more = _strips(problem, layers)
         except ValueError:
             break
-        if not all(strip.stocky(problem.arm_thickness) for strip in more):
+        if not all(strip.stocky(arm.thickness) for strip, arm in zip(more, problem.layout.bodies, strict=True)):
             break
         both = more
     return arm_tmeshes(problem, both)
 
 
-def crack_path(problem: Problem) -> float:
+def require_arms(problem: Debonding) -> None:
+    """Raise ValueError where the arms are not equally long, opened at X = 0 and bonded up to their far ends."""
+    layout = problem.layout
+    (precrack, end), lengths = layout.bonded, [body.length for body in layout.bodies]
+    if lengths != [end, end] or layout.loaded_at != 0.0 or not 0.0 < precrack < end:
+        raise ValueError(f"arms must be as long as the bond reaches, and opened at X = 0, got {layout}")
+
+
+def _thinner(problem: Debonding) -> float:
+    return min(body.thickness for body in problem.layout.bodies)
+
+
+def crack_path(problem: Debonding) -> float:
     """Where the crack path ends: beyond the crack at the largest opening, and part of a process zone, or with the bond.
 
     Beam theory without shear or root rotation has the crack at ``a^2 = 3/2 opening sqrt(E h^3 / (12 G))`` in slender
-    arms; an arm that is deflected far is longer than it reaches. Soft contact gives way over the length
-    ``(E h^3 / (3 penalty))^(1/4)`` of a beam on springs (Hetenyi 1946).
+    arms, with the harmonic mean of the ``E h^3`` of both; an arm that is deflected far is longer than it reaches. Soft
+    contact gives way over the length ``(E h^3 / (3 penalty))^(1/4)`` of a beam on springs (Hetenyi 1946).
     """
-    h, opening = problem.arm_thickness, max(0.0, *problem.opening)
-    crack = (1.5 * opening * (problem.E1 * h**3 / (12.0 * problem.toughness)) ** 0.5) ** 0.5
-    soft = (problem.E1 * h**3 / (3.0 * problem.penalty)) ** 0.25
+    (precrack, end), opening = problem.layout.bonded, max(0.0, *problem.opening)
+    one, other = (body.moduli.E1 * body.thickness**3 for body in problem.layout.bodies)
+    mean = one * (2.0 * other / (one + other))
+    crack = (1.5 * opening * (mean / (12.0 * problem.toughness)) ** 0.5) ** 0.5
+    soft = (max(one, other) / (3.0 * problem.penalty)) ** 0.25
     ahead = max(CRACK_PATH.margin * zone_length(problem), soft if problem.contact else 0.0)
-    return min(max(np.hypot(crack, 0.5 * opening), problem.precrack) + ahead, problem.length)
+    return min(max(np.hypot(crack, 0.5 * opening), precrack) + ahead, end)
 
 
-def zone_length(problem: Problem) -> float:
-    """Length of the process zone of slender arms, ``(E G / p_max^2)^(1/4) h^(3/4)`` (Williams and Hadavinia 2002)."""
-    return (problem.E1 * problem.toughness / problem.strength**2) ** 0.25 * problem.arm_thickness**0.75
+def zone_length(problem: Debonding) -> float:
+    """Length of the process zone of slender arms, ``(E G / p_max^2)^(1/4) h^(3/4)`` (Williams and Hadavinia 2002); of
+    unequal arms that of the more flexible one, which is at most 2^(1/4) times too short."""
+    return min(
+        (body.moduli.E1 * problem.toughness / problem.strength**2) ** 0.25 * body.thickness**0.75
+        for body in problem.layout.bodies
+    )
 
 
-def lead(problem: Problem) -> float:
+def lead(problem: Debonding) -> float:
     """How far before the tip of the precrack elements are as short as on the path, where so short ones are on it.
 
     The traction begins at the tip with a jump, beside which the surface has an infinite slope (as the log of the
     distance, Flamant), as far as an arm is thick. Long elements there smooth it over: J comes out 3 to 10 % off until
     the tip is open, with a strong bond of thick arms.
     """
-    return min(problem.arm_thickness, CRACK_PATH.margin * zone_length(problem))
+    return min(_thinner(problem), CRACK_PATH.margin * zone_length(problem))
 
 
-def coarsening(problem: Problem) -> float:
+def coarsening(problem: Debonding) -> float:
     """How much longer elements off the crack path may be than those on it.
 
     A bent arm is no polynomial where its rotation is finite. What a cubic leaves of it is a spurious change of volume,
     which grows with the cube of the length of an element, and costs stress ``1 / (1 - D12^2 / (D11 D22))`` times that
     of bending: an arm that is nearly incompressible locks in long elements.
     """
-    D = orthotropic(problem.E1, problem.E2, problem.G12, problem.nu12, problem.plane)
-    return max(CRACK_PATH.coarsening, GRADING.coarsening * (1.0 - D[0, 1] ** 2 / (D[0, 0] * D[1, 1])) ** (1.0 / 3.0))
+    matrices = [body.moduli.stiffness(problem.plane) for body in problem.layout.bodies]
+    free = min((1.0 - D[0, 1] ** 2 / (D[0, 0] * D[1, 1])) ** (1.0 / 3.0) for D in matrices)
+    return max(CRACK_PATH.coarsening, GRADING.coarsening * free)
 
 
 def division(
-    problem: Problem, path: int, spare: int = 0, layers: int = 0
+    problem: Debonding, path: int, spare: int = 0, layers: int = 0
 ) -> tuple[Division, tuple[float, float, float, float]]:
     """Elements before, on and beyond the crack path with so many on it, and where these parts begin and end.
 
@@ -136,22 +162,22 @@ def division(
     stands before the path in place of two: the bending line of an unloaded beam is a cubic. What is left beyond the
     path is part of it where that is shorter than half an element.
     """
-    end = crack_path(problem)
-    if problem.length - end < 0.5 * (end - problem.precrack) / path:
-        end = problem.length
-    short = (end - problem.precrack) / path
-    ahead = elements_within(lead(problem), problem.precrack, short, layers)
-    start = problem.precrack - ahead * short
+    end, (precrack, length) = crack_path(problem), problem.layout.bonded
+    if length - end < 0.5 * (end - precrack) / path:
+        end = length
+    short = (end - precrack) / path
+    ahead = elements_within(lead(problem), precrack, short, layers)
+    start = precrack - ahead * short
     longest = coarsening(problem) * short
-    before, beyond = (int(np.ceil(length / longest - GRADING.rounding)) for length in (start, problem.length - end))
+    before, beyond = (int(np.ceil(part / longest - GRADING.rounding)) for part in (start, length - end))
     if path <= GRADING.few:
         before, beyond = min(before, path), min(beyond, path)
     if before == 2 and problem.degree >= 3:
         before = 1
-    return (before + spare, ahead + path, beyond), (0.0, start, end, problem.length)
+    return (before + spare, ahead + path, beyond), (0.0, start, end, length)
 
 
-def lines(problem: Problem, path: int, spare: int = 0, layers: int = 0) -> np.ndarray:
+def lines(problem: Debonding, path: int, spare: int = 0, layers: int = 0) -> np.ndarray:
     """Element boundaries along an arm that is divided like this; parameters as those of `division`.
 
     Where arms are pressed together the first element is halved towards the loaded end, again and again, down to
@@ -161,13 +187,13 @@ def lines(problem: Problem, path: int, spare: int = 0, layers: int = 0) -> np.nd
     breaks = pieces(*((start, end, n) for start, end, n in zip(x[:-1], x[1:], parts, strict=True)))
     if not presses(problem):
         return breaks
-    halvings = np.log2(x[1] / (parts[0] - spare) / (GRADING.pressed * problem.arm_thickness)) - GRADING.rounding
+    halvings = np.log2(x[1] / (parts[0] - spare) / (GRADING.pressed * _thinner(problem))) - GRADING.rounding
     number = min(max(0, int(np.ceil(halvings))), most_halvings(path))
     return np.concatenate([breaks[:1], breaks[1] * 0.5 ** np.arange(number, 0, -1), breaks[1:]])
 
 
-def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
-    basis, p = problem.basis, problem.degree
+def _chosen(problem: Debonding, q: int) -> tuple[Arm, Arm]:
+    """How both arms are divided with degree ``q`` through them: what meets ``dofs`` best."""
 
     def arms(path: int, *spare: int) -> tuple[Arm, Arm]:
         upper, lower = zip(unequal(path, problem.mismatch), spare or (0, 0), strict=True)
@@ -175,49 +201,31 @@ def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
 
     @cache
     def along(arm: Arm) -> int:
-        return columns(basis, p, len(lines(problem, *arm)) - 1)
+        return columns(problem.basis, problem.degree, len(lines(problem, *arm)) - 1)
 
-    def unknowns(both: tuple[Arm, Arm], q: int) -> int:
+    def unknowns(both: tuple[Arm, Arm]) -> int:
         return 2 * (q + 1) * sum(along(arm) for arm in both)
 
-    def chosen(q: int) -> tuple[Arm, Arm]:
-        n = largest(lambda n: unknowns(arms(n), q), 1, problem.dofs)
-        least = unknowns(arms(n), q)
-        spare = (problem.dofs - least) // (unknowns(arms(n, 1, 1), q) - least)
-        options = [arms(n), arms(n + 1), arms(n, spare, spare), arms(n, spare + 1, spare + 1)]
-        if not problem.symmetry:
-            alike = abs(problem.mismatch - 1.0) < 1e-9 and problem.interface_rule != "lumped"
-            options[2:2] = [((n, 0), (n + 1, 0))] if alike else []
-            options += [arms(n, spare, spare + 1)] if alike else []
-        missed = [abs(unknowns(option, q) - problem.dofs) for option in options]
-        near = [
-            option for option, by in zip(options[:2], missed, strict=False) if by <= CRACK_PATH.missed * problem.dofs
-        ]
-        return near[0] if near else options[int(np.argmin(missed))]
-
-    q = p
-    both = chosen(q)
-    if q > 2 and min(path for path, _ in both) <= GRADING.few:
-        q = 2
-        both = chosen(q)
-    through = problem.arm_thickness * np.linspace(0.0, 1.0, 2)
-
-    @cache
-    def drawn(arm: Arm) -> Mesh:
-        return rectangle(basis, (p, q), lines(problem, *arm), through)
-
-    upper, lower = (drawn(arm) for arm in both)
-    return upper, replace(lower, P_AI=lower.P_AI - [0.0, lower.P_AI[-1, 1]])  # its top on Y = 0, to the last digit
+    n = largest(lambda n: unknowns(arms(n)), 1, problem.dofs)
+    least = unknowns(arms(n))
+    spare = (problem.dofs - least) // (unknowns(arms(n, 1, 1)) - least)
+    options = [arms(n), arms(n + 1), arms(n, spare, spare), arms(n, spare + 1, spare + 1)]
+    if not problem.symmetry:
+        alike = abs(problem.mismatch - 1.0) < 1e-9 and problem.interface_rule != "lumped"
+        options[2:2] = [((n, 0), (n + 1, 0))] if alike else []
+        options += [arms(n, spare, spare + 1)] if alike else []
+    missed = [abs(unknowns(option) - problem.dofs) for option in options]
+    near = [option for option, by in zip(options[:2], missed, strict=False) if by <= CRACK_PATH.missed * problem.dofs]
+    return near[0] if near else options[int(np.argmin(missed))]
 
 
-def arm_tmeshes(problem: Problem, strips: tuple[Strip, Strip]) -> tuple[TMesh, TMesh]:
+def arm_tmeshes(problem: Debonding, strips: tuple[Strip, Strip]) -> tuple[TMesh, TMesh]:
     """T-meshes of the upper and the lower arm."""
-    h = problem.arm_thickness
-    upper, lower = strips
-    return strip_tmesh(upper, (0.0, h), top=False), strip_tmesh(lower, (-h, 0.0), top=True)
+    (upper, lower), (above, below) = strips, (body.thickness for body in problem.layout.bodies)
+    return strip_tmesh(upper, (0.0, above), top=False), strip_tmesh(lower, (-below, 0.0), top=True)
 
 
-def _strips(problem: Problem, layers: int) -> tuple[Strip, Strip]:
+def _strips(problem: Debonding, layers: int) -> tuple[Strip, Strip]:
     """Both arms with so many layers: all elements on the path halved, or what meets ``dofs`` better.
 
     That may be one element more, of which the last ones are not halved, or more elements before the path.

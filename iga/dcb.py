@@ -1,10 +1,15 @@
-"""A double cantilever beam in plain numbers."""
+"""The double cantilever beam: a delamination specimen with two equal arms."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
+from iga.delamination import build, solve
+from iga.specimen.layout import Layout, Moduli, Rectangle
 from iga.specimen.problem import Debonding
+
+__all__ = ["Problem", "build", "solve"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -15,8 +20,6 @@ class Problem(Debonding):
     is ``arm_thickness`` thick and elastic with axis 1 along X. The opening is the separation of the loaded faces. Where
     it goes below zero the faces are pressed together from X = 0 on: the load, spread over the faces at X = 0, and the
     contact next to them are a couple, which makes the arms gape behind.
-    ``symmetry`` models the upper arm alone against its mirror image. ``adaptive`` T-splines follow the process zone and
-    have at most ``dofs`` unknowns at any time.
     """
 
     length: float
@@ -26,5 +29,8 @@ class Problem(Debonding):
     E2: float
     G12: float
     nu12: float
-    symmetry: bool = False
-    adaptive: bool = False
+
+    @cached_property
+    def layout(self) -> Layout:
+        arm = Rectangle(self.length, self.arm_thickness, Moduli(self.E1, self.E2, self.G12, self.nu12))
+        return Layout((arm, arm), (self.precrack, self.length))

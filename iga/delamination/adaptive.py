@@ -9,26 +9,22 @@ opening.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from iga.dcb.meshes import arm_tmeshes, zone_length
+from iga.delamination.arms import arm_tmeshes, require_arms, zone_length
 from iga.path.control import Prescribed, opening_control
 from iga.path.newton import equilibrium
 from iga.path.point import Point
 from iga.path.solver import MANY_DECIDE, Solver
 from iga.specimen.grading import GRADING, largest
-from iga.specimen.problem import presses
+from iga.specimen.problem import Debonding, presses
+from iga.specimen.specimen import Specimen
 from iga.specimen.tmesh_strip import Strip
 from iga.system.state import State
 from iga.system.system import Phase
 from iga.tsplines.tmesh import TMesh
 from iga.tsplines.transfer import transfer
-
-if TYPE_CHECKING:
-    from iga.dcb.problem import Problem
-    from iga.specimen.specimen import Specimen
 
 
 @dataclass(frozen=True)
@@ -58,33 +54,38 @@ class Window:
     roots: int
 
 
-def first_window(problem: Problem) -> Window:
+def first_window(problem: Debonding) -> Window:
     """The fine part before anything moves, with the finest cells that never take more unknowns than ``dofs``.
 
     Raises
     ------
-    ValueError : no mesh has so few unknowns.
+    ValueError : no mesh has so few unknowns, or the arms are not equal.
     """
-    zone = zone_length(problem)
+    require_arms(problem)
+    upper, lower = problem.layout.bodies
+    if upper != lower:
+        raise ValueError("adaptive meshes need equal arms")
+    zone, (precrack, length) = zone_length(problem), problem.layout.bonded
 
     def most(roots: int) -> int:
-        starts = np.linspace(problem.precrack, problem.length, 50)
+        starts = np.linspace(precrack, length, 50)
         return max(4 * strip(problem, Window(x - zone, x + ADAPTIVITY.ahead * zone, roots)).functions for x in starts)
 
     roots = largest(most, 1, problem.dofs)
-    return Window(problem.precrack, problem.precrack + ADAPTIVITY.ahead * zone, roots)
+    return Window(precrack, precrack + ADAPTIVITY.ahead * zone, roots)
 
 
-def strip(problem: Problem, window: Window) -> Strip:
+def strip(problem: Debonding, window: Window) -> Strip:
     """One arm with equal cells in the window and ever longer ones away from it, halved at the interface in the window.
 
     An element boundary lies at the end of the precrack. Where the arms are pressed together there are short cells at
     the loaded end as well.
     """
-    bond = problem.length - problem.precrack
-    before = max(int(np.ceil(window.roots * problem.precrack / bond)), 1)
+    precrack, end = problem.layout.bonded
+    bond = end - precrack
+    before = max(int(np.ceil(window.roots * precrack / bond)), 1)
     starts, sizes = [], []
-    for start, length, roots in ((0.0, problem.precrack, before), (problem.precrack, bond, window.roots)):
+    for start, length, roots in ((0.0, precrack, before), (precrack, bond, window.roots)):
         x = start + length * np.arange(roots) / roots
         size: np.ndarray = np.full(roots, length / roots)
         finest = bond / window.roots / 2**ADAPTIVITY.halvings
@@ -100,34 +101,35 @@ def strip(problem: Problem, window: Window) -> Strip:
     order = np.argsort(x)
     x, size = x[order], size[order]
     middle = x + 0.5 * size
-    halved = (middle > max(window.start, problem.precrack)) & (middle < window.end) & (size < 1.5 * finest)
-    return Strip(np.append(x, problem.length), halved)
+    halved = (middle > max(window.start, precrack)) & (middle < window.end) & (size < 1.5 * finest)
+    return Strip(np.append(x, end), halved)
 
 
-def most_at(problem: Problem, x: np.ndarray) -> np.ndarray:
+def most_at(problem: Debonding, x: np.ndarray) -> np.ndarray:
     """How long (n,) cells at x (n,) may be, where arms are pressed together at the loaded end; infinite elsewhere."""
     return (
-        GRADING.pressed * problem.arm_thickness + ADAPTIVITY.growth * x
+        GRADING.pressed * problem.layout.bodies[0].thickness + ADAPTIVITY.growth * x
         if presses(problem)
         else np.full(x.shape, np.inf)
     )
 
 
-def adapted_tmeshes(problem: Problem, window: Window) -> tuple[TMesh, ...]:
+def adapted_tmeshes(problem: Debonding, window: Window) -> tuple[TMesh, ...]:
     """T-meshes of the upper and the lower arm with the fine part in the window."""
     one = strip(problem, window)
     return arm_tmeshes(problem, (one, one))
 
 
-def followed(problem: Problem, roots: int, specimen: Specimen, point: Point) -> Window | None:
+def followed(problem: Debonding, roots: int, specimen: Specimen, point: Point) -> Window | None:
     """The window for a converged point, or None where the mesh at hand goes on beyond the damage front by enough."""
-    zone, law, end = zone_length(problem), specimen.system.interface.law, specimen.layout.path_end
+    zone, law, end = zone_length(problem), specimen.system.interface.law, specimen.drawn.path_end
+    precrack, length = problem.layout.bonded
     s_q, k_q = specimen.distance(specimen.system.interface.X_qi), point.state.k_q
     damaged, broken = s_q[k_q > law.g_max], s_q[k_q >= law.g_u]
-    front = float(damaged.max(initial=problem.precrack))
-    if end >= problem.length or front < end - ADAPTIVITY.left * zone:
+    front = float(damaged.max(initial=precrack))
+    if end >= length or front < end - ADAPTIVITY.left * zone:
         return None
-    tip = float(broken.max(initial=problem.precrack))
+    tip = float(broken.max(initial=precrack))
     return Window(tip - ADAPTIVITY.left * zone, front + ADAPTIVITY.ahead * zone, roots)
 
 
@@ -142,7 +144,7 @@ def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State |
         u_new = np.concatenate(
             [
                 transfer(before, after) @ u_old[body.points]
-                for before, after, body in zip(old.layout.tmeshes, new.layout.tmeshes, old.bodies, strict=True)
+                for before, after, body in zip(old.drawn.tmeshes, new.drawn.tmeshes, old.bodies, strict=True)
             ]
         )
     k_q = _history(old, new, point.state.k_q)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-import iga.dcb.adaptive
-from iga.dcb.adaptive import Window, carried, first_window, followed, strip
-from iga.dcb.dcb import build, solve
+from iga.dcb import build, solve
+from iga.delamination import adaptive as adaptivity
+from iga.delamination.adaptive import Window, carried, first_window, followed, strip
 from iga.interface.surface import surface
 from iga.path.follow import follow
 from iga.path.point import End, Point
@@ -50,10 +50,10 @@ def changes(problem) -> tuple[list[Change], list[Converged], End]:
         specimen = new
         return new.system, state
 
-    search = iga.dcb.adaptive.equilibrium
+    search = adaptivity.equilibrium
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
-            iga.dcb.adaptive, "equilibrium", lambda s, trial, *rest: sought.append(trial) or search(s, trial, *rest)
+            adaptivity, "equilibrium", lambda s, trial, *rest: sought.append(trial) or search(s, trial, *rest)
         )
         *points, end = follow(Solver(specimen.system), problem.opening, problem.steps, renew=renew)
     return made, points, end

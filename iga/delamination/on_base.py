@@ -1,9 +1,8 @@
-"""Meshes of strip and substrate of a peel test, of any basis, from the number of unknowns."""
+"""Meshes of a strip on a substrate with a clamped base, of any basis, from the number of unknowns."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,12 +19,9 @@ from iga.specimen.grading import (
     rectangle,
     unequal,
 )
-from iga.specimen.problem import presses
+from iga.specimen.problem import Debonding, presses
 from iga.specimen.tmesh_strip import Strip, strip_tmesh
 from iga.tsplines.tmesh import DEGREE, TMesh
-
-if TYPE_CHECKING:
-    from iga.peel.problem import Problem
 
 
 @dataclass(frozen=True)
@@ -43,7 +39,7 @@ class Layers:
 LAYERS_BELOW = Layers()
 
 
-def meshes(problem: Problem) -> tuple[Mesh, Mesh]:
+def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
     """Strip and substrate: equal elements along the bond and just beyond, then longer ones; thin layers on top below.
 
     Raises
@@ -51,7 +47,7 @@ def meshes(problem: Problem) -> tuple[Mesh, Mesh]:
     ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or the bond is longer than a body.
     """
     _require_bodies(problem)
-    end, depth = problem.bond_length, problem.substrate_thickness
+    (strip, substrate), (end, _) = problem.layout.bodies, problem.layout.bonded
     for layers in range(LAYERS_BELOW.most, 0, -1):
         tops = np.concatenate([[0.0], np.cumsum(LAYERS_BELOW.thickening ** np.arange(layers))])
         try:
@@ -60,21 +56,21 @@ def meshes(problem: Problem) -> tuple[Mesh, Mesh]:
             if layers == 1:
                 raise
             continue
-        if tops[1] / tops[-1] * depth >= LAYERS_BELOW.flattest * end / below:
+        if tops[1] / tops[-1] * substrate.thickness >= LAYERS_BELOW.flattest * end / below:
             break
-    strip = _breaks(problem, problem.strip_length, bonded, beyond)
-    substrate = _breaks(problem, problem.substrate_length, below, rest)
-    through = np.array([0.0, problem.strip_thickness])
+    upper_s = _breaks(problem, strip.length, bonded, beyond)
+    lower_s = _breaks(problem, substrate.length, below, rest)
+    lower_t = -substrate.thickness * tops[::-1] / tops[-1]
     return (
-        rectangle(problem.basis, (problem.degree,) * 2, strip, through),
-        rectangle(problem.basis, (problem.degree,) * 2, substrate, -depth * tops[::-1] / tops[-1]),
+        rectangle(problem.basis, (problem.degree,) * 2, upper_s, np.array([0.0, strip.thickness])),
+        rectangle(problem.basis, (problem.degree,) * 2, lower_s, lower_t),
     )
 
 
-def _elements(problem: Problem, layers: int) -> tuple[tuple[int, int], tuple[int, int]]:
+def _elements(problem: Debonding, layers: int) -> tuple[tuple[int, int], tuple[int, int]]:
     """Elements on and beyond the bond, of strip and substrate; what is left of the unknowns goes to the overhang."""
     basis, p = problem.basis, problem.degree
-    lengths = problem.strip_length, problem.substrate_length
+    lengths = [body.length for body in problem.layout.bodies]
 
     def numbers(along: int) -> tuple[tuple[int, int], ...]:
         both = zip(unequal(along, problem.mismatch), lengths, strict=True)
@@ -91,7 +87,7 @@ def _elements(problem: Problem, layers: int) -> tuple[tuple[int, int], tuple[int
     return (bonded, beyond + (problem.dofs - unknowns(along)) // an_element), below
 
 
-def tmeshes(problem: Problem) -> tuple[TMesh, TMesh]:
+def tmeshes(problem: Debonding) -> tuple[TMesh, TMesh]:
     """T-meshes of strip and substrate: layers as many as are thick enough, then elements as the unknowns allow.
 
     Raises
@@ -101,7 +97,7 @@ def tmeshes(problem: Problem) -> tuple[TMesh, TMesh]:
     _require_bodies(problem)
     if problem.degree != DEGREE:
         raise ValueError(f"degree must be {DEGREE} for T-splines, got {problem.degree}")
-    thickness = problem.strip_thickness, problem.substrate_thickness
+    thickness = [body.thickness for body in problem.layout.bodies]
     layers, both = (1, 1), _strips(problem, (1, 1))
     for body in (1, 0):
         while True:
@@ -114,14 +110,14 @@ def tmeshes(problem: Problem) -> tuple[TMesh, TMesh]:
                 break
             layers, both = more, strips
     return (
-        strip_tmesh(both[0], (0.0, problem.strip_thickness), top=False),
-        strip_tmesh(both[1], (-problem.substrate_thickness, 0.0), top=True),
+        strip_tmesh(both[0], (0.0, thickness[0]), top=False),
+        strip_tmesh(both[1], (-thickness[1], 0.0), top=True),
     )
 
 
-def _strips(problem: Problem, layers: tuple[int, int]) -> tuple[Strip, Strip]:
+def _strips(problem: Debonding, layers: tuple[int, int]) -> tuple[Strip, Strip]:
     """Both bodies with so many layers, elements at the interface alike; what is left goes to the overhang."""
-    lengths = problem.strip_length, problem.substrate_length
+    lengths = [body.length for body in problem.layout.bodies]
 
     def strips(along: int, spare: int = 0) -> tuple[Strip, Strip]:
         made = []
@@ -139,7 +135,7 @@ def _strips(problem: Problem, layers: tuple[int, int]) -> tuple[Strip, Strip]:
     return strips(along, (problem.dofs - unknowns(strips(along))) // (2 * (layers[0] + DEGREE)))
 
 
-def _ahead(problem: Problem, length: float, path: int, layers: int = 0) -> int:
+def _ahead(problem: Debonding, length: float, path: int, layers: int = 0) -> int:
     """Elements beyond the bond of a body that are as short as the ``path`` on it: as far as the strip is thick.
 
     ``layers`` halve them at the interface.
@@ -147,33 +143,36 @@ def _ahead(problem: Problem, length: float, path: int, layers: int = 0) -> int:
     The traction ends there with a jump, beside which the surface has an infinite slope (as the log of the distance,
     Flamant). Long elements smooth it over: J comes out 0.4 to 0.9 % off until the tip is open, not 0.03 to 0.15 %.
     """
-    rest = length - problem.bond_length
-    return elements_within(problem.strip_thickness, rest, problem.bond_length / path, layers)
+    (strip, _), (bond, _) = problem.layout.bodies, problem.layout.bonded
+    return elements_within(strip.thickness, length - bond, bond / path, layers)
 
 
-def _beyond(problem: Problem, length: float, path: int, layers: int = 0) -> int:
+def _beyond(problem: Debonding, length: float, path: int, layers: int = 0) -> int:
     """Longer elements beyond the short ones; 0 for a body that ends with the bond."""
-    rest = length - problem.bond_length
-    short = problem.bond_length / path
+    bond, _ = problem.layout.bonded
+    rest, short = length - bond, bond / path
     return (
         part((rest - _ahead(problem, length, path, layers) * short) / (GRADING.coarsening * short)) if rest > 0.0 else 0
     )
 
 
-def _breaks(problem: Problem, length: float, path: int, beyond: int, layers: int = 0) -> np.ndarray:
+def _breaks(problem: Debonding, length: float, path: int, beyond: int, layers: int = 0) -> np.ndarray:
     """Element boundaries along a body with so many elements on and beyond the bond.
 
     A strip that is pressed down lies on the end of the substrate, or ends on it: there they are shorter.
     """
-    bond, ahead = problem.bond_length, _ahead(problem, length, path, layers)
+    layout, ahead = problem.layout, _ahead(problem, length, path, layers)
+    bond, face = layout.bonded[0], layout.facing[0]
     start = bond * (path + ahead) / path
     breaks = pieces((0.0, bond, path), (bond, start, ahead), (start, length, beyond))
-    face = min(problem.strip_length, problem.substrate_length)
     if not presses(problem) or face <= bond:
         return breaks
-    return finer_towards(breaks, face, GRADING.pressed * problem.strip_thickness, most_halvings(path))
+    return finer_towards(breaks, face, GRADING.pressed * layout.bodies[0].thickness, most_halvings(path))
 
 
-def _require_bodies(problem: Problem) -> None:
-    if not 0.0 < problem.bond_length < problem.strip_length or problem.bond_length > problem.substrate_length:
-        raise ValueError(f"bond_length must be > 0, < strip_length and <= substrate_length, got {problem.bond_length}")
+def _require_bodies(problem: Debonding) -> None:
+    layout = problem.layout
+    (bond, start), (strip, substrate) = layout.bonded, (body.length for body in layout.bodies)
+    if start != 0.0 or not 0.0 < bond < strip or bond > substrate or layout.loaded_at != strip:
+        text = "the bond must begin at X = 0 and be shorter than the strip, which is loaded at its right end, and no"
+        raise ValueError(f"{text} longer than the substrate, got {layout}")

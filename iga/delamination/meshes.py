@@ -1,0 +1,43 @@
+"""The meshes of a specimen: given ones, those that follow the process zone, or those of the basis."""
+
+from __future__ import annotations
+
+from iga.delamination import arms, on_base
+from iga.delamination.adaptive import Window, adapted_tmeshes, first_window
+from iga.mesh.extraction import Mesh
+from iga.specimen.problem import Debonding
+from iga.specimen.specimen import Drawn
+from iga.tsplines.tmesh import TMesh
+from iga.tsplines.tspline import tspline_rectangle
+
+
+def drawn(problem: Debonding, window: Window | None = None) -> Drawn:
+    """Meshes of the modelled bodies; ``window`` is the fine part of an adaptive mesh, the first one if left out.
+
+    Raises
+    ------
+    ValueError : there is no mesh of so few unknowns, of the degree or of the layout, or the basis is unknown.
+    """
+    layout, modelled = problem.layout, slice(1 if problem.symmetry else 2)
+    far_end = abs(layout.bonded[1] - layout.loaded_at)
+    if problem.meshes:
+        return Drawn(problem.meshes[modelled], (), far_end)
+    if follows(problem):
+        window = window or first_window(problem)
+        return _of_tmeshes(adapted_tmeshes(problem, window)[modelled], window.end)
+    free = not layout.clamps
+    path_end = arms.crack_path(problem) if free else far_end
+    if problem.basis == "tspline":
+        tmeshes: tuple[TMesh, ...] = arms.tmeshes(problem) if free else on_base.tmeshes(problem)
+        return _of_tmeshes(tmeshes[modelled], path_end)
+    meshes: tuple[Mesh, ...] = arms.rectangles(problem) if free else on_base.rectangles(problem)
+    return Drawn(meshes[modelled], (), path_end)
+
+
+def follows(problem: Debonding) -> bool:
+    """Whether the mesh follows the process zone."""
+    return problem.adaptive and problem.basis == "tspline" and not problem.meshes
+
+
+def _of_tmeshes(tmeshes: tuple[TMesh, ...], path_end: float) -> Drawn:
+    return Drawn(tuple(tspline_rectangle(mesh) for mesh in tmeshes), tmeshes, path_end)

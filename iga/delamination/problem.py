@@ -1,0 +1,23 @@
+"""A delamination specimen in plain numbers, whatever its kind."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from iga.specimen.layout import Clamp, Layout, Load, Rectangle
+from iga.specimen.problem import Debonding
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem(Debonding):
+    """A specimen by what its layout consists of (see `Layout`)."""
+
+    bodies: tuple[Rectangle, Rectangle]
+    bonded: tuple[float, float]
+    loads: tuple[Load, ...]
+    clamps: tuple[Clamp, ...]
+
+    @cached_property
+    def layout(self) -> Layout:
+        return Layout(self.bodies, self.bonded, self.loads, self.clamps)

@@ -1,0 +1,91 @@
+"""The layout of a delamination specimen in plain numbers: two bodies, their bond, loads and clamps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from iga.elements.elasticity import orthotropic
+
+
+@dataclass(frozen=True)
+class Moduli:
+    """Elastic constants, axis 1 along the specimen."""
+
+    E1: float
+    E2: float
+    G12: float
+    nu12: float
+
+    def stiffness(self, plane: str) -> np.ndarray:
+        """Elasticity matrix (3, 3), stress = D (E11, E22, 2 E12); raises as `orthotropic` does."""
+        return orthotropic(self.E1, self.E2, self.G12, self.nu12, plane)
+
+
+@dataclass(frozen=True)
+class Rectangle:
+    """A body: 0 <= X <= length, above or below Y = 0."""
+
+    length: float
+    thickness: float
+    moduli: Moduli
+
+
+class Load(NamedTuple):
+    """A share of the load, upwards, on the end face of a body (0 upper, 1 lower): "left" or "right"."""
+
+    body: int
+    end: str
+    share: float
+
+
+class Clamp(NamedTuple):
+    """A side of a body that cannot move: "left", "right", "bottom" or "top"."""
+
+    body: int
+    side: str
+
+
+#: The load that pulls two arms apart at their left ends.
+OPENED = (Load(0, "left", 1.0), Load(1, "left", -1.0))
+
+
+@dataclass(frozen=True)
+class Layout:
+    """A specimen in its own frame: X along the interface Y = 0, Y across it; both bodies begin at X = 0.
+
+    Parameters
+    ----------
+    bodies : the upper and the lower one.
+    bonded : X of the tip of the bond, next to the load, and of its far end.
+    loads : all on one end of the specimen.
+    clamps : none if the loads balance each other.
+    """
+
+    bodies: tuple[Rectangle, Rectangle]
+    bonded: tuple[float, float]
+    loads: tuple[Load, ...] = OPENED
+    clamps: tuple[Clamp, ...] = ()
+
+    @property
+    def facing(self) -> tuple[float, float]:
+        """X of the ends of the surfaces that lie opposite each other, in the order of ``bonded``."""
+        overlap = 0.0, min(body.length for body in self.bodies)
+        return overlap if self.bonded[0] < self.bonded[1] else overlap[::-1]
+
+    @property
+    def loaded_at(self) -> float:
+        """X of the loaded end, from where distances are counted."""
+        body, end, _ = self.loads[0]
+        return 0.0 if end == "left" else self.bodies[body].length
+
+    @property
+    def free_length(self) -> float:
+        """Distance of the tip of the bond."""
+        return abs(self.bonded[0] - self.loaded_at)
+
+    def load_on(self, body: int) -> Load | None:
+        """The load on a body, None without one."""
+        return next((load for load in self.loads if load.body == body), None)

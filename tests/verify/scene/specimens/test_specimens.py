@@ -1,0 +1,60 @@
+"""What every specimen has to do, whichever there are: its example is read, drawn and solved, and its checks hold."""
+
+from __future__ import annotations
+
+import tomllib
+
+import pytest
+
+from verify.checks.identities import run_checks
+from verify.command_line.new_scene import new_scene
+from verify.command_line.sketch import sketch
+from verify.methods.solve import prepare, solve
+from verify.pages.text import inputs, sentence
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
+from verify.scene.specimens import SPECIMENS
+
+pytestmark = pytest.mark.parametrize("kind", SPECIMENS)
+
+
+def example(kind: str, *overrides: str) -> Scene:
+    return parse_scene(tomllib.loads(new_scene(kind)), overrides)
+
+
+def test_its_bodies_are_those_of_its_keys(kind: str) -> None:
+    body = example(kind).specimen
+    assert body.lengths == tuple(getattr(body, key) for key in body.length_keys)
+    assert body.thicknesses == tuple(getattr(body, key) for key in body.thickness_keys)
+    tip, end = body.bonded
+    assert tip == getattr(body, body.tip_key) and 0.0 <= min(tip, end) < max(tip, end) <= min(body.lengths)
+    assert body.free_length + abs(end - tip) == pytest.approx(body.extent) == body.lengths[0]
+    assert len(body.loads) + len(body.clamps) == 2 and set(body.materials) <= set(Scene.model_fields)
+
+
+def test_it_is_drawn_and_described(kind: str) -> None:
+    scene = example(kind)
+    lines = sketch(scene, 80)
+    assert all(f"{thickness:.4g} thick" in "\n".join(lines) for thickness in scene.specimen.thicknesses)
+    assert "{" not in sentence(scene) and {row[0] for row in inputs(scene)} >= {"specimen", *scene.specimen.materials}
+
+
+@pytest.mark.parametrize("method", ["tspline", "nurbs", "lagrange"])
+def test_its_example_is_solved_and_the_checks_hold(kind: str, method: str) -> None:
+    """Nothing is broken; a mesh as coarse as that may leave a check unresolved."""
+    opening = 0.2 * max(example(kind).load.opening)
+    scene = example(kind, f"load.opening={opening}", "discretization.steps=20", "discretization.dofs=1500")
+    result = solve(scene, method)
+    assert result.complete and result.opening[-1] == pytest.approx(opening)
+    checks = run_checks(scene, result)
+    assert {"energy-ledger", "interface-force", "moment-balance"} <= {check.name for check in checks}
+    assert [check for check in checks if check.state == "broken"] == []
+
+
+def test_the_meshes_are_those_of_its_bodies(kind: str) -> None:
+    scene = example(kind)
+    solver, problem = prepare(scene, "nurbs").problem
+    for mesh, length, thickness in zip(
+        solver.build(problem).meshes, scene.specimen.lengths, scene.specimen.thicknesses, strict=True
+    ):
+        assert tuple(mesh.P_AI.max(0) - mesh.P_AI.min(0)) == pytest.approx((length, thickness))

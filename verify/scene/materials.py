@@ -1,0 +1,75 @@
+"""The materials of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, TypeAlias
+
+from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator
+
+from verify.scene.tables import Positive, Section, refuse
+
+
+class Isotropic(Section):
+    young: Positive
+    """Young's modulus [stress]."""
+    poisson: float = Field(gt=-1, lt=0.5)
+    """Poisson's ratio."""
+
+
+class Orthotropic(Section):
+    """Axis 1 runs along the specimen; nu12 is the contraction along 2 for a pull along 1."""
+
+    E1: Positive
+    """Young's modulus along the specimen [stress]."""
+    E2: Positive
+    """Young's modulus through the thickness [stress]."""
+    G12: Positive
+    """Shear modulus [stress]."""
+    nu12: float
+    """Contraction along 2 for a pull along 1; |nu12| < sqrt(E1/E2)."""
+
+    @field_validator("nu12")
+    @classmethod
+    def _positive_definite(cls, nu12: float, info: ValidationInfo) -> float:
+        if "E1" in info.data and "E2" in info.data:
+            limit = (info.data["E1"] / info.data["E2"]) ** 0.5
+            if abs(nu12) >= limit:
+                raise refuse(f"> {-limit:.6g} and < {limit:.6g}, that is |nu12| < sqrt(E1/E2)", ((), nu12))
+        return nu12
+
+
+def material_kind(value: object) -> str:
+    """Tell the two materials apart by their keys."""
+    keys = set(value) if isinstance(value, Mapping) else {value.__class__.__name__}
+    return "orthotropic" if keys & {*Orthotropic.model_fields, "Orthotropic"} else "isotropic"
+
+
+Material: TypeAlias = Annotated[
+    Annotated[Isotropic, Tag("isotropic")] | Annotated[Orthotropic, Tag("orthotropic")], Discriminator(material_kind)
+]
+
+
+def definite(material: Material, plane: str) -> Material:
+    """In plane strain, the third direction like the second (E3 = E2, nu13 = nu12): 1 - nu12 - 2 nu12^2 E2/E1 > 0."""
+    if isinstance(material, Isotropic) or plane == "stress":
+        return material
+    ratio = material.E2 / material.E1
+    low, high = (max((sign * (1 + 8 * ratio) ** 0.5 - 1) / (4 * ratio), -1) for sign in (-1, 1))
+    if not low < material.nu12 < high:
+        raise refuse(f"> {low:.6g} and < {high:.6g} in plane strain", (("nu12",), material.nu12))
+    return material
+
+
+def elastic_constants(material: Material) -> dict[str, float]:
+    """E1, E2, G12 and nu12, of an isotropic material as well."""
+    if isinstance(material, Isotropic):
+        young, poisson = material.young, material.poisson
+        return {"E1": young, "E2": young, "G12": young / (2 * (1 + poisson)), "nu12": poisson}
+    return material.model_dump()
+
+
+def axial_modulus(material: Material, plane: str) -> float:
+    """Stiffness against stretching along the arm; in plane strain E1 / (1 - nu13 nu31), E3 = E2 and nu13 = nu12."""
+    c = elastic_constants(material)
+    return c["E1"] if plane == "stress" else c["E1"] / (1 - c["nu12"] ** 2 * c["E2"] / c["E1"])

@@ -1,0 +1,37 @@
+"""The specimens of a scene by their kind: a file of this folder each, found by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import reduce
+from importlib import import_module
+from operator import or_
+from pkgutil import iter_modules
+from typing import TYPE_CHECKING, Annotated, TypeAlias, get_args
+
+from pydantic import Discriminator, Tag
+
+from verify.scene.specimens.delamination import Delamination
+
+
+def _found() -> dict[str, type[Delamination]]:
+    for module in iter_modules(__path__):
+        import_module(f"{__name__}.{module.name}")
+    return {get_args(one.model_fields["kind"].annotation)[0]: one for one in Delamination.__subclasses__()}
+
+
+#: The specimens by their kind.
+SPECIMENS: Mapping[str, type[Delamination]] = _found()
+
+
+def specimen_kind(value: object) -> str:
+    """Tell the specimens apart by their kind; one without a known kind is refused as a dcb."""
+    kind = value.get("kind") if isinstance(value, Mapping) else getattr(value, "kind", None)
+    return kind if isinstance(kind, str) and kind in SPECIMENS else "dcb"
+
+
+if TYPE_CHECKING:
+    Specimen: TypeAlias = Delamination
+else:
+    _TAGGED = (Annotated[specimen, Tag(kind)] for kind, specimen in SPECIMENS.items())
+    Specimen = Annotated[reduce(or_, _TAGGED), Discriminator(specimen_kind)]
