@@ -7,18 +7,18 @@ from itertools import combinations
 
 import numpy as np
 
-from verify.checks.between_codes import BEAM, CROSS_CODE, FINE, distance
+from verify.checks.between_codes import BEAM_RUN, CROSS_CODE, FINE, distance
 from verify.checks.proof import LIMITS, MATCHED, REFERENCE, RUNS, SECOND, proof
 from verify.result import Result
 from verify.scene.schema import Scene
 from verify.verdict import Check
 
 #: The code that a run belongs to. Bases of one code confirm each other less than different codes do.
-CODES = {name: method.code for name, method in RUNS.items()} | {SECOND: RUNS[REFERENCE].code}
+CODE_OF_RUN = {name: method.code for name, method in RUNS.items()} | {SECOND: RUNS[REFERENCE].code}
 #: How every sentence of this module begins.
 ODD = "odd one out"
 #: Runs whose points keep their pairs.
-KEPT = {MATCHED, REFERENCE, SECOND, BEAM}
+KEPT = {MATCHED, REFERENCE, SECOND, BEAM_RUN}
 #: Distance within which two runs agree.
 AGREE = FINE
 
@@ -85,7 +85,7 @@ def _groups(names: Sequence[str], agree: set[frozenset[str]]) -> list[list[str]]
 
 
 def _weight(group: Sequence[str]) -> tuple[int, int]:
-    return len({CODES.get(name, name) for name in group}), len(group)
+    return len({CODE_OF_RUN.get(name, name) for name in group}), len(group)
 
 
 def _listed(group: Sequence[str]) -> str:

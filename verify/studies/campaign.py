@@ -25,7 +25,7 @@ from verify.studies.one_scene import planned, scene_report
 from verify.verdict import SceneReport, counted
 
 #: What solves every scene; Lagrange meshes and LEFM are no judges at half a percent.
-METHODS = ("tspline", "nurbs", MATCHED, REFERENCE, SECOND, "beam")
+SOLVED_BY = ("tspline", "nurbs", MATCHED, REFERENCE, SECOND, "beam")
 #: Plane codes that solve one model: with the search of the other face, and with the pairs of points kept.
 SAME_MODEL = (("tspline", "nurbs"), (MATCHED, REFERENCE))
 #: Distance of two plane codes beyond which one of them is wrong.
@@ -126,7 +126,7 @@ def _line(one: Row) -> str:
 
 def _jobs(seed: int) -> Iterable[Job]:
     name = name_of(seed)
-    return (job for job in planned(name, load_scene(name)) if job.variant in METHODS)
+    return (job for job in planned(name, load_scene(name)) if job.variant in SOLVED_BY)
 
 
 def _report(plan: Sequence[Job], outcomes: dict[Job, Outcome], out: Path) -> SceneReport:

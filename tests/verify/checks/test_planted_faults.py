@@ -36,7 +36,7 @@ from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 from verify.studies.plane import study as plane_study
 from verify.studies.plane.errors import Errors
-from verify.studies.plane.rates import FAMILIES, Convergence, rate_checks
+from verify.studies.plane.rates import MESH_FAMILIES, Convergence, rate_checks
 from verify.studies.plane.study import Level, Plate, _checks, study
 from verify.verdict import Check
 
@@ -389,7 +389,7 @@ def of_plate(patch: float = 1e-14, last: float = 1e-5, energy: float = 1e-4, rat
 
 
 def of_bases(rate: float = 4.0) -> tuple[Check, ...]:
-    return rate_checks((Convergence(FAMILIES[0], (1, 2), (Errors(2.0**rate, 8.0, 8.0), Errors(1.0, 1.0, 1.0))),))
+    return rate_checks((Convergence(MESH_FAMILIES[0], (1, 2), (Errors(2.0**rate, 8.0, 8.0), Errors(1.0, 1.0, 1.0))),))
 
 
 #: Check of a plane problem -> what it finds of a fault of ten tolerances.

@@ -12,11 +12,11 @@ from verify.support.refusal import Refusal
 CASES: dict[str, Case] = {
     case.name: case
     for case in (
-        *strength.CASES,
-        *interfaces.CASES,
-        *bodies.CASES,
-        *programmes.CASES,
-        *invariance.CASES,
+        *strength.STRENGTH_CASES,
+        *interfaces.INTERFACE_CASES,
+        *bodies.BODY_CASES,
+        *programmes.PROGRAMME_CASES,
+        *invariance.INVARIANCE_CASES,
     )
 }
 

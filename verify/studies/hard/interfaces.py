@@ -97,7 +97,7 @@ def _judge_mismatch(trials: Trials) -> Iterator[Finding]:
             yield Check("same-curve", name, away, 0.005, "regression", "The curve is that of matching meshes.")
 
 
-CASES = (
+INTERFACE_CASES = (
     Case(
         "penalty-sweep",
         "Far ahead of the crack gaps alternate in sign at a millionth of the thickness, and contact with them.",

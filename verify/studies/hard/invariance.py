@@ -106,7 +106,7 @@ def _noises() -> Sequence[Variant]:
 _judge_poses = partial(_same_curve, meaning="The curve does not know where the specimen is.")
 _judge_noises = partial(_same_curve, meaning="The algorithm does not amplify rounding.")
 
-CASES = (
+INVARIANCE_CASES = (
     Case("units", "The same scene in N and mm, N and m, kN and inches.", _units, _judge_units),
     Case("pose", "The specimen is rotated by 37 degrees, mirrored, moved by 1e4 mm.", _poses, _judge_poses),
     Case("noise", "Every number of the scene is off by 1e-14 of itself, twenty times.", _noises, _judge_noises),

@@ -155,7 +155,7 @@ def _judge_separation(trials: Trials) -> Iterator[Finding]:
         yield Check("all-dissipated", name, lost, 0.01 + hinge, "exact", meaning)
 
 
-CASES = (
+PROGRAMME_CASES = (
     Case("big-steps", "The whole programme in 5 requested steps, and in 5000.", _big_steps, _judge_big_steps),
     Case("unload-reload", "The crack closes, presses, and opens again.", _unload, _judge_unload),
     Case("tiny-reversals", "The programme turns back by a billionth and goes on.", _reversals, _judge_reversals),

@@ -110,7 +110,7 @@ def _judge_as_printed(trials: Trials) -> Iterator[Finding]:
         yield warned(trial)
 
 
-CASES = (
+STRENGTH_CASES = (
     Case(
         "coarse-czm2",
         "The mesh only just resolves the process zone: the load-opening path snaps back at every element.",

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 #: Who expects what is stated; the paper does not give numbers for Figure 9.
-PAPER, REFINEMENT, READING = "the paper", "convergence", "moduli read as GPa"
+PAPER, CONVERGENCE, READING = "the paper", "convergence", "moduli read as GPa"
 THEORY, J_INTEGRAL, LIMIT = "beam theory", "the J_INTEGRAL-integral", "LEFM, plate limit"
 
 Unit = Literal["ratio", "fraction", "number"]
