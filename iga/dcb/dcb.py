@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from iga.bases.names import find
 from iga.dcb.adaptive import Window, adapted_tmeshes, carried, first_window, followed
 from iga.dcb.meshes import arm_meshes, crack_path, tmeshes
 from iga.dcb.problem import Problem
@@ -93,7 +94,7 @@ def solve(
 
 def follows(problem: Problem) -> bool:
     """Whether the mesh follows the process zone."""
-    return problem.adaptive and problem.basis == "tspline" and not problem.meshes
+    return problem.adaptive and find(problem.basis).local and not problem.meshes
 
 
 def _supports(problem: Problem, arms: tuple[Body, ...]) -> Supports:

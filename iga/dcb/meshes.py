@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from iga.bases.names import find
 from iga.elements.elasticity import orthotropic
 from iga.mesh.extraction import Mesh
-from iga.specimen.grading import GRADING, columns, elements_within, largest, most_halvings, pieces, rectangle, unequal
+from iga.specimen.grading import GRADING, elements_within, largest, most_halvings, pieces, unequal
 from iga.specimen.problem import presses
 from iga.specimen.tmesh_strip import Strip, functions_of_halves, strip_tmesh
 from iga.tsplines.tmesh import DEGREE, TMesh
@@ -62,7 +63,7 @@ def arm_meshes(problem: Problem) -> tuple[Mesh, ...]:
     ------
     ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or T-splines of another degree than 3.
     """
-    if problem.basis == "tspline":
+    if find(problem.basis).local:
         meshes = tuple(tspline_rectangle(mesh) for mesh in tmeshes(problem))
     else:
         meshes = _rectangles(problem)
@@ -167,7 +168,7 @@ def lines(problem: Problem, path: int, spare: int = 0, layers: int = 0) -> np.nd
 
 
 def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
-    basis, p = problem.basis, problem.degree
+    basis, p = find(problem.basis), problem.degree
 
     def arms(path: int, *spare: int) -> tuple[Arm, Arm]:
         upper, lower = zip(unequal(path, problem.mismatch), spare or (0, 0), strict=True)
@@ -175,7 +176,7 @@ def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
 
     @cache
     def along(arm: Arm) -> int:
-        return columns(basis, p, len(lines(problem, *arm)) - 1)
+        return basis.columns(p, len(lines(problem, *arm)) - 1)
 
     def unknowns(both: tuple[Arm, Arm], q: int) -> int:
         return 2 * (q + 1) * sum(along(arm) for arm in both)
@@ -204,7 +205,7 @@ def _rectangles(problem: Problem) -> tuple[Mesh, ...]:
 
     @cache
     def drawn(arm: Arm) -> Mesh:
-        return rectangle(basis, (p, q), lines(problem, *arm), through)
+        return basis.rectangle((p, q), lines(problem, *arm), through)
 
     upper, lower = (drawn(arm) for arm in both)
     return upper, replace(lower, P_AI=lower.P_AI - [0.0, lower.P_AI[-1, 1]])  # its top on Y = 0, to the last digit

@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from iga.bases.names import find
 from iga.mesh.extraction import Mesh
 from iga.specimen.grading import (
     GRADING,
-    columns,
     elements_within,
     finer_towards,
     largest,
     most_halvings,
     part,
     pieces,
-    rectangle,
     unequal,
 )
 from iga.specimen.problem import presses
@@ -65,15 +64,13 @@ def meshes(problem: Problem) -> tuple[Mesh, Mesh]:
     strip = _breaks(problem, problem.strip_length, bonded, beyond)
     substrate = _breaks(problem, problem.substrate_length, below, rest)
     through = np.array([0.0, problem.strip_thickness])
-    return (
-        rectangle(problem.basis, (problem.degree,) * 2, strip, through),
-        rectangle(problem.basis, (problem.degree,) * 2, substrate, -depth * tops[::-1] / tops[-1]),
-    )
+    rectangle, degrees = find(problem.basis).rectangle, (problem.degree,) * 2
+    return rectangle(degrees, strip, through), rectangle(degrees, substrate, -depth * tops[::-1] / tops[-1])
 
 
 def _elements(problem: Problem, layers: int) -> tuple[tuple[int, int], tuple[int, int]]:
     """Elements on and beyond the bond, of strip and substrate; what is left of the unknowns goes to the overhang."""
-    basis, p = problem.basis, problem.degree
+    columns, p = find(problem.basis).columns, problem.degree
     lengths = problem.strip_length, problem.substrate_length
 
     def numbers(along: int) -> tuple[tuple[int, int], ...]:
@@ -82,12 +79,12 @@ def _elements(problem: Problem, layers: int) -> tuple[tuple[int, int], tuple[int
 
     def unknowns(along: int) -> int:
         both = zip(numbers(along), lengths, strict=True)
-        strip, substrate = (columns(basis, p, len(_breaks(problem, length, *pair)) - 1) for pair, length in both)
-        return 2 * ((p + 1) * strip + columns(basis, p, layers) * substrate)
+        strip, substrate = (columns(p, len(_breaks(problem, length, *pair)) - 1) for pair, length in both)
+        return 2 * ((p + 1) * strip + columns(p, layers) * substrate)
 
     along = largest(unknowns, 2, problem.dofs)
     (bonded, beyond), below = numbers(along)
-    an_element = 2 * (p + 1) * (1 if basis == "nurbs" else p)
+    an_element = 2 * (p + 1) * (columns(p, 2) - columns(p, 1))
     return (bonded, beyond + (problem.dofs - unknowns(along)) // an_element), below
 
 

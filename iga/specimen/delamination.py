@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from iga.bases.names import find
 from iga.mesh.extraction import Mesh
 from iga.specimen.body import Body
 from iga.specimen.problem import Debonding
@@ -60,10 +61,10 @@ class Delamination:
 def meshes_of(
     problem: Debonding, tmeshes: Callable[[], tuple[TMesh, ...]], rectangles: Callable[[], tuple[Mesh, ...]]
 ) -> tuple[tuple[TMesh, ...], tuple[Mesh, ...]]:
-    """T-meshes and meshes of the bodies: those that are given, or those of the basis; T-meshes of T-splines alone."""
+    """T-meshes and meshes of the bodies: those that are given, or those of the basis; T-meshes of a local one alone."""
     if problem.meshes:
         return (), problem.meshes
-    if problem.basis != "tspline":
+    if not find(problem.basis).local:
         return (), rectangles()
     drawn = tmeshes()
     return drawn, tuple(tspline_rectangle(mesh) for mesh in drawn)

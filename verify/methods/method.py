@@ -130,6 +130,7 @@ class Method:
     is_limit : whether it is a limit that codes approach, and is held against none
     mesh_error : error of the load curve that its mesh leaves at the unknowns of a packaged scene; 0 where that is less
         than the tolerances between codes
+    place : among the methods in messages; equal ones are sorted by name
     besides, per_step : seconds of a run besides its steps, and a step and a thousand unknowns, see
         `verify.runs.estimate`
     """
@@ -151,6 +152,7 @@ class Method:
     lane: str = ""
     is_limit: bool = False
     mesh_error: float = 0.0
+    place: int = 1000
     besides: float = 2.0
     per_step: float = 0.03
     look: Look = Look()

@@ -14,7 +14,7 @@ from verify.curves.curve import oscillation
 from verify.curves.of_run import cubics, dissipated, distance, peak_load
 from verify.result import Result, Snapshot, run_seconds
 from verify.runs.jobs import Outcome
-from verify.studies.cost.ladder import BEAM, FAMILIES, Try
+from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES, Try
 from verify.studies.cost.reference import Reference
 from verify.studies.frame import unmeasured
 from verify.support.checked_files import NUMBER, Damaged, Shape, read_table
@@ -156,7 +156,7 @@ def read_csv(path: Path) -> list[Row]:
     Damaged : they are not as they were written, or of a method that is not known.
     """
     rows = read_table(path, Row)
-    known = {(family.method, family.degree) for family in (*FAMILIES, BEAM)}
+    known = {(family.method, family.degree) for family in (*FAMILIES, BEAM_FAMILY)}
     if strange := [row for row in rows if (row.method, row.degree) not in known]:
         raise Damaged(path, f"the method {strange[0].method[:30]!r} of degree {strange[0].degree}")
     return rows
