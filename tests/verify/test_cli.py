@@ -28,6 +28,8 @@ PROGRAM = [sys.executable, "-P", "-m", "verify.cli"]
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(PROJECT)}
 CURVE = "opening,load\n0,0\n1,2\n3,1\n"
 
+BUILT_IN = "tspline nurbs lagrange dolfinx beam lefm".split()
+
 #: command line -> what its message must say
 REFUSED = {
     "": "COMMAND",
@@ -46,9 +48,7 @@ REFUSED = {
     "solve /dev/null": "specimen: is missing",
     "solve missing.toml": "is neither a packaged scene nor a file",
     "solve broken.toml": "broken.toml:1",
-    "solve dcb-czm1 --method fem": (
-        f"--method: must be {one_of('tspline nurbs lagrange dolfinx beam lefm'.split() + list(plugins()))}, got 'fem'"
-    ),
+    "solve dcb-czm1 --method fem": f"--method: must be {one_of([*BUILT_IN, *plugins()])}, got 'fem'",
     "solve dcb-czm1 --method nubrs": 'did you mean "nurbs"?',
     "solve dcb-czm1 --method tsplines": 'did you mean "tspline"?',
     "solve dcb-czm1 --method tspline --set discretization.degree=2": "degree: must be 3 for tspline, got 2",

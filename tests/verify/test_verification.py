@@ -16,6 +16,7 @@ import pytest
 
 from verify import verification
 from verify.checks.between_codes import cross_checks
+from verify.checks.identities import IDENTITIES
 from verify.checks.judgement import Demands
 from verify.cli import main
 from verify.methods.names import METHODS
@@ -115,7 +116,7 @@ def test_an_earlier_result_does_not_pass_for_a_crashed_run(
 
 
 def test_a_failing_check_fails_the_whole(scene: Scene, reports: list, tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr("verify.checks.identities.ENERGY_TOLERANCE", -1.0)
+    monkeypatch.setitem(IDENTITIES, "energy-ledger", replace(IDENTITIES["energy-ledger"], tolerance=-1.0))
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert not verify([(LINEAR, scene)], tmp_path, jobs=1)
 
