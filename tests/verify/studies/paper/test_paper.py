@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 from verify.curves.curve import curve_error
-from verify.methods.names import WITH_DOFS
 from verify.result import Result
 from verify.runs.folder import read_columns
 from verify.runs.jobs import Job, Outcome, run_all
 from verify.scene.load import load_scene
 from verify.studies.paper import plan as plans
-from verify.studies.paper.plan import BEAMS, PAPER_LAWS, Case, beams
+from verify.studies.paper.plan import BEAMS, PAPER_BASES, PAPER_LAWS, Case, beams
 from verify.studies.paper.statements import lines, statements
 from verify.studies.paper.study import Reference, Study, Trial, apart, limit, measured, trial
 
@@ -203,7 +202,7 @@ def test_without_a_scene_of_the_paper_it_says_so(tmp_path):
 def test_the_plan_is_what_the_figures_need(monkeypatch):
     scenes = [(law, load_scene(law)) for law in PAPER_LAWS]
     plan = beams(scenes)
-    each = len(WITH_DOFS) * len(PAPER_LAWS) * 2 * 7 * 2
+    each = len(PAPER_BASES) * len(PAPER_LAWS) * 2 * 7 * 2
     assert len({case for case, _ in plan.cases}) == each == len({job.folder(Path()) for _, job in plan.cases})
     case, job = plan.cases[0]
     found = load_scene(job.source, job.overrides)
