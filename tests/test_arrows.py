@@ -68,6 +68,7 @@ FLOORS = (
     ("verify.checks",),
     ("verify.pages",),
     ("verify.fields",),
+    ("verify.methods.built_in",),
     ("verify.methods",),
     ("verify.curves",),
     ("verify.verdict",),

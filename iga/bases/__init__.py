@@ -1,1 +1,1 @@
-"""Bases, one file each; every basis makes a `Mesh`."""
+"""Bases: a file with a frozen `Basis` is one; `iga.bases.names` finds it. Every basis makes a `Mesh`."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from iga.bases.bspline import KnotVector, bezier_extraction
+from iga.bases.basis import Basis
+from iga.bases.bspline import KnotVector, bezier_extraction, open_knots
 from iga.mesh.extraction import Mesh, Spans, tensor_mesh
 
 
@@ -38,3 +39,20 @@ def nurbs_rectangle(kv_s: KnotVector, kv_t: KnotVector) -> Mesh:
 
 def _spans(kv: KnotVector) -> Spans:
     return Spans(bezier_extraction(kv), kv.spans[:, None] - kv.degree + np.arange(kv.degree + 1))
+
+
+def _rectangle(degrees: tuple[int, int], breaks_s: np.ndarray, breaks_t: np.ndarray) -> Mesh:
+    return nurbs_rectangle(*(open_knots(breaks, p) for breaks, p in zip((breaks_s, breaks_t), degrees, strict=True)))
+
+
+NURBS = Basis(
+    name="nurbs",
+    label="NURBS",
+    what="isogeometric, NURBS",
+    columns=lambda degree, elements: elements + degree,
+    rectangle=_rectangle,
+    coarsest={2: 1.4, 3: 1.4, 4: 1.4},
+    colours=("#0072b2", "#5bb8f0"),
+    place=1,
+    row=1,
+)

@@ -11,8 +11,9 @@ from functools import cache
 
 import numpy as np
 
+from iga.bases.names import find
 from iga.mesh.extraction import Mesh
-from iga.specimen.grading import GRADING, columns, elements_within, largest, most_halvings, pieces, rectangle, unequal
+from iga.specimen.grading import GRADING, elements_within, largest, most_halvings, pieces, unequal
 from iga.specimen.problem import Debonding, presses
 from iga.specimen.tmesh_strip import Strip, functions_of_halves, strip_tmesh
 from iga.tsplines.tmesh import DEGREE, TMesh
@@ -64,7 +65,7 @@ def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
     @cache
     def drawn(arm: Arm, thickness: float) -> Mesh:
         through = thickness * np.linspace(0.0, 1.0, 2)
-        return rectangle(problem.basis, (problem.degree, q), lines(problem, *arm), through)
+        return find(problem.basis).rectangle((problem.degree, q), lines(problem, *arm), through)
 
     upper, lower = (drawn(arm, body.thickness) for arm, body in zip(both, problem.layout.bodies, strict=True))
     return upper, replace(lower, P_AI=lower.P_AI - [0.0, lower.P_AI[-1, 1]])  # its top on Y = 0, to the last digit
@@ -199,9 +200,11 @@ def _chosen(problem: Debonding, q: int) -> tuple[Arm, Arm]:
         upper, lower = zip(unequal(path, problem.mismatch), spare or (0, 0), strict=True)
         return upper, lower
 
+    columns = find(problem.basis).columns
+
     @cache
     def along(arm: Arm) -> int:
-        return columns(problem.basis, problem.degree, len(lines(problem, *arm)) - 1)
+        return columns(problem.degree, len(lines(problem, *arm)) - 1)
 
     def unknowns(both: tuple[Arm, Arm]) -> int:
         return 2 * (q + 1) * sum(along(arm) for arm in both)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from iga.bases.names import find
 from iga.delamination import arms, on_base
 from iga.delamination.adaptive import Window, adapted_tmeshes, first_window
 from iga.mesh.extraction import Mesh
@@ -27,7 +28,7 @@ def drawn(problem: Debonding, window: Window | None = None) -> Drawn:
         return _of_tmeshes(adapted_tmeshes(problem, window)[modelled], window.end)
     free = not layout.clamps
     path_end = arms.crack_path(problem) if free else far_end
-    if problem.basis == "tspline":
+    if find(problem.basis).local:
         tmeshes: tuple[TMesh, ...] = arms.tmeshes(problem) if free else on_base.tmeshes(problem)
         return _of_tmeshes(tmeshes[modelled], path_end)
     meshes: tuple[Mesh, ...] = arms.rectangles(problem) if free else on_base.rectangles(problem)
@@ -36,7 +37,7 @@ def drawn(problem: Debonding, window: Window | None = None) -> Drawn:
 
 def follows(problem: Debonding) -> bool:
     """Whether the mesh follows the process zone."""
-    return problem.adaptive and problem.basis == "tspline" and not problem.meshes
+    return problem.adaptive and find(problem.basis).local and not problem.meshes
 
 
 def _of_tmeshes(tmeshes: tuple[TMesh, ...], path_end: float) -> Drawn:

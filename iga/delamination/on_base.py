@@ -6,17 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from iga.bases.names import find
 from iga.mesh.extraction import Mesh
 from iga.specimen.grading import (
     GRADING,
-    columns,
     elements_within,
     finer_towards,
     largest,
     most_halvings,
     part,
     pieces,
-    rectangle,
     unequal,
 )
 from iga.specimen.problem import Debonding, presses
@@ -61,15 +60,16 @@ def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
     upper_s = _breaks(problem, strip.length, bonded, beyond)
     lower_s = _breaks(problem, substrate.length, below, rest)
     lower_t = -substrate.thickness * tops[::-1] / tops[-1]
+    rectangle, degrees = find(problem.basis).rectangle, (problem.degree,) * 2
     return (
-        rectangle(problem.basis, (problem.degree,) * 2, upper_s, np.array([0.0, strip.thickness])),
-        rectangle(problem.basis, (problem.degree,) * 2, lower_s, lower_t),
+        rectangle(degrees, upper_s, np.array([0.0, strip.thickness])),
+        rectangle(degrees, lower_s, lower_t),
     )
 
 
 def _elements(problem: Debonding, layers: int) -> tuple[tuple[int, int], tuple[int, int]]:
     """Elements on and beyond the bond, of strip and substrate; what is left of the unknowns goes to the overhang."""
-    basis, p = problem.basis, problem.degree
+    columns, p = find(problem.basis).columns, problem.degree
     lengths = [body.length for body in problem.layout.bodies]
 
     def numbers(along: int) -> tuple[tuple[int, int], ...]:
@@ -78,12 +78,12 @@ def _elements(problem: Debonding, layers: int) -> tuple[tuple[int, int], tuple[i
 
     def unknowns(along: int) -> int:
         both = zip(numbers(along), lengths, strict=True)
-        strip, substrate = (columns(basis, p, len(_breaks(problem, length, *pair)) - 1) for pair, length in both)
-        return 2 * ((p + 1) * strip + columns(basis, p, layers) * substrate)
+        strip, substrate = (columns(p, len(_breaks(problem, length, *pair)) - 1) for pair, length in both)
+        return 2 * ((p + 1) * strip + columns(p, layers) * substrate)
 
     along = largest(unknowns, 2, problem.dofs)
     (bonded, beyond), below = numbers(along)
-    an_element = 2 * (p + 1) * (1 if basis == "nurbs" else p)
+    an_element = 2 * (p + 1) * (columns(p, 2) - columns(p, 1))
     return (bonded, beyond + (problem.dofs - unknowns(along)) // an_element), below
 
 

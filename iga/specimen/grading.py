@@ -1,4 +1,4 @@
-"""Element boundaries along a specimen, and rectangles of either basis on them."""
+"""Numbers of elements along a specimen, and their boundaries."""
 
 from __future__ import annotations
 
@@ -6,11 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-
-from iga.bases.bspline import open_knots
-from iga.bases.lagrange import lagrange_rectangle
-from iga.bases.nurbs import nurbs_rectangle
-from iga.mesh.extraction import Mesh
 
 
 @dataclass(frozen=True)
@@ -36,25 +31,6 @@ GRADING = Grading()
 def most_halvings(path: int) -> int:
     """How often an element is halved at most where bodies are pressed together, with so many elements on the path."""
     return path if path <= GRADING.few else GRADING.halvings
-
-
-def columns(basis: str, degree: int, elements: int) -> int:
-    """Functions of one direction.
-
-    Raises
-    ------
-    ValueError : the basis is unknown.
-    """
-    if basis not in ("nurbs", "lagrange"):
-        raise ValueError(f'basis must be "tspline", "nurbs" or "lagrange", got {basis!r}')
-    return elements + degree if basis == "nurbs" else elements * degree + 1
-
-
-def rectangle(basis: str, degrees: tuple[int, int], breaks_s: np.ndarray, breaks_t: np.ndarray) -> Mesh:
-    """The rectangle of elements with boundaries at ``breaks_s`` x ``breaks_t``, of these degrees."""
-    if basis == "lagrange":
-        return lagrange_rectangle(breaks_s, breaks_t, *degrees)
-    return nurbs_rectangle(*(open_knots(breaks, p) for breaks, p in zip((breaks_s, breaks_t), degrees, strict=True)))
 
 
 def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:

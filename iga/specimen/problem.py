@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
+from iga.bases.names import find
 from iga.interface.laws import LAWS, TractionLaw
 from iga.mesh.extraction import Mesh
 from iga.specimen.layout import Layout
@@ -83,7 +84,7 @@ class Debonding(ABC):
 
 def smooth(problem: Debonding) -> bool:
     """Whether the basis is more than continuous along the specimen; of a mesh that is given nothing is known."""
-    return problem.basis != "lagrange" and not problem.meshes
+    return find(problem.basis).smooth and not problem.meshes
 
 
 def presses(problem: Debonding) -> bool:

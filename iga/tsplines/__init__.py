@@ -1,1 +1,1 @@
-"""T-meshes and their spline functions."""
+"""T-meshes and their spline functions, and splines on unstructured quadrilateral meshes."""

@@ -14,6 +14,7 @@ from iga_files import SMALL
 from made_up_costs import SCENE, a_row, against
 from made_up_runs import ENVIRONMENT, made_up, scene_report
 
+from iga.bases.names import BASES
 from tests.verify.report.studies import test_plane_page
 from tests.verify.studies import test_interface_rules as test_quadrature_study
 from tests.verify.studies.hard.test_hard import FAKE, faulty, stub
@@ -32,7 +33,6 @@ from verify.studies.effects.row import Row as EffectRow
 from verify.studies.effects.study import Study as EffectsStudy
 from verify.studies.found import found_in
 from verify.studies.hard import page as hard_page
-from verify.studies.hard.case import BASES
 from verify.studies.hard.one import run_case
 from verify.studies.hard.suite import Cell
 from verify.studies.scaling import page as scaling_page

@@ -28,6 +28,8 @@ PROGRAM = [sys.executable, "-P", "-m", "verify.cli"]
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(PROJECT)}
 CURVE = "opening,load\n0,0\n1,2\n3,1\n"
 
+BUILT_IN = "tspline nurbs lagrange dolfinx beam lefm".split()
+
 #: command line -> what its message must say
 REFUSED = {
     "": "COMMAND",
@@ -46,9 +48,7 @@ REFUSED = {
     "solve /dev/null": "specimen: is missing",
     "solve missing.toml": "is neither a packaged scene nor a file",
     "solve broken.toml": "broken.toml:1",
-    "solve dcb-czm1 --method fem": (
-        f"--method: must be {one_of('tspline nurbs lagrange dolfinx beam lefm'.split() + list(plugins()))}, got 'fem'"
-    ),
+    "solve dcb-czm1 --method fem": f"--method: must be {one_of([*BUILT_IN, *plugins()])}, got 'fem'",
     "solve dcb-czm1 --method nubrs": 'did you mean "nurbs"?',
     "solve dcb-czm1 --method tsplines": 'did you mean "tspline"?',
     "solve dcb-czm1 --method tspline --set discretization.degree=2": "degree: must be 3 for tspline, got 2",
@@ -127,15 +127,15 @@ def test_bad_input_is_refused_before_any_work(line: str, folder: Path, capsys: p
 
 
 def test_the_smallest_mesh_is_the_one_that_the_solver_takes() -> None:
+    from iga.bases.names import BASES
     from iga.delamination.meshes import drawn
-    from verify.methods.iga import least_dofs
     from verify.methods.solve import prepare
     from verify.scene.load import load_scene
 
     for method in names.WITH_DOFS:
-        for degree in (3,) if method == "tspline" else (1, 2, 3, 4, 5):
+        for degree in BASES[method].degrees:
             _, problem = prepare(load_scene("dcb-czm1"), method).problem
-            least = least_dofs(method, degree)
+            least = BASES[method].least_dofs(degree)
             drawn(replace(problem, degree=degree, dofs=least))
             with pytest.raises(ValueError, match="unknowns"):
                 drawn(replace(problem, degree=degree, dofs=least - 1))

@@ -24,14 +24,14 @@ from verify.scene.schema import Scene
 from verify.verdict import Check
 
 #: The reference that shares no code and no discretisation with the plane solvers.
-BEAM = "beam"
+BEAM_RUN = "beam"
 #: Tolerance for the distance between the curves of two codes on fine meshes.
 CODE_TOLERANCE = 0.005
 #: Tolerance of every run that is compared with the DOLFINx reference; runs on coarse meshes have a larger one.
 CROSS_CODE = {
     name: max(CODE_TOLERANCE, method.mesh_error)
     for name, method in RUNS.items()
-    if method.code not in (REFERENCE, BEAM)
+    if method.code not in (REFERENCE, BEAM_RUN)
 }
 #: Largest distance of curves that elements longer than a third of the process zone can explain; 17 % were measured.
 COARSE = 0.2
@@ -49,9 +49,9 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
     usable = {method: result for method, result in results.items() if result.load.size > 1}
     fine = beam_error.tolerance(scene)
     checks: list[Check] = []
-    if BEAM in usable and fine is not None and not no_beam(scene):
-        for name in (name for name in RUNS if name in usable and name != BEAM):
-            check = beam_check(scene, name, usable[name], usable[BEAM], max(fine, RUNS[name].mesh_error))
+    if BEAM_RUN in usable and fine is not None and not no_beam(scene):
+        for name in (name for name in RUNS if name in usable and name != BEAM_RUN):
+            check = beam_check(scene, name, usable[name], usable[BEAM_RUN], max(fine, RUNS[name].mesh_error))
             checks.append(proven(scene, check, usable))
     for method, tolerance in CROSS_CODE.items():
         if method in usable and REFERENCE in usable:
@@ -69,7 +69,7 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
     pair, found = check.subject.split(" / "), check
     if pair[-1] == REFERENCE:
         found = held_against(check, proof(results, max(scene.load.opening)))
-    if pair[-1] == BEAM:
+    if pair[-1] == BEAM_RUN:
         found = beside_models(check, difference_of_models(results, max(scene.load.opening)))
     if found.state != "broken" or not abs(found.value) <= COARSE:
         return found
@@ -113,7 +113,7 @@ def beam_check(scene: Scene, name: str, result: Result, beam: Result, tolerance:
     drops = [first_drop((run.opening, run.load), SEPARATION_DROP) for run in (beam, result)]
     value = distance(result, beam, min([max(scene.load.opening), *(drops if drops[0] < inf else ())]))
     return Check(
-        "beam-curve", f"{name} / {BEAM}", value, tolerance, "analytical", meaning, beam_error.theory_error(scene)
+        "beam-curve", f"{name} / {BEAM_RUN}", value, tolerance, "analytical", meaning, beam_error.theory_error(scene)
     )
 
 
@@ -130,7 +130,7 @@ def no_beam(scene: Scene) -> str:
 def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
     """A sentence where the beam was solved but judges no code."""
     why = no_beam(scene)
-    return (f"beam: held against no code: {why}",) if why and BEAM in results else ()
+    return (f"beam: held against no code: {why}",) if why and BEAM_RUN in results else ()
 
 
 def published_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:

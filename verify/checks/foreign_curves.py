@@ -12,7 +12,7 @@ import numpy as np
 
 from verify.checks import beam_error, load_introduction
 from verify.checks.between_codes import (
-    BEAM,
+    BEAM_RUN,
     CODE_TOLERANCE,
     beam_check,
     no_beam,
@@ -37,7 +37,7 @@ from verify.support.refusal import Refusal
 from verify.verdict import Check, Run, SceneReport
 
 #: Methods that a foreign curve is compared with, each with the tolerance that holds between these methods, too.
-CODES: Mapping[str, float] = {
+HELD_AGAINST: Mapping[str, float] = {
     name: CODE_TOLERANCE for name, one in METHODS.items() if one.has_mesh and not one.mesh_error
 }
 
@@ -166,16 +166,16 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
     if not only_opens(programme):
         checks.append(turns_check(name, path((curve.opening, curve.load), programme)))
     usable = {method: result for method, result in results.items() if result.load.size > 1}
-    for method, tolerance in CODES.items():
+    for method, tolerance in HELD_AGAINST.items():
         if method in usable:
             pair = pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
             checks += [proven(scene, check, usable) for check in pair]
     fine = beam_error.tolerance(scene)
-    if BEAM in usable and fine is not None and not no_beam(scene):
-        beam = usable[BEAM]
+    if BEAM_RUN in usable and fine is not None and not no_beam(scene):
+        beam = usable[BEAM_RUN]
         checks.append(proven(scene, beam_check(scene, name, curve, beam, fine), usable))
         curves = (curve.opening, curve.load), (beam.opening, beam.load)
-        checks += farthest_check(f"{name} / {BEAM}", *curves, programme, fine, "analytical")
+        checks += farthest_check(f"{name} / {BEAM_RUN}", *curves, programme, fine, "analytical")
     for known_name, known in zip(published_names(scene), scene.published, strict=True):
         value = known.deviation(published_load(known, curve, programme))
         checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))

@@ -5,10 +5,10 @@ Every value is the largest relative deviation over the steps. A check is left ou
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import replace
-from functools import partial
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from math import nan
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -48,16 +48,50 @@ NO_DEPTH = 1e-6  # penetration, over the thickness of an arm, that counts as zer
 J_OF_LAW = "The J-integral of the specimen is the area under the law."
 J_OF_ANY_LAW = "The J-integral of the specimen is G_Ic once the bond has opened (of this law no check knows the shape)."
 
-#: Checks that hold as well as the mesh resolves the process zone.
-OF_THE_ZONE = ("j-integral", "j-pressed", "growth-angle")
-#: Checks that need the load to be spread evenly over the end face: under a point load the slope is that of no mesh.
-OF_THE_FACE = ("j-integral", "j-pressed", "growth-load", "growth-angle")
-#: What stands behind a check that is no identity.
-KINDS: Mapping[str, Kind] = {"growth-angle": "analytical"}
+
+F = TypeVar("F", bound=Callable[..., float | None])
 
 
-#: Name, value from scene and columns, tolerance, and one sentence for the reader of the report.
-Identity = tuple[str, Callable[[Scene, Steps], float | None], float, str]
+@dataclass(frozen=True)
+class Identity:
+    """A check of every run; `identity` has the meaning of the fields."""
+
+    name: str
+    value: Callable[..., float | None]
+    tolerance: float | Callable[[Prepared, Result], float]
+    meaning: str | Callable[[Scene], str]
+    kind: Kind = "exact"
+    of_zone: bool = False
+    of_face: bool = False
+    element: bool = False
+
+
+IDENTITIES: dict[str, Identity] = {}
+
+
+def identity(
+    name: str,
+    tolerance: float | Callable[[Prepared, Result], float],
+    meaning: str | Callable[[Scene], str],
+    **more: Any,
+) -> Callable[[F], F]:
+    """Makes a function of scene and columns a check of every run; checks stand in the order of their definition.
+
+    Parameters
+    ----------
+    tolerance : a number, or a function of the run
+    meaning : one sentence for the reader of the report, or a function of the scene
+    kind : what stands behind it, "exact" of an identity
+    of_zone : it holds as well as the mesh resolves the process zone
+    of_face : it needs the load to be spread evenly over the end face; under a point load the slope is that of no mesh
+    element : the function has a third argument, which makes a mesh and returns the length of its longest element
+    """
+
+    def register(value: F) -> F:
+        IDENTITIES[name] = Identity(name, value, tolerance, meaning, **more)
+        return value
+
+    return register
 
 
 def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, ...]:
@@ -73,55 +107,23 @@ def checks_of(prepared: Prepared, result: Result, subject: str = "") -> tuple[Ch
     subject : name of the run in the report; default: the method
     """
     scene = prepared.scene
-    spread = scene.load.at == "face"
     separated = result.complete and result.ending.startswith("separated")
-    found = (
-        (name, 0.0 if separated and value is _missing_part else value(scene, result.steps), tolerance, meaning)
-        for name, value, tolerance, meaning in _identities(prepared, result)
-    )
-    checks = (
-        Check(name, subject or result.method, value, tolerance, KINDS.get(name, "exact"), meaning)
-        for name, value, tolerance, meaning in found
-        if value is not None and (spread or name not in OF_THE_FACE)
-    )
-    return tuple(replace(check, unresolved=_cannot_judge(prepared, result, check)) for check in checks)
-
-
-def _identities(prepared: Prepared, result: Result) -> list[Identity]:
-    """Name, value, tolerance and meaning of every check."""
-    scene, j_tolerance = prepared.scene, max(J_TOLERANCE, prepared.method.mesh_error)
-    force, moment = balance.force_tolerance(prepared, result), balance.moment_tolerance(prepared, result)
-    dissipation = partial(dissipation_gap, element=lambda: prepared.element)
-    return [
-        ("completed", _missing_part, 1e-9, "The run reached the end of the load programme, or the specimen separated."),
-        (
-            "penetration",
-            penetration,
-            PENETRATION_TOLERANCE,
-            "Faces are in each other by no more than contact gives way.",
-        ),
-        ("j-integral", j_deviation, j_tolerance, J_OF_LAW if scene.interface.law in KNOWN_LAWS else J_OF_ANY_LAW),
-        (
-            "j-pressed",
-            j_pressed,
-            J_PRESSED_TOLERANCE,
-            "The J-integral of pressed faces is the area under law and contact.",
-        ),
-        ("growth-load", growth_load, j_tolerance, "While the crack grows the load is at least G_Ic times the width."),
-        ("growth-angle", growth_angle, ANGLE_TOLERANCE, "In the end load sin(theta) is G_Ic times the width."),
-        ("energy-ledger", energy_gap, ENERGY_TOLERANCE, "External work is stored or dissipated, nothing is lost."),
-        ("interface-force", interface_gap, force, "The interface tractions carry the load."),
-        ("moment-balance", moment_gap, moment, "Load and interface tractions have equal moments."),
-        ("clamp-moment", clamp_gap, moment, "Load and clamp have equal moments."),
-        ("lengthwise", lengthwise_gap, force, "What tilted tractions pull lengthwise, the anchor holds."),
-        ("reactions", support_forces, force, "The supports carry the load and nothing else."),
-        ("dissipation", dissipation, DISSIPATION_TOLERANCE, "A new length of crack costs G_Ic times the width."),
-    ]
+    checks = []
+    for one in IDENTITIES.values():
+        more = (lambda: prepared.element,) if one.element else ()
+        value = 0.0 if separated and one.name == "completed" else one.value(scene, result.steps, *more)
+        if value is None or (one.of_face and scene.load.at != "face"):
+            continue
+        tolerance = one.tolerance if isinstance(one.tolerance, float) else one.tolerance(prepared, result)
+        meaning = one.meaning if isinstance(one.meaning, str) else one.meaning(scene)
+        check = Check(one.name, subject or result.method, value, tolerance, one.kind, meaning)
+        checks.append(replace(check, unresolved=_cannot_judge(prepared, result, check)))
+    return tuple(checks)
 
 
 def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
     """Why a check above its tolerance gives no verdict; empty where it does."""
-    if check.name not in OF_THE_ZONE or not abs(check.value) > check.tolerance:
+    if not IDENTITIES[check.name].of_zone or not abs(check.value) > check.tolerance:
         return ""
     return resolution.too_coarse(prepared, result, check) or end_cannot_judge(prepared, result, check)
 
@@ -137,6 +139,15 @@ def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
     return resolution.far_end_unresolved(prepared, float(np.nanmax(held))) if beyond <= check.tolerance else ""
 
 
+@identity("completed", 1e-9, "The run reached the end of the load programme, or the specimen separated.")
+def _missing_part(scene: Scene, steps: Steps) -> float:
+    """Distance from the end of the programme over its largest opening."""
+    programme = np.array(scene.load.opening)
+    reached = steps["opening"][-1] if steps["opening"].size else 0.0
+    return float(abs(reached - programme[-1]) / np.max(np.abs(programme)))
+
+
+@identity("penetration", PENETRATION_TOLERANCE, "Faces are in each other by no more than contact gives way.")
 def penetration(scene: Scene, steps: Steps) -> float | None:
     """Largest penetration of the faces over the one expected under their contact pressure, less 1.
 
@@ -153,6 +164,36 @@ def penetration(scene: Scene, steps: Steps) -> float | None:
     return worst(np.maximum(np.where(deep, depth / scale(expected) - 1.0, 0.0), 0.0))
 
 
+def _j_tolerance(prepared: Prepared, result: Result) -> float:
+    return max(J_TOLERANCE, prepared.method.mesh_error)
+
+
+def _j_meaning(scene: Scene) -> str:
+    return J_OF_LAW if scene.interface.law in KNOWN_LAWS else J_OF_ANY_LAW
+
+
+identity("j-integral", _j_tolerance, _j_meaning, of_zone=True, of_face=True)(j_deviation)
+identity(
+    "j-pressed",
+    J_PRESSED_TOLERANCE,
+    "The J-integral of pressed faces is the area under law and contact.",
+    of_zone=True,
+    of_face=True,
+)(j_pressed)
+identity("growth-load", _j_tolerance, "While the crack grows the load is at least G_Ic times the width.", of_face=True)(
+    growth_load
+)
+identity(
+    "growth-angle",
+    ANGLE_TOLERANCE,
+    "In the end load sin(theta) is G_Ic times the width.",
+    kind="analytical",
+    of_zone=True,
+    of_face=True,
+)(growth_angle)
+
+
+@identity("energy-ledger", ENERGY_TOLERANCE, "External work is stored or dissipated, nothing is lost.")
 def energy_gap(scene: Scene, steps: Steps) -> float | None:
     """Largest |external work - stored - dissipated| over the largest external work up to that step."""
     if not has(steps, "external_work", "stored_energy", "dissipated_energy"):
@@ -163,6 +204,7 @@ def energy_gap(scene: Scene, steps: Steps) -> float | None:
     return worst(gap / scale(np.maximum(work, REST * np.max(work, initial=0.0))))
 
 
+@identity("interface-force", balance.force_tolerance, "The interface tractions carry the load.")
 def interface_gap(scene: Scene, steps: Steps) -> float | None:
     """Largest difference of load and interface force over the peak load; absolute values, as they act on either arm."""
     if not has(steps, "interface_force"):
@@ -170,6 +212,7 @@ def interface_gap(scene: Scene, steps: Steps) -> float | None:
     return worst((np.abs(steps["load"]) - np.abs(steps["interface_force"])) / scale(peak(steps["load"])))
 
 
+@identity("moment-balance", balance.moment_tolerance, "Load and interface tractions have equal moments.")
 def moment_gap(scene: Scene, steps: Steps) -> float | None:
     """Largest sum of the moments on the upper arm over the moment of the peak load about the tip of the precrack."""
     if not has(steps, "load_moment", "interface_moment"):
@@ -178,6 +221,7 @@ def moment_gap(scene: Scene, steps: Steps) -> float | None:
     return worst((steps["load_moment"] + steps["interface_moment"]) / scale(lever * peak(steps["load"])))
 
 
+@identity("clamp-moment", balance.moment_tolerance, "Load and clamp have equal moments.")
 def clamp_gap(scene: Scene, steps: Steps) -> float | None:
     """Largest sum of the moments of load and clamp over the moment of the peak load about the flush end of a peel."""
     if not has(steps, "load_moment", "clamp_moment"):
@@ -185,6 +229,7 @@ def clamp_gap(scene: Scene, steps: Steps) -> float | None:
     return worst((steps["load_moment"] + steps["clamp_moment"]) / scale(scene.specimen.extent * peak(steps["load"])))
 
 
+@identity("lengthwise", balance.force_tolerance, "What tilted tractions pull lengthwise, the anchor holds.")
 def lengthwise_gap(scene: Scene, steps: Steps) -> float | None:
     """Largest sum of the axial forces on a strip over the peak load: tractions on a tilted master, and the anchor."""
     if not has(steps, "interface_pull", "anchor_pull"):
@@ -192,6 +237,7 @@ def lengthwise_gap(scene: Scene, steps: Steps) -> float | None:
     return worst((steps["interface_pull"] + steps["anchor_pull"]) / scale(peak(steps["load"])))
 
 
+@identity("reactions", balance.force_tolerance, "The supports carry the load and nothing else.")
 def support_forces(scene: Scene, steps: Steps) -> float | None:
     """Largest resultant of the support reactions beyond those that balance the load, over the peak load."""
     if not has(steps, "reaction_x", "reaction_y"):
@@ -199,6 +245,7 @@ def support_forces(scene: Scene, steps: Steps) -> float | None:
     return worst(np.hypot(steps["reaction_x"], steps["reaction_y"]) / scale(peak(steps["load"])))
 
 
+@identity("dissipation", DISSIPATION_TOLERANCE, "A new length of crack costs G_Ic times the width.", element=True)
 def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: nan) -> float | None:
     """|slope of the dissipated energy over the crack length / (G_Ic w) - 1|; None for less than five thicknesses or
     three elements of new crack.
@@ -226,8 +273,5 @@ def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = l
     return float(abs(slope / (scene.interface.toughness * scene.specimen.width) - 1))
 
 
-def _missing_part(scene: Scene, steps: Steps) -> float:
-    """Distance from the end of the programme over its largest opening."""
-    programme = np.array(scene.load.opening)
-    reached = steps["opening"][-1] if steps["opening"].size else 0.0
-    return float(abs(reached - programme[-1]) / np.max(np.abs(programme)))
+#: Checks that hold as well as the mesh resolves the process zone.
+OF_THE_ZONE = tuple(name for name, one in IDENTITIES.items() if one.of_zone)

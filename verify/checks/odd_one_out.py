@@ -7,18 +7,18 @@ from itertools import combinations
 
 import numpy as np
 
-from verify.checks.between_codes import BEAM, CODE_TOLERANCE, CROSS_CODE, distance
+from verify.checks.between_codes import BEAM_RUN, CODE_TOLERANCE, CROSS_CODE, distance
 from verify.checks.proof import LIMIT_METHODS, MATCHED, REFERENCE, RUNS, SECOND, proof
 from verify.result import Result
 from verify.scene.schema import Scene
 from verify.verdict import Check
 
 #: The code of every run. Agreement of different codes counts more than agreement of bases of one code.
-CODES = {name: method.code for name, method in RUNS.items()} | {SECOND: RUNS[REFERENCE].code}
+CODE_OF_RUN = {name: method.code for name, method in RUNS.items()} | {SECOND: RUNS[REFERENCE].code}
 #: Beginning of the sentences of this module, by which they are found among remarks.
 ODD = "odd one out"
 #: Runs with fixed pairs of interface points.
-FIXED_PAIRS = {MATCHED, REFERENCE, SECOND, BEAM}
+FIXED_PAIRS = {MATCHED, REFERENCE, SECOND, BEAM_RUN}
 #: Distance within which two runs agree.
 AGREE = CODE_TOLERANCE
 
@@ -85,7 +85,7 @@ def _groups(names: Sequence[str], agree: set[frozenset[str]]) -> list[list[str]]
 
 
 def _weight(group: Sequence[str]) -> tuple[int, int]:
-    return len({CODES.get(name, name) for name in group}), len(group)
+    return len({CODE_OF_RUN.get(name, name) for name in group}), len(group)
 
 
 def _listed(group: Sequence[str]) -> str:

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from iga.bases.names import BASES
 from iga.mesh.bernstein import bernstein, tensor
 from verify.fields.cells import Cells, grid
 from verify.fields.vtk_xml import Grid, write_collection, write_grid
-from verify.methods.iga import LAGRANGE
 from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 
@@ -39,7 +39,7 @@ class Frames:
     Parameters
     ----------
     folder : of the run
-    method : that of the solver; elements of Lagrange's basis become cells of that kind
+    method : that of the solver; elements of a basis that is only continuous become Lagrange cells
     count : frames on the whole way, besides the first
     writes : whether this process does; under MPI all of them make frames, and one writes
     """
@@ -48,7 +48,8 @@ class Frames:
         way = (0.0, *scene.load.opening)
         self._part = sum(abs(b - a) for a, b in zip(way, way[1:], strict=False)) / count
         self._folder, self._writes = folder, writes
-        self._through_bk, self._in_nodes = through_thickness(scene), method == LAGRANGE.name
+        self._through_bk = through_thickness(scene)
+        self._in_nodes = method in BASES and not BASES[method].smooth
         self._opening, self._back, self._due = 0.0, 0.0, 0.0
         self._times: list[float] = []
         self._left: Make | None = None

@@ -1,32 +1,10 @@
-"""The DOLFINx model as a method; whether DOLFINx is here, in which versions it is taken, and how to get it."""
+"""Whether DOLFINx is here, in which versions it is taken, and how to get it."""
 
 from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Mapping
 from importlib.util import find_spec
-from typing import Any
-
-import numpy as np
-
-from verify.methods.method import (
-    Failure,
-    Look,
-    MeshFacts,
-    Method,
-    NotRun,
-    OnFrame,
-    OnStep,
-    Prepared,
-    Unsuitable,
-    result_of,
-)
-from verify.methods.problems import common_keys, rectangles
-from verify.methods.reference_mesh import reference_mesh
-from verify.result import Result
-from verify.scene.schema import Scene, counted_steps
-from verify.support.timing import Stopwatch
 
 DOLFINX_MISSING = "not run: DOLFINx is not installed"
 DOLFINX_WAYS = (
@@ -50,60 +28,6 @@ def supported(found: str) -> bool:
     return numbers is not None and OLDEST <= (int(numbers[1]), int(numbers[2])) <= NEWEST
 
 
-def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
-    """The problem that `fem_reference` is given; DOLFINx itself is not needed.
-
-    Raises
-    ------
-    Unsuitable : fewer elements than the specimen has parts, no node where the load is, or unequal arms that turn far.
-    """
-    from fem_reference.problem.delamination import Problem, Rectangle
-    from fem_reference.problem.material import Moduli
-
-    mesh = reference_mesh(scene)
-    try:
-        return Problem(
-            bodies=rectangles(scene, Rectangle, Moduli),
-            bonded=scene.specimen.bonded,
-            on_base=scene.specimen.clamped,
-            **common_keys(scene, effects),
-            steps=counted_steps(scene),
-            degree=mesh.degree,
-            elements=mesh.elements,
-            layers=mesh.layers,
-        )
-    except ValueError as error:
-        table = "effects" if str(error).startswith("kinematics") else "dolfinx"
-        raise Unsuitable(f"{table}.{error}") from None
-
-
-def mesh_facts(prepared: Prepared) -> MeshFacts:
-    mesh = reference_mesh(prepared.scene)
-    return MeshFacts(float(np.max(prepared.problem.specimen().bond_elements)), mesh.degree, mesh.layers)
-
-
-def require(prepared: Prepared) -> None:
-    """Raise Unsuitable where the problem is refused, NotRun without DOLFINx."""
-    assert prepared.problem is not None
-    if not dolfinx_installed():
-        raise NotRun(DOLFINX_MISSING, DOLFINX_WAYS)
-
-
-def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
-    problem = prepared.problem
-    try:
-        from fem_reference.solve import solve_debonding
-
-        watch = Stopwatch()
-        solution = solve_debonding(problem, on_step=on_step, phase=watch.phase, on_frame=on_frame)
-    except (ImportError, AttributeError, TypeError) as error:
-        whose = another_dolfinx()
-        if not whose:
-            raise
-        raise Failure(f"{type(error).__name__}: {error}", whose) from error
-    return result_of(prepared.method.name, solution, watch)
-
-
 def another_dolfinx() -> str:
     """Whose an error is of a call that the DOLFINx here does not have, or not in this way; empty of a supported one."""
     found = str(getattr(sys.modules.get("dolfinx"), "__version__", ""))
@@ -111,36 +35,3 @@ def another_dolfinx() -> str:
         return ""
     oldest, newest = (".".join(map(str, numbers)) for numbers in (OLDEST, NEWEST))
     return f"DOLFINx {found}, or for it: debond takes {oldest} to {newest}, see debond doctor"
-
-
-def _laws() -> tuple[str, ...]:
-    from fem_reference.problem.law import MODELLED_LAWS
-
-    return tuple(MODELLED_LAWS)
-
-
-def _both_bodies(scene: Scene) -> Mapping[str, Any]:
-    """Both arms, whose points keep the pairs that they form at first."""
-    return {"symmetry": False, "search": False}
-
-
-DOLFINX = Method(
-    name="dolfinx",
-    label="DOLFINx",
-    what="DOLFINx, Lagrange elements",
-    solve=solve,
-    problem=dolfinx_problem,
-    mesh=mesh_facts,
-    require=require,
-    laws=_laws,
-    fixed=_both_bodies,
-    code="dolfinx",
-    packages=("fem_reference",),
-    ranks=True,
-    # All runs share a cache of compiled forms: the second to compile the same form would wait for the first, and give
-    # up after ten seconds.
-    lane="dolfinx",
-    besides=4.0,
-    per_step=0.02,
-    look=Look(("#00805e", "#3dd1a5"), 3.4, (), 0.5, 2.0, place=0),
-)

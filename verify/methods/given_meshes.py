@@ -18,7 +18,7 @@ from verify.support.refusal import Refusal
 SAME = 1e-6
 
 #: The method that solves on meshes from files.
-METHOD = "tspline"
+ON_FILES = "tspline"
 
 #: The override with which a method makes a mesh of its own, for a scene that names files.
 OWN = "specimen.mesh=[]"
@@ -32,13 +32,13 @@ def own_mesh(scene: Scene) -> Scene:
 def refuse_files(scene: Scene, who: str) -> None:
     """Raise Refusal where a scene names mesh files and ``who``, a method or a command, takes none."""
     if scene.specimen.mesh:
-        text = f"must be left out (--set {OWN}) for {who}, which takes no mesh files: only the method {METHOD} does"
+        text = f"must be left out (--set {OWN}) for {who}, which takes no mesh files: only the method {ON_FILES} does"
         raise Refusal(f"specimen.mesh: {text}, got {list(scene.specimen.mesh)}")
 
 
 def remarks(others: Sequence[str]) -> tuple[str, ...]:
     """Which runs of a scene with mesh files have not solved on them."""
-    text = f"specimen.mesh: the mesh of {METHOD} alone; {', '.join(others)} ran without it"
+    text = f"specimen.mesh: the mesh of {ON_FILES} alone; {', '.join(others)} ran without it"
     return (text,) if others else ()
 
 

@@ -131,6 +131,7 @@ class Method:
     mesh_error : error of the load curve that its mesh leaves at the unknowns of a packaged scene; 0 where that is less
         than the tolerances between codes
     equal_arms : whether it takes arms that bend only where one can stand for both
+    place : among the methods in messages; equal ones are sorted by name
     besides, per_step : seconds of a run besides its steps, and a step and a thousand unknowns, see
         `verify.runs.estimate`
     """
@@ -153,6 +154,7 @@ class Method:
     is_limit: bool = False
     mesh_error: float = 0.0
     equal_arms: bool = False
+    place: int = 1000
     besides: float = 2.0
     per_step: float = 0.03
     look: Look = Look()

@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from importlib import import_module
+from pkgutil import iter_modules
 
-from verify.methods.beam import BEAM
-from verify.methods.dolfinx import DOLFINX
-from verify.methods.iga import LAGRANGE, NURBS, TSPLINE
-from verify.methods.lefm import LEFM
 from verify.methods.method import Method, NotRun, Unsuitable
 from verify.scene.schema import Scene
 from verify.scene.tables import one_of
 
 __all__ = ["METHODS", "WITH_DOFS", "NotRun", "Unsuitable", "refuse_arms", "refuse_law"]
 
-METHODS: Mapping[str, Method] = {method.name: method for method in (TSPLINE, NURBS, LAGRANGE, DOLFINX, BEAM, LEFM)}
+
+def _found() -> Iterator[Method]:
+    """Every `Method` that a module of the folder of built-in ones holds by itself or in a tuple."""
+    folder = import_module("verify.methods.built_in")
+    for one in iter_modules(folder.__path__):
+        for value in vars(import_module(f"{folder.__name__}.{one.name}")).values():
+            held = value if isinstance(value, tuple) else (value,)
+            yield from (method for method in held if isinstance(method, Method))
+
+
+METHODS: Mapping[str, Method] = {
+    method.name: method for method in sorted(_found(), key=lambda method: (method.place, method.name))
+}
 
 #: Those whose mesh ``discretization.dofs`` sets.
 WITH_DOFS = tuple(method.name for method in METHODS.values() if method.with_dofs)

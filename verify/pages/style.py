@@ -1,7 +1,8 @@
 """Colours, line styles, and conversion of matplotlib figures to SVG that follows the colours of the page.
 
 Figures are drawn with stand-in colours; in the SVG each is replaced by a CSS custom property, so that one figure serves
-the light page, the dark page and the print. The pairs in ``PALETTE`` are the only place where a colour is written.
+the light page, the dark page and the print. Colours are written in ``PALETTE`` alone, but for those of methods and
+bases, which are in their records.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from verify.methods.names import METHODS as BUILT_IN
+from verify.methods.names import METHODS
 from verify.methods.plugins import find
 from verify.pages.svg import adapted
 from verify.support.timing import PHASES
@@ -38,7 +39,7 @@ PALETTE = {
     "good": ("#1f7a4d", "#5fce97"),
     "bad": ("#b3261e", "#ff8a7d"),
     "zone": ("#e6b400", "#e6b400"),
-    **{name: one.look.colours for name, one in BUILT_IN.items() if one.look.colours},
+    **{name: one.look.colours for name, one in METHODS.items() if one.look.colours},
     "phase-mesh": ("#b9c4d0", "#566373"),
     "phase-basis": ("#8fa3b8", "#7a8da3"),
     "phase-assembly": ("#3f6f9f", "#79aee0"),
@@ -50,8 +51,8 @@ PALETTE = {
 _STAND_IN = {name: f"#0a0b{i + 1:02x}" for i, name in enumerate(PALETTE)}
 
 #: In the order of tables and legends.
-METHODS = tuple(sorted(BUILT_IN, key=lambda name: BUILT_IN[name].look.place))
-METHOD_NAMES = {name: one.label + " limit" * one.is_limit for name, one in BUILT_IN.items()}
+IN_TABLES = tuple(sorted(METHODS, key=lambda name: METHODS[name].look.place))
+METHOD_NAMES = {name: one.label + " limit" * one.is_limit for name, one in METHODS.items()}
 SHOWN_PHASES = (*PHASES, "other")
 
 #: Widths of figures in inches, for which 8 pt text is readable at the size shown.

@@ -8,7 +8,7 @@ from itertools import groupby
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
-from verify.pages.style import METHODS, Panel
+from verify.pages.style import IN_TABLES, Panel
 from verify.pages.text import NO_VALUE, Units, inputs, modelled, number, percent, quantity, seconds, sentence
 from verify.report import converged, cost, matched, published, zones
 from verify.report.figures import curves, drawing, fields, meshes, opening, undeformed
@@ -197,7 +197,7 @@ def _used(check: Check) -> float:
 
 
 def _run_row(entry: Entry, scene: Scene) -> RunRow:
-    units, ours = Units.of(scene.units), entry.method in METHODS or entry.run.scene is not None
+    units, ours = Units.of(scene.units), entry.method in IN_TABLES or entry.run.scene is not None
     effects = modelled(scene, entry.method) if ours else "its code knows"
     if entry.agreement is None:
         return RunRow(entry, entry.run.left_out or "no converged step", effects)

@@ -25,7 +25,7 @@ from verify.studies.one_scene import planned, scene_report
 from verify.verdict import SceneReport, counted
 
 #: Runs of every scene; Lagrange elements and LEFM are less accurate than half a percent.
-METHODS = ("tspline", "nurbs", MATCHED, REFERENCE, SECOND, "beam")
+SOLVED_BY = ("tspline", "nurbs", MATCHED, REFERENCE, SECOND, "beam")
 #: Plane codes with the same model: with projection onto the other face, and with fixed pairs of points.
 SAME_MODEL = (("tspline", "nurbs"), (MATCHED, REFERENCE))
 #: Distance of two plane codes with one model above which one of them is wrong.
@@ -126,7 +126,7 @@ def _line(one: Row) -> str:
 
 def _jobs(seed: int) -> Iterable[Job]:
     name = name_of(seed)
-    return (job for job in planned(name, load_scene(name)) if job.variant in METHODS)
+    return (job for job in planned(name, load_scene(name)) if job.variant in SOLVED_BY)
 
 
 def _report(plan: Sequence[Job], outcomes: dict[Job, Outcome], out: Path) -> SceneReport:

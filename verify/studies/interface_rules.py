@@ -17,7 +17,7 @@ from verify.result import Result, Snapshot
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 
-METHODS = ("nurbs", "lagrange")
+COMPARED = ("nurbs", "lagrange")
 RULES = (("gauss", 2), ("gauss", 4), ("gauss", 8), ("lobatto", 2), ("lobatto", 4), ("lobatto", 8), ("lumped", None))
 
 #: g_u / g_max: from that of the scene to an interface that is stiffer than the arm through its thickness, E / h.
@@ -62,7 +62,7 @@ class Study:
 
 
 def study(
-    methods: Sequence[str] = METHODS,
+    methods: Sequence[str] = COMPARED,
     rules: Sequence[tuple[str, int | None]] = RULES,
     ductilities: Sequence[float] = DUCTILITIES,
     on_trial: Callable[[Trial], None] = lambda trial: None,

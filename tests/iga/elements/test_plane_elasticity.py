@@ -10,7 +10,6 @@ from tmeshes import half_fine
 
 from iga.bases.bspline import KnotVector, open_knots
 from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
-from iga.bases.unstructured import polygon_mesh
 from iga.elements.elasticity import isotropic
 from iga.elements.plane_elasticity import no_rigid_motion, solve, stiffness, traction_forces
 from iga.files.iga_format import mesh as mesh_of
@@ -18,6 +17,7 @@ from iga.files.iga_reader import read_iga
 from iga.mesh.boundary import boundary_chains
 from iga.mesh.refinement import bezier_refined
 from iga.tsplines.tspline import tspline_rectangle
+from iga.tsplines.unstructured import polygon_mesh
 from tests.iga.mesh.test_refinement import two_degrees
 from verify.studies.plane.errors import errors
 from verify.theory.plane_fields import kirsch, smooth, uniform

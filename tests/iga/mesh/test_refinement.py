@@ -10,7 +10,6 @@ from tmeshes import half_fine
 
 from iga.bases.bspline import KnotVector, open_knots
 from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
-from iga.bases.unstructured import polygon_mesh
 from iga.elements.shape_functions import block_basis, chain_basis
 from iga.mesh.bernstein import bernstein
 from iga.mesh.bezier import halved
@@ -20,6 +19,7 @@ from iga.mesh.extraction import Chain, ElementBlock, Mesh
 from iga.mesh.quadrature import gauss, square
 from iga.mesh.refinement import bezier_refined, conforming
 from iga.tsplines.tspline import tspline_rectangle
+from iga.tsplines.unstructured import polygon_mesh
 
 
 def area(mesh):

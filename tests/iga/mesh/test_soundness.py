@@ -21,7 +21,6 @@ from random_tmeshes import suitable_tmeshes
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_rectangle
-from iga.bases.unstructured import polygon_mesh
 from iga.files.cad_body import body_mesh
 from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import read_iga
@@ -29,6 +28,7 @@ from iga.mesh.extraction import Chain, ElementBlock, Mesh
 from iga.mesh.refinement import bezier_refined
 from iga.mesh.soundness import UNITY, dependence, faults, missed_unity, unity_fault
 from iga.tsplines.tspline import tspline_rectangle
+from iga.tsplines.unstructured import polygon_mesh
 
 
 def quads(*corners) -> Mesh:

@@ -9,6 +9,7 @@ from specimens import PAPER
 
 import iga.path.newton
 import iga.system.system
+from iga.bases.names import BASES
 from iga.dcb import build
 from iga.path.control import Prescribed, gap_control, load_control, opening_control
 from iga.path.follow import PATH, follow
@@ -16,7 +17,6 @@ from iga.path.newton import Iterate, Line, _holds, _hopeless, _searched, equilib
 from iga.path.point import Point
 from iga.path.solver import DEFAULT, MANY_DECIDE, Newton, Solver
 from iga.path.tangent import tangent
-from iga.specimen.grading import rectangle
 from iga.system.system import respond
 
 CZM1 = replace(PAPER, opening=(0.9,), dofs=400)
@@ -82,7 +82,7 @@ def test_below_the_peak_the_load_can_be_prescribed(peak):
 def test_stiff_contact_is_found_where_full_steps_go_round_in_circles(kinematics, monkeypatch):
     """All points touch at once and the rates at the start do not say which open: steps must be measured."""
     x, h = np.linspace(0.0, CZM1.length, 40 + 1), CZM1.arm_thickness
-    arms = tuple(rectangle("nurbs", (3, 3), x, np.array([y, y + h])) for y in (0.0, -h))
+    arms = tuple(BASES["nurbs"].rectangle((3, 3), x, np.array([y, y + h])) for y in (0.0, -h))
     system = build(replace(CZM1, kinematics=kinematics, penalty=1e8, meshes=arms)).system
     start, law = system.start(), system.interface.law
     path = tangent(Solver(system), start, respond(system, start, decide=False), 1.0, turning=True)

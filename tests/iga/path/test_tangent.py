@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
+from iga.bases.names import BASES
 from iga.dcb import build
 from iga.path.control import Prescribed, gap_control, opening_control
 from iga.path.follow import follow
@@ -13,7 +14,6 @@ from iga.path.newton import equilibrium
 from iga.path.point import Point
 from iga.path.solver import Solver
 from iga.path.tangent import on_envelope, tangent
-from iga.specimen.grading import rectangle
 from iga.system.system import respond
 
 #: The path is followed to a third of the opening that the mesh is made for: elements are so long that it snaps back.
@@ -111,7 +111,7 @@ def test_points_whose_rates_disagree_go_down_their_secants():
     So strong an interface on so few elements, six on the bond, that a part of the zone closes while another opens.
     """
     x, h = np.append(0.0, np.linspace(SNAPPING.precrack, SNAPPING.length, 7)), SNAPPING.arm_thickness
-    arms = tuple(rectangle("lagrange", (3, 2), x, np.array([y, y + h])) for y in (0.0, -h))
+    arms = tuple(BASES["lagrange"].rectangle((3, 2), x, np.array([y, y + h])) for y in (0.0, -h))
     problem = replace(SNAPPING, strength=20.0, meshes=arms, interface_points=4, kinematics="linear")
     system = build(problem).system
     points, turned = growing(points_of(system, (1.0,))), 0

@@ -15,13 +15,13 @@ from iga_files import REAL, SMALL, assert_same, from_mesh, real, small
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_rectangle
-from iga.bases.unstructured import polygon_mesh
 from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.mesh import rank
 from iga.mesh.extraction import ElementBlock, Mesh
 from iga.tsplines.lines import tensor_grid, with_lines
 from iga.tsplines.tspline import tspline_rectangle
+from iga.tsplines.unstructured import polygon_mesh
 from tests.iga.files.test_iga_format import MALFORMED, mutated
 from verify.cli import main
 from verify.command_line import mesh as mesh_command

@@ -9,9 +9,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from iga.bases.names import BASES
 from iga.elements.elasticity import orthotropic
 from verify.methods import dolfinx
-from verify.methods.iga import least_dofs
+from verify.methods.built_in import dolfinx as dolfinx_method
 from verify.methods.method import Failure
 from verify.methods.problems import SNAPSHOT_FRACTIONS
 from verify.methods.solve import prepare, solve
@@ -55,7 +56,7 @@ def test_steps_where_the_path_does_not_choose_them() -> None:
 
 @pytest.mark.parametrize("name", ["dcb-czm1", "peel-60"])
 def test_every_basis_has_a_least_number_of_unknowns(name: str) -> None:
-    assert all(0 < least_dofs(method, 1) for method in ("nurbs", "lagrange", "tspline"))
+    assert all(0 < basis.least_dofs(1) for basis in BASES.values())
     _, problem = prepare(load_scene(name), "nurbs").problem
     assert problem.basis == "nurbs" and problem.meshes == () and problem.opening == load_scene(name).load.opening
 
@@ -109,7 +110,7 @@ def test_an_error_of_dolfinx_comes_out_with_whose_it_is(monkeypatch: pytest.Monk
         for kind in (TypeError, AttributeError, ImportError, ValueError):
             broken.error = kind("no luck")
             with pytest.raises(Failure if kind in kinds else kind, match="no luck") as caught:
-                dolfinx.solve(prepared, lambda row: None, None)
+                dolfinx_method.solve(prepared, lambda row: None, None)
             if kind in kinds:
                 assert caught.value.whose.startswith("DOLFINx 0.8.0") and caught.value.__cause__ is broken.error
 

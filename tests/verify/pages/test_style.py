@@ -18,8 +18,8 @@ from matplotlib.figure import Figure  # noqa: E402
 from verify import report  # noqa: E402
 from verify.pages.style import (
     HALF,
+    IN_TABLES,
     METHOD_NAMES,
-    METHODS,
     PALETTE,
     PHASES,
     STRESS_MAP,
@@ -57,12 +57,12 @@ def luminance(code: str) -> float:
 def test_words_in_any_ink_stand_out_from_the_paper(dark: int) -> None:
     """A contrast of 4.5 of what texts are written in, and every colour has a name of its own in the page."""
     paper = luminance(PALETTE["paper"][dark])
-    for name in ("ink", "muted", "accent", "good", "bad", *METHODS):
+    for name in ("ink", "muted", "accent", "good", "bad", *IN_TABLES):
         low, high = sorted((paper, luminance(PALETTE[name][dark])))
         assert (high + 0.05) / (low + 0.05) >= 4.5, name
     assert custom_properties(bool(dark)).split("; ")[0] == f"--ink: {PALETTE['ink'][dark]}"
     assert custom_properties(bool(dark)).count(";") == len(PALETTE) == len({colour(name) for name in PALETTE})
-    assert {f"phase-{name}" for name in PHASES} <= set(PALETTE) and set(METHOD_NAMES) == set(METHODS)
+    assert {f"phase-{name}" for name in PHASES} <= set(PALETTE) and set(METHOD_NAMES) == set(IN_TABLES)
 
 
 def test_an_axis_says_its_numbers_in_full() -> None:
@@ -101,12 +101,12 @@ def test_a_figure_has_two_spines_a_grid_behind_and_no_boxes() -> None:
     assert {"ink", "muted", "rule", "nurbs"} <= used <= set(PALETTE)
 
 
-@pytest.mark.parametrize("method", [*METHODS, "code of another"])
+@pytest.mark.parametrize("method", [*IN_TABLES, "code of another"])
 def test_further_runs_of_a_method_are_thinner_and_fainter(method: str) -> None:
     """But never so much that they could not be seen; each lies below the one before."""
     runs = [line(method, repeat) for repeat in range(5)]
     assert len({run.colour for run in runs}) == len({run.dashes for run in runs}) == 1
-    assert runs[0].colour == (method if method in METHODS else "ink")
+    assert runs[0].colour == (method if method in IN_TABLES else "ink")
     widths, alphas = ([getattr(run, name) for run in runs] for name in ("width", "alpha"))
     assert widths == sorted(widths, reverse=True) and min(widths) >= 0.6 and widths[1] == max(0.6 * widths[0], 0.6)
     assert alphas == sorted(alphas, reverse=True) and min(alphas) == pytest.approx(0.4 * alphas[0])
@@ -115,8 +115,8 @@ def test_further_runs_of_a_method_are_thinner_and_fainter(method: str) -> None:
 
 
 def test_no_two_methods_look_alike() -> None:
-    looks = {(one.colour, one.dashes, one.width) for one in map(line, (*METHODS, "other"))}
-    assert len(looks) == len(METHODS) + 1 and max(map(line, METHODS), key=lambda one: one.width) == line("dolfinx")
+    looks = {(one.colour, one.dashes, one.width) for one in map(line, (*IN_TABLES, "other"))}
+    assert len(looks) == len(IN_TABLES) + 1 and max(map(line, IN_TABLES), key=lambda one: one.width) == line("dolfinx")
     assert line("dolfinx").order < min(line(name).order for name in ("nurbs", "tspline", "lagrange", "beam"))
 
 

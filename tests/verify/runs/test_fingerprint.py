@@ -22,7 +22,7 @@ RESTS_ON = {
     "verify/checks/identities.py": ("nurbs", "dolfinx", "beam"),
     "verify/checks/mechanics/j_integral.py": ("nurbs", "dolfinx", "beam"),
     "verify/scene/effects.py": ("nurbs", "dolfinx", "beam"),
-    "verify/methods/iga.py": ("nurbs", "dolfinx", "beam"),
+    "verify/methods/built_in/iga.py": ("nurbs", "dolfinx", "beam"),
     "verify/result.py": ("nurbs", "dolfinx", "beam"),
     "iga/path/newton.py": ("nurbs",),
     "fem_reference/model/forms.py": ("dolfinx",),

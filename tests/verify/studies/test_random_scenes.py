@@ -25,7 +25,7 @@ from verify.scene.parse import SceneError
 from verify.scene.random_scenes import ZONES, random_scene
 from verify.scene.schema import Scene
 from verify.studies import campaign
-from verify.studies.campaign import LARGEST_DISTANCE, METHODS, Row, row, table
+from verify.studies.campaign import LARGEST_DISTANCE, SOLVED_BY, Row, row, table
 from verify.verdict import Check, Run, SceneReport
 
 FINITE, LINEAR = load_scene("dcb-czm1"), load_scene("dcb-czm1-linear")
@@ -120,7 +120,7 @@ def test_a_dry_run_lists_every_run_and_makes_nothing(tmp_path: Path, capsys: pyt
     said = capsys.readouterr().out
     for seed in range(3):
         finite = random_scene(seed).effects.kinematics == "finite"
-        for method in METHODS:
+        for method in SOLVED_BY:
             assert (f"random-{seed}/{method} " in said) == (finite or method != MATCHED)
     assert "random-3" not in said and "lagrange" not in said and not out.exists()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from verify.pages.style import METHOD_NAMES, METHODS, Line, line
+from verify.pages.style import IN_TABLES, METHOD_NAMES, Line, line
 from verify.report.figures.agreement import Agreement, agreement, reference_run, usable
 from verify.result import Result
 from verify.verdict import Run, SceneReport
@@ -51,7 +51,7 @@ class Entry:
 
 def rank(method: str) -> int:
     """Position of a method in tables and legends."""
-    return METHODS.index(method) if method in METHODS else len(METHODS)
+    return IN_TABLES.index(method) if method in IN_TABLES else len(IN_TABLES)
 
 
 def short_names(among: Sequence[Entry]) -> dict[Entry, str]:
@@ -66,7 +66,7 @@ def entries(report: SceneReport) -> tuple[Entry, ...]:
     seen: dict[str, int] = {}
     found = []
     for run in sorted(report.runs, key=lambda run: rank(run.method)):
-        kind = run.method if run.method in METHODS else ""  # the others share a line
+        kind = run.method if run.method in IN_TABLES else ""  # the others share a line
         repeat = seen.get(kind, 0)
         seen[kind] = repeat + 1
         compared = agreement(run, reference) if usable(run) else None

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def shared_snapshots(runs: Sequence[Entry]) -> list[list[tuple[Entry, Snapshot]]]:
-    """The snapshots of all runs, grouped by opening; the first run in the order of METHODS sets the openings."""
+    """The snapshots of all runs, grouped by opening; the first run in the order of IN_TABLES sets the openings."""
     owners = sorted(
         (entry for entry in runs if entry.result.snapshots),
         key=lambda entry: (-len(entry.result.snapshots), rank(entry.method)),

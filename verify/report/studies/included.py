@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from iga.bases.names import BASES
 from verify.pages.style import METHOD_NAMES
 from verify.pages.text import NO_VALUE, number
 from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
@@ -16,7 +17,6 @@ from verify.studies.cost.page import Chart, Level, chart
 from verify.studies.effects.page import BARS
 from verify.studies.effects.row import Row as EffectRow
 from verify.studies.found import Included
-from verify.studies.hard.case import BASES
 from verify.studies.hard.cases import CASES
 from verify.studies.hard.one import Verdict
 from verify.studies.hard.page import Row as HardRow

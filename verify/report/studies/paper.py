@@ -12,7 +12,7 @@ from verify.pages.style import METHOD_NAMES, Line, line
 from verify.pages.text import Units, number, percent, quantity, seconds
 from verify.report.studies.paper_figures import FigureGroup, figures
 from verify.result import Result
-from verify.studies.paper.plan import BEAMS, LAWS, PAPER_PENALTY, Case
+from verify.studies.paper.plan import BEAMS, PAPER_LAWS, PAPER_PENALTY, Case
 from verify.studies.paper.statement import Statement, counted
 from verify.studies.paper.statements import identities, statements
 from verify.studies.paper.study import Study, Trial
@@ -129,7 +129,7 @@ def _references(study: Study) -> Iterator[str]:
     """A sentence on the converged curve of every problem and its error."""
     for scene, penalty in dict.fromkeys(trial.case.problem for trial in study.trials):
         known = study.references.get((scene, penalty))
-        name = f"{LAWS[scene]}, penalty {number(penalty)}" if penalty else f"Bond {_bond(study, scene)}"
+        name = f"{PAPER_LAWS[scene]}, penalty {number(penalty)}" if penalty else f"Bond {_bond(study, scene)}"
         if known is None:
             yield f"{name}: no converged curve, as one of its two fine runs did not come to its end"
         else:
@@ -149,7 +149,7 @@ def _by_points(study: Study) -> Iterator[Table]:
                 trials = (study.trial(Case(basis, law, dofs, n, penalty)) for n in points)
                 cells = (_lost(trial) or (percent(getattr(trial, measure)), False) for trial in trials)
                 rows.append(Row(Head(METHOD_NAMES[basis], line(basis)), ((number(penalty), False), *cells)))
-            groups.append((f"{LAWS[law]}, {dofs} unknowns", tuple(rows)))
+            groups.append((f"{PAPER_LAWS[law]}, {dofs} unknowns", tuple(rows)))
         title = f"{title} by number of interface points"
         yield Table(title, title, heads, tuple(groups))
 
@@ -226,7 +226,7 @@ def _name(study: Study, case: Case) -> str:
     if not case.dofs:
         return f"{METHOD_NAMES[case.basis]}, {_bond(study, case.scene)}"
     more = "" if case.penalty == PAPER_PENALTY else f", penalty {number(case.penalty)}"
-    return f"{LAWS[case.scene]}, {case.dofs} unknowns, {METHOD_NAMES[case.basis]}, {case.points} points{more}"
+    return f"{PAPER_LAWS[case.scene]}, {case.dofs} unknowns, {METHOD_NAMES[case.basis]}, {case.points} points{more}"
 
 
 def _command(case: Case) -> str:

@@ -14,11 +14,11 @@ from matplotlib.ticker import NullLocator
 from verify.curves.curve import PROPAGATION, envelope, load_at, peak
 from verify.pages.style import HALF, METHOD_NAMES, THIRD, Line, Panel, colour, drawing, line, panel, to_svg
 from verify.pages.text import Units, axis, percent, quantity, span
-from verify.studies.paper.plan import BEAMS, LAWS, Case
+from verify.studies.paper.plan import BEAMS, PAPER_LAWS, Case
 from verify.studies.paper.study import Reference, Study, Trial, curve
 
 #: Line of the converged curve; line widths of the path of a run and of its envelope.
-REFERENCE = Line("muted", 3.4, (), 0.45, 2.0)
+CONVERGED_LINE = Line("muted", 3.4, (), 0.45, 2.0)
 PATH_WIDTH, ENVELOPE_WIDTH = 0.6, 1.7
 
 _LOAD_NOTE = (
@@ -93,7 +93,7 @@ def _of_strips(study: Study, key: str) -> Iterator[FigureGroup]:
 
 def _load(study: Study, case: Case, key: str) -> Panel:
     """One basis, one law, one mesh."""
-    name, trial = f"{METHOD_NAMES[case.basis]}, {LAWS[case.scene]}", study.trial(case)
+    name, trial = f"{METHOD_NAMES[case.basis]}, {PAPER_LAWS[case.scene]}", study.trial(case)
     with drawing():
         figure, axes = panel(THIRD, 2.5)
         _converged(axes, study, case)
@@ -130,7 +130,7 @@ def _loads(study: Study, basis: str, key: str) -> Panel:
 
 def _sweep(study: Study, case: Case, key: str) -> Panel:
     """One basis on one mesh with several numbers of points."""
-    name, ink = f"{METHOD_NAMES[case.basis]}, {LAWS[case.scene]}", colour(line(case.basis).colour)
+    name, ink = f"{METHOD_NAMES[case.basis]}, {PAPER_LAWS[case.scene]}", colour(line(case.basis).colour)
     points = [p for p in study.values("points") if p % 2 == 0] or study.values("points")
     with drawing():
         figure, axes = panel(THIRD, 2.5)
@@ -155,9 +155,10 @@ def _deviation(study: Study, case: Case, key: str) -> Panel:
         figure, axes = panel(HALF, 2.8 if beam else 2.4)
         _ratios(axes, known, trials)
         axes.set(xlabel=axis("opening" if beam else "displacement", units.length))
-        what = f"{LAWS[case.scene]}, {case.dofs} unknowns" if beam else case.scene
+        what = f"{PAPER_LAWS[case.scene]}, {case.dofs} unknowns" if beam else case.scene
         svg = to_svg(figure, key, f"Deviation of the load from the converged curve, {what}")
-    return Panel(svg, f"{LAWS[case.scene]}." if beam else f"Bond {quantity(study.bond(case.scene), units.length)}.")
+    caption = PAPER_LAWS[case.scene] if beam else f"Bond {quantity(study.bond(case.scene), units.length)}"
+    return Panel(svg, f"{caption}.")
 
 
 def _ratios(axes: Axes, known: Reference, trials: Mapping[str, Trial | None]) -> None:
@@ -193,14 +194,14 @@ def _against_points(study: Study, law: str, measure: str, key: str) -> Panel:
         low, high = axes.get_ylim()
         axes.set_ylim(low, high * (high / low) ** 0.15)
         axes.legend(loc="upper right", ncols=3)
-        svg = to_svg(figure, key, f"{_LABELS[measure]} against the number of interface points, {LAWS[law]}")
-    return Panel(svg, f"{LAWS[law]}.")
+        svg = to_svg(figure, key, f"{_LABELS[measure]} against the number of interface points, {PAPER_LAWS[law]}")
+    return Panel(svg, f"{PAPER_LAWS[law]}.")
 
 
 def _converged(axes: Axes, study: Study, case: Case) -> None:
     known = study.references.get(case.problem)
     if known is not None:
-        axes.plot(*curve(known.result), **REFERENCE.options())
+        axes.plot(*curve(known.result), **CONVERGED_LINE.options())
 
 
 def _path(axes: Axes, trial: Trial | None) -> None:

@@ -36,7 +36,7 @@ from verify.support.say import say
 KNOWN = Path(__file__).with_name("known.csv")
 
 #: The method that is chosen where only the table is known, and the methods whose meshes can be refined.
-METHOD, REFINED = "nurbs", (*WITH_DOFS, "dolfinx")
+CHOSEN, REFINED = "nurbs", (*WITH_DOFS, "dolfinx")
 
 
 @dataclass(frozen=True)
@@ -143,13 +143,13 @@ def _same_study(scene: Scene, path: Path) -> Sequence[Mapping[str, Any]]:
 def _from_table(scene: Scene, accuracy: float) -> Choice:
     elements = GUESS.safety * elements_for(accuracy)
     degree = 2 if thickness_error(scene, 2, 1) <= GUESS.through * accuracy else 3
-    overrides = (*_steps(scene, accuracy), *with_elements(scene, METHOD, degree, elements))
+    overrides = (*_steps(scene, accuracy), *with_elements(scene, CHOSEN, degree, elements))
     chosen = parse_scene(scene.model_dump(), overrides)
-    require(prepare(chosen, METHOD))
-    seconds = predicted_seconds(chosen, METHOD, iterations(chosen, METHOD))
+    require(prepare(chosen, CHOSEN))
+    seconds = predicted_seconds(chosen, CHOSEN, iterations(chosen, CHOSEN))
     mesh = f"NURBS of degree {degree} with {chosen.discretization.dofs} unknowns"
-    zone = f"{expected(chosen, METHOD).elements:.1f} elements in the process zone"
-    return Choice(METHOD, overrides, seconds, f"{mesh}, {zone}: about {duration(seconds)}")
+    zone = f"{expected(chosen, CHOSEN).elements:.1f} elements in the process zone"
+    return Choice(CHOSEN, overrides, seconds, f"{mesh}, {zone}: about {duration(seconds)}")
 
 
 def _steps(scene: Scene, accuracy: float) -> tuple[str, ...]:

@@ -9,20 +9,18 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from verify.methods.names import METHODS
 from verify.pages.parts import phase_bars, plain
 from verify.pages.style import HALF, SHOWN_PHASES, THIRD, Panel, colour, drawing, panel, to_svg
 from verify.studies.cost.findings import LEVELS, by_family, pareto
+from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES
 from verify.studies.cost.row import Row
 from verify.studies.page import logarithmic
 
-#: method: (name, colour of the palette).
-METHODS: Mapping[str, tuple[str, str]] = {
-    "tspline": ("T-spline", "tspline"),
-    "tspline-adaptive": ("T-spline, adaptive", "accent"),
-    "nurbs": ("NURBS", "nurbs"),
-    "lagrange": ("Lagrange", "lagrange"),
-    "dolfinx": ("DOLFINx", "dolfinx"),
-    "beam": ("cohesive beam", "beam"),
+#: Method of a row: (name, colour of the palette).
+SHOWN: Mapping[str, tuple[str, str]] = {
+    one.method: (METHODS[one.solver].label + ", adaptive" * one.adaptive, "accent" if one.adaptive else one.solver)
+    for one in (*FAMILIES, BEAM_FAMILY)
 }
 
 _MARKERS = {0: "*", 1: "v", 2: "s", 3: "o", 4: "D", 5: "P"}
@@ -33,7 +31,7 @@ _UNKNOWNS, _SECONDS = attrgetter("dofs"), attrgetter("seconds")
 
 def named(row: Row) -> str:
     """T-spline, degree 3."""
-    name = METHODS[row.method][0]
+    name = SHOWN[row.method][0]
     return f"{name}, degree {row.degree}" if row.degree else name
 
 
@@ -120,7 +118,7 @@ def _curve(axes: Axes, ladder: Sequence[Row], x: Value, y: Value, label: str) ->
 
 
 def _ink(row: Row) -> dict[str, Any]:
-    return {"color": colour(METHODS[row.method][1])}
+    return {"color": colour(SHOWN[row.method][1])}
 
 
 def _levels(axes: Axes, scale: float) -> None:

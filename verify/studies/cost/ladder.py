@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from iga.bases.names import BASES
 from verify.methods.zone_resolution import expected
 from verify.runs.jobs import Job, left_out
 from verify.scene.parse import parse_scene
@@ -52,18 +53,24 @@ class Family:
     first: float
 
     @property
+    def adaptive(self) -> bool:
+        """Whether the meshes follow the process zone."""
+        return self.method != self.solver
+
+    @property
     def name(self) -> str:
-        return self.method if self.method in ("beam", "tspline-adaptive") else f"{self.method}-p{self.degree}"
+        return f"{self.method}-p{self.degree}" if self.degree and not self.adaptive else self.method
 
 
+#: Method of a table -> that of ``debond solve``: those of the bases, and those whose meshes follow the process zone.
+BASIS_METHODS = {
+    method: name for name, basis in BASES.items() for method in ((name, f"{name}-adaptive") if basis.local else (name,))
+}
 FAMILIES = (
-    Family("tspline", "tspline", 3, 2.0),
-    Family("tspline-adaptive", "tspline", 3, 2.0),
-    *(Family("nurbs", "nurbs", p, 1.4) for p in (2, 3, 4)),
-    *(Family("lagrange", "lagrange", p, first) for p, first in ((2, 1.0), (3, 0.7), (4, 0.5))),
+    *(Family(method, name, *rung) for method, name in BASIS_METHODS.items() for rung in BASES[name].coarsest.items()),
     *(Family("dolfinx", "dolfinx", p, first) for p, first in ((1, 4.0), (2, 1.0), (3, 0.7), (4, 0.5))),
 )
-BEAM = Family("beam", "beam", 0, 0.0)
+BEAM_FAMILY = Family("beam", "beam", 0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -88,7 +95,7 @@ class Try:
 
     def with_few_steps(self) -> Iterator[Try]:
         """The same mesh with few steps."""
-        if self.family is not BEAM:
+        if self.family is not BEAM_FAMILY:
             yield from (replace(self, steps=few) for few in self._few_steps)
 
     @property
@@ -97,7 +104,7 @@ class Try:
 
     def with_other_steps(self) -> Iterator[Try]:
         """The same mesh with other numbers of steps."""
-        if self.family is not BEAM:
+        if self.family is not BEAM_FAMILY:
             yield from (replace(self, steps=steps) for steps in LADDER.other_steps)
 
 
@@ -116,8 +123,8 @@ def ladders(source: str, scene: Scene, given: Sequence[str]) -> tuple[dict[Famil
     """The meshes of every family with at least one, and a sentence for every method that cannot solve the scene."""
     found: dict[Family, list[Try]] = {}
     reasons: dict[str, str] = {}
-    for family in (*FAMILIES, BEAM):
-        if family.method == "tspline-adaptive" and not scene.specimen.symmetric:
+    for family in (*FAMILIES, BEAM_FAMILY):
+        if family.adaptive and not scene.specimen.symmetric:
             reasons.setdefault(family.method, "left out: only the mesh of a dcb follows the process zone")
             continue
         rungs = {one: left_out(one.job(source, scene, given)) for one in ladder(scene, family)}
@@ -145,7 +152,7 @@ def _overrides(family: Family, scene: Scene, size: int, steps: int | str) -> tup
         f"discretization.degree={family.degree}",
         f"discretization.dofs={size}",
         f"discretization.interface_points={points}",
-        *(("discretization.adaptive=true",) if family.method == "tspline-adaptive" else ()),
+        *(("discretization.adaptive=true",) if family.adaptive else ()),
     )
 
 

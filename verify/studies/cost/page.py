@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from verify.pages.style import Panel
 from verify.pages.text import percent, seconds
-from verify.studies.cost.figures import METHODS, error_and_unknowns, named, phases, triple, work_precision
+from verify.studies.cost.figures import SHOWN, error_and_unknowns, named, phases, triple, work_precision
 from verify.studies.cost.findings import LEVELS, Cheapest, cheapest, growth, of_equal_steps, orders
 from verify.studies.cost.row import Row
 from verify.studies.page import write_study
@@ -52,7 +52,7 @@ class Level:
         row = self.best.best
         if row is None:
             return f"Curve error {self.name}: no run is that accurate."
-        beaten = ", ".join(f"{METHODS[m][0]} {ratio:.2g} ×" for m, ratio in self.best.ratio.items())
+        beaten = ", ".join(f"{SHOWN[m][0]} {ratio:.2g} ×" for m, ratio in self.best.ratio.items())
         took = f"{named(row)}, {row.dofs} unknowns, {row.steps} steps, {seconds(row.seconds)}"
         return f"Curve error {self.name}: {took}. " + (f"Times of the others: {beaten}." if beaten else "")
 
@@ -70,7 +70,7 @@ class Chart:
 
 def chart(rows: Sequence[Row], key: str) -> Chart:
     """The chart of some runs; ``key`` is unique in the page."""
-    methods = {method: METHODS[method] for method in METHODS if any(row.method == method for row in rows)}
+    methods = {method: SHOWN[method] for method in SHOWN if any(row.method == method for row in rows)}
     return Chart(X_AXES, Y_AXES, methods, _for_script(rows), work_precision(rows, f"{key}-work-precision"))
 
 
@@ -104,7 +104,7 @@ def _for_script(rows: Sequence[Row]) -> Markup:
     """The rows as JSON that cannot end the element that it stands in."""
     data = {
         "rows": [asdict(row) | {"words": _words(row)} for row in rows if row.measured],
-        "colours": {method: colour for method, (_, colour) in METHODS.items()},
+        "colours": {method: colour for method, (_, colour) in SHOWN.items()},
     }
     text = json.dumps(data).replace("NaN", "null")
     return Markup(text.replace("<", "\\u003c"))

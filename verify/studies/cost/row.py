@@ -13,7 +13,7 @@ from verify.curves.curve import oscillation
 from verify.curves.of_run import cubics, dissipated, distance, peak_load
 from verify.result import Result, Snapshot, run_seconds
 from verify.runs.jobs import Outcome
-from verify.studies.cost.ladder import BEAM, FAMILIES, Try
+from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES, Try
 from verify.studies.cost.reference import Reference
 from verify.studies.frame import unmeasured
 from verify.support.timing import PHASES
@@ -62,7 +62,7 @@ class Row:
     status: str
 
     def __post_init__(self) -> None:
-        if (self.method, self.degree) not in {(family.method, family.degree) for family in (*FAMILIES, BEAM)}:
+        if (self.method, self.degree) not in {(family.method, family.degree) for family in (*FAMILIES, BEAM_FAMILY)}:
             raise ValueError(f"the method {self.method[:30]!r} of degree {self.degree}")
 
     @property

@@ -15,7 +15,7 @@ from verify.runs.jobs import Job, Outcome, run_all
 from verify.scene.schema import Scene
 from verify.studies import frame
 from verify.studies.cost.findings import LEVELS, cheapest, growth, of_equal_steps, orders, pareto, table
-from verify.studies.cost.ladder import Family, Try, ladders
+from verify.studies.cost.ladder import BASIS_METHODS, Family, Try, ladders
 from verify.studies.cost.nonzeros import nonzeros
 from verify.studies.cost.reference import Reference, reference, reference_jobs
 from verify.studies.cost.row import Row, row
@@ -82,7 +82,7 @@ class Study(frame.Study):
     def _front(self, one: Row) -> dict[str, object]:
         """A run of the Pareto front, with the overrides that repeat it."""
         keys = ("method", "degree", "dofs", "steps", "curve_error", "seconds", "run")
-        solver = {"tspline-adaptive": "tspline"}.get(one.method, one.method)
+        solver = BASIS_METHODS.get(one.method, one.method)
         return {key: getattr(one, key) for key in keys} | {
             "solver": solver,
             "overrides": list(self.how.get(one.run, ())),

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from iga.bases.names import BASES
 from verify.result import Result
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 from verify.verdict import Check
-
-#: The bases that cases are run with.
-BASES = ("tspline", "nurbs", "lagrange")
 
 
 @dataclass(frozen=True)
@@ -75,7 +73,7 @@ class Case:
     variants: Callable[[], Sequence[Variant]]
     judge: Callable[[Trials], Iterator[Finding]] = no_judge
     may_stop: bool = False
-    bases: tuple[str, ...] = BASES
+    bases: tuple[str, ...] = tuple(BASES)
 
 
 #: One arm, on a mesh that resolves the process zone of ``dcb-czm1`` with any basis; it costs no more than a coarse mesh

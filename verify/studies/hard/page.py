@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from iga.bases.names import BASES
 from verify.curves.curve import Curve, envelope
 from verify.curves.of_run import cubics
 from verify.pages.style import METHOD_NAMES, Line, Panel, drawing, line, panel, to_svg
@@ -13,7 +14,7 @@ from verify.pages.template import rendered
 from verify.pages.text import seconds
 from verify.result import Result
 from verify.runs.folder import read_result
-from verify.studies.hard.case import BASES, Case
+from verify.studies.hard.case import Case
 from verify.studies.hard.suite import Cell, totals
 from verify.verdict import Check
 

@@ -7,13 +7,15 @@ from dataclasses import dataclass
 from itertools import product
 
 from verify.methods.dolfinx import dolfinx_installed
-from verify.methods.names import WITH_DOFS
 from verify.methods.reference_mesh import reference_mesh
 from verify.runs.jobs import Job
 from verify.scene.schema import Scene
 
+#: The bases of the paper.
+PAPER_BASES = ("tspline", "nurbs", "lagrange")
+
 #: Packaged scenes of Figures 6 to 8, each with the name of its law in the paper.
-LAWS = {"dcb-czm1": "CZM 1", "dcb-czm2": "CZM 2"}
+PAPER_LAWS = {"dcb-czm1": "CZM 1", "dcb-czm2": "CZM 2"}
 
 #: Packaged scenes of Figure 9, shortest bond first, and the scene with the moduli as printed in the paper.
 BONDS, PRINTED = ("peel-60", "peel-80", "peel-100", "peel-120"), "peel-as-printed"
@@ -37,7 +39,7 @@ class Figures:
     fine: Mapping[str, str]
 
 
-BEAMS = Figures(tuple(LAWS), {"dolfinx": "cubic DOLFINx elements", "nurbs": "NURBS on one arm"})
+BEAMS = Figures(tuple(PAPER_LAWS), {"dolfinx": "cubic DOLFINx elements", "nurbs": "NURBS on one arm"})
 STRIPS = Figures(BONDS, {"dolfinx": "quadratic DOLFINx elements", "nurbs": "NURBS"})
 
 
@@ -94,20 +96,20 @@ class Plan:
 
 def beams(
     scenes: Sequence[tuple[str, Scene]],
-    bases: Sequence[str] = WITH_DOFS,
+    bases: Sequence[str] = PAPER_BASES,
     unknowns: Sequence[int] = (280, 1956),
     points: Sequence[int] = tuple(range(2, 9)),
     penalties: Sequence[float] = (1e3, PAPER_PENALTY),
 ) -> Plan:
     """Figures 6 to 8: all combinations for those of ``scenes`` (name, scene) that are in the paper."""
-    known = {name: scene for name, scene in scenes if name in LAWS}
+    known = {name: scene for name, scene in scenes if name in PAPER_LAWS}
     every = product(known, unknowns, penalties, points, bases)
     cases = [Case(basis, name, dofs, n, penalty) for name, dofs, penalty, n, basis in every]
     fine = tuple(((name, p), *_fine_beams(name, known[name], p)) for name, p in product(known, penalties))
     return Plan(BEAMS, known, tuple((case, case.job(known[case.scene])) for case in cases), fine)
 
 
-def strips(scenes: Sequence[tuple[str, Scene]], bases: Sequence[str] = WITH_DOFS) -> Plan:
+def strips(scenes: Sequence[tuple[str, Scene]], bases: Sequence[str] = PAPER_BASES) -> Plan:
     """Figure 9: all bases for those of ``scenes`` (name, scene) that are in the paper."""
     given = dict(scenes)
     known = {bond: given[bond] for bond in BONDS if bond in given}

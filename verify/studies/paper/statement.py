@@ -10,8 +10,8 @@ from typing import Literal
 import numpy as np
 
 #: Sources of the statements; the paper gives no numbers for Figure 9.
-PAPER, REFINEMENT, READING = "the paper", "convergence", "moduli read as GPa"
-THEORY, J_INTEGRAL, LIMIT = "beam theory", "the J_INTEGRAL-integral", "LEFM, plate limit"
+PAPER, CONVERGENCE, READING = "the paper", "convergence", "moduli read as GPa"
+THEORY, J_INTEGRAL, LIMIT = "beam theory", "the J-integral", "LEFM, plate limit"
 
 Unit = Literal["ratio", "fraction", "number"]
 

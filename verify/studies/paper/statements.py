@@ -18,13 +18,13 @@ from verify.curves.of_run import peak_load
 from verify.methods.zone_resolution import ENOUGH
 from verify.result import Result
 from verify.scene.schema import Scene
-from verify.studies.paper.plan import BEAMS, BONDS, LAWS, Case
+from verify.studies.paper.plan import BEAMS, BONDS, PAPER_LAWS, Case
 from verify.studies.paper.statement import (
+    CONVERGENCE,
     J_INTEGRAL,
     LIMIT,
     PAPER,
     READING,
-    REFINEMENT,
     THEORY,
     Comparison,
     Statement,
@@ -60,8 +60,8 @@ def lines(title: str, study: Study) -> list[str]:
 
 def _of_beams(study: Study) -> Iterator[Statement]:
     coarse, _ = _ends(study, "dofs")
-    law = next(iter(LAWS))
-    said = f"{coarse} unknowns just resolve the process zone of {LAWS[law]}: 1 to {ENOUGH} elements in it"
+    law = next(iter(PAPER_LAWS))
+    said = f"{coarse} unknowns just resolve the process zone of {PAPER_LAWS[law]}: 1 to {ENOUGH} elements in it"
     zones = [(PLURALS[case.basis], n) for case, n in study.zones.items() if (case.scene, case.dofs) == (law, coarse)]
     yield each((said, "elements in the zone"), "number", zones, lambda n: 1.0 <= n < ENOUGH)
     for better, worse in pairwise(PLURALS):
@@ -92,10 +92,10 @@ def _rankings(study: Study, better: str, worse: str, measure: str) -> Iterator[S
 
 
 def _strength(study: Study) -> Statement:
-    weak, strong = LAWS
+    weak, strong = PAPER_LAWS
     cases = [case for case in _cases(study, scene=weak) if case.of_the_paper]
     pairs = _pairs(study, cases, {"scene": strong}, "basis", "dofs")
-    said = "More strength, more oscillation", f"oscillation with {LAWS[strong]} over that with {LAWS[weak]}"
+    said = "More strength, more oscillation", f"oscillation with {PAPER_LAWS[strong]} over that with {PAPER_LAWS[weak]}"
     return _ratios(study, said, "oscillation", pairs)
 
 
@@ -120,7 +120,7 @@ def _penalty(study: Study) -> Statement:
     low, high = _ends(study, "penalty")
     cases = _cases(study, penalty=low) if high > low else []
     off = _distances(study, _pairs(study, cases, {"penalty": high}, "basis", "law", "dofs", "points"))
-    for law, name in LAWS.items() if high > low else ():
+    for law, name in PAPER_LAWS.items() if high > low else ():
         a, b = (study.references.get((law, penalty)) for penalty in (low, high))
         off += [(f"converged curve, {name}", curve_error(curve(a.result), curve(b.result)))] if a and b else []
     said = f"The penalty has no visible influence: less than {VISIBLE:.0%}"
@@ -135,7 +135,7 @@ def _refinement(study: Study, measure: str) -> Statement:
         f"{fine} unknowns instead of {coarse} make every basis {adjective}",
         f"{name} with {coarse} over that with {fine}",
     )
-    return _ratios(study, said, measure, _pairs(study, cases, {"dofs": coarse}, "basis", "law"), REFINEMENT)
+    return _ratios(study, said, measure, _pairs(study, cases, {"dofs": coarse}, "basis", "law"), CONVERGENCE)
 
 
 def _beams_coincide(study: Study) -> Statement:
@@ -143,7 +143,7 @@ def _beams_coincide(study: Study) -> Statement:
     trials = [t for t in study.trials if t.case.of_the_paper and t.case.dofs == fine]
     found = [(_where(study, trial.case, "basis", "law"), trial.error) for trial in trials]
     said = f"With {fine} unknowns every basis draws the converged curve: less than {VISIBLE:.0%} off"
-    return each((said, "curve distance"), "fraction", found, _unseen, REFINEMENT)
+    return each((said, "curve distance"), "fraction", found, _unseen, CONVERGENCE)
 
 
 def _of_strips(study: Study) -> Iterator[Statement]:
@@ -153,7 +153,7 @@ def _of_strips(study: Study) -> Iterator[Statement]:
             yield _ranking(study, "are {} than {} at equal unknowns", measure, pairs, (better, worse))
     found = [(_where(study, trial.case, "basis", "bond"), trial.error) for trial in study.trials]
     said = f"Every basis draws the converged curve: less than {VISIBLE:.0%} off"
-    yield each((said, "curve distance"), "fraction", found, _unseen, REFINEMENT)
+    yield each((said, "curve distance"), "fraction", found, _unseen, CONVERGENCE)
     zones = [(_where(study, case, "basis", "bond"), n) for case, n in study.zones.items()]
     said = f"The meshes resolve the process zone: {ENOUGH} elements or more in it"
     yield each((said, "elements in the zone as measured"), "number", zones, lambda n: n >= ENOUGH, READING)
@@ -279,7 +279,7 @@ def _ends(study: Study, name: str) -> tuple[Any, Any]:
 def _where(study: Study, case: Case, *names: str) -> str:
     words = {
         "basis": _name(case.basis),
-        "law": LAWS.get(case.scene),
+        "law": PAPER_LAWS.get(case.scene),
         "bond": f"bond {study.bond(case.scene):g}",
         "dofs": f"{case.dofs} unknowns",
         "points": f"{case.points} points",

@@ -13,13 +13,13 @@ import numpy as np
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_rectangle
-from iga.bases.unstructured import polygon_mesh
 from iga.elements.elasticity import isotropic
 from iga.elements.plane_elasticity import no_rigid_motion, solve, stiffness, traction_forces
 from iga.mesh.boundary import boundary_chains
 from iga.mesh.extraction import Mesh
 from iga.tsplines.lines import tensor_grid, with_line
 from iga.tsplines.tspline import tspline_rectangle
+from iga.tsplines.unstructured import polygon_mesh
 from verify.studies.plane.errors import Errors, errors
 from verify.studies.plane.study import SOLID
 from verify.theory.plane_fields import smooth
@@ -69,7 +69,7 @@ def square(n: int) -> Mesh:
     return nurbs_rectangle(*[open_knots(np.linspace(0.0, 1.0, n + 1), 3)] * 2)
 
 
-FAMILIES = (
+MESH_FAMILIES = (
     Family("NURBS, unit square", "nurbs", square, 4),
     Family("T-spline with T-junctions, unit square", "tspline", half_fine, 4),
     *(
@@ -79,7 +79,7 @@ FAMILIES = (
 )
 
 
-def rates(families: tuple[Family, ...] = FAMILIES, counts: tuple[int, ...] = COUNTS) -> tuple[Convergence, ...]:
+def rates(families: tuple[Family, ...] = MESH_FAMILIES, counts: tuple[int, ...] = COUNTS) -> tuple[Convergence, ...]:
     """Solve all families; some 5 s."""
     return tuple(_convergence(family, counts) for family in families)
 

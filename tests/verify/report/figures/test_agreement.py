@@ -13,7 +13,7 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
 from verify.methods import zone_resolution  # noqa: E402
-from verify.pages.style import METHODS, WIDE, line  # noqa: E402
+from verify.pages.style import IN_TABLES, WIDE, line  # noqa: E402
 from verify.pages.text import number  # noqa: E402
 from verify.report import published, zones  # noqa: E402
 from verify.report.figures.agreement import agreement, branch, path, reference_run, usable  # noqa: E402
@@ -118,7 +118,7 @@ def test_runs_stand_in_the_order_of_methods_and_fade_where_they_repeat() -> None
     assert [one.repeat for one in found] == [0, 0, 1, 0, 0, 1] and [one.is_reference for one in found] == [True] + [
         False
     ] * 5
-    assert [rank(method) for method in METHODS] == list(range(len(METHODS))) and rank("mine") == len(METHODS)
+    assert [rank(method) for method in IN_TABLES] == list(range(len(IN_TABLES))) and rank("mine") == len(IN_TABLES)
     first, second = found[1].line, found[2].line
     assert (second.width, second.alpha, second.order) == pytest.approx((0.6 * first.width, 0.6, first.order - 0.1))
     assert line("nurbs", 9).width == 0.6 and line("nurbs", 9).alpha == pytest.approx(0.4) and first.colour == "nurbs"

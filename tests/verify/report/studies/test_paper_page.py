@@ -22,7 +22,7 @@ from verify.methods.names import METHODS  # noqa: E402
 from verify.pages.style import METHOD_NAMES, colour, line  # noqa: E402
 from verify.report.studies import paper, paper_figures  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
-from verify.studies.paper.plan import BEAMS, BONDS, LAWS, Case  # noqa: E402
+from verify.studies.paper.plan import BEAMS, BONDS, PAPER_LAWS, Case  # noqa: E402
 from verify.studies.paper.study import Study, Trial  # noqa: E402
 
 STOPPED = Case("nurbs", "dcb-czm2", 280)
@@ -51,7 +51,7 @@ def test_a_cell_has_what_its_run_has(study: Study, measure: str) -> None:
     section = paper.section(study, "figures")
     table = section.tables[list(paper.TABLE_TITLES).index(measure)]
     assert table.heading == f"{paper.TABLE_TITLES[measure]} by number of interface points"
-    laws = {f"{LAWS[law]}, {dofs} unknowns": (law, dofs) for law in LAWS for dofs in (280, 1956)}
+    laws = {f"{PAPER_LAWS[law]}, {dofs} unknowns": (law, dofs) for law in PAPER_LAWS for dofs in (280, 1956)}
     seen = set()
     assert set(dict(table.groups)) == set(laws)
     assert [head.name for head in table.heads] == ["Basis", "Penalty", "2 points", "8 points"]
@@ -79,7 +79,7 @@ def test_a_row_of_all_runs_has_measures_sizes_and_time(study: Study) -> None:
     assert "45 of 47 runs came to their end" in section.lead and len(section.stopped) == 2
     for row, trial in zip(rows, study.trials, strict=True):
         assert row.head.folder == f"{trial.case.scene}/{trial.case.variant}"
-        assert row.head.name.startswith(f"{LAWS[trial.case.scene]}, {trial.case.dofs} unknowns")
+        assert row.head.name.startswith(f"{PAPER_LAWS[trial.case.scene]}, {trial.case.dofs} unknowns")
         assert (", penalty 1000" in row.head.name) == (trial.case.penalty == 1e3)
         *measures, dofs, steps, taken_back, time, status = (text for text, _ in row.cells)
         assert status == trial.status

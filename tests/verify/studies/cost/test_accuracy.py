@@ -20,7 +20,7 @@ from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
 from verify.scene.random_scenes import random_scene
 from verify.studies.cost import accuracy
-from verify.studies.cost.accuracy import METHOD, choose, elements_for, with_elements
+from verify.studies.cost.accuracy import CHOSEN, choose, elements_for, with_elements
 from verify.studies.cost.verified import growth, verified
 from verify.support.refusal import Refusal
 
@@ -49,8 +49,8 @@ def test_more_accuracy_takes_more_elements() -> None:
 @pytest.mark.parametrize("name", ["dcb-czm2", "peel-80"])
 def test_the_mesh_has_the_elements_that_are_asked_for(name: str) -> None:
     scene = load_scene(name)
-    chosen = parse_scene(scene.model_dump(), with_elements(scene, METHOD, 2, 3.0))
-    assert 3.0 <= expected(chosen, METHOD).elements < 4.0
+    chosen = parse_scene(scene.model_dump(), with_elements(scene, CHOSEN, 2, 3.0))
+    assert 3.0 <= expected(chosen, CHOSEN).elements < 4.0
     assert chosen.effects == scene.effects and chosen.discretization.interface_points == 4
 
 
@@ -58,8 +58,8 @@ def test_the_mesh_has_the_elements_that_are_asked_for(name: str) -> None:
 def test_the_mesh_has_its_degree_through_the_arms(degree: int) -> None:
     """The coarsest mesh of `random-114` with so many elements in its zone is quadratic there, and 0.6 % off."""
     scene = random_scene(114)
-    chosen = parse_scene(scene.model_dump(), with_elements(scene, METHOD, degree, 3.0))
-    solver, problem = prepare(chosen, METHOD).problem
+    chosen = parse_scene(scene.model_dump(), with_elements(scene, CHOSEN, degree, 3.0))
+    solver, problem = prepare(chosen, CHOSEN).problem
     degrees = [block.degrees for mesh in solver.build(problem).meshes for block in mesh.blocks]
     assert set(degrees) == {(degree, degree)}
 
@@ -184,16 +184,16 @@ def test_where_no_mesh_is_fine_enough_it_says_so(monkeypatch: pytest.MonkeyPatch
 
     scene = load_scene("dcb-czm1", ["discretization.dofs=500"])
     monkeypatch.setattr(accuracy, "expected", lambda scene, solver: SimpleNamespace(elements=10.0))
-    first = with_elements(scene, METHOD, 2, 10.0)
+    first = with_elements(scene, CHOSEN, 2, 10.0)
     assert "discretization.dofs=500" in first, "what is as fine as it was asked for is fine enough"
     monkeypatch.setattr(accuracy, "expected", few)
     words = "--accuracy: no mesh is known with 10.0 elements in the process zone of dcb-czm1"
     with pytest.raises(Refusal, match=words):
-        with_elements(scene, METHOD, 2, 10.0)
+        with_elements(scene, CHOSEN, 2, 10.0)
     growth = [b / a for a, b in zip(tried[1:7], tried[2:8], strict=True)]
     assert sorted(growth)[:3] == pytest.approx([1.2] * 3, abs=0.05)
     assert sorted(growth)[3:] == pytest.approx([10.0 / 7.5] * 3, abs=0.05)
     assert 5e5 < tried[-1] <= 1e6 and tried[1:] == sorted(set(tried[1:]))
     monkeypatch.undo()
     with pytest.raises(Refusal, match="no mesh is known with 10.0 elements"):
-        with_elements(load_scene("dcb-czm1", ["interface.strength=1e6", "interface.penalty=1e12"]), METHOD, 2, 10.0)
+        with_elements(load_scene("dcb-czm1", ["interface.strength=1e6", "interface.penalty=1e12"]), CHOSEN, 2, 10.0)

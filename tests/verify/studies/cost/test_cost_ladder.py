@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import pytest
 from made_up_costs import NURBS, SCENE, a_row, made_up
 
+from iga.bases.names import BASES
 from verify.cli import main
 from verify.methods.zone_resolution import expected
 from verify.runs.jobs import Job, Outcome
@@ -21,7 +22,7 @@ from verify.studies.cost import ladder as ladder_of
 from verify.studies.cost import reference as reference_of
 from verify.studies.cost import study as study_of
 from verify.studies.cost.findings import LEVELS, cheapest
-from verify.studies.cost.ladder import BEAM, FAMILIES, LADDER, Family, Try, ladder, ladders
+from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES, LADDER, Family, Try, ladder, ladders
 from verify.studies.cost.reference import reference_jobs
 from verify.studies.cost.row import Row
 from verify.studies.cost.study import climb
@@ -37,7 +38,7 @@ def test_rungs_divide_the_process_zone_as_they_say() -> None:
         )
         last = rungs[-1].job("dcb-czm1", SCENE).solved
         assert expected(last, family.solver).elements == pytest.approx(family.first * LADDER.ratio**7, rel=0.15)
-    assert [one.steps for one in ladder(SCENE, BEAM)] == [80, 40, 150]
+    assert [one.steps for one in ladder(SCENE, BEAM_FAMILY)] == [80, 40, 150]
 
 
 def test_every_run_repeats_what_the_study_was_given() -> None:
@@ -131,7 +132,7 @@ def test_more_is_tried_where_it_may_pay() -> None:
     fewer = load_scene(job.source, job.overrides)
     assert fewer.discretization.steps == "auto" and fewer.discretization.bend == 0.02 and fewer.effects.search == "auto"
     assert [study_of._nearly_accurate(found) for found in tries.values()] == [False, True, True, True]
-    assert [*Try(BEAM, 0, 0, 80).with_few_steps(), *Try(BEAM, 0, 0, 80).with_other_steps()] == []
+    assert [*Try(BEAM_FAMILY, 0, 0, 80).with_few_steps(), *Try(BEAM_FAMILY, 0, 0, 80).with_other_steps()] == []
 
 
 def test_a_scene_that_is_none_is_refused_and_a_dry_run_leaves_nothing(tmp_path: Path, capsys, monkeypatch) -> None:
@@ -204,13 +205,21 @@ def test_families_are_the_methods_with_the_degrees_that_they_have() -> None:
     degrees: dict[str, list[int]] = {}
     for one in FAMILIES:
         degrees.setdefault(one.method, []).append(one.degree)
-    assert degrees == {
-        "tspline": [3], "tspline-adaptive": [3], "nurbs": [2, 3, 4], "lagrange": [2, 3, 4], "dolfinx": [1, 2, 3, 4]
-    }  # fmt: skip
+    known = {
+        "tspline": [3],
+        "tspline-adaptive": [3],
+        "nurbs": [2, 3, 4],
+        "lagrange": [2, 3, 4],
+        "dolfinx": [1, 2, 3, 4],
+    }
+    assert degrees == known | {name: list(basis.coarsest) for name, basis in BASES.items() if basis.coarsest}
     for method in degrees:
         first = [one.first for one in FAMILIES if one.method == method]
         assert first == sorted(first, reverse=True) and 0.5 <= first[-1] <= first[0] <= 4.0
-    assert len({one.name for one in FAMILIES}) == len(FAMILIES) and (BEAM.name, BEAM.degree) == ("beam", 0)
+    assert len({one.name for one in FAMILIES}) == len(FAMILIES) and (BEAM_FAMILY.name, BEAM_FAMILY.degree) == (
+        "beam",
+        0,
+    )
 
 
 def test_the_reference_is_cubic_whatever_code_it_is_of(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 from verify.curves.curve import curve_error
-from verify.methods.names import WITH_DOFS
 from verify.result import Result
 from verify.runs.folder import read_columns
 from verify.runs.jobs import Job, Outcome, run_all
 from verify.scene.load import load_scene
 from verify.studies.paper import plan as plans
-from verify.studies.paper.plan import BEAMS, LAWS, Case, beams
+from verify.studies.paper.plan import BEAMS, PAPER_BASES, PAPER_LAWS, Case, beams
 from verify.studies.paper.statements import lines, statements
 from verify.studies.paper.study import Reference, Study, Trial, apart, limit, measured, trial
 
@@ -47,13 +46,13 @@ def as_stated(case: Case) -> Measures:
 
 
 def world(measures: Callable[[Case], Measures] = as_stated, zones: Mapping[str, float] | None = None) -> Study:
-    cases = [Case(b, law, d, n, p) for b, law, d, n, p in product(BASES, LAWS, MESHES, POINTS, PENALTIES)]
+    cases = [Case(b, law, d, n, p) for b, law, d, n, p in product(BASES, PAPER_LAWS, MESHES, POINTS, PENALTIES)]
     trials = []
     for case in cases:
         found = dict(measures(case))
         trials.append(Trial(case, made_up(found.pop("bump")), "complete", variation=0.1, peak=0.01, **found))
-    scenes = {law: load_scene(law) for law in LAWS}
-    finest = {(law, p): measures(Case("tspline", law, 1956, 8, p))["bump"] for law, p in product(LAWS, PENALTIES)}
+    scenes = {law: load_scene(law) for law in PAPER_LAWS}
+    finest = {(law, p): measures(Case("tspline", law, 1956, 8, p))["bump"] for law, p in product(PAPER_LAWS, PENALTIES)}
     references = {problem: Reference("a fine run", made_up(bump), 1e-5, 1e-5) for problem, bump in finest.items()}
     elements = zones or {"tspline": 2.0, "nurbs": 1.5, "lagrange": 1.1}
     return Study(
@@ -62,7 +61,7 @@ def world(measures: Callable[[Case], Measures] = as_stated, zones: Mapping[str, 
         tuple(trials),
         references,
         {law: limit(scene) for law, scene in scenes.items()},
-        {Case(b, law, d): n for (b, n), law, d in product(elements.items(), LAWS, MESHES)},
+        {Case(b, law, d): n for (b, n), law, d in product(elements.items(), PAPER_LAWS, MESHES)},
     )
 
 
@@ -201,9 +200,9 @@ def test_without_a_scene_of_the_paper_it_says_so(tmp_path):
 
 
 def test_the_plan_is_what_the_figures_need(monkeypatch):
-    scenes = [(law, load_scene(law)) for law in LAWS]
+    scenes = [(law, load_scene(law)) for law in PAPER_LAWS]
     plan = beams(scenes)
-    each = len(WITH_DOFS) * len(LAWS) * 2 * 7 * 2
+    each = len(PAPER_BASES) * len(PAPER_LAWS) * 2 * 7 * 2
     assert len({case for case, _ in plan.cases}) == each == len({job.folder(Path()) for _, job in plan.cases})
     case, job = plan.cases[0]
     found = load_scene(job.source, job.overrides)
@@ -212,7 +211,7 @@ def test_the_plan_is_what_the_figures_need(monkeypatch):
     for installed, method in ((True, "dolfinx"), (False, "nurbs")):
         monkeypatch.setattr(plans, "dolfinx_installed", lambda installed=installed: installed)
         references = beams(scenes).references
-        assert [problem for problem, *_ in references] == list(product(LAWS, PENALTIES))
+        assert [problem for problem, *_ in references] == list(product(PAPER_LAWS, PENALTIES))
         assert all(job.method == method for _, *pair in references for job in pair)
         for (_, penalty), coarse, fine in references:
             here = [load_scene(job.source, job.overrides) for job in (coarse, fine)]

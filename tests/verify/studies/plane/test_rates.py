@@ -4,7 +4,7 @@ import pytest
 
 from verify import report
 from verify.studies.plane.errors import Errors
-from verify.studies.plane.rates import FAMILIES, Convergence, half_fine, rate_checks, rates
+from verify.studies.plane.rates import MESH_FAMILIES, Convergence, half_fine, rate_checks, rates
 
 
 @pytest.fixture(scope="module")
@@ -31,19 +31,19 @@ def test_they_are_on_the_page(found, tmp_path):
     pytest.importorskip("jinja2")
     report.write(report.Findings((), {}, rates=found), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text()
-    assert all(family.name in text for family in FAMILIES)
+    assert all(family.name in text for family in MESH_FAMILIES)
     assert "around extraordinary points 2." in text and 'id="rates-errors-t"' in text
 
 
 def made_up(number: int, rate: float) -> Convergence:
     """A family whose error falls by that rate, 1e-3 on the first mesh, and by one less in energy."""
     at = [Errors(1e-3 / 2 ** (rate * i), 2e-2 / 2 ** ((rate - 1.0) * i), 1.0) for i in range(3)]
-    return Convergence(FAMILIES[number], (100, 400, 1600), tuple(at))
+    return Convergence(MESH_FAMILIES[number], (100, 400, 1600), tuple(at))
 
 
 def test_a_check_is_how_far_a_rate_is_from_that_of_theory() -> None:
     checks = rate_checks((made_up(0, 4.1), made_up(1, 3.8), made_up(2, 2.4)))
-    assert [check.subject for check in checks] == [family.name for family in FAMILIES[:2]]
+    assert [check.subject for check in checks] == [family.name for family in MESH_FAMILIES[:2]]
     assert [check.value for check in checks] == pytest.approx([0.1, -0.2])
     assert [check.passed for check in checks] == [True, False]
     assert [rate_checks((made_up(0, 4.0 + off),))[0].passed for off in (0.149, 0.151)] == [True, False]
@@ -71,7 +71,7 @@ def test_the_section_tells_errors_and_rates_of_every_family(monkeypatch: pytest.
     only = plane_rates.section(known[:1], "rates")
     assert only.sentence.endswith("elasticity: NURBS 4.00.") and only.counts.broken == 0
     _, names, cells = zip(*found.rows, strict=True)
-    assert list(names) == [family.name for family in FAMILIES[:4]]
+    assert list(names) == [family.name for family in MESH_FAMILIES[:4]]
     assert cells[0][0] == "1600" and cells[0][2:4] == ("4.00", "4") and cells[0][5] == "3.00"
     assert cells[2][2:4] == ("2.50", "–") and cells[2][5] == "1.50"
     assert cells[2][1] == "3.12\u00a0×\u00a010⁻⁵" and cells[2][4] == "0.0025"

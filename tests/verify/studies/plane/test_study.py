@@ -8,8 +8,8 @@ import pytest
 from doctored_meshes import SMOOTH, arch, function_halved, function_scaled, point_unused
 from iga_files import from_mesh
 
-from iga.bases.unstructured import polygon_mesh
 from iga.files.iga_format import write_iga
+from iga.tsplines.unstructured import polygon_mesh
 from tests.iga.elements.test_plane_elasticity import ring, square_mesh
 from verify.cli import REFUSED, main
 from verify.command_line.commands import FAILED

@@ -1,4 +1,4 @@
-"""The isogeometric code as methods: a basis each."""
+"""The isogeometric code as methods: one for each basis that it has."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from functools import partial
 from types import ModuleType
 from typing import Any
 
+from iga.bases.basis import Basis
+from iga.bases.names import BASES
 from verify.methods.method import Look, MeshFacts, Method, OnFrame, OnStep, Prepared, Unsuitable, result_of
 from verify.methods.problems import common_keys, rectangles
 from verify.result import Result
@@ -56,7 +58,7 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
 
 def _given(scene: Scene, basis: str) -> tuple[Any, ...]:
     """The meshes of the files that a scene names, for T-splines alone: they are what such files hold."""
-    if basis != TSPLINE.name or not scene.specimen.mesh:
+    if not BASES[basis].local or not scene.specimen.mesh:
         return ()
     from verify.methods.given_meshes import given_meshes
 
@@ -64,13 +66,13 @@ def _given(scene: Scene, basis: str) -> tuple[Any, ...]:
 
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:
-    """Of the mesh that the solver makes; coarse ones are quadratic through the arms, T-splines are graded there."""
+    """Of the mesh that the solver makes; coarse ones are quadratic through the arms, T-meshes are graded there."""
     from iga.specimen.specimen import element_length
 
     solver, problem = prepared.problem
     specimen = solver.build(problem)
     degree = min(min(block.degrees) for mesh in specimen.meshes for block in mesh.blocks)
-    return MeshFacts(element_length(specimen), degree, 0 if prepared.method is TSPLINE else 1)
+    return MeshFacts(element_length(specimen), degree, 0 if BASES[prepared.method.name].local else 1)
 
 
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
@@ -91,10 +93,11 @@ def _smooth(prepared: Prepared) -> bool:
 def require(prepared: Prepared) -> None:
     """Raise Unsuitable for a degree that the basis does not have, and where no mesh of the unknowns can be made."""
     scene, name = prepared.scene, prepared.method.name
-    mesh = scene.discretization
-    if name == TSPLINE.name and mesh.degree != 3:
-        raise Unsuitable(f"discretization.degree: must be 3 for tspline, got {mesh.degree}")
-    least = least_dofs(name, mesh.degree)
+    basis, mesh = BASES[name], scene.discretization
+    if mesh.degree not in basis.degrees:
+        degrees = " or ".join(map(str, basis.degrees))
+        raise Unsuitable(f"discretization.degree: must be {degrees} for {name}, got {mesh.degree}")
+    least = basis.least_dofs(mesh.degree)
     if mesh.dofs < least:
         text = f"must be >= {least} for {name} of degree {mesh.degree}, got {mesh.dofs}"
         raise Unsuitable(f"discretization.dofs: {text}")
@@ -111,54 +114,38 @@ def _require_mesh(prepared: Prepared) -> None:
         raise Unsuitable(f"discretization.{key}: {str(error).removeprefix('interface_rule ')}") from None
 
 
-def least_dofs(basis: str, degree: int) -> int:
-    """Unknowns of two elements along and one through each of two arms; T-splines halve the one on the crack path."""
-    along = 2 * degree + 1 if basis == LAGRANGE.name else degree + 2
-    return 4 * (degree + 1) * along + 4 * (basis == TSPLINE.name)
-
-
 def _laws() -> tuple[str, ...]:
     from iga.interface.laws import LAWS
 
     return tuple(LAWS)
 
 
-def _basis(name: str, **own: Any) -> Method:
-    """The method of a basis: what all have, and what is its own."""
+#: Colours of bases that have none of their own, on a light and on a dark page.
+SPARE = (("#6b5d00", "#d6c34a"), ("#006d77", "#63cdd6"), ("#7d4427", "#d9a283"))
+
+
+def _method(number: int, basis: Basis) -> Method:
+    """The method of a basis; ``number`` is its place among all of them."""
+    colours = basis.colours or SPARE[number % len(SPARE)]
+    line = Look(colours, 1.1 if basis.dashes else 1.2, basis.dashes, 1.0, 4.2 - 0.2 * number, basis.row)
     return Method(
-        name=name,
+        name=basis.name,
+        label=basis.label,
+        what=basis.what,
         solve=solve,
-        problem=partial(iga_problem, basis=name),
+        problem=partial(iga_problem, basis=basis.name),
         mesh=mesh_facts,
         require=require,
         laws=_laws,
         code="iga",
         packages=("iga",),
         with_dofs=True,
+        takes_files=basis.local,
+        mesh_error=basis.mesh_error,
+        place=number,
         per_step=0.01,
-        **own,
+        look=line,
     )
 
 
-TSPLINE = _basis(
-    "tspline",
-    label="T-spline",
-    what="isogeometric, T-splines",
-    takes_files=True,
-    look=Look(("#4b3fa0", "#b0a5ff"), 1.2, (), 1.0, 4.2, place=2),
-)
-NURBS = _basis(
-    "nurbs",
-    label="NURBS",
-    what="isogeometric, NURBS",
-    look=Look(("#0072b2", "#5bb8f0"), 1.2, (), 1.0, 4.0, place=1),
-)
-# Its elements are three times longer at equal unknowns, with about three of them in the process zone: J is 1.0 to 1.9 %
-# off on the packaged scenes, by the mesh and not by the solver.
-LAGRANGE = _basis(
-    "lagrange",
-    label="Lagrange",
-    what="isogeometric code, Lagrange basis",
-    mesh_error=0.02,
-    look=Look(("#bf5400", "#ff9a52"), 1.1, (5.0, 2.0), 1.0, 3.8, place=3),
-)
+OF_BASES = tuple(_method(number, basis) for number, basis in enumerate(BASES.values()))

@@ -43,5 +43,6 @@ BEAM = Method(
     fixed=_one_arm,  # of the laws it has the bilinear one: its zones are linear springs
     code="beam",
     equal_arms=True,
+    place=200,
     look=Look(("#b0478f", "#ee9ad2"), 1.5, (1.2, 1.8), 1.0, 4.5, place=4),
 )

@@ -5,9 +5,9 @@ import pytest
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_rectangle
-from iga.bases.unstructured import polygon_control, polygon_mesh, unstructured_mesh
 from iga.elements.shape_functions import block_basis, chain_basis
 from iga.mesh.quadrature import gauss, square
+from iga.tsplines.unstructured import polygon_control, polygon_mesh, unstructured_mesh
 
 #: Bernstein indices of a bicubic element on its four sides counterclockwise, from the side inwards (3 layers, 4).
 TABLE = np.arange(16).reshape(4, 4)
