@@ -113,7 +113,7 @@ def _supports(problem: Problem, arms: tuple[Body, ...]) -> Supports:
     along_rd = [point_row(A, along_i, P_AI.size) for A in at]
     if len(arms) == 1:
         return Supports(np.array(along_rd), np.array([soft]), free_d)
-    upper_d, lower_d = (mean_row(arm.face("left"), along_i, P_AI.size) for arm in arms)
-    ends_d = [edge_row(arm.face("right"), lambda X: np.abs(pose.own(X)[..., 1]), along_i, P_AI.size) for arm in arms]
+    upper_d, lower_d = (mean_row(arm.ends["left"], along_i, P_AI.size) for arm in arms)
+    ends_d = [edge_row(arm.ends["right"], lambda X: np.abs(pose.own(X)[..., 1]), along_i, P_AI.size) for arm in arms]
     rows = [along_rd[1], point_row(at[1], across_i, P_AI.size), upper_d - lower_d, ends_d[0] - ends_d[1]]
     return Supports(np.array(rows), np.array([soft, soft, soft, TIE * problem.E1 * problem.width]), free_d)

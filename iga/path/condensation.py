@@ -20,8 +20,10 @@ from scipy.linalg.lapack import dgbtrf, dgbtrs
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.linalg import splu
 
-from iga.interface.interface import Contact, Interface, forces
+from iga.interface.contact import Contact, DenseRows, Rows
+from iga.interface.interface import Interface, SettledInterface, forces
 from iga.path.point import Point
+from iga.system.bulk import CondensedBulk, LinearBulk
 from iga.system.system import System
 
 #: Rows, columns and values of a matrix.
@@ -86,44 +88,41 @@ def condensed(system: System) -> Condensed | None:
 
     It pays as long as a dense matrix of the interface is less work than a banded one of the whole.
     """
-    interface, rest = system.interface, system.interface.at_rest
-    if not system.linear or rest is None:
+    bulk, interface = system.bulk, system.interface
+    if not isinstance(bulk, LinearBulk) or not isinstance(interface, SettledInterface):
         return None
-    B_rd, kept_qd, weight_qd = _rows(system, rest)
+    B_rd, gap_rows = _rows(system)
     n_r = B_rd.shape[0]
-    if not _pays(system, n_r):
+    if not _pays(system, bulk, n_r):
         return None
-    found = _constrained(system, B_rd)
+    found = _constrained(system, bulk, B_rd)
     if found is None:
         return None
-    U_dr, S_rr = _balanced(system, B_rd, *found)
-    at_rest = replace(rest, pairing=None, dof_qd=kept_qd, V_qrd=weight_qd[:, None])
-    at_rest = replace(at_rest, full_qd=at_rest.rows(np.arange(interface.points), n_r).T)
+    U_dr, S_rr = _balanced(system, bulk, B_rd, *found)
+    at_rest = replace(interface.rest, pairing=None, gap_rows=DenseRows.of(gap_rows, n_r))
     small = System(
-        solids=(),
-        interface=replace(interface, master=None, at_rest=at_rest),
-        kinematics="linear",
+        bulk=CondensedBulk(0.5 * (S_rr + S_rr.T)),
+        interface=replace(interface, at_rest=at_rest),
         load_d=np.append(np.zeros(n_r - 1), 1.0),
         free_d=np.ones(n_r, dtype=bool),
         x_d=np.zeros(n_r),
         springs_rd=np.zeros((0, n_r)),
         spring_r=np.zeros(0),
-        bulk_dd=0.5 * (S_rr + S_rr.T),
     )
     fixed = np.flatnonzero(~system.free_d)
-    held_fr = _bulk_forces(system, U_dr)[fixed] if fixed.size else np.zeros((0, n_r))
-    return Condensed(small, system, U_dr, held_fr, fixed, rest)
+    held_fr = _bulk_forces(bulk, U_dr)[fixed] if fixed.size else np.zeros((0, n_r))
+    return Condensed(small, system, U_dr, held_fr, fixed, interface.rest)
 
 
-def _constrained(system: System, B_rd: coo_array) -> tuple[np.ndarray, np.ndarray] | None:
+def _constrained(system: System, bulk: LinearBulk, B_rd: coo_array) -> tuple[np.ndarray, np.ndarray] | None:
     """Displacements U_dr (n_dof, n_r) with a unit of each row ``B u``, and the stiffness S_rr of these.
 
     None where rows are linearly dependent, be it up to rounding.
     """
     free, n_r = np.flatnonzero(system.free_d), B_rd.shape[0]
     # rows as large as the stiffness: else the forces lose half of their digits to it
-    size = max(float(np.abs(K).max()) for K in system.linear_matrices)
-    saddle, place = _saddle(system, size * B_rd)
+    size = max(float(np.abs(K).max()) for K in bulk.matrices)
+    saddle, place = _saddle(system, bulk, size * B_rd)
     held, given_r, U_dr = place[system.n_dof :], np.zeros((free.size + n_r, n_r)), np.zeros((system.n_dof, n_r))
     given_r[held, np.arange(n_r)] = size
     found = _solved(saddle, given_r)
@@ -133,12 +132,14 @@ def _constrained(system: System, B_rd: coo_array) -> tuple[np.ndarray, np.ndarra
     return (U_dr, S_rr) if np.abs(S_rr).max() < CONDENSATION.stiffest * size else None
 
 
-def _balanced(system: System, B_rd: coo_array, U_dr: np.ndarray, S_rr: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _balanced(
+    system: System, bulk: LinearBulk, B_rd: coo_array, U_dr: np.ndarray, S_rr: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """The same, mended in place: a rigid motion causes no force, to the last digit, and the forces stay in balance.
 
     That holds for the motions that no spring resists and for those that no row feels.
     """
-    motions_dm = _rigid_motions(system)
+    motions_dm = _rigid_motions(system, bulk)
     rigid_dm = _without(system.springs_rd, motions_dm)
     U_dr -= _resting(system, _without(B_rd, motions_dm), U_dr)
     y_rm, triangle = np.linalg.qr(B_rd @ rigid_dm)
@@ -148,30 +149,30 @@ def _balanced(system: System, B_rd: coo_array, U_dr: np.ndarray, S_rr: np.ndarra
     return U_dr, S_rr
 
 
-def _pays(system: System, n_r: int) -> bool:
+def _pays(system: System, bulk: LinearBulk, n_r: int) -> bool:
     """Whether n_r dense equations are less work than a band, by its elements alone if they suffice."""
 
     def less(n: int, k: int) -> bool:
         return CONDENSATION.dense * n_r**3 <= CONDENSATION.banded * n * k**2
 
-    least = max(d.shape[1] for d in system.element_dofs) - 1
+    least = max(d.shape[1] for d in bulk.element_dofs) - 1
     return less(int(system.free_d.sum()), least) or less(system.band.n, system.band.k)
 
 
-def _rows(system: System, rest: Contact) -> tuple[coo_array, np.ndarray, np.ndarray]:
+def _rows(system: System) -> tuple[coo_array, Rows]:
     """Displacements that are kept, as rows B (n_r, n_dof), the opening last, and the gaps in them.
 
-    The gap of point q is the sum of ``weight_qd`` times the kept displacements ``kept_qd`` (n_q, n_d): on a straight
-    interface those along its normal, of pairs of control points that face each other only how far they are apart.
+    On a straight interface the displacements of its control points along its normal are kept, and of pairs of control
+    points that face each other only how far they are apart.
     """
-    interface = system.interface
-    n_i, V_qd = rest.n_qi[0], rest.V_qrd[:, 0]
+    interface, rest = system.interface, system.interface.rest
+    n_i, G_qd = rest.n_qi[0], rest.gap_rows.G_qd
     if np.abs(rest.n_qi - n_i).max() > CONDENSATION.straight:
         kept, kept_qd = _numbered(rest.dof_qd)
         entries: list[Entries] = [(np.arange(kept.size), kept, np.ones(kept.size))]
-        weight_qd = V_qd
+        weight_qd = G_qd
     else:
-        A_qd, weight_qd = rest.dof_qd[:, ::2] // 2, V_qd[:, ::2] * n_i[0] + V_qd[:, 1::2] * n_i[1]
+        A_qd, weight_qd = rest.dof_qd[:, ::2] // 2, G_qd[:, ::2] * n_i[0] + G_qd[:, 1::2] * n_i[1]
         facing = _facing(interface, A_qd, weight_qd)
         A, kept_qd = _numbered(A_qd if facing is None else facing[0])
         entries = _along(A, n_i)
@@ -184,7 +185,7 @@ def _rows(system: System, rest: Contact) -> tuple[coo_array, np.ndarray, np.ndar
     opening = np.flatnonzero(system.load_d)
     entries.append((np.full(opening.size, n_r - 1), opening, system.load_d[opening]))
     row, column, value = (np.concatenate([entry[i] for entry in entries]) for i in range(3))
-    return coo_array((value, (row, column)), shape=(n_r, system.n_dof)), kept_qd, weight_qd
+    return coo_array((value, (row, column)), shape=(n_r, system.n_dof)), Rows(kept_qd, weight_qd)
 
 
 def _facing(interface: Interface, A_qd: np.ndarray, weight_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
@@ -231,9 +232,9 @@ def _resting(system: System, unfelt_dm: np.ndarray, U_dr: np.ndarray) -> np.ndar
     return unfelt_dm @ np.linalg.lstsq(stretched_rm, stretch_rr, rcond=CONDENSATION.felt)[0]
 
 
-def _rigid_motions(system: System) -> np.ndarray:
+def _rigid_motions(system: System, bulk: LinearBulk) -> np.ndarray:
     """Those (n_dof, n_m) of the bodies that no support holds."""
-    bodies, body_d = _bodies(system)
+    bodies, body_d = _bodies(bulk, system.n_dof)
     x_Ai = system.interface.local_AI - system.interface.local_AI.mean(0)
     turn_d = np.stack([-x_Ai[:, 1], x_Ai[:, 0]], -1).ravel() / np.ptp(x_Ai, axis=0).max()
     rigid_dm = np.stack([np.tile([1.0, 0.0], len(x_Ai)), np.tile([0.0, 1.0], len(x_Ai)), turn_d], -1)
@@ -241,31 +242,31 @@ def _rigid_motions(system: System) -> np.ndarray:
     return np.concatenate([rigid_dm * (body_d == body)[:, None] for body in loose], axis=1)
 
 
-def _bulk_forces(system: System, U_dr: np.ndarray) -> np.ndarray:
+def _bulk_forces(bulk: LinearBulk, U_dr: np.ndarray) -> np.ndarray:
     """Forces (n_dof, n_r) of the bulk, element by element: each is blind to its own translation but for rounding."""
     f_dr = np.zeros_like(U_dr)
-    for K, d in zip(system.linear_matrices, system.element_dofs, strict=True):
+    for K, d in zip(bulk.matrices, bulk.element_dofs, strict=True):
         U_eair = U_dr[d].reshape(*d.shape[:1], -1, 2, U_dr.shape[1])
         f = K @ (U_eair - U_eair[:, :1]).reshape(*d.shape, -1)
-        gathered = csr_array((np.ones(d.size), (d.ravel(), np.arange(d.size))), shape=(system.n_dof, d.size))
+        gathered = csr_array((np.ones(d.size), (d.ravel(), np.arange(d.size))), shape=(len(U_dr), d.size))
         f_dr += gathered @ f.reshape(d.size, -1)
     return f_dr
 
 
-def _bodies(system: System) -> tuple[int, np.ndarray]:
+def _bodies(bulk: LinearBulk, n_dof: int) -> tuple[int, np.ndarray]:
     """How many bodies there are and the one of each unknown (n_dof,).
 
     Bodies are numbered one after the other: one ends where no element reaches from a control point to later ones.
     """
-    here = np.zeros(system.n_dof // 2 + 1, dtype=int)
-    for conn_ea in system.connectivity:
+    here = np.zeros(n_dof // 2 + 1, dtype=int)
+    for conn_ea in bulk.connectivity:
         np.add.at(here, conn_ea.min(1), 1)
         np.subtract.at(here, conn_ea.max(1), 1)
     ends = np.cumsum(here)[:-1] == 0
     return int(ends.sum()), np.repeat(np.cumsum(ends) - ends, 2)
 
 
-def _saddle(system: System, B_rd: coo_array) -> tuple[Entries, np.ndarray]:
+def _saddle(system: System, bulk: LinearBulk, B_rd: coo_array) -> tuple[Entries, np.ndarray]:
     """``[K B'; B 0]`` over the free unknowns and the multipliers, K with its springs; and the equation of each of both.
 
     Entries of one place add up. All are numbered along the specimen, each multiplier after what its row holds: the band
@@ -278,7 +279,7 @@ def _saddle(system: System, B_rd: coo_array) -> tuple[Entries, np.ndarray]:
     there = np.concatenate([np.flatnonzero(system.free_d), np.arange(n_dof, x_m.size)])
     place = np.full(x_m.size, -1, dtype=np.int32)
     place[there[np.argsort(x_m[there], kind="stable")]] = np.arange(there.size)
-    blocks = [*zip(system.element_dofs, system.linear_matrices, strict=True)]
+    blocks = [*zip(bulk.element_dofs, bulk.matrices, strict=True)]
     # each spring by itself: those of both ends together would be as wide as the specimen is long
     for a_d, spring in zip(springs_rd, system.spring_r, strict=True):
         held = np.flatnonzero(a_d)

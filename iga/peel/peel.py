@@ -57,6 +57,6 @@ def _supports(problem: Problem, bodies: tuple[Body, ...]) -> Supports:
     strip, substrate = bodies
     free_Ai = np.ones_like(control_points(bodies), dtype=bool)
     free_Ai[substrate.surface("bottom").conn_ca] = False
-    row_d = mean_row(strip.face("left"), problem.pose.axes_kI[0], free_Ai.size)
+    row_d = mean_row(strip.ends["left"], problem.pose.axes_kI[0], free_Ai.size)
     stiffness = problem.strip.E1 * problem.strip_thickness * problem.width / problem.strip_length
     return Supports(row_d[None], np.array([stiffness]), free_Ai.ravel())

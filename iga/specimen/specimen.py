@@ -7,17 +7,16 @@ from functools import cached_property
 
 import numpy as np
 
-from iga.elements.bulk import Solid, element_stiffness, full_matrices, gradient, joined
-from iga.elements.kinematics import KINEMATICS
+from iga.elements.bulk import Solid, joined
 from iga.interface.interface import Interface
-from iga.interface.surface import Surface, surface
 from iga.mesh.extraction import Mesh
 from iga.specimen.body import Body, bodies, slope_row
-from iga.specimen.bond import bond, control_points, faces, probe, slave_number
+from iga.specimen.bond import FACING, Joint, bond, faces, probe, slave_number
 from iga.specimen.delamination import Delamination
 from iga.specimen.load import pulled_row
 from iga.specimen.pose import Pose
 from iga.specimen.problem import Debonding, presses, smooth
+from iga.system.bulk import BULKS, ElementBulk
 from iga.system.system import System
 
 
@@ -27,7 +26,8 @@ class Specimen:
 
     ``load_at`` is where on its end the load acts (see `iga.specimen.load`). ``probe`` has two points, on the tip of the
     bond and on its far end. ``faces`` are samples of all that the bodies face of each other, bonded or not, where the
-    programme may close it.
+    programme may close it. ``ends`` are the end faces as a bulk of elements, with the sign of their strain energy in
+    the J-integral.
     """
 
     system: System
@@ -38,6 +38,7 @@ class Specimen:
     upper_is_slave: bool
     probe: Interface
     faces: Interface | None
+    ends: ElementBulk
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:
@@ -48,31 +49,8 @@ class Specimen:
         """Rows (n_dof,) of the mean slopes of the bodies' loaded faces, zero without one."""
         n, axes_kI = self.system.n_dof, self.pose.axes_kI
         return tuple(
-            slope_row(body.face(end), axes_kI[0], axes_kI[1], n) if end else np.zeros(n)
+            slope_row(body.ends[end], axes_kI[0], axes_kI[1], n) if end else np.zeros(n)
             for body, (end, _) in zip(self.bodies, self.layout.loads, strict=True)
-        )
-
-    @cached_property
-    def energy_sides(self) -> tuple[Solid, ...]:
-        """The ends whose strain energy enters the J-integral, its sign in what each point stands for."""
-        ends, copies = ("left", "right"), self.layout.copies
-        ends = ends if self.layout.bonded[0] < self.layout.bonded[1] else ends[::-1]
-        return joined(
-            [
-                Solid(replace(basis, dV_eq=sign * copies * basis.dV_eq), body.D)
-                for body in self.bodies
-                for end, sign in zip(ends, (1.0, -1.0), strict=True)
-                for basis in body.face(end)
-            ]
-        )
-
-    @cached_property
-    def energy_matrices(self) -> tuple[np.ndarray, ...]:
-        """Their stiffness (n_e, 2 n_a, 2 n_a), the sign with it, before anything moves; linear: for good."""
-        moduli, at_rest = KINEMATICS[self.system.kinematics].moduli, np.zeros((self.system.n_dof // 2, 2))
-        return tuple(
-            full_matrices(element_stiffness(side.basis, moduli(side.D, gradient(side.basis, at_rest))))
-            for side in self.energy_sides
         )
 
     @cached_property
@@ -118,41 +96,57 @@ def discretised(problem: Debonding, layout: Delamination) -> Specimen:
     pose = problem.pose
     # a mirror image that is not modelled counts in the width, so that forces and energies are those of the whole
     parts = bodies(layout.meshes, layout.elasticity, pose, layout.copies * problem.width, smooth(problem))
-    P_AI, supports = control_points(parts), layout.supports(parts)
+    joint, supports = Joint.of(problem, parts), layout.supports(parts)
     pulled = [
-        times * pulled_row(body, end, problem.load_at, pose, 1, P_AI.size)
+        times * pulled_row(body, end, problem.load_at, pose, 1, joint.P_AI.size)
         for body, (end, times) in zip(parts, layout.loads, strict=True)
         if end
     ]
     touching = layout.face if presses(problem) and layout.face != layout.bonded else None
+    bulk = BULKS[problem.kinematics]
     system = System(
-        solids=joined([solid for body in parts for solid in body.solids]),
-        interface=bond(problem, parts, layout.bonded, touching),
-        kinematics=problem.kinematics,
+        bulk=bulk(joined([solid for body in parts for solid in body.solids])),
+        interface=bond(joint, layout.bonded, touching),
         load_d=np.sum(pulled, axis=0),
         free_d=supports.free_d,
-        x_d=np.repeat(pose.own(P_AI)[:, 0], 2),
+        x_d=np.repeat(pose.own(joint.P_AI)[:, 0], 2),
         springs_rd=supports.springs_rd,
         spring_r=supports.spring_r,
     )
-    ends, opposite = probe(problem, parts, layout.bonded, system.interface), faces(problem, parts, layout.face)
-    upper_is_slave = slave_number(problem, parts) == 0
-    return Specimen(system, parts, pose, layout, problem.load_at, upper_is_slave, ends, opposite)
+    return Specimen(
+        system=system,
+        bodies=parts,
+        pose=pose,
+        layout=layout,
+        load_at=problem.load_at,
+        upper_is_slave=slave_number(problem, parts) == 0,
+        probe=probe(joint, layout.bonded, system.interface),
+        faces=faces(joint, layout.face),
+        ends=bulk(_ends(parts, layout)),
+    )
+
+
+def _ends(parts: tuple[Body, ...], layout: Delamination) -> tuple[Solid, ...]:
+    """The end faces whose strain energy enters the J-integral, with its sign in the lengths of their points."""
+    ends = ("left", "right") if layout.bonded[0] < layout.bonded[1] else ("right", "left")
+    return joined(
+        [
+            Solid(replace(basis, dV_eq=sign * layout.copies * basis.dV_eq), body.D)
+            for body in parts
+            for end, sign in zip(ends, (1.0, -1.0), strict=True)
+            for basis in body.ends[end]
+        ]
+    )
 
 
 def element_length(specimen: Specimen) -> float:
     """Longest element side where the crack is to run, of either body: the one that resolves a process zone least."""
-    P_AI, first, longest = specimen.system.interface.P_AI, 0, 0.0
-    for mesh, side in zip(specimen.meshes, ("bottom", "top"), strict=False):
-        start_ci, end_ci = _ends(surface(mesh, mesh.chains[side], first), P_AI)
+    P_AI, longest = specimen.system.interface.P_AI, 0.0
+    for body, side in zip(specimen.bodies, FACING, strict=False):
+        face = body.surface(side)
+        Q_cbi = face.bezier_points(P_AI) / face.w_cb[..., None]
+        start_ci, end_ci = Q_cbi[:, 0], Q_cbi[:, -1]
         middle_c = specimen.distance(0.5 * (start_ci + end_ci))
         met = (middle_c > specimen.layout.free_length) & (middle_c < specimen.layout.path_end)
         longest = max(longest, float(np.linalg.norm(end_ci - start_ci, axis=1)[met].max(initial=0.0)))
-        first += len(mesh.P_AI)
     return longest
-
-
-def _ends(face: Surface, P_AI: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """First and last point (n_c, 2) of every side."""
-    Q_cbi = face.bezier_points(P_AI) / face.w_cb[..., None]
-    return Q_cbi[:, 0], Q_cbi[:, -1]

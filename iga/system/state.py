@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.interface.closest_point import Pairing
-from iga.interface.interface import Contact
+from iga.interface.contact import Contact
 
 
 @dataclass(frozen=True)
