@@ -2,8 +2,9 @@
 
 Every quadrature point of the slave meets the master on its own; the gap along the master's normal drives one traction
 law for opening and closing (Dimitri, De Lorenzis, Zavarise 2013; De Lorenzis, Temizer, Wriggers, Zavarise 2011). An
-interface is one of two kinds: a `SearchedInterface` projects its points on the master in every configuration, a
-`SettledInterface` keeps pairs and normals of the reference configuration.
+interface is one of three kinds: a `SearchedInterface` projects its points on the master in every configuration, a
+`SettledInterface` keeps pairs and normals of the reference configuration, and the points of a `PairedInterface` meet
+given control points.
 """
 
 from __future__ import annotations
@@ -162,10 +163,9 @@ class SearchedInterface(Interface):
 
 @dataclass(frozen=True)
 class SettledInterface(Interface):
-    """Every point keeps its pair and its normal: gaps are linear in the displacements.
+    """Every point keeps its place on the master and the normal there, as is exact in linear kinematics.
 
-    Exact in linear kinematics, and for lumped points, which meet a control point each, by definition. The variation of
-    the gaps is that of the contact ``at_rest``.
+    Gaps change in proportion to the displacements, from the contact ``at_rest`` on and with its rows.
     """
 
     at_rest: Contact
@@ -182,24 +182,36 @@ class SettledInterface(Interface):
         return replace(self.at_rest, g_q=self.at_rest.g_q + self.at_rest.rates(u_d))
 
 
+@dataclass(frozen=True)
+class PairedInterface(Interface):
+    """Every point keeps the control points that it meets, and a normal ``n_qi`` (n_q, 2); no surface is searched.
+
+    The jump at a point is the sum of ``D_qa`` (n_q, n_c) times the displacements of the control points ``both_qa``:
+    slave minus master, or twice the slave where it meets its mirror image.
+    """
+
+    both_qa: np.ndarray
+    D_qa: np.ndarray
+    n_qi: np.ndarray
+
+    @cached_property
+    def rest(self) -> Contact:
+        n_q, rows = self.points, Rows(dofs(self.both_qa), _along(self.D_qa, self.n_qi))
+        return Contact(None, np.zeros(n_q), self.n_qi, np.ones(n_q), rows)
+
+    @property
+    def pairing(self) -> None:
+        return None
+
+    def contact(self, u_d: np.ndarray, guess: Pairing | None = None) -> Contact:
+        jump_qi = (self.D_qa[:, None] @ u_d.reshape(-1, 2)[self.both_qa])[:, 0]
+        return replace(self.rest, g_q=np.sum(jump_qi * self.n_qi, -1))
+
+
 def settled(interface: Interface) -> SettledInterface:
     """The same interface with the pairs and normals of the reference configuration."""
     common = {field.name: getattr(interface, field.name) for field in fields(Interface)}
     return SettledInterface(**common, at_rest=interface.rest)
-
-
-def known_pairs(N_qa: np.ndarray, conn_qa: np.ndarray, twin_qa: np.ndarray | None, n_qi: np.ndarray) -> Contact:
-    """Reference contact of points that meet control points ``twin_qa`` of the master with the same functions.
-
-    Gaps are measured along the normals n_qi (n_q, 2). Where ``twin_qa`` is None every point meets its mirror image in
-    the straight line that the slave lies on: the gap is twice the distance from it.
-    """
-    if twin_qa is None:
-        rows = Rows(dofs(conn_qa), _along(2.0 * N_qa, n_qi))
-    else:
-        both_qa = np.concatenate([conn_qa, twin_qa], axis=1)
-        rows = Rows(dofs(both_qa), _along(np.concatenate([N_qa, -N_qa], axis=1), n_qi))
-    return Contact(None, np.zeros(len(N_qa)), n_qi, np.ones(len(N_qa)), rows)
 
 
 def traction(

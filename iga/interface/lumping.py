@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from iga.interface.interface import Interface, SearchedInterface, SettledInterface, known_pairs
+from iga.interface.interface import Interface, PairedInterface, SearchedInterface
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Pairs:
     n_qi: np.ndarray
 
 
-def lumped(*parts: Interface) -> SettledInterface:
+def lumped(*parts: Interface) -> PairedInterface:
     """One interface of several parts, with control points for points on those that are bonded.
 
     Point A has the area ``w_A = int R_A dGamma`` and the gap ``g_A = (u_A^s - u_A^m) . n_A``, the jump of the control
@@ -68,8 +68,7 @@ def lumped(*parts: Interface) -> SettledInterface:
     N_qa = np.concatenate([np.pad(one.N_qa, ((0, 0), (0, n_a - one.N_qa.shape[1]))) for one in pairs])
     conn_qa = np.concatenate([_padded(one.conn_qa, n_a) for one in pairs])
     twins = [_padded(one.twin_qa, n_a) for one in pairs if one.twin_qa is not None]
-    n_qi = np.concatenate([one.n_qi for one in pairs])
-    return SettledInterface(
+    return PairedInterface(
         N_qa=N_qa,
         conn_qa=conn_qa,
         dA_q=np.concatenate([one.dA_q for one in pairs]),
@@ -77,7 +76,9 @@ def lumped(*parts: Interface) -> SettledInterface:
         P_AI=parts[0].P_AI,
         law=parts[0].law,
         bonded_q=np.repeat([part.all_bonded for part in parts], [len(one.dA_q) for one in pairs]),
-        at_rest=known_pairs(N_qa, conn_qa, np.concatenate(twins) if twins else None, n_qi),
+        both_qa=np.concatenate([conn_qa, np.concatenate(twins)], axis=1) if twins else conn_qa,
+        D_qa=np.concatenate([N_qa, -N_qa], axis=1) if twins else 2.0 * N_qa,
+        n_qi=np.concatenate([one.n_qi for one in pairs]),
     )
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from iga.interface.interface import Interface, SearchedInterface, SettledInterface, known_pairs, settled
+from iga.interface.interface import Interface, PairedInterface, SearchedInterface, settled
 from iga.interface.laws import TractionLaw
 from iga.interface.lumping import lumped
 from iga.interface.surface import Surface
@@ -83,8 +83,8 @@ class Joint:
             return between(self.slave, self.master, self.P_AI, problem.law, places, problem.width)
         points = _points(self.slave, self.P_AI, places, problem.width)
         n_qi = np.broadcast_to(problem.pose.axes_kI[1], points["X_qi"].shape)
-        at_rest = known_pairs(points["N_qa"], points["conn_qa"], None, n_qi)
-        return SettledInterface(**points, law=problem.law, at_rest=at_rest)
+        pairs = {"both_qa": points["conn_qa"], "D_qa": 2.0 * points["N_qa"], "n_qi": n_qi}
+        return PairedInterface(**points, law=problem.law, **pairs)
 
     def simulated(self, interface: Interface) -> Interface:
         """An interface with the pairs and normals of the reference configuration where the problem asks for these."""

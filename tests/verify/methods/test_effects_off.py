@@ -227,5 +227,5 @@ def test_one_arm_has_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(interface_of, name, never)
     assert solved(one).status == "complete"
     monkeypatch.undo()
-    monkeypatch.setattr(bond_of, "known_pairs", never)
+    monkeypatch.setattr(bond_of, "PairedInterface", never)
     assert solved(replace(both, opening=(0.2,), steps=5)).status == "complete"
