@@ -1,4 +1,4 @@
-"""A configuration, what the bodies and the bond answer to it, and what the work on the way there has become."""
+"""A configuration, the response of bulk and interface to it, and its energies."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ from iga.interface.contact import Contact
 class State:
     """A configuration: displacements u_d (n_dof,), load, history k_q (n_q,).
 
-    ``scale`` is the largest force scale (see `Response`) of all converged states so far. ``closed_q`` (n_q,) and
-    ``pairing``, which points were in contact and where the interface met, are where the next search starts, not
-    history. ``slid`` is history again: what has gone with points that slid off the master, beyond what
+    ``scale`` is the largest force scale (see `Response`) of all converged states so far. ``closed_q`` (n_q,), the
+    points in contact, and ``pairing``, where they met the master, are where the next search starts, not history. ``slid`` is history again: what has gone with points that slid off the master, beyond what
     `iga.system.system.energies` would count of them as dissipated.
     """
 
