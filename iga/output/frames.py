@@ -24,8 +24,8 @@ def frame(specimen: Specimen, point: Point) -> dict[str, Any]:
     (n_q, 2) of the element the Cauchy stress stress_eqv (n_e, n_q, 3) in Voigt order with along_eqk (n_e, n_q, 2), the
     second Piola-Kirchhoff stress along the axes of the material over det F.
 
-    These points are Gauss points, p + 1 and q + 1: what is interpolated there is the projection onto the polynomials of
-    the element that this rule makes.
+    These points are p + 1 by q + 1 Gauss points: polynomials that interpolate the values there are the discrete L2
+    projection by this rule.
     """
     cells = [part for number in range(len(specimen.bodies)) for part in _cells(specimen, number, point.state.u_d)]
     return {"opening": point.opening, "load": point.state.load, "cells": cells, "bond": _bond(specimen, point)}

@@ -58,7 +58,7 @@ def reach(specimen: Specimen, k_q: np.ndarray, limit: float) -> float:
         return specimen.layout.free_length
     last = beyond[-1]
     onward = 0.0 if last == len(k) - 1 else (s[last + 1] - s[last]) * (k[last] - limit) / (k[last] - k[last + 1])
-    # control points as points: those of splines reach back over the tip of the bond
+    # lumped points are control points, and those of splines may lie before the tip of the bond
     return max(float(s[last] + onward), specimen.layout.free_length)
 
 
@@ -110,7 +110,7 @@ def _balance(specimen: Specimen, point: Point, spring_Ai: np.ndarray) -> dict[st
 
 
 def _clamp(specimen: Specimen, point: Point, spring_Ai: np.ndarray) -> dict[str, float]:
-    """Reactions less the load, moment of the clamp, and what acts lengthwise on the upper body: tractions, springs."""
+    """Reactions less the load, moment of the clamp, and forces along the upper body of tractions and springs."""
     system, state, pose, touch = specimen.system, point.state, specimen.pose, point.response.contact
     fixed_Ai = pose.components(np.where(system.free_d, 0.0, point.response.internal_d).reshape(-1, 2))
     spring_Ai, load_Ai = pose.components(spring_Ai), pose.components(state.load * system.load_d.reshape(-1, 2))

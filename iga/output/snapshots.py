@@ -38,7 +38,7 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
 
 
 def _tmesh(specimen: Specimen) -> dict[str, np.ndarray]:
-    """Edges and T-junctions of the T-meshes, where there are some."""
+    """Edges and T-junctions of the T-meshes, if any."""
     meshes = specimen.layout.tmeshes
     if not meshes:
         return {}

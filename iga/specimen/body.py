@@ -16,7 +16,7 @@ from iga.specimen.pose import Pose
 
 #: Intervals between samples along each direction of an element.
 ELEMENT_SAMPLES = 3
-#: Part of a body's size by which it may differ from another one moved, by rounding.
+#: Part of a body's size by which rounding may change a body that is another one moved.
 MOVED_ALIKE = 1e-14
 
 
@@ -72,7 +72,7 @@ def bodies(
 
 
 def _alike(a: Mesh, b: Mesh) -> bool:
-    """Whether two meshes are one, moved: they share what they are made of."""
+    """Whether two meshes are translations of each other: they share blocks, chains and weights."""
     if a.blocks is not b.blocks or a.chains is not b.chains or a.w_A is not b.w_A:
         return False
     apart_AI = b.P_AI - a.P_AI
@@ -123,8 +123,8 @@ def mean_row(face: tuple[BlockBasis, ...], direction_i: np.ndarray, n_dof: int) 
 
 
 def edge_row(face: tuple[BlockBasis, ...], depth: Callable, direction_i: np.ndarray, n_dof: int) -> np.ndarray:
-    """Row (n_dof,) that gives the displacement of a face in one direction as the straight line nearest to it has it at
-    the depth 0: the force that belongs to it is spread over the face, and acts there.
+    """Row (n_dof,) that gives the displacement of a face in one direction at the depth 0 of the straight line nearest
+    to it: the conjugate force is spread over the face and acts there.
 
     Parameters
     ----------

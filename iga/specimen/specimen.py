@@ -1,4 +1,4 @@
-"""A discrete specimen: its system and what it takes to read it."""
+"""A discrete specimen: its system, its bodies, and what evaluates its states."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from iga.system.system import System
 
 @dataclass(frozen=True)
 class Specimen:
-    """A system and what it takes to read it: bodies (upper first), pose, and its layout.
+    """A system, its bodies (upper first), pose and layout.
 
     ``load_at`` is where on its end the load acts (see `iga.specimen.load`). ``probe`` has two points, on the tip of the
-    bond and on its far end. ``faces`` are samples of all that the bodies face of each other, bonded or not, where the
-    programme may close it. ``ends`` are the end faces as a bulk of elements, with the sign of their strain energy in
-    the J-integral.
+    bond and on its far end. ``faces`` are samples of the whole faces that are opposite to each other, bonded or not,
+    where the programme may close them. ``ends`` are the end faces as a bulk of elements, with the sign of their strain
+    energy in the J-integral.
     """
 
     system: System
@@ -60,17 +60,17 @@ class Specimen:
 
     @cached_property
     def sampled_places(self) -> tuple[np.ndarray, ...]:
-        """Where these points lie, (n_e, n_q, 2), in the specimen's own frame."""
+        """Places of these points (n_e, n_q, 2) in the specimen's own frame."""
         return tuple(self.pose.own(solid.basis.X_eqI) for solid in self.sampled)
 
     @cached_property
     def face_row(self) -> np.ndarray:
-        """Row (n_dof,) of the displacement along the specimen of where the load acts on the upper body."""
+        """Row (n_dof,) of the displacement along the specimen at the load on the upper body."""
         return pulled_row(self.bodies[0], self.layout.loads[0][0], self.load_at, self.pose, 0, self.system.n_dof)
 
     @cached_property
     def beside_probe(self) -> np.ndarray:
-        """Points of the interface next to those of the probe, which meet the master close by."""
+        """Points of the interface nearest to those of the probe: their search starts there."""
         return self.system.interface.beside(self.probe.X_qi)
 
     @cached_property
@@ -92,9 +92,9 @@ class Specimen:
 
 
 def discretised(problem: Debonding, layout: Delamination) -> Specimen:
-    """Discrete system of a specimen with all that is needed to read results from its states."""
+    """The discrete specimen of a problem with a layout."""
     pose = problem.pose
-    # a mirror image that is not modelled counts in the width, so that forces and energies are those of the whole
+    # the width counts a mirror image that is not modelled: forces and energies are those of both
     parts = bodies(layout.meshes, layout.elasticity, pose, layout.copies * problem.width, smooth(problem))
     joint, supports = Joint.of(problem, parts), layout.supports(parts)
     pulled = [
@@ -140,7 +140,7 @@ def _ends(parts: tuple[Body, ...], layout: Delamination) -> tuple[Solid, ...]:
 
 
 def element_length(specimen: Specimen) -> float:
-    """Longest element side where the crack is to run, of either body: the one that resolves a process zone least."""
+    """Longest element side on the expected crack path, of either body: it limits how a process zone is resolved."""
     P_AI, longest = specimen.system.interface.P_AI, 0.0
     for body, side in zip(specimen.bodies, FACING, strict=False):
         face = body.surface(side)

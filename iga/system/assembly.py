@@ -23,10 +23,10 @@ Gradients = tuple[np.ndarray, ...]
 
 
 @dataclass(frozen=True)
-class Fixed:
-    """What a system adds to the tangent in every state: ``row``, ``column``, ``value`` of its springs, lower half.
+class Springs:
+    """Springs of a system: ``row``, ``column`` and ``value`` of their entries in the lower half of the tangent.
 
-    ``loaded`` are the degrees of freedom of the load.
+    ``loaded`` are the degrees of freedom of the load, of one more spring that holds the opening.
     """
 
     row: np.ndarray
@@ -35,14 +35,14 @@ class Fixed:
     loaded: np.ndarray
 
     @staticmethod
-    def of(springs_rd: np.ndarray, spring_r: np.ndarray, loaded: np.ndarray) -> Fixed:
+    def of(springs_rd: np.ndarray, spring_r: np.ndarray, loaded: np.ndarray) -> Springs:
         """Of springs of stiffness spring_r (n_r,) on the displacements ``springs_rd @ u`` (n_r,)."""
         parts = [np.zeros((3, 0))]
         for a_d, k in zip(springs_rd, spring_r, strict=True):
             row, column = lower_half(np.flatnonzero(a_d))
             parts.append(np.stack([row, column, k * a_d[row] * a_d[column]]))
         row, column, value = np.concatenate(parts, axis=1)
-        return Fixed(row.astype(int), column.astype(int), value, loaded)
+        return Springs(row.astype(int), column.astype(int), value, loaded)
 
     def held(self, band: Band | Dense) -> np.ndarray:
         """Places of the lower half of ``f f'``, f the load."""
@@ -62,7 +62,7 @@ class TangentPattern(ABC):
 
     @abstractmethod
     def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, Skew | None]:
-        """The lower half (band.size,) and what the upper half has more, at a response."""
+        """The lower half (band.size,) of the tangent at a response, and the upper half minus the lower one."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Pattern(TangentPattern):
     def of(
         numbering: Band | Dense,
         dof_qd: np.ndarray,
-        fixed: Fixed,
+        springs: Springs,
         assembler: Callable[[Band | Dense], Callable[[Gradients], np.ndarray]],
         kept: TangentPattern | None,
     ) -> Pattern:
@@ -95,8 +95,8 @@ class Pattern(TangentPattern):
         touching = lower_half(dof_qd)
         band = numbering.reaching(*touching)
         bulk = kept.bulk if isinstance(kept, Pattern) and kept.band.size == band.size else assembler(band)
-        positions = _positions(band, touching, (fixed.row, fixed.column))
-        return Pattern(dof_qd, band, fixed.held(band), bulk, positions, fixed.value)
+        positions = _positions(band, touching, (springs.row, springs.column))
+        return Pattern(dof_qd, band, springs.held(band), bulk, positions, springs.value)
 
     def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, Skew | None]:
         touch = response.contact
@@ -124,7 +124,7 @@ class DensePattern(TangentPattern):
 
 
 def element_sums(conns: Sequence[np.ndarray], band: Band | Dense) -> csr_array:
-    """Sums (band.size, n_values) of the entries of the element stiffness, of each symmetric pair one."""
+    """Matrix (band.size, n_values) that sums the entries of the element stiffness, one of each symmetric pair."""
     places, columns, first = [], [], 0
     for conn_ea in conns:
         n_e, n_a = conn_ea.shape
@@ -141,7 +141,7 @@ def element_values(parts: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def skew_part(dof_qd: np.ndarray, K_qdd: np.ndarray) -> Skew:
-    """What the upper halves of some matrices (n_q, n_d, n_d) over dof_qd have more than the lower ones."""
+    """Upper halves of some matrices (n_q, n_d, n_d) over dof_qd minus their lower ones."""
     i, j = np.triu_indices(K_qdd.shape[1], 1)
     row, column, value = dof_qd[:, i], dof_qd[:, j], K_qdd[:, i, j] - K_qdd[:, j, i]
     return Skew(row.ravel(), column.ravel(), value.ravel())

@@ -19,7 +19,7 @@ from iga.algebra.dense import Dense
 from iga.elements.bulk import Solid, element_forces, element_stiffness, energy, full_matrices, gradient, relative
 from iga.elements.kinematics import FINITE, LINEAR, Kinematics
 from iga.interface.interface import dofs
-from iga.system.assembly import DensePattern, Fixed, Gradients, Pattern, TangentPattern, element_sums, element_values
+from iga.system.assembly import DensePattern, Gradients, Pattern, Springs, TangentPattern, element_sums, element_values
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Bulk(Protocol):
         ...
 
     def pattern(
-        self, numbering: Band | Dense, dof_qd: np.ndarray, fixed: Fixed, kept: TangentPattern | None
+        self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
     ) -> TangentPattern:
         """Where all entries of the tangent go when the points depend on dof_qd; ``kept`` is the pattern before."""
         ...
@@ -121,9 +121,9 @@ class ElementBulk(ABC):
         return number([*self.element_dofs, *groups], x_d, free_d)
 
     def pattern(
-        self, numbering: Band | Dense, dof_qd: np.ndarray, fixed: Fixed, kept: TangentPattern | None
+        self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
     ) -> Pattern:
-        return Pattern.of(numbering, dof_qd, fixed, self.assembler, kept)
+        return Pattern.of(numbering, dof_qd, springs, self.assembler, kept)
 
     @abstractmethod
     def energy(self, u_d: np.ndarray) -> float:
@@ -221,9 +221,9 @@ class CondensedBulk:
         return Dense(free_d.size)
 
     def pattern(
-        self, numbering: Band | Dense, dof_qd: np.ndarray, fixed: Fixed, kept: TangentPattern | None
+        self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
     ) -> DensePattern:
-        return DensePattern(dof_qd, numbering, fixed.held(numbering), self.K_dd.ravel())
+        return DensePattern(dof_qd, numbering, springs.held(numbering), self.K_dd.ravel())
 
 
 #: Bulk of a specimen by the name of its kinematics.

@@ -14,7 +14,7 @@ from iga.algebra.dense import Dense
 from iga.algebra.factors import Inverse, held_inverse, inverse
 from iga.interface.contact import Contact
 from iga.interface.interface import Interface, forces, holding, traction
-from iga.system.assembly import Fixed, TangentPattern, lower_half
+from iga.system.assembly import Springs, TangentPattern, lower_half
 from iga.system.bulk import Bulk
 from iga.system.state import Energies, Response, State
 
@@ -30,10 +30,10 @@ def untimed(_name: str) -> AbstractContextManager:
 class Scales:
     """What forces are compared with.
 
-    A residual is judged by the forces in play, at least by the part ``unloaded`` of the largest so far. The spring that
-    holds the opening while a tangent is factorised is ``hold`` times as stiff as the unloaded specimen: more than any
-    load falls by, and little that rounding could take from what it is taken away from again. Points with less than the
-    part ``still`` of the forces neither open nor close.
+    A residual is judged by the present forces, at least by the part ``unloaded`` of the largest so far. The spring that
+    holds the opening while a tangent is factorised is ``hold`` times as stiff as the unloaded specimen: stiff enough
+    for any slope at which a load falls, soft enough to lose no digits when it is subtracted again. Points whose gap is
+    worth less than the part ``still`` of the forces neither open nor close.
     """
 
     unloaded: float = 1e-3
@@ -48,12 +48,12 @@ SCALES = Scales()
 class System:
     """All that stays the same during a run.
 
-    ``load_d`` (n_dof,) is the load vector for a unit resultant and, being the mean over the loaded faces, at once the
+    ``load_d`` (n_dof,) is the load vector for a unit resultant and, since it averages over the loaded faces, also the
     row that measures the opening. ``x_d`` (n_dof,) is the coordinate along the specimen, used for numbering.
 
     Rigid motions that nothing else resists are held by springs of stiffness ``spring_r`` (n_r,) on the displacements
-    ``springs_rd @ u`` (n_r,), in any direction and of any group of points; where they are as many as the motions of the
-    whole, balance itself says that they carry no force. ``free_d`` is False where a degree of freedom is fixed.
+    ``springs_rd @ u`` (n_r,), in any direction and of any group of points; where there are as many as rigid motions of
+    the whole, they carry no force, by balance. ``free_d`` is False where a degree of freedom is fixed.
     """
 
     bulk: Bulk
@@ -79,36 +79,37 @@ class System:
         return State(np.zeros(self.n_dof), 0.0, np.zeros(n_q), np.zeros(n_q, dtype=bool), self.interface.pairing)
 
     def spring_forces(self, u_d: np.ndarray) -> np.ndarray:
-        """Forces (n_r,) that the springs exert on the bodies, along their own displacements."""
+        """Forces (n_r,) of the springs on the bodies, along their own displacements."""
         return -self.spring_r * (self.springs_rd @ u_d)
 
     @cached_property
-    def fixed(self) -> Fixed:
-        """What springs and load add to the tangent."""
-        return Fixed.of(self.springs_rd, self.spring_r, np.flatnonzero(self.load_d))
+    def springs(self) -> Springs:
+        """Entries of the springs in the tangent."""
+        return Springs.of(self.springs_rd, self.spring_r, np.flatnonzero(self.load_d))
 
     @cached_property
     def loads_squared(self) -> np.ndarray:
         """Lower half of ``f f'`` over the degrees of freedom of the load f."""
-        row, column = lower_half(self.fixed.loaded)
+        row, column = lower_half(self.springs.loaded)
         return self.load_d[row] * self.load_d[column]
 
     @cached_property
     def band(self) -> Band | Dense:
         """Numbering for bulk and interface in the reference configuration; sliding may need a wider band."""
-        springs = [np.flatnonzero(a_d)[None] for a_d in self.springs_rd]
-        groups = [self.interface.rest.dof_qd, *springs, self.fixed.loaded[None]]
+        held = [np.flatnonzero(a_d)[None] for a_d in self.springs_rd]
+        groups = [self.interface.rest.dof_qd, *held, self.springs.loaded[None]]
         return self.bulk.numbering(groups, self.x_d, self.free_d)
 
     @cached_property
     def rest_pattern(self) -> TangentPattern:
         """The pattern of the tangent in the reference configuration."""
-        return self.bulk.pattern(self.band, self.interface.rest.dof_qd, self.fixed, None)
+        return self.bulk.pattern(self.band, self.interface.rest.dof_qd, self.springs, None)
 
     def pattern(self, response: Response, kept: TangentPattern | None = None) -> TangentPattern:
         """The pattern of the tangent at a response; ``kept`` is the last one, which seldom changes.
 
-        An open crack asks for no entries in the matrix, however far it has moved.
+        Points without a traction keep their places of the reference configuration: an open crack does not widen the
+        band, however far it has moved.
         """
         touched_qd, rest_qd = response.contact.dof_qd, self.interface.rest.dof_qd
         if touched_qd is rest_qd:  # no point has moved along the master
@@ -118,11 +119,11 @@ class System:
         known = kept or self.rest_pattern
         if np.array_equal(known.dof_qd, dof_qd):
             return known
-        return self.bulk.pattern(self.band, dof_qd, self.fixed, known)
+        return self.bulk.pattern(self.band, dof_qd, self.springs, known)
 
     @cached_property
     def hold(self) -> float:
-        """Stiffness of the spring that holds the opening while a tangent is factorised; 0 where none is known."""
+        """Stiffness of the spring that holds the opening while a tangent is factorised; 0 for a singular system."""
         found = inverse(*tangent_matrix(self, respond(self, self.start(), decide=False)), self.load_d)
         compliance = 0.0 if found is None else abs(float(self.load_d @ found.under_load_d))
         return SCALES.hold / compliance if compliance > 0.0 else 0.0
@@ -131,8 +132,7 @@ class System:
 def respond(system: System, trial: State, decide: bool = True) -> Response:
     """Forces of a trial state, whose history is that of the last converged one.
 
-    Unless asked to ``decide`` anew by the sign of the gap, every point stays in contact or out of it as it is in
-    ``trial``.
+    Contact is decided by the sign of the gap at every point, or, without ``decide``, stays as it is in ``trial``.
     """
     interface, bulk = system.interface, system.bulk.respond(trial.u_d)
     touch = interface.contact(trial.u_d, trial.pairing)
@@ -145,7 +145,7 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
 
 
 def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.ndarray:
-    """Points with a negative gap; where the gap is worth no force, as they were: its sign is rounding."""
+    """Points in contact, by the sign of the gap; unchanged where the gap is rounding and worth no force."""
     interface = system.interface
     stiffest = max(interface.law.penalty, interface.law.stiffness)
     nothing_q = np.abs(touch.g_q) * stiffest * interface.dA_q <= SCALES.still * scale
@@ -153,7 +153,7 @@ def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.nd
 
 
 def energies(system: System, state: State, response: Response) -> Energies:
-    """What is stored and dissipated at a state with its history."""
+    """Stored and dissipated energies at a state with its history."""
     interface, touch = system.interface, response.contact
     cohesive_q, contact_q, dissipated_q = interface.law.energies(touch.g_q, state.k_q)
     cohesive = float(interface.dA_q @ (np.where(holding(interface, touch), touch.share_q, 0.0) * cohesive_q))
@@ -169,7 +169,7 @@ def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
 
 
 def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np.ndarray, Skew | None]:
-    """Derivative of the forces by the displacements: the band, the lower half (band.size,), and what is skew."""
+    """Derivative of the forces by the displacements: the band, the lower half (band.size,), and the skew part."""
     pattern = system.pattern(response)
     return pattern.band, *pattern.tangent(system.interface, response)
 

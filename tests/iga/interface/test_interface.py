@@ -11,6 +11,7 @@ from iga.bases.lagrange import lagrange_rectangle
 from iga.dcb.dcb import build
 from iga.dcb.problem import Problem
 from iga.interface.closest_point import PROJECTION, closest_points, nearest_samples
+from iga.interface.contact import DenseRows, Rows
 from iga.interface.interface import SettledInterface, forces, settled, stiffness, traction
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
@@ -240,3 +241,16 @@ def test_surfaces_touch_that_are_apart_by_less_than_a_billionth_of_the_model(uni
         assert np.all(apart_qi == 0.0) == touches
         if not touches:
             assert np.abs(apart_qi[:, 1]) == pytest.approx(part * 6.0 * unit, rel=1e-3)
+
+
+def test_rows_over_all_unknowns_are_those_over_a_few(rng):
+    """Rates, gradients and forces, of all and of some points."""
+    dof_qd = np.array([[0, 3, 5], [1, 3, 4], [5, 0, 2], [2, 2, 1]])  # the last one names an unknown twice
+    few, n_dof, q = Rows(dof_qd, rng.standard_normal((4, 3))), 6, np.array([3, 1])
+    every = DenseRows.of(few, n_dof)
+    for v in (rng.standard_normal(n_dof), rng.standard_normal((n_dof, 2))):
+        assert np.allclose(every.rates(v), few.rates(v), atol=1e-14)
+        assert np.allclose(every.rates(v, q), few.rates(v, q), atol=1e-14)
+    assert np.array_equal(every.gradients(q, n_dof), few.gradients(q, n_dof))
+    f_q = rng.standard_normal(4)
+    assert np.allclose(every.forces(f_q, n_dof), few.forces(f_q, n_dof), atol=1e-14)
