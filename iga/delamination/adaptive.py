@@ -162,7 +162,8 @@ def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State |
 
 def _history(old: Specimen, new: Specimen, k_q: np.ndarray) -> np.ndarray | None:
     """History at the points of the new mesh; None where a point that is being damaged would be lost."""
-    (s_old, held_q), (s_new, holds_q) = (_held(specimen) for specimen in (old, new))
+    s_old, s_new = (specimen.distance(specimen.system.interface.X_qi) for specimen in (old, new))
+    held_q, holds_q = old.system.interface.bonded_q, new.system.interface.bonded_q
     order = np.flatnonzero(held_q)[np.argsort(s_old[held_q])]
     s, k = s_old[order], k_q[order]
     right = np.clip(np.searchsorted(s, s_new), 1, len(s) - 1)
@@ -175,10 +176,3 @@ def _history(old: Specimen, new: Specimen, k_q: np.ndarray) -> np.ndarray | None
     if np.any(active & ~kept):
         return None
     return np.where(holds_q, np.where(same, k[nearest], np.interp(s_new, s, k)), 0.0)
-
-
-def _held(specimen: Specimen) -> tuple[np.ndarray, np.ndarray]:
-    """Distances (n_q,) of the interface's points from the loaded end, and which of them are bonded."""
-    interface = specimen.system.interface
-    bonded_q = np.ones(interface.points, dtype=bool) if interface.bonded_q is None else interface.bonded_q
-    return specimen.distance(interface.X_qi), bonded_q

@@ -35,8 +35,8 @@ def _floating(problem: Debonding, arms: tuple[Body, ...]) -> Supports:
     along_rd = [point_row(A, along_i, P_AI.size) for A in at]
     if len(arms) == 1:
         return Supports(np.array(along_rd), np.array([soft]), free_d)
-    upper_d, lower_d = (mean_row(arm.face("left"), along_i, P_AI.size) for arm in arms)
-    ends_d = [edge_row(arm.face("right"), lambda X: np.abs(pose.own(X)[..., 1]), along_i, P_AI.size) for arm in arms]
+    upper_d, lower_d = (mean_row(arm.ends["left"], along_i, P_AI.size) for arm in arms)
+    ends_d = [edge_row(arm.ends["right"], lambda X: np.abs(pose.own(X)[..., 1]), along_i, P_AI.size) for arm in arms]
     rows = [along_rd[1], point_row(at[1], across_i, P_AI.size), upper_d - lower_d, ends_d[0] - ends_d[1]]
     return Supports(np.array(rows), np.array([soft, soft, soft, TIE * upper.moduli.E1 * problem.width]), free_d)
 
@@ -52,6 +52,6 @@ def _clamped(problem: Debonding, bodies: tuple[Body, ...]) -> Supports:
     free_Ai = np.ones_like(control_points(bodies), dtype=bool)
     for body, side in problem.layout.clamps:
         free_Ai[bodies[body].surface(side).conn_ca] = False
-    row_d = mean_row(bodies[0].face("left"), problem.pose.axes_kI[0], free_Ai.size)
+    row_d = mean_row(bodies[0].ends["left"], problem.pose.axes_kI[0], free_Ai.size)
     stiffness = upper.moduli.E1 * upper.thickness * problem.width / upper.length
     return Supports(row_d[None], np.array([stiffness]), free_Ai.ravel())

@@ -29,11 +29,16 @@ def elasticity_tensor(D: np.ndarray) -> np.ndarray:
 class Kinematics:
     """Functions of an elasticity matrix D (3, 3) [stress] and a displacement gradient H_iI (2, 2, ...).
 
-    ``stress`` returns P (2, 2, ...) and the stored energy per reference volume W (...,), ``moduli`` A (..., 2, 3, 2).
+    ``linear``: stresses are proportional to H. ``stress`` returns P (2, 2, ...) and the stored energy per reference
+    volume W (...,), ``moduli`` A (..., 2, 3, 2), ``cauchy`` the Cauchy stress (2, 2, ...). ``material`` returns the
+    second Piola-Kirchhoff stress over det F (2, 2, ...) of a Cauchy stress and H.
     """
 
+    linear: bool
     stress: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
     moduli: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    cauchy: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    material: Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 def finite_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -78,21 +83,27 @@ def of_pairs(A_iIjJ: np.ndarray) -> np.ndarray:
     return A_iIjJ[i, :, j].swapaxes(0, 1)
 
 
-def cauchy_stress(D: np.ndarray, H: np.ndarray, kinematics: str) -> np.ndarray:
-    """Cauchy stress (2, 2, ...): ``F S F' / det F``, or the linear stress."""
-    if kinematics == "linear":
-        return small_stress(D, H)[0]
+def finite_cauchy(D: np.ndarray, H: np.ndarray) -> np.ndarray:
+    """``sigma = F S F' / det F``."""
     F, (S_v, _) = _deformation(H), _svk(D, H)
     det = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
     return np.einsum("iI...,IJ...,jJ...->ij...", F, S_v[np.array(VOIGT)], F) / det
 
 
-def material_stress(sigma: np.ndarray, H: np.ndarray, kinematics: str) -> np.ndarray:
-    """Second Piola-Kirchhoff stress over det F (2, 2, ...) of a Cauchy stress: ``F^-1 sigma F^-T``, or the same."""
-    if kinematics == "linear":
-        return sigma
+def finite_material(sigma: np.ndarray, H: np.ndarray) -> np.ndarray:
+    """``S / det F = F^-1 sigma F^-T``."""
     inverse = np.linalg.inv(np.moveaxis(_deformation(H), (0, 1), (-2, -1)))
     return np.einsum("...Ii,ij...,...Jj->IJ...", inverse, sigma, inverse)
+
+
+def small_cauchy(D: np.ndarray, H: np.ndarray) -> np.ndarray:
+    """Linear kinematics has one stress."""
+    return small_stress(D, H)[0]
+
+
+def small_material(sigma: np.ndarray, _H: np.ndarray) -> np.ndarray:
+    """Linear kinematics has one stress."""
+    return sigma
 
 
 def _deformation(H: np.ndarray) -> np.ndarray:
@@ -121,7 +132,6 @@ def _moduli_of_parts(D: np.ndarray) -> np.ndarray:
     return np.concatenate([of_products, of_stress])
 
 
-KINEMATICS = {
-    "finite": Kinematics(finite_stress, finite_moduli),
-    "linear": Kinematics(small_stress, small_moduli),
-}
+FINITE = Kinematics(False, finite_stress, finite_moduli, finite_cauchy, finite_material)
+LINEAR = Kinematics(True, small_stress, small_moduli, small_cauchy, small_material)
+KINEMATICS = {"finite": FINITE, "linear": LINEAR}

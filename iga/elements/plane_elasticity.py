@@ -15,9 +15,8 @@ from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import splu
 
 from iga.elements.bulk import all_values, element_stiffness, stiffness_entries
-from iga.elements.edge_points import side_points
 from iga.elements.kinematics import elasticity_tensor, of_pairs
-from iga.elements.shape_functions import BlockBasis, block_basis
+from iga.elements.shape_functions import BlockBasis, block_basis, side_bases
 from iga.mesh.bezier import homogeneous
 from iga.mesh.extraction import Chain, Mesh
 from iga.mesh.quadrature import gauss, square
@@ -60,10 +59,9 @@ def traction_forces(
 ) -> np.ndarray:
     """Control point forces (n_A, 2) of a traction, a function of position and unit outward normal (..., 2)."""
     parts = []
-    for side in side_points(mesh, chains, 4):
-        dL = side.dL_eq
-        t = traction(side.X_eqI, side.ndL_eqI / dL[..., None])
-        parts.append((side.conn_ea, np.einsum("eqa,eqi,eq->eai", side.N_eqa, t, dL)))
+    for side in side_bases(mesh, chains, 4):
+        t_eqi = traction(side.X_eqI, side.n_eqI)
+        parts.append((side.conn_ea, np.einsum("eqa,eqi,eq->eai", side.N_eqa, t_eqi, side.dV_eq)))
     return _gathered(len(mesh.P_AI), parts)
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from iga.mesh.bernstein import bernstein, bernstein_derivative, tensor
-from iga.mesh.extraction import SIDES, Chain, ElementBlock, Mesh
+from iga.mesh.extraction import HANDS, SIDES, Chain, ElementBlock, Mesh
+from iga.mesh.quadrature import gauss
 
 #: Deviation of all Bezier weights from 1 below which an element is polynomial, and not divided by the weight.
 POLYNOMIAL = 1e-13
@@ -17,9 +19,8 @@ POLYNOMIAL = 1e-13
 class BlockBasis:
     """Basis of one block of elements at the same parametric points of each.
 
-    ``N_eqa`` (n_e, n_q, n_a), ``dN_eqIa`` (n_e, n_q, 2, n_a) reference gradients, ``dV_eq`` (n_e, n_q) volume (on a
-    side: length) of each point, ``X_eqI`` (n_e, n_q, 2) reference positions, ``conn_ea`` (n_e, n_a)
-    control points.
+    ``N_eqa`` (n_e, n_q, n_a), ``dN_eqIa`` (n_e, n_q, 2, n_a) reference gradients, ``dV_eq`` (n_e, n_q) volume of each
+    point, ``X_eqI`` (n_e, n_q, 2) reference positions, ``conn_ea`` (n_e, n_a) control points.
     """
 
     conn_ea: np.ndarray
@@ -48,8 +49,15 @@ def block_basis(
     return replace(basis, dV_eq=basis.dV_eq * (weights_q * width))
 
 
-def chain_basis(mesh: Mesh, chain: Chain, points_q: np.ndarray, weights_q: np.ndarray) -> tuple[BlockBasis, ...]:
-    """Basis on the sides of a chain at the points (n_q,) of a rule on [0, 1], with lengths as ``dV``.
+@dataclass(frozen=True)
+class SideBasis(BlockBasis):
+    """The same on sides of one name, with lengths as ``dV_eq`` and unit outward normals ``n_eqI`` (n_e, n_q, 2)."""
+
+    n_eqI: np.ndarray
+
+
+def chain_basis(mesh: Mesh, chain: Chain, points_q: np.ndarray, weights_q: np.ndarray) -> tuple[SideBasis, ...]:
+    """Basis on the sides of a chain at the points (n_q,) of a rule on [0, 1].
 
     One entry for every block and name of a side in the chain; points run along the side's own parameter.
     """
@@ -59,8 +67,17 @@ def chain_basis(mesh: Mesh, chain: Chain, points_q: np.ndarray, weights_q: np.nd
         square_q = np.insert(points_q[:, None], direction, value, axis=1)
         part = ElementBlock(block.degrees, block.C_eab[e], block.conn_ea[e])
         basis, J_eqIs = _mapped(mesh, part, square_q)
-        bases.append(replace(basis, dV_eq=np.linalg.norm(J_eqIs[..., 1 - direction], axis=-1) * weights_q))
+        t_eqI = J_eqIs[..., 1 - direction]
+        length_eq = np.linalg.norm(t_eqI, axis=-1)
+        n_eqI = HANDS[side] * np.stack([t_eqI[..., 1], -t_eqI[..., 0]], -1) / length_eq[..., None]
+        bases.append(SideBasis(basis.conn_ea, basis.N_eqa, basis.dN_eqIa, length_eq * weights_q, basis.X_eqI, n_eqI))
     return tuple(bases)
+
+
+def side_bases(mesh: Mesh, chains: Sequence[Chain], more: int) -> tuple[SideBasis, ...]:
+    """Bases on the sides of some chains at p + 1 + ``more`` Gauss points, p the highest degree of the mesh."""
+    rule = gauss(max(max(block.degrees) for block in mesh.blocks) + 1 + more)
+    return tuple(basis for chain in chains for basis in chain_basis(mesh, chain, *rule))
 
 
 def _mapped(mesh: Mesh, block: ElementBlock, points_q: np.ndarray) -> tuple[BlockBasis, np.ndarray]:

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from iga.elements.bulk import gradient
-from iga.elements.kinematics import cauchy_stress, material_stress
 from iga.elements.shape_functions import block_basis
 from iga.mesh.bezier import homogeneous
 from iga.mesh.quadrature import gauss, square
@@ -25,23 +24,23 @@ def frame(specimen: Specimen, point: Point) -> dict[str, Any]:
     (n_q, 2) of the element the Cauchy stress stress_eqv (n_e, n_q, 3) in Voigt order with along_eqk (n_e, n_q, 2), the
     second Piola-Kirchhoff stress along the axes of the material over det F.
 
-    These points are Gauss points, p + 1 and q + 1: what is interpolated there is the projection onto the polynomials of
-    the element that this rule makes.
+    These points are p + 1 by q + 1 Gauss points: polynomials that interpolate the values there are the discrete L2
+    projection by this rule.
     """
     cells = [part for number in range(len(specimen.bodies)) for part in _cells(specimen, number, point.state.u_d)]
     return {"opening": point.opening, "load": point.state.load, "cells": cells, "bond": _bond(specimen, point)}
 
 
 def _cells(specimen: Specimen, number: int, u_d: np.ndarray) -> Iterator[dict[str, Any]]:
-    body, kinematics, axes_kI = specimen.bodies[number], specimen.system.kinematics, specimen.pose.axes_kI
+    body, kinematics, axes_kI = specimen.bodies[number], specimen.system.bulk.kinematics, specimen.pose.axes_kI
     mesh, u_Ai = body.mesh, u_d.reshape(-1, 2)[body.points]
     for block in mesh.blocks:
         p, q = block.degrees
         points_q, weights_q = square(gauss(p + 1), gauss(q + 1))
         basis = block_basis(mesh, block, points_q, weights_q)
         H_iIeq = gradient(basis, u_Ai)
-        sigma_ijeq = cauchy_stress(body.D, H_iIeq, kinematics)
-        inside_IJeq = material_stress(sigma_ijeq, H_iIeq, kinematics)
+        sigma_ijeq = kinematics.cauchy(body.D, H_iIeq)
+        inside_IJeq = kinematics.material(sigma_ijeq, H_iIeq)
         H_ebf = homogeneous(np.concatenate([mesh.P_AI, u_Ai], axis=1), mesh.w_A, block)
         values_ebf, w_eb = H_ebf[..., :4] / H_ebf[..., 4:], H_ebf[..., 4]
         yield {
@@ -59,15 +58,14 @@ def _cells(specimen: Specimen, number: int, u_d: np.ndarray) -> Iterator[dict[st
 def _bond(specimen: Specimen, point: Point) -> dict[str, np.ndarray]:
     interface, state, response = specimen.system.interface, point.state, point.response
     s_q, order = specimen.distance(interface.X_qi), specimen.ordered[1]
-    bonded_q = np.ones(len(s_q), dtype=bool) if interface.bonded_q is None else interface.bonded_q
     values = {
         "X_qi": interface.X_qi,
         "u_qi": interface.at_slave(state.u_d.reshape(-1, 2)),
         "s_q": s_q,
         "gap_q": response.contact.g_q,
         "traction_q": response.p_q,
-        "damage_q": np.where(bonded_q, interface.law.damage(state.k_q), 1.0),
+        "damage_q": np.where(interface.bonded_q, interface.law.damage(state.k_q), 1.0),
         "history_q": state.k_q,
-        "bonded_q": bonded_q,
+        "bonded_q": interface.bonded_q,
     }
     return {name: value[order] for name, value in values.items()}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from iga.elements.bulk import Solid, gradient
-from iga.elements.kinematics import cauchy_stress
 from iga.path.point import Point
 from iga.specimen.body import ELEMENT_SAMPLES
 from iga.specimen.specimen import Specimen
@@ -20,7 +19,7 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
     """
     system, state, response = specimen.system, point.state, point.response
     interface = system.interface
-    (s, order), bonded_q = specimen.ordered, True if interface.bonded_q is None else interface.bonded_q
+    s, order = specimen.ordered
     u_Ai, sampled = state.u_d.reshape(-1, 2), zip(specimen.sampled, specimen.sampled_places, strict=True)
     grids = [_grid(specimen, solid, X_eqi, u_Ai) for solid, X_eqi in sampled]
     X, u, stress = (np.concatenate([grid[i] for grid in grids]) for i in range(3))
@@ -30,7 +29,7 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
         "s_q": s,
         "gap_q": response.contact.g_q[order],
         "traction_q": response.p_q[order],
-        "damage_q": np.where(bonded_q, interface.law.damage(state.k_q), 1.0)[order],
+        "damage_q": np.where(interface.bonded_q, interface.law.damage(state.k_q), 1.0)[order],
         "X_euvi": X,
         "u_euvi": u,
         "stress_euv": stress,
@@ -39,7 +38,7 @@ def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
 
 
 def _tmesh(specimen: Specimen) -> dict[str, np.ndarray]:
-    """Edges and T-junctions of the T-meshes, where there are some."""
+    """Edges and T-junctions of the T-meshes, if any."""
     meshes = specimen.drawn.tmeshes
     if not meshes:
         return {}
@@ -56,6 +55,6 @@ def _grid(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     basis, pose, shape = solid.basis, specimen.pose, (-1, ELEMENT_SAMPLES + 1, ELEMENT_SAMPLES + 1)
     u_eqi = pose.components(basis.N_eqa @ u_Ai.take(basis.conn_ea, axis=0))
-    sigma = cauchy_stress(solid.D, gradient(basis, u_Ai), specimen.system.kinematics)
+    sigma = specimen.system.bulk.kinematics.cauchy(solid.D, gradient(basis, u_Ai))
     stress = np.outer(pose.axes_kI[0], pose.axes_kI[0]).ravel() @ sigma.reshape(4, -1)
     return X_eqi.reshape(*shape, 2), u_eqi.reshape(*shape, 2), stress.reshape(shape)

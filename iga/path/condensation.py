@@ -1,13 +1,12 @@
 """A linear bulk condensed onto the interface: Newton then works on the interface alone.
 
-With linear kinematics the bulk answers in proportion and pairing and normals stay what they are, so that the few
-displacements ``y`` that gaps and opening depend on are all that is unknown. What the others do follows from
-``min u'Ku/2 with B u = y``:
+With linear kinematics forces are proportional to displacements, and pairs and normals stay, so that only the few
+displacements ``y`` that determine gaps and opening are unknown. All others follow from ``min u'Ku/2 with B u = y``:
 
     [K B'; B 0] [u; m] = [0; y]      u = U y      stiffness of y: m = -S y
 
-(Guyan 1965, exact here, as loads and tractions act on y alone). No inverse of K is needed, which supports may leave
-singular: what they leave free the rows B hold.
+(Guyan 1965, exact here, as loads and tractions act on y alone). K may be singular: the rows B fix the rigid motions
+that supports leave free.
 """
 
 from __future__ import annotations
@@ -20,8 +19,10 @@ from scipy.linalg.lapack import dgbtrf, dgbtrs
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.linalg import splu
 
-from iga.interface.interface import Contact, Interface, forces
+from iga.interface.contact import Contact, DenseRows, Rows
+from iga.interface.interface import Interface, SettledInterface, forces
 from iga.path.point import Point
+from iga.system.bulk import CondensedBulk, LinearBulk
 from iga.system.system import System
 
 #: Rows, columns and values of a matrix.
@@ -32,13 +33,13 @@ Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
 class CondensationLimits:
     """When a bulk is condensed, and what counts as rounding.
 
-    ``straight``: normals that differ by less are one. ``alike``: part of the largest function by which those of two
-    control points that face each other may differ. ``felt``: part of a rigid motion below which a spring or a row does
-    not feel it. ``stiffest``: times the stiffest element of a specimen; a larger stiffness is that of rows which are
-    linearly dependent up to rounding. ``narrow``: equations times half bandwidth squared up to which a banded LU takes
-    less time than a sparse one (measured: half the time at 500 equations, two thirds of it or all at 2,000 to 4,000,
-    twice at 6,000, of splines and Lagrange elements). Work of a ``dense`` LU over that of a ``banded`` one, for
-    matrices of equal size: n^3 2/3 against 4 n k^2.
+    ``straight``: largest difference of the normals of a straight interface. ``alike``: largest difference of the
+    functions of two control points that face each other, relative to the largest function. ``felt``: least part of a
+    rigid motion that counts as resisted by a spring or measured by a row. ``stiffest``: largest condensed stiffness
+    relative to that of the elements; a larger one comes from rows that are linearly dependent up to rounding.
+    ``narrow``: equations times half bandwidth squared up to which a banded LU is faster than a sparse one (measured:
+    half the time at 500 equations, two thirds of it or all at 2,000 to 4,000, twice at 6,000, of splines and Lagrange
+    elements). ``dense`` n^3 and ``banded`` n k^2: operations of a dense LU and of a banded one.
     """
 
     straight: float = 1e-12
@@ -57,8 +58,8 @@ CONDENSATION = CondensationLimits()
 class Condensed:
     """The condensed system and the way back to the whole one.
 
-    ``U_dr`` (n_dof, n_r) are the displacements of the whole for each condensed one, ``held_fr`` what the fixed degrees
-    of freedom ``fixed_f`` then hold; ``rest`` is the interface of the whole before anything moves.
+    ``U_dr`` (n_dof, n_r) are the displacements of the whole for a unit of each condensed one, ``held_fr`` the forces of
+    the bulk on the fixed degrees of freedom ``fixed_f``; ``rest`` is the reference contact of the whole.
     """
 
     system: System
@@ -69,7 +70,7 @@ class Condensed:
     rest: Contact
 
     def expanded(self, point: Point) -> Point:
-        """The same point of the path in all displacements."""
+        """The point of the path with the displacements of the whole."""
         whole, state, found = self.whole, point.state, point.response
         u_d, touch = self.U_dr @ state.u_d, replace(self.rest, g_q=found.contact.g_q)
         internal_d = state.load * whole.load_d
@@ -84,46 +85,43 @@ class Condensed:
 def condensed(system: System) -> Condensed | None:
     """The system with its bulk condensed; None where that does not pay, or is not possible.
 
-    It pays as long as a dense matrix of the interface is less work than a banded one of the whole.
+    It pays where a dense LU of the interface takes less work than a banded one of the whole.
     """
-    interface, rest = system.interface, system.interface.at_rest
-    if not system.linear or rest is None:
+    bulk, interface = system.bulk, system.interface
+    if not isinstance(bulk, LinearBulk) or not isinstance(interface, SettledInterface):
         return None
-    B_rd, kept_qd, weight_qd = _rows(system, rest)
+    B_rd, gap_rows = _rows(system)
     n_r = B_rd.shape[0]
-    if not _pays(system, n_r):
+    if not _pays(system, bulk, n_r):
         return None
-    found = _constrained(system, B_rd)
+    found = _constrained(system, bulk, B_rd)
     if found is None:
         return None
-    U_dr, S_rr = _balanced(system, B_rd, *found)
-    at_rest = replace(rest, pairing=None, dof_qd=kept_qd, V_qrd=weight_qd[:, None])
-    at_rest = replace(at_rest, full_qd=at_rest.rows(np.arange(interface.points), n_r).T)
+    U_dr, S_rr = _balanced(system, bulk, B_rd, *found)
+    at_rest = replace(interface.rest, pairing=None, gap_rows=DenseRows.of(gap_rows, n_r))
     small = System(
-        solids=(),
-        interface=replace(interface, master=None, at_rest=at_rest),
-        kinematics="linear",
+        bulk=CondensedBulk(0.5 * (S_rr + S_rr.T)),
+        interface=replace(interface, at_rest=at_rest),
         load_d=np.append(np.zeros(n_r - 1), 1.0),
         free_d=np.ones(n_r, dtype=bool),
         x_d=np.zeros(n_r),
         springs_rd=np.zeros((0, n_r)),
         spring_r=np.zeros(0),
-        bulk_dd=0.5 * (S_rr + S_rr.T),
     )
     fixed = np.flatnonzero(~system.free_d)
-    held_fr = _bulk_forces(system, U_dr)[fixed] if fixed.size else np.zeros((0, n_r))
-    return Condensed(small, system, U_dr, held_fr, fixed, rest)
+    held_fr = _bulk_forces(bulk, U_dr)[fixed] if fixed.size else np.zeros((0, n_r))
+    return Condensed(small, system, U_dr, held_fr, fixed, interface.rest)
 
 
-def _constrained(system: System, B_rd: coo_array) -> tuple[np.ndarray, np.ndarray] | None:
-    """Displacements U_dr (n_dof, n_r) with a unit of each row ``B u``, and the stiffness S_rr of these.
+def _constrained(system: System, bulk: LinearBulk, B_rd: coo_array) -> tuple[np.ndarray, np.ndarray] | None:
+    """Displacements U_dr (n_dof, n_r) for a unit of each row ``B u``, and the stiffness S_rr of the rows.
 
-    None where rows are linearly dependent, be it up to rounding.
+    None where the rows are linearly dependent, exactly or up to rounding.
     """
     free, n_r = np.flatnonzero(system.free_d), B_rd.shape[0]
-    # rows as large as the stiffness: else the forces lose half of their digits to it
-    size = max(float(np.abs(K).max()) for K in system.linear_matrices)
-    saddle, place = _saddle(system, size * B_rd)
+    # the rows are scaled to the size of the stiffness: forces would lose half of their digits otherwise
+    size = max(float(np.abs(K).max()) for K in bulk.matrices)
+    saddle, place = _saddle(system, bulk, size * B_rd)
     held, given_r, U_dr = place[system.n_dof :], np.zeros((free.size + n_r, n_r)), np.zeros((system.n_dof, n_r))
     given_r[held, np.arange(n_r)] = size
     found = _solved(saddle, given_r)
@@ -133,12 +131,14 @@ def _constrained(system: System, B_rd: coo_array) -> tuple[np.ndarray, np.ndarra
     return (U_dr, S_rr) if np.abs(S_rr).max() < CONDENSATION.stiffest * size else None
 
 
-def _balanced(system: System, B_rd: coo_array, U_dr: np.ndarray, S_rr: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The same, mended in place: a rigid motion causes no force, to the last digit, and the forces stay in balance.
+def _balanced(
+    system: System, bulk: LinearBulk, B_rd: coo_array, U_dr: np.ndarray, S_rr: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The same, corrected in place: rigid motions cause no force, to the last digit, and forces are in balance.
 
-    That holds for the motions that no spring resists and for those that no row feels.
+    These are the motions that no spring resists and those that no row measures.
     """
-    motions_dm = _rigid_motions(system)
+    motions_dm = _rigid_motions(system, bulk)
     rigid_dm = _without(system.springs_rd, motions_dm)
     U_dr -= _resting(system, _without(B_rd, motions_dm), U_dr)
     y_rm, triangle = np.linalg.qr(B_rd @ rigid_dm)
@@ -148,30 +148,30 @@ def _balanced(system: System, B_rd: coo_array, U_dr: np.ndarray, S_rr: np.ndarra
     return U_dr, S_rr
 
 
-def _pays(system: System, n_r: int) -> bool:
-    """Whether n_r dense equations are less work than a band, by its elements alone if they suffice."""
+def _pays(system: System, bulk: LinearBulk, n_r: int) -> bool:
+    """Whether n_r dense equations are less work than a band; where its elements show that, it is not numbered."""
 
     def less(n: int, k: int) -> bool:
         return CONDENSATION.dense * n_r**3 <= CONDENSATION.banded * n * k**2
 
-    least = max(d.shape[1] for d in system.element_dofs) - 1
+    least = max(d.shape[1] for d in bulk.element_dofs) - 1
     return less(int(system.free_d.sum()), least) or less(system.band.n, system.band.k)
 
 
-def _rows(system: System, rest: Contact) -> tuple[coo_array, np.ndarray, np.ndarray]:
-    """Displacements that are kept, as rows B (n_r, n_dof), the opening last, and the gaps in them.
+def _rows(system: System) -> tuple[coo_array, Rows]:
+    """Displacements that are kept, as rows B (n_r, n_dof), the opening last, and the gaps by them.
 
-    The gap of point q is the sum of ``weight_qd`` times the kept displacements ``kept_qd`` (n_q, n_d): on a straight
-    interface those along its normal, of pairs of control points that face each other only how far they are apart.
+    On a straight interface the displacements of its control points along its normal are kept, and of pairs of control
+    points that face each other only how far they are apart.
     """
-    interface = system.interface
-    n_i, V_qd = rest.n_qi[0], rest.V_qrd[:, 0]
+    interface, rest = system.interface, system.interface.rest
+    n_i, G_qd = rest.n_qi[0], rest.gap_rows.G_qd
     if np.abs(rest.n_qi - n_i).max() > CONDENSATION.straight:
         kept, kept_qd = _numbered(rest.dof_qd)
         entries: list[Entries] = [(np.arange(kept.size), kept, np.ones(kept.size))]
-        weight_qd = V_qd
+        weight_qd = G_qd
     else:
-        A_qd, weight_qd = rest.dof_qd[:, ::2] // 2, V_qd[:, ::2] * n_i[0] + V_qd[:, 1::2] * n_i[1]
+        A_qd, weight_qd = rest.dof_qd[:, ::2] // 2, G_qd[:, ::2] * n_i[0] + G_qd[:, 1::2] * n_i[1]
         facing = _facing(interface, A_qd, weight_qd)
         A, kept_qd = _numbered(A_qd if facing is None else facing[0])
         entries = _along(A, n_i)
@@ -184,13 +184,13 @@ def _rows(system: System, rest: Contact) -> tuple[coo_array, np.ndarray, np.ndar
     opening = np.flatnonzero(system.load_d)
     entries.append((np.full(opening.size, n_r - 1), opening, system.load_d[opening]))
     row, column, value = (np.concatenate([entry[i] for entry in entries]) for i in range(3))
-    return coo_array((value, (row, column)), shape=(n_r, system.n_dof)), kept_qd, weight_qd
+    return coo_array((value, (row, column)), shape=(n_r, system.n_dof)), Rows(kept_qd, weight_qd)
 
 
 def _facing(interface: Interface, A_qd: np.ndarray, weight_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Control points (n_q, n_a) of the slave at each point and those of the master that take the same functions there.
+    """Control points (n_q, n_a) of the slave at each point, and those of the master with the same functions there.
 
-    None where the meshes do not match: then more counts than the differences of both.
+    None where the meshes do not match: gaps are then no differences of the displacements of pairs.
     """
     n_a = interface.conn_qa.shape[1]
     if A_qd.shape[1] != 2 * n_a:
@@ -220,20 +220,20 @@ def _along(A: np.ndarray, n_i: np.ndarray) -> list[Entries]:
 
 
 def _without(rows_rd: np.ndarray | coo_array, motions_dm: np.ndarray) -> np.ndarray:
-    """Of some motions (n_dof, n_m) those that rows (n_r, n_dof) do not feel."""
+    """Combinations of motions (n_dof, n_m) that change no row (n_r, n_dof)."""
     return motions_dm @ null_space(rows_rd @ motions_dm, rcond=CONDENSATION.felt)
 
 
 def _resting(system: System, unfelt_dm: np.ndarray, U_dr: np.ndarray) -> np.ndarray:
-    """Motions (n_dof, n_r) that the springs resist although no row feels them: nothing is there to hold against."""
+    """Motions (n_dof, n_r) in U_dr that stretch springs and change no row: without a force the springs undo them."""
     stretched_rm = system.spring_r[:, None] ** 0.5 * (system.springs_rd @ unfelt_dm)
     stretch_rr = system.spring_r[:, None] ** 0.5 * (system.springs_rd @ U_dr)
     return unfelt_dm @ np.linalg.lstsq(stretched_rm, stretch_rr, rcond=CONDENSATION.felt)[0]
 
 
-def _rigid_motions(system: System) -> np.ndarray:
-    """Those (n_dof, n_m) of the bodies that no support holds."""
-    bodies, body_d = _bodies(system)
+def _rigid_motions(system: System, bulk: LinearBulk) -> np.ndarray:
+    """Rigid motions (n_dof, n_m) of the bodies without fixed degrees of freedom."""
+    bodies, body_d = _bodies(bulk, system.n_dof)
     x_Ai = system.interface.local_AI - system.interface.local_AI.mean(0)
     turn_d = np.stack([-x_Ai[:, 1], x_Ai[:, 0]], -1).ravel() / np.ptp(x_Ai, axis=0).max()
     rigid_dm = np.stack([np.tile([1.0, 0.0], len(x_Ai)), np.tile([0.0, 1.0], len(x_Ai)), turn_d], -1)
@@ -241,35 +241,35 @@ def _rigid_motions(system: System) -> np.ndarray:
     return np.concatenate([rigid_dm * (body_d == body)[:, None] for body in loose], axis=1)
 
 
-def _bulk_forces(system: System, U_dr: np.ndarray) -> np.ndarray:
-    """Forces (n_dof, n_r) of the bulk, element by element: each is blind to its own translation but for rounding."""
+def _bulk_forces(bulk: LinearBulk, U_dr: np.ndarray) -> np.ndarray:
+    """Forces (n_dof, n_r) of the bulk, by elements: translations of an element, which cause none, are taken out."""
     f_dr = np.zeros_like(U_dr)
-    for K, d in zip(system.linear_matrices, system.element_dofs, strict=True):
+    for K, d in zip(bulk.matrices, bulk.element_dofs, strict=True):
         U_eair = U_dr[d].reshape(*d.shape[:1], -1, 2, U_dr.shape[1])
         f = K @ (U_eair - U_eair[:, :1]).reshape(*d.shape, -1)
-        gathered = csr_array((np.ones(d.size), (d.ravel(), np.arange(d.size))), shape=(system.n_dof, d.size))
+        gathered = csr_array((np.ones(d.size), (d.ravel(), np.arange(d.size))), shape=(len(U_dr), d.size))
         f_dr += gathered @ f.reshape(d.size, -1)
     return f_dr
 
 
-def _bodies(system: System) -> tuple[int, np.ndarray]:
-    """How many bodies there are and the one of each unknown (n_dof,).
+def _bodies(bulk: LinearBulk, n_dof: int) -> tuple[int, np.ndarray]:
+    """Number of the bodies, and the body of each unknown (n_dof,).
 
-    Bodies are numbered one after the other: one ends where no element reaches from a control point to later ones.
+    Bodies are numbered one after the other: one ends at a control point that no element couples to later ones.
     """
-    here = np.zeros(system.n_dof // 2 + 1, dtype=int)
-    for conn_ea in system.connectivity:
+    here = np.zeros(n_dof // 2 + 1, dtype=int)
+    for conn_ea in bulk.connectivity:
         np.add.at(here, conn_ea.min(1), 1)
         np.subtract.at(here, conn_ea.max(1), 1)
     ends = np.cumsum(here)[:-1] == 0
     return int(ends.sum()), np.repeat(np.cumsum(ends) - ends, 2)
 
 
-def _saddle(system: System, B_rd: coo_array) -> tuple[Entries, np.ndarray]:
+def _saddle(system: System, bulk: LinearBulk, B_rd: coo_array) -> tuple[Entries, np.ndarray]:
     """``[K B'; B 0]`` over the free unknowns and the multipliers, K with its springs; and the equation of each of both.
 
-    Entries of one place add up. All are numbered along the specimen, each multiplier after what its row holds: the band
-    is narrow, and even for large ones this fills in less than orders that know nothing of the pivots (at 6,500
+    Entries of one place add up. All are numbered along the specimen, each multiplier after the unknowns of its row: the
+    band is narrow, and even in large systems fewer entries fill in than with orders that ignore the pivots (at 6,500
     equations of T-splines a third of the entries, and 15 times faster).
     """
     n_dof, springs_rd, (row, column) = system.n_dof, system.springs_rd, B_rd.coords
@@ -278,8 +278,8 @@ def _saddle(system: System, B_rd: coo_array) -> tuple[Entries, np.ndarray]:
     there = np.concatenate([np.flatnonzero(system.free_d), np.arange(n_dof, x_m.size)])
     place = np.full(x_m.size, -1, dtype=np.int32)
     place[there[np.argsort(x_m[there], kind="stable")]] = np.arange(there.size)
-    blocks = [*zip(system.element_dofs, system.linear_matrices, strict=True)]
-    # each spring by itself: those of both ends together would be as wide as the specimen is long
+    blocks = [*zip(bulk.element_dofs, bulk.matrices, strict=True)]
+    # each spring is a block of its own: one block of all would couple both ends of the specimen
     for a_d, spring in zip(springs_rd, system.spring_r, strict=True):
         held = np.flatnonzero(a_d)
         blocks.append((held[None], spring * np.outer(a_d[held], a_d[held])[None]))
@@ -297,7 +297,7 @@ def _saddle(system: System, B_rd: coo_array) -> tuple[Entries, np.ndarray]:
 
 
 def _solved(saddle: Entries, given_r: np.ndarray) -> np.ndarray | None:
-    """Solutions (n, n_r), by a band where it is narrow, else by what spares the zeros in it; None where singular."""
+    """Solutions (n, n_r), by a banded LU where the band is narrow, else by a sparse one; None where singular."""
     (i, j, values), n = saddle, len(given_r)
     k = int(np.abs(i - j).max())
     if n * k**2 <= CONDENSATION.narrow:

@@ -90,7 +90,7 @@ def slid_off(system: System, start: Point, end: Point, away: float, back: float)
     k = np.maximum(g, start.state.k_q[q])
     cohesive, touching, dissipated = interface.law.energies(g, k)
     booked = interface.law.energies(g, np.minimum(k, end.state.k_q[q]))[2]  # a point that has gone keeps its history
-    held_q = 1.0 if interface.bonded_q is None else interface.bonded_q[q]
+    held_q = interface.bonded_q[q]
     stored = held_q * cohesive + touching
     gone = held_q * (0.5 * (share[1:] + share[:-1]) * np.diff(dissipated, axis=0) - np.diff(booked, axis=0))
     gone -= 0.5 * (stored[1:] + stored[:-1]) * np.diff(share, axis=0)
@@ -99,11 +99,7 @@ def slid_off(system: System, start: Point, end: Point, away: float, back: float)
 
 def _left_rate(point: Point, q: np.ndarray, left_q: np.ndarray) -> np.ndarray:
     """Rate along the tangent of what is ``left`` of a point's way off the master, from that of its share."""
-    touch, du_d = point.response.contact, point.tangent.du_d
-    if touch.m_q is None or touch.fading_q is None:
-        return np.zeros(q.size)
-    T, Nb = np.sum(touch.V_qrd[q, 1:] * du_d[touch.dof_qd[q]][:, None], axis=2).T
-    d_share = touch.share_q[q] * touch.fading_q[q] * (T + touch.g_q[q] * Nb) / touch.m_q[q]
+    d_share = point.response.contact.share_rates(point.tangent.du_d, q)
     slope = 6.0 * left_q * (1.0 - left_q)
     return np.where(slope > 0.0, d_share / np.where(slope > 0.0, slope, 1.0), 0.0)
 

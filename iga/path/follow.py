@@ -138,7 +138,7 @@ def _separated(system: System, point: Point, reach: float, peak: float, directio
     Pressing may pry a bond open as pulling does.
     """
     interface = system.interface
-    area_q = interface.dA_q if interface.bonded_q is None else interface.dA_q * interface.bonded_q
+    area_q = interface.dA_q * interface.bonded_q
     broken = float(area_q @ (point.state.k_q >= interface.law.g_u)) / float(area_q.sum())
     small = PATH.separated * peak
     falling = direction * point.tangent.d_load < 0.0 or abs(point.slope) * reach <= small

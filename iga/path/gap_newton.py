@@ -20,7 +20,8 @@ from scipy.linalg import qr
 from scipy.linalg.lapack import dgesv
 
 from iga.algebra.factors import Bordered
-from iga.interface.interface import Contact, Interface
+from iga.interface.contact import Contact
+from iga.interface.interface import Interface
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.interface.interface import Contact, Interface, holding
+from iga.interface.contact import Contact
+from iga.interface.interface import Interface, holding
 from iga.interface.laws import TractionLaw
 from iga.system.state import State
 from iga.system.system import System

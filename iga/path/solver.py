@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from iga.algebra.factors import Inverse
+from iga.system.assembly import TangentPattern
 from iga.system.state import Response, State
 from iga.system.system import Phase, System, factorise, respond, untimed
 
@@ -67,6 +68,7 @@ class Solver:
     def __init__(self, system: System, newton: Newton = DEFAULT, phase: Phase = untimed) -> None:
         self.system, self.newton, self.phase = system, newton, phase
         self.linearised: Linearised | None = None
+        self._pattern: TangentPattern | None = None  # that of the last tangent
 
     def of(self, system: System) -> Solver:
         """The same for another system; the factors of this one are dropped."""
@@ -84,7 +86,9 @@ class Solver:
         Callers leave the answer where it is: what they hold on to is not dropped.
         """
         self.linearised = None
-        inverse = factorise(self.system, response, self.phase)
+        with self.phase("assembly"):
+            self._pattern = self.system.pattern(response, self._pattern)
+        inverse = factorise(self.system, response, self._pattern, self.phase)
         self.linearised = None if inverse is None else Linearised(response, inverse)
         return self.linearised
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from iga.interface.interface import Contact
+from iga.interface.contact import Contact
 from iga.path.control import Prescribed, gap_control
 from iga.path.energy import slid_off, step_work, straight_work
 from iga.path.kinks import (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,7 +16,7 @@ from iga.specimen.pose import Pose
 
 #: Intervals between samples along each direction of an element.
 ELEMENT_SAMPLES = 3
-#: Part of a body's size by which it may differ from another one moved, by rounding.
+#: Part of a body's size by which rounding may change a body that is another one moved.
 MOVED_ALIKE = 1e-14
 
 
@@ -24,14 +24,14 @@ MOVED_ALIKE = 1e-14
 class Body:
     """A mesh in place whose control points are numbered from ``first`` on in the whole model.
 
-    A body that is another one moved has that as its ``original``, whose bases it takes over.
+    ``ends`` are the bases on its sides "left" and "right", which are named as before the specimen was put in place.
     """
 
     mesh: Mesh
     first: int
     solids: tuple[Solid, ...]
+    ends: Mapping[str, tuple[BlockBasis, ...]]
     D: np.ndarray
-    original: Body | None = None
 
     @property
     def points(self) -> slice:
@@ -46,31 +46,9 @@ class Body:
         grids = (block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)
         return tuple(Solid(_numbered(basis, self.first), self.D) for basis in grids)
 
-    def face(self, name: str) -> tuple[BlockBasis, ...]:
-        """Basis on the sides of one of the mesh's chains, made when it is first asked for.
-
-        The ends "left" and "right" are named as they were before the specimen was put in place.
-        """
-        made = self.__dict__.setdefault("_faces", {})
-        if name not in made and self.original is not None:
-            made[name] = tuple(self._like(self.original, basis) for basis in self.original.face(name))
-        elif name not in made:
-            through = gauss(max(block.degrees[1] for block in self.mesh.blocks) + 1)
-            sides = chain_basis(self.mesh, self.mesh.chains[name], *through)
-            made[name] = tuple(_numbered(basis, self.first) for basis in sides)
-        return made[name]
-
-    def _like(self, original: Body, basis: BlockBasis) -> BlockBasis:
-        """A basis of the original here: functions and gradients do not know where they are."""
-        by = self.mesh.P_AI[0] - original.mesh.P_AI[0]
-        return replace(basis, conn_ea=basis.conn_ea + (self.first - original.first), X_eqI=basis.X_eqI + by)
-
     def surface(self, name: str) -> Surface:
-        """The surface of one of the mesh's chains, made when it is first asked for."""
-        made = self.__dict__.setdefault("_surfaces", {})
-        if name not in made:
-            made[name] = surface(self.mesh, self.mesh.chains[name], self.first)
-        return made[name]
+        """The surface of one of the mesh's chains."""
+        return surface(self.mesh, self.mesh.chains[name], self.first)
 
 
 def bodies(
@@ -83,20 +61,18 @@ def bodies(
     """
     made: list[Body] = []
     for number, (mesh, D) in enumerate(zip(meshes, elasticity, strict=True)):
-        first = sum(len(body.mesh.P_AI) for body in made)
+        first, placed = sum(len(body.mesh.P_AI) for body in made), pose.placed(mesh)
         same = (other for other in range(number) if elasticity[other] is D and _alike(meshes[other], mesh))
         other = next(same, None)
         if other is None:
-            made.append(_body(pose.placed(mesh), first, pose.turned(D), width, smooth))
+            made.append(_body(placed, first, pose.turned(D), width, smooth))
         else:
-            original = made[other]
-            bare = Body(pose.placed(mesh), first, (), original.D, original)
-            made.append(replace(bare, solids=tuple(Solid(bare._like(original, s.basis), s.D) for s in original.solids)))
+            made.append(_moved(made[other], placed, first))
     return tuple(made)
 
 
 def _alike(a: Mesh, b: Mesh) -> bool:
-    """Whether two meshes are one, moved: they share what they are made of."""
+    """Whether two meshes are translations of each other: they share blocks, chains and weights."""
     if a.blocks is not b.blocks or a.chains is not b.chains or a.w_A is not b.w_A:
         return False
     apart_AI = b.P_AI - a.P_AI
@@ -109,7 +85,24 @@ def _body(mesh: Mesh, first: int, D: np.ndarray, width: float, smooth: bool) -> 
         p, q = block.degrees
         rules = gauss(max(p, 2) if smooth else p + 1), gauss(q + 1)
         solids.append(Solid(_numbered(block_basis(mesh, block, *square(*rules), width), first), D))
-    return Body(mesh, first, tuple(solids), D)
+    through = gauss(max(block.degrees[1] for block in mesh.blocks) + 1)
+    ends = {
+        name: tuple(_numbered(basis, first) for basis in chain_basis(mesh, mesh.chains[name], *through))
+        for name in ("left", "right")
+    }
+    return Body(mesh, first, tuple(solids), ends, D)
+
+
+def _moved(original: Body, mesh: Mesh, first: int) -> Body:
+    """A body that is another one moved, with its bases: functions and gradients do not depend on the place."""
+    by_I = mesh.P_AI[0] - original.mesh.P_AI[0]
+
+    def here(basis: BlockBasis) -> BlockBasis:
+        return replace(basis, conn_ea=basis.conn_ea + (first - original.first), X_eqI=basis.X_eqI + by_I)
+
+    solids = tuple(Solid(here(solid.basis), solid.D) for solid in original.solids)
+    ends = {name: tuple(here(basis) for basis in end) for name, end in original.ends.items()}
+    return Body(mesh, first, solids, ends, original.D)
 
 
 def _numbered(basis: BlockBasis, first: int) -> BlockBasis:
@@ -130,8 +123,8 @@ def mean_row(face: tuple[BlockBasis, ...], direction_i: np.ndarray, n_dof: int) 
 
 
 def edge_row(face: tuple[BlockBasis, ...], depth: Callable, direction_i: np.ndarray, n_dof: int) -> np.ndarray:
-    """Row (n_dof,) that gives the displacement of a face in one direction as the straight line nearest to it has it at
-    the depth 0: the force that belongs to it is spread over the face, and acts there.
+    """Row (n_dof,) that gives the displacement of a face in one direction at the depth 0 of the straight line nearest
+    to it: the conjugate force is spread over the face and acts there.
 
     Parameters
     ----------

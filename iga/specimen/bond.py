@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from iga.interface.interface import Interface, settled
+from iga.interface.interface import Interface, PairedInterface, SearchedInterface, settled
 from iga.interface.laws import TractionLaw
-from iga.interface.lumping import chained, lumped, paired
+from iga.interface.lumping import lumped
 from iga.interface.surface import Surface
 from iga.mesh.quadrature import gauss, lobatto
 from iga.specimen.body import Body
@@ -17,6 +19,8 @@ from iga.specimen.problem import Debonding, unloads
 
 #: Points (n,) and weights (n,) of a rule on [0, 1].
 Rule = tuple[np.ndarray, np.ndarray]
+#: Sides c_q, parameters xi_q and weights w_q (n_q,) of points on a surface.
+Places = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 #: Name in a scene -> rule of so many points.
 QUADRATURE: dict[str, Callable[[int], Rule]] = {"gauss": gauss, "lobatto": lobatto}
@@ -24,147 +28,149 @@ QUADRATURE: dict[str, Callable[[int], Rule]] = {"gauss": gauss, "lobatto": lobat
 #: Surface by which each body, upper and lower, meets the other.
 FACING = ("bottom", "top")
 
-#: Samples of the gap on each side, where it is looked at whether faces pass through each other.
+#: Samples of the gap on each side, between which faces may pass through each other unnoticed.
 FACE_SAMPLES = 5
 
 #: Part of a side that is too little to touch.
 SLIVER = 1e-6
 
 
-def bond(
-    problem: Debonding,
-    bodies: tuple[Body, ...],
-    extent: tuple[float, float],
-    touching: tuple[float, float] | None = None,
-) -> Interface:
-    """Interface over the ``extent`` (from, to) in the specimen's own coordinate along it; one body meets its mirror.
+@dataclass(frozen=True)
+class Joint:
+    """The surfaces by which the bodies meet, ``slave`` and ``master``; one body alone meets its mirror image.
+
+    ``P_AI`` (n_A, 2) control points of the whole model, in which both surfaces are numbered.
+    """
+
+    problem: Debonding
+    slave: Surface
+    master: Surface | None
+    P_AI: np.ndarray
+
+    @staticmethod
+    def of(problem: Debonding, bodies: tuple[Body, ...]) -> Joint:
+        number = slave_number(problem, bodies)
+        surfaces = [body.surface(name) for body, name in zip(bodies, FACING, strict=False)]
+        master = surfaces[1 - number] if len(bodies) > 1 else None
+        return Joint(problem, surfaces[number], master, control_points(bodies))
+
+    @cached_property
+    def ends_ck(self) -> np.ndarray:
+        """Where along the specimen the sides of the slave begin and end (n_c, 2)."""
+        X_ckI = self.slave.bezier_points(self.P_AI)[:, [0, -1]] / self.slave.w_cb[:, [0, -1], None]
+        return self.problem.pose.own(X_ckI)[..., 0]
+
+    def sides(self, extent: tuple[float, float]) -> np.ndarray:
+        """Sides of the slave with their middle in an extent of the specimen."""
+        every_c = np.arange(self.slave.sides)
+        (middle,) = self.slave.coefficients(every_c, np.full(every_c.size, 0.5), 0)
+        X_cI = np.einsum("cb,cbi->ci", middle, self.slave.bezier_points(self.P_AI))
+        X_c = self.problem.pose.own(X_cI)[:, 0]
+        return np.flatnonzero((X_c > min(extent)) & (X_c < max(extent)))
+
+    def within(self, extent: tuple[float, float], rule: Rule) -> Places:
+        """A rule on the part of each side that lies in an extent, as if its parameter ran evenly."""
+        X_ck = self.ends_ck
+        at_ck = np.clip((np.array(extent) - X_ck[:, :1]) / (X_ck[:, 1:] - X_ck[:, :1]), 0.0, 1.0)
+        start, length = at_ck.min(1), np.ptp(at_ck, axis=1)
+        c_q, xi_q, w_q = everywhere(np.flatnonzero(length > SLIVER), rule)
+        return c_q, start[c_q] + length[c_q] * xi_q, length[c_q] * w_q
+
+    def interface(self, places: Places) -> Interface:
+        """The interface with points at these places."""
+        problem = self.problem
+        if self.master is not None:
+            return between(self.slave, self.master, self.P_AI, problem.law, places, problem.width)
+        points = _points(self.slave, self.P_AI, places, problem.width)
+        n_qi = np.broadcast_to(problem.pose.axes_kI[1], points["X_qi"].shape)
+        pairs = {"both_qa": points["conn_qa"], "D_qa": 2.0 * points["N_qa"], "n_qi": n_qi}
+        return PairedInterface(**points, law=problem.law, **pairs)
+
+    def simulated(self, interface: Interface) -> Interface:
+        """An interface with the pairs and normals of the reference configuration where the problem asks for these."""
+        keeps = self.problem.kinematics == "linear" or not self.problem.search
+        return settled(interface) if keeps else interface
+
+
+def bond(joint: Joint, extent: tuple[float, float], touching: tuple[float, float] | None = None) -> Interface:
+    """Interface over the ``extent`` (from, to) in the specimen's own coordinate along it.
 
     Beyond the bond the bodies may touch from end to end of ``touching``, which holds the extent, at p + 1 points a
-    side, which in lumped interfaces meet the same control points for good.
+    side, which in lumped interfaces keep the control points that they meet.
     """
-    found = _bonded(problem, bodies, extent, touching)
-    return settled(found) if stays(problem) else found
-
-
-def _bonded(
-    problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float], touching: tuple[float, float] | None
-) -> Interface:
-    lumps, free = problem.interface_rule == "lumped", gauss(problem.degree + 1)
-    held = _everywhere(
-        problem, bodies, extent, free if lumps else QUADRATURE[problem.interface_rule](problem.interface_points)
-    )
-    parts = [held]
+    problem, free = joint.problem, gauss(joint.problem.degree + 1)
+    lumps = problem.interface_rule == "lumped"
+    rule = free if lumps else QUADRATURE[problem.interface_rule](problem.interface_points)
+    parts = [(everywhere(joint.sides(extent), rule), True)]
     if touching is not None:
-        ends = (min(touching), min(extent)), (max(extent), max(touching))
-        before, after = (_between(problem, bodies, part, free) for part in ends)
-        parts = [part for part in (before, held, after) if len(part[0])]
+        before = joint.within((min(touching), min(extent)), free), False
+        after = joint.within((max(extent), max(touching)), free), False
+        parts = [part for part in (before, *parts, after) if len(part[0][0])]
     if lumps:
-        found = [(lumped if part is held else paired)(_interface(problem, bodies, *part)) for part in parts]
+        found: Interface = lumped(*(_bonded(joint.interface(places), held) for places, held in parts))
     else:
-        found = [_interface(problem, bodies, *(np.concatenate(values) for values in zip(*parts, strict=True)))]
-    whole = chained(found)
-    if touching is None:
-        return whole
-    points = [one.points for one in found] if lumps else [len(part[0]) for part in parts]
-    return replace(whole, bonded_q=np.repeat([part is held for part in parts], points))
+        c_q, xi_q, w_q = (np.concatenate([places[i] for places, _ in parts]) for i in range(3))
+        held_q = np.repeat([held for _, held in parts], [len(places[0]) for places, _ in parts])
+        found = _bonded(joint.interface((c_q, xi_q, w_q)), held_q)
+    return joint.simulated(found)
 
 
-def stays(problem: Debonding) -> bool:
-    """Whether closest points and normals stay what they are before anything moves."""
-    return problem.kinematics == "linear" or not problem.search
-
-
-def probe(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float], interface: Interface) -> Interface:
+def probe(joint: Joint, extent: tuple[float, float], interface: Interface) -> Interface:
     """Points at the two ends of the bond, in the order of ``extent``; they meet the master beside the bond's own."""
-    c = _bonded_sides(problem, bodies, extent)
-    X_ck = _ends(problem, bodies)[c]
+    c = joint.sides(extent)
+    X_ck = joint.ends_ck[c]
     at = np.array([np.argmin(np.abs(X_ck - X)) for X in extent])
-    found = _interface(problem, bodies, c[at // 2], at % 2.0, np.full(2, 0.5))
-    if interface.pairing is not None:
+    found = joint.interface((c[at // 2], at % 2.0, np.full(2, 0.5)))
+    if isinstance(found, SearchedInterface) and interface.pairing is not None:
         found = replace(found, near=interface.pairing[interface.beside(found.X_qi)])
-    return settled(found) if stays(problem) else found
+    return joint.simulated(found)
 
 
-def faces(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float]) -> Interface | None:
+def faces(joint: Joint, extent: tuple[float, float]) -> Interface | None:
     """Samples from end to end of the faces that are opposite to each other, ends of elements included.
 
     None where the programme never goes down: no gap closes then.
     """
-    if not unloads(problem):
+    if not unloads(joint.problem):
         return None
     even = np.linspace(0.0, 1.0, FACE_SAMPLES), np.full(FACE_SAMPLES, 1.0 / FACE_SAMPLES)
-    found = _interface(problem, bodies, *_between(problem, bodies, (min(extent), max(extent)), even))
-    return settled(found) if stays(problem) else found
-
-
-def _everywhere(
-    problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float], rule: Rule
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sides c_q, parameters xi_q and weights w_q (n_q,) of a rule on every bonded side of the slave."""
-    return everywhere(_bonded_sides(problem, bodies, extent), rule)
-
-
-def _bonded_sides(problem: Debonding, bodies: tuple[Body, ...], extent: tuple[float, float]) -> np.ndarray:
-    """Sides of the slave whose middle lies on the bond."""
-    face, P_AI = _slave(problem, bodies), control_points(bodies)
-    (middle,) = face.coefficients(np.arange(face.sides), np.full(face.sides, 0.5), 0)
-    X_c = problem.pose.own(np.einsum("cb,cbi->ci", middle, face.bezier_points(P_AI)))[:, 0]
-    return np.flatnonzero((X_c > min(extent)) & (X_c < max(extent)))
-
-
-def _ends(problem: Debonding, bodies: tuple[Body, ...]) -> np.ndarray:
-    """Where along the specimen the sides of the slave begin and end (n_c, 2)."""
-    face, P_AI = _slave(problem, bodies), control_points(bodies)
-    X_ckI = face.bezier_points(P_AI)[:, [0, -1]] / face.w_cb[:, [0, -1], None]
-    return problem.pose.own(X_ckI)[..., 0]
-
-
-def _between(
-    problem: Debonding, bodies: tuple[Body, ...], part: tuple[float, float], rule: Rule
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The same on what lies of each side in a ``part`` of the specimen, as if its parameter ran evenly."""
-    X_ck = _ends(problem, bodies)
-    at_ck = np.clip((np.array(part) - X_ck[:, :1]) / (X_ck[:, 1:] - X_ck[:, :1]), 0.0, 1.0)
-    start, length = at_ck.min(1), np.ptp(at_ck, axis=1)
-    c_q, xi_q, w_q = everywhere(np.flatnonzero(length > SLIVER), rule)
-    return c_q, start[c_q] + length[c_q] * xi_q, length[c_q] * w_q
-
-
-def _interface(
-    problem: Debonding, bodies: tuple[Body, ...], c_q: np.ndarray, xi_q: np.ndarray, w_q: np.ndarray
-) -> Interface:
-    face, P_AI, alone = _slave(problem, bodies), control_points(bodies), len(bodies) == 1
-    master = None if alone else _facing(bodies, 1 - slave_number(problem, bodies))
-    return replace(
-        between(face, master, P_AI, problem.law, (c_q, xi_q, w_q), problem.width),
-        mirror_i=problem.pose.axes_kI[1] if alone else None,
-    )
+    return joint.simulated(joint.interface(joint.within((min(extent), max(extent)), even)))
 
 
 def between(
-    slave: Surface,
-    master: Surface | None,
-    P_AI: np.ndarray,
-    law: TractionLaw,
-    places: tuple[np.ndarray, np.ndarray, np.ndarray],
-    width: float = 1.0,
-) -> Interface:
+    slave: Surface, master: Surface, P_AI: np.ndarray, law: TractionLaw, places: Places, width: float = 1.0
+) -> SearchedInterface:
     """Interface between any two surfaces, each a chain of element sides.
 
     Parameters
     ----------
     P_AI : (n_A, 2) control points of the whole model, in which both surfaces are numbered.
-    places : sides c_q, parameters xi_q and weights w_q (n_q,) of the points on the slave (see `everywhere`).
+    places : points on the slave (see `everywhere`).
     """
+    return SearchedInterface(**_points(slave, P_AI, places, width), law=law, master=master)
+
+
+def _points(slave: Surface, P_AI: np.ndarray, places: Places, width: float) -> dict[str, Any]:
+    """Fields of an `Interface` that its points alone determine."""
     c_q, xi_q, w_q = places
     r0, r1 = slave.coefficients(c_q, xi_q, 1)
     X_qi, tangent_qi = (np.einsum("qb,qbi->qi", r, slave.bezier_points(P_AI, c_q)) for r in (r0, r1))
-    dA_q = np.linalg.norm(tangent_qi, axis=1) * w_q * width
-    return Interface(slave.functions(c_q, r0), slave.conn_ca[c_q], dA_q, X_qi, P_AI, law, master)
+    return {
+        "N_qa": slave.functions(c_q, r0),
+        "conn_qa": slave.conn_ca[c_q],
+        "dA_q": np.linalg.norm(tangent_qi, axis=1) * w_q * width,
+        "X_qi": X_qi,
+        "P_AI": P_AI,
+        "bonded_q": np.ones(len(c_q), dtype=bool),
+    }
 
 
-def everywhere(c: np.ndarray, rule: Rule) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sides, parameters and weights (n_q,) of the points of a rule on every one of some sides."""
+def _bonded(interface: Interface, held_q: np.ndarray | bool) -> Interface:
+    return replace(interface, bonded_q=np.broadcast_to(held_q, interface.dA_q.shape))
+
+
+def everywhere(c: np.ndarray, rule: Rule) -> Places:
+    """The points of a rule on every one of some sides c."""
     xi, w = rule
     return np.repeat(c, len(xi)), np.tile(xi, len(c)), np.tile(w, len(c))
 
@@ -184,11 +190,3 @@ def slave_number(problem: Debonding, bodies: tuple[Body, ...]) -> int:
     if problem.slave not in ("upper", "lower"):
         raise ValueError(f'slave must be "upper" or "lower", got {problem.slave!r}')
     return int(problem.slave == "lower" and len(bodies) > 1)
-
-
-def _slave(problem: Debonding, bodies: tuple[Body, ...]) -> Surface:
-    return _facing(bodies, slave_number(problem, bodies))
-
-
-def _facing(bodies: tuple[Body, ...], number: int) -> Surface:
-    return bodies[number].surface(FACING[number])

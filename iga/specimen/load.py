@@ -21,7 +21,7 @@ def pulled_row(body: Body, end: str, at: str, pose: Pose, axis: int, n_dof: int)
     """
     direction_i = pose.axes_kI[axis]
     if at == "face":
-        return mean_row(body.face(end), direction_i, n_dof)
+        return mean_row(body.ends[end], direction_i, n_dof)
     face = body.surface(end)
     c_q = np.repeat(np.arange(face.sides), PLACES)
     (r_qb,) = face.coefficients(c_q, np.tile(np.linspace(0.0, 1.0, PLACES), face.sides), 0)

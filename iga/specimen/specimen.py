@@ -1,4 +1,4 @@
-"""A discrete specimen: its system and what it takes to read it."""
+"""A discrete specimen: its system, its bodies, and what evaluates its states."""
 
 from __future__ import annotations
 
@@ -8,17 +8,16 @@ from functools import cached_property
 
 import numpy as np
 
-from iga.elements.bulk import Solid, element_stiffness, full_matrices, gradient, joined
-from iga.elements.kinematics import KINEMATICS
+from iga.elements.bulk import Solid, joined
 from iga.interface.interface import Interface
-from iga.interface.surface import Surface, surface
 from iga.mesh.extraction import Mesh
 from iga.specimen.body import Body, bodies, slope_row
-from iga.specimen.bond import bond, control_points, faces, probe, slave_number
+from iga.specimen.bond import FACING, Joint, bond, faces, probe, slave_number
 from iga.specimen.layout import Layout
 from iga.specimen.load import pulled_row
 from iga.specimen.pose import Pose
 from iga.specimen.problem import Debonding, presses, smooth
+from iga.system.bulk import BULKS, ElementBulk
 from iga.system.system import System
 from iga.tsplines.tmesh import TMesh
 
@@ -49,11 +48,12 @@ class Supports:
 
 @dataclass(frozen=True)
 class Specimen:
-    """A system and what it takes to read it: bodies (upper first), pose, layout, and the meshes as they were drawn.
+    """A system, its bodies (upper first), pose, layout, and the meshes as they were drawn.
 
     ``copies`` is 2 where one body stands for both. ``load_at`` is where on its end the load acts (see
     `iga.specimen.load`). ``probe`` has two points, on the tip of the bond and on its far end. ``faces`` are samples of
-    all that the bodies face of each other, bonded or not, where the programme may close it.
+    the whole faces that are opposite to each other, bonded or not, where the programme may close them. ``ends`` are the
+    end faces as a bulk of elements, with the sign of their strain energy in the J-integral.
     """
 
     system: System
@@ -66,6 +66,7 @@ class Specimen:
     upper_is_slave: bool
     probe: Interface
     faces: Interface | None
+    ends: ElementBulk
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:
@@ -77,30 +78,8 @@ class Specimen:
         n, axes_kI = self.system.n_dof, self.pose.axes_kI
         loads = (self.layout.load_on(number) for number in range(len(self.bodies)))
         return tuple(
-            np.zeros(n) if load is None else slope_row(body.face(load.end), axes_kI[0], axes_kI[1], n)
+            np.zeros(n) if load is None else slope_row(body.ends[load.end], axes_kI[0], axes_kI[1], n)
             for body, load in zip(self.bodies, loads, strict=True)
-        )
-
-    @cached_property
-    def energy_sides(self) -> tuple[Solid, ...]:
-        """The ends whose strain energy enters the J-integral, its sign in what each point stands for."""
-        ends = ("left", "right") if self.layout.bonded[0] < self.layout.bonded[1] else ("right", "left")
-        return joined(
-            [
-                Solid(replace(basis, dV_eq=sign * self.copies * basis.dV_eq), body.D)
-                for body in self.bodies
-                for end, sign in zip(ends, (1.0, -1.0), strict=True)
-                for basis in body.face(end)
-            ]
-        )
-
-    @cached_property
-    def energy_matrices(self) -> tuple[np.ndarray, ...]:
-        """Their stiffness (n_e, 2 n_a, 2 n_a), the sign with it, before anything moves; linear: for good."""
-        moduli, at_rest = KINEMATICS[self.system.kinematics].moduli, np.zeros((self.system.n_dof // 2, 2))
-        return tuple(
-            full_matrices(element_stiffness(side.basis, moduli(side.D, gradient(side.basis, at_rest))))
-            for side in self.energy_sides
         )
 
     @cached_property
@@ -110,18 +89,18 @@ class Specimen:
 
     @cached_property
     def sampled_places(self) -> tuple[np.ndarray, ...]:
-        """Where these points lie, (n_e, n_q, 2), in the specimen's own frame."""
+        """Places of these points (n_e, n_q, 2) in the specimen's own frame."""
         return tuple(self.pose.own(solid.basis.X_eqI) for solid in self.sampled)
 
     @cached_property
     def face_row(self) -> np.ndarray:
-        """Row (n_dof,) of the displacement along the specimen of where the load acts on the upper body."""
+        """Row (n_dof,) of the displacement along the specimen at the load on the upper body."""
         body, end, _ = self.layout.loads[0]
         return pulled_row(self.bodies[body], end, self.load_at, self.pose, 0, self.system.n_dof)
 
     @cached_property
     def beside_probe(self) -> np.ndarray:
-        """Points of the interface next to those of the probe, which meet the master close by."""
+        """Points of the interface nearest to those of the probe: their search starts there."""
         return self.system.interface.beside(self.probe.X_qi)
 
     @cached_property
@@ -145,22 +124,22 @@ class Specimen:
 def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body, ...]], Supports]) -> Specimen:
     """Discrete system of a specimen with all that is needed to read results from its states."""
     pose, layout, copies = problem.pose, problem.layout, 2.0 if problem.symmetry else 1.0
-    # a mirror image that is not modelled counts in the width, so that forces and energies are those of the whole
+    # the width counts a mirror image that is not modelled: forces and energies are those of both
     parts = bodies(drawn.meshes, _elasticity(problem, drawn), pose, copies * problem.width, smooth(problem))
-    P_AI, held = control_points(parts), supports(parts)
+    joint, held = Joint.of(problem, parts), supports(parts)
     pulled = [
-        copies * share * pulled_row(parts[body], end, problem.load_at, pose, 1, P_AI.size)
+        copies * share * pulled_row(parts[body], end, problem.load_at, pose, 1, joint.P_AI.size)
         for body, end, share in layout.loads
         if body < len(parts)
     ]
     touching = layout.facing if presses(problem) and layout.facing != layout.bonded else None
+    bulk = BULKS[problem.kinematics]
     system = System(
-        solids=joined([solid for body in parts for solid in body.solids]),
-        interface=bond(problem, parts, layout.bonded, touching),
-        kinematics=problem.kinematics,
+        bulk=bulk(joined([solid for body in parts for solid in body.solids])),
+        interface=bond(joint, layout.bonded, touching),
         load_d=np.sum(pulled, axis=0),
         free_d=held.free_d,
-        x_d=np.repeat(pose.own(P_AI)[:, 0], 2),
+        x_d=np.repeat(pose.own(joint.P_AI)[:, 0], 2),
         springs_rd=held.springs_rd,
         spring_r=held.spring_r,
     )
@@ -173,8 +152,9 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
         copies=copies,
         load_at=problem.load_at,
         upper_is_slave=slave_number(problem, parts) == 0,
-        probe=probe(problem, parts, layout.bonded, system.interface),
-        faces=faces(problem, parts, layout.facing),
+        probe=probe(joint, layout.bonded, system.interface),
+        faces=faces(joint, layout.facing),
+        ends=bulk(_ends(parts, layout, copies)),
     )
 
 
@@ -186,19 +166,27 @@ def _elasticity(problem: Debonding, drawn: Drawn) -> tuple[np.ndarray, ...]:
     return both[: len(drawn.meshes)]
 
 
+def _ends(parts: tuple[Body, ...], layout: Layout, copies: float) -> tuple[Solid, ...]:
+    """The end faces whose strain energy enters the J-integral, with its sign in the lengths of their points."""
+    ends = ("left", "right") if layout.bonded[0] < layout.bonded[1] else ("right", "left")
+    return joined(
+        [
+            Solid(replace(basis, dV_eq=sign * copies * basis.dV_eq), body.D)
+            for body in parts
+            for end, sign in zip(ends, (1.0, -1.0), strict=True)
+            for basis in body.ends[end]
+        ]
+    )
+
+
 def element_length(specimen: Specimen) -> float:
-    """Longest element side where the crack is to run, of either body: the one that resolves a process zone least."""
-    P_AI, first, longest = specimen.system.interface.P_AI, 0, 0.0
-    for mesh, side in zip(specimen.meshes, ("bottom", "top"), strict=False):
-        start_ci, end_ci = _ends(surface(mesh, mesh.chains[side], first), P_AI)
+    """Longest element side on the expected crack path, of either body: it limits how a process zone is resolved."""
+    P_AI, longest = specimen.system.interface.P_AI, 0.0
+    for body, side in zip(specimen.bodies, FACING, strict=False):
+        face = body.surface(side)
+        Q_cbi = face.bezier_points(P_AI) / face.w_cb[..., None]
+        start_ci, end_ci = Q_cbi[:, 0], Q_cbi[:, -1]
         middle_c = specimen.distance(0.5 * (start_ci + end_ci))
         met = (middle_c > specimen.layout.free_length) & (middle_c < specimen.drawn.path_end)
         longest = max(longest, float(np.linalg.norm(end_ci - start_ci, axis=1)[met].max(initial=0.0)))
-        first += len(mesh.P_AI)
     return longest
-
-
-def _ends(face: Surface, P_AI: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """First and last point (n_c, 2) of every side."""
-    Q_cbi = face.bezier_points(P_AI) / face.w_cb[..., None]
-    return Q_cbi[:, 0], Q_cbi[:, -1]

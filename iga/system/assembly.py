@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -12,62 +13,118 @@ from scipy.sparse import coo_array, csr_array
 from iga.algebra.banded import Band, Skew
 from iga.algebra.dense import Dense
 from iga.elements.bulk import half_entries, half_places
-from iga.interface.interface import Contact
+from iga.interface.interface import Interface, stiffness
+from iga.system.state import Response
 
 #: Rows and columns of entries, as degrees of freedom.
 Entries = tuple[np.ndarray, np.ndarray]
+#: Displacement gradients of the solids of a bulk.
+Gradients = tuple[np.ndarray, ...]
 
 
 @dataclass(frozen=True)
-class Pattern:
-    """The lower half of the tangent, and where in it all entries go.
+class Springs:
+    """Springs of a system: ``row``, ``column`` and ``value`` of their entries in the lower half of the tangent.
 
-    ``bulk`` (band.size, n_values) adds up what the elements say; linear kinematics has it in place already. Of
-    interface and springs ``positions`` (n_values,) are the places, of the spring across the opening ``held``.
+    ``loaded`` are the degrees of freedom of the load, of one more spring that holds the opening.
+    """
+
+    row: np.ndarray
+    column: np.ndarray
+    value: np.ndarray
+    loaded: np.ndarray
+
+    @staticmethod
+    def of(springs_rd: np.ndarray, spring_r: np.ndarray, loaded: np.ndarray) -> Springs:
+        """Of springs of stiffness spring_r (n_r,) on the displacements ``springs_rd @ u`` (n_r,)."""
+        parts = [np.zeros((3, 0))]
+        for a_d, k in zip(springs_rd, spring_r, strict=True):
+            row, column = lower_half(np.flatnonzero(a_d))
+            parts.append(np.stack([row, column, k * a_d[row] * a_d[column]]))
+        row, column, value = np.concatenate(parts, axis=1)
+        return Springs(row.astype(int), column.astype(int), value, loaded)
+
+    def held(self, band: Band | Dense) -> np.ndarray:
+        """Places of the lower half of ``f f'``, f the load."""
+        return _positions(band, lower_half(self.loaded))
+
+
+@dataclass(frozen=True)
+class TangentPattern(ABC):
+    """The lower half of the tangent, and where in it all entries go while the points depend on the unknowns dof_qd.
+
+    ``band`` is the numbering of the equations, ``held`` the places of a spring across the opening.
     """
 
     dof_qd: np.ndarray
     band: Band | Dense
-    bulk: csr_array | None
-    positions: np.ndarray
     held: np.ndarray
 
-    def half(self, K_qdd: np.ndarray, springs: np.ndarray) -> np.ndarray:
-        """Lower half (band.size,) of the stiffness of points and springs, from their matrices and their entries."""
-        i, j = _tril(K_qdd.shape[1])
-        return np.bincount(self.positions, np.concatenate([K_qdd[:, i, j].ravel(), springs]), self.band.size)
+    @abstractmethod
+    def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, Skew | None]:
+        """The lower half (band.size,) of the tangent at a response, and the upper half minus the lower one."""
 
 
-def pattern_of(
-    numbering: Band | Dense,
-    dof_qd: np.ndarray,
-    springs: Entries,
-    loaded: np.ndarray,
-    conns: Sequence[np.ndarray],
-    kept: Pattern | None,
-) -> Pattern:
-    """Where all entries go when the points touch dof_qd; wider than ``numbering`` where one has slid too far for it.
+@dataclass(frozen=True)
+class Pattern(TangentPattern):
+    """The pattern of elements, interface points and springs.
 
-    Parameters
-    ----------
-    springs : their entries in the lower half.
-    loaded : degrees of freedom that feel the load.
-    conns : control points (n_e, n_a) of the elements of each block whose stiffness is not in place already.
-    kept : the last pattern; the same sums over elements serve a band as wide.
+    ``bulk`` makes the lower half of the stiffness of the bulk from its displacement gradients; ``positions`` are the
+    places of interface and springs, and ``values`` the entries of the springs.
     """
-    touching = lower_half(dof_qd)
-    band = numbering.reaching(*touching)
-    if not conns:
-        bulk = None
-    elif kept is not None and kept.band.size == band.size:
-        bulk = kept.bulk
-    else:
-        bulk = element_sums(conns, band)
-    return Pattern(dof_qd, band, bulk, _positions(band, touching, springs), _positions(band, lower_half(loaded)))
+
+    bulk: Callable[[Gradients], np.ndarray]
+    positions: np.ndarray
+    values: np.ndarray
+
+    @staticmethod
+    def of(
+        numbering: Band | Dense,
+        dof_qd: np.ndarray,
+        springs: Springs,
+        assembler: Callable[[Band | Dense], Callable[[Gradients], np.ndarray]],
+        kept: TangentPattern | None,
+    ) -> Pattern:
+        """The pattern of a numbering, of a wider band than that where a point has slid too far for it.
+
+        Parameters
+        ----------
+        assembler : makes ``bulk`` for a band.
+        kept : the last pattern; its ``bulk`` serves a band of the same width.
+        """
+        touching = lower_half(dof_qd)
+        band = numbering.reaching(*touching)
+        bulk = kept.bulk if isinstance(kept, Pattern) and kept.band.size == band.size else assembler(band)
+        positions = _positions(band, touching, (springs.row, springs.column))
+        return Pattern(dof_qd, band, springs.held(band), bulk, positions, springs.value)
+
+    def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, Skew | None]:
+        touch = response.contact
+        K_qdd = stiffness(interface, touch, response.p_q, response.dp_q)
+        i, j = _tril(K_qdd.shape[1])
+        half = np.bincount(self.positions, np.concatenate([K_qdd[:, i, j].ravel(), self.values]), self.band.size)
+        half += self.bulk(response.gradients)
+        q = touch.unsymmetric(response.p_q)
+        return half, skew_part(touch.dof_qd[q], K_qdd[q]) if q.size else None
+
+
+@dataclass(frozen=True)
+class DensePattern(TangentPattern):
+    """The full matrix of a condensed bulk and an interface that depends on all its unknowns.
+
+    ``bulk`` (band.size,) is the stiffness of the bulk.
+    """
+
+    bulk: np.ndarray
+
+    def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, None]:
+        G_qd = response.contact.gap_rows.G_qd
+        weighted_qd = (response.dp_q * interface.dA_q)[:, None] * G_qd
+        return self.bulk + (G_qd.T @ weighted_qd).ravel(), None
 
 
 def element_sums(conns: Sequence[np.ndarray], band: Band | Dense) -> csr_array:
-    """Sums (band.size, n_values) of the entries of the element stiffness, of each symmetric pair one."""
+    """Matrix (band.size, n_values) that sums the entries of the element stiffness, one of each symmetric pair."""
     places, columns, first = [], [], 0
     for conn_ea in conns:
         n_e, n_a = conn_ea.shape
@@ -83,26 +140,10 @@ def element_values(parts: Sequence[np.ndarray]) -> np.ndarray:
     return parts[0].ravel() if len(parts) == 1 else np.concatenate([K.ravel() for K in parts])
 
 
-def spring_entries(springs_rd: np.ndarray, spring_r: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Rows, columns and values that springs add to the lower half of the tangent."""
-    parts = [np.zeros((3, 0))]
-    for a_d, k in zip(springs_rd, spring_r, strict=True):
-        row, column = lower_half(np.flatnonzero(a_d))
-        parts.append(np.stack([row, column, k * a_d[row] * a_d[column]]))
-    row, column, value = np.concatenate(parts, axis=1)
-    return row.astype(int), column.astype(int), value
-
-
-def skew_part(touch: Contact, p_q: np.ndarray, K_qdd: np.ndarray) -> Skew | None:
-    """What the upper half has more than the lower one: something only at points that slide off the master."""
-    if touch.fading_q is None:
-        return None
-    q = np.flatnonzero(touch.fading_q * p_q)
-    if q.size == 0:
-        return None
+def skew_part(dof_qd: np.ndarray, K_qdd: np.ndarray) -> Skew:
+    """Upper halves of some matrices (n_q, n_d, n_d) over dof_qd minus their lower ones."""
     i, j = np.triu_indices(K_qdd.shape[1], 1)
-    d_qd = touch.dof_qd[q]
-    row, column, value = d_qd[:, i], d_qd[:, j], K_qdd[q][:, i, j] - K_qdd[q][:, j, i]
+    row, column, value = dof_qd[:, i], dof_qd[:, j], K_qdd[:, i, j] - K_qdd[:, j, i]
     return Skew(row.ravel(), column.ravel(), value.ravel())
 
 

@@ -1,4 +1,4 @@
-"""A configuration, what the bodies and the bond answer to it, and what the work on the way there has become."""
+"""A configuration, the response of bulk and interface to it, and its energies."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.interface.closest_point import Pairing
-from iga.interface.interface import Contact
+from iga.interface.contact import Contact
 
 
 @dataclass(frozen=True)
 class State:
     """A configuration: displacements u_d (n_dof,), load, history k_q (n_q,).
 
-    ``scale`` is the largest force scale (see `Response`) of all converged states so far. ``closed_q`` (n_q,) and
-    ``pairing``, which points were in contact and where the interface met, are where the next search starts, not
-    history. ``slid`` is history again: what has gone with points that slid off the master, beyond what
-    `iga.system.system.energies` would count of them as dissipated.
+    ``scale`` is the largest force scale (see `Response`) of all converged states so far. ``closed_q`` (n_q,), the
+    points in contact, and ``pairing``, where they met the master, are where the next search starts, not history.
+    ``slid`` is history: energy lost with points that slid off the master, beyond their part of the dissipation that
+    `iga.system.system.energies` counts.
     """
 
     u_d: np.ndarray
@@ -29,15 +29,15 @@ class State:
     slid: float = 0.0
 
     def moved(self, step_d: np.ndarray) -> State:
-        """Displacements and load moved on by a step (n_dof + 1,), the load last."""
+        """The state after a step (n_dof + 1,) of displacements and load, the load last."""
         return replace(self, u_d=self.u_d + step_d[:-1], load=self.load + float(step_d[-1]))
 
 
 @dataclass(frozen=True)
 class Energies:
-    """What the work has become: stored in bulk and springs, in cohesion and in contact, and dissipated.
+    """Energy stored in the bulk with its springs, in cohesion and in contact, and energy dissipated.
 
-    A spring that carries what tilted tractions pull lengthwise stores some, too.
+    Springs store energy where tilted tractions have a resultant along the specimen.
     """
 
     bulk: float
@@ -58,9 +58,9 @@ class Energies:
 class Response:
     """Forces, energies and contact in a configuration.
 
-    ``internal_d`` (n_dof,) forces of bulk and interface; ``scale`` the norm of the forces that the elements hold
-    against each other, by which a residual is judged; ``bulk_energy``; the interface with traction p_q, slope dp_q and
-    new history k_q; the displacement gradients of the solids, of which a tangent is made once one is asked for.
+    ``internal_d`` (n_dof,) forces of bulk, springs and interface; ``scale`` the norm of the forces that the elements
+    exert on each other, by which a residual is judged; ``bulk_energy`` without that of springs; the interface with
+    traction p_q, slope dp_q and new history k_q; displacement ``gradients`` from which the bulk makes its tangent.
     """
 
     internal_d: np.ndarray

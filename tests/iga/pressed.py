@@ -9,7 +9,8 @@ from scipy.sparse.linalg import splu
 
 from iga.elements.plane_elasticity import Fixed
 from iga.elements.plane_elasticity import stiffness as bulk_stiffness
-from iga.interface.interface import Contact, Interface, contact, forces, settled, stiffness, traction
+from iga.interface.contact import Contact
+from iga.interface.interface import Interface, forces, settled, stiffness, traction
 from iga.interface.laws import BilinearLaw
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
@@ -62,7 +63,7 @@ def press(
     free = np.flatnonzero(is_free)
 
     def respond(u_d: np.ndarray) -> tuple[np.ndarray, np.ndarray, Contact, np.ndarray, np.ndarray]:
-        touch = contact(interface, u_d, pairing)
+        touch = interface.contact(u_d, pairing)
         p_q, dp_q, _ = traction(interface, touch, k_q, touch.g_q <= 0.0)
         held_d = forces(interface, touch, p_q, u_d.size)
         return np.where(is_free, K @ u_d + held_d - f_d, 0.0), held_d, touch, p_q, dp_q

@@ -6,8 +6,8 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import splu
 
-from iga.elements.edge_points import SidePoints, side_points
 from iga.elements.plane_elasticity import Fixed, bulk_bases
+from iga.elements.shape_functions import SideBasis, side_bases
 from iga.mesh.extraction import Chain, Mesh
 
 #: A vector field: positions (..., 2) to values (..., 2).
@@ -28,17 +28,17 @@ def body_forces(mesh: Mesh, force: Field) -> np.ndarray:
 
 def prescribed(mesh: Mesh, chains: Sequence[Chain], displacement: Field) -> Fixed:
     """Displacements on chains by projection in L2 onto the functions that live there."""
-    sides = side_points(mesh, chains, 2)
+    sides = side_bases(mesh, chains, 2)
     rows, columns, values = [], [], []
     for side in sides:
         row, column = np.broadcast_arrays(side.conn_ea[:, :, None], side.conn_ea[:, None, :])
         rows.append(row.ravel())
         columns.append(column.ravel())
-        values.append(np.einsum("eqa,eqb,eq->eab", side.N_eqa, side.N_eqa, side.dL_eq).ravel())
+        values.append(np.einsum("eqa,eqb,eq->eab", side.N_eqa, side.N_eqa, side.dV_eq).ravel())
     n_A = len(mesh.P_AI)
     entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
     mass = coo_array(entries, shape=(n_A, n_A)).tocsc()
-    parts = [(s.conn_ea, np.einsum("eqa,eqi,eq->eai", s.N_eqa, displacement(s.X_eqI), s.dL_eq)) for s in sides]
+    parts = [(s.conn_ea, np.einsum("eqa,eqi,eq->eai", s.N_eqa, displacement(s.X_eqI), s.dV_eq)) for s in sides]
     A = living(sides)
     u_Ai = splu(mass[A][:, A]).solve(gathered(n_A, parts)[A])
     return Fixed((2 * A[:, None] + np.arange(2)).ravel(), u_Ai.ravel())
@@ -46,15 +46,15 @@ def prescribed(mesh: Mesh, chains: Sequence[Chain], displacement: Field) -> Fixe
 
 def symmetry(mesh: Mesh, chain: Chain) -> Fixed:
     """No displacement normal to a straight chain along an axis."""
-    sides = side_points(mesh, (chain,), 1)
-    n = np.concatenate([np.abs(s.ndL_eqI / s.dL_eq[..., None]).reshape(-1, 2) for s in sides])
+    sides = side_bases(mesh, (chain,), 1)
+    n = np.concatenate([np.abs(s.n_eqI).reshape(-1, 2) for s in sides])
     component = int(np.argmax(n.sum(0)))
     assert np.max(n[:, 1 - component]) < 1e-8, "a symmetry line runs along an axis"
     dof = 2 * living(sides) + component
     return Fixed(dof, np.zeros(dof.size))
 
 
-def living(sides: Sequence[SidePoints]) -> np.ndarray:
+def living(sides: Sequence[SideBasis]) -> np.ndarray:
     """Control points (n,) whose functions do not vanish on the sides."""
     return np.unique(np.concatenate([s.conn_ea[np.max(np.abs(s.N_eqa), axis=1) > 1e-10] for s in sides]))
 

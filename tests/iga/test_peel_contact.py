@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.interface.interface import contact
 from iga.mesh.quadrature import gauss
 from iga.path.follow import follow
 from iga.path.point import Point
@@ -31,7 +30,7 @@ def gaps_everywhere(specimen, point) -> tuple[np.ndarray, np.ndarray]:
     P_AI, law = specimen.system.interface.P_AI, specimen.system.interface.law
     interface = between(strip, substrate, P_AI, law, everywhere(np.arange(strip.sides), gauss(10)))
     over = interface.X_qi[:, 0] < PEEL.substrate_length
-    return interface.X_qi[over, 0], contact(interface, point.state.u_d, interface.pairing).g_q[over]
+    return interface.X_qi[over, 0], interface.contact(point.state.u_d, interface.pairing).g_q[over]
 
 
 @pytest.mark.parametrize("kinematics", ["finite", "linear"])
@@ -55,7 +54,7 @@ def test_where_nothing_closes_nothing_touches_beyond_the_bond():
     }
     assert counts[5.0,] == counts[5.0, 1.0] == counts[5.0, 0.0] < counts[5.0, -0.05]
     for keys in ({"opening": (5.0,)}, {"bond_length": 120.0}, {"contact": False}):
-        assert build(replace(BACK, **keys)).system.interface.bonded_q is None
+        assert build(replace(BACK, **keys)).system.interface.all_bonded
 
 
 @pytest.mark.slow

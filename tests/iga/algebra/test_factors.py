@@ -39,7 +39,7 @@ def solved(system, state, rng) -> tuple[object, float]:
     Each in parts of what is added up.
     """
     response = respond(system, state, decide=False)
-    K, inverse = dense_tangent(system, response), factorise(system, response, untimed)
+    K, inverse = dense_tangent(system, response), factorise(system, response, system.pattern(response), untimed)
     v_d = np.where(system.free_d, rng.standard_normal(system.n_dof), 0.0)
     h = 1e-4 * system.interface.law.g_max / np.abs(v_d).max()
     ahead, behind = (
@@ -94,7 +94,7 @@ def test_points_that_slide_off_make_the_tangent_skew(rng):
         u_Ai[:] = 0.0
         u_Ai[upper] = [part * side, 0.2 * system.interface.law.g_max]
         state = replace(system.start(), u_d=u_Ai.ravel())
-        if np.any(respond(system, state, decide=False).contact.fading_q):
+        if respond(system, state, decide=False).contact.fading_q.any():
             reached = state
             break
     assert reached is not None, "nothing slides off"

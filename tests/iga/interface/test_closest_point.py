@@ -14,7 +14,7 @@ from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_rectangle
 from iga.interface import closest_point
 from iga.interface.closest_point import PROJECTION, Pairing, closest_points, nearest_samples
-from iga.interface.interface import Interface, contact
+from iga.interface.interface import Interface
 from iga.interface.laws import BilinearLaw
 from iga.interface.surface import Surface, surface
 from iga.mesh.boundary import boundary_chains
@@ -213,9 +213,9 @@ def test_a_pairing_takes_as_many_looks_at_a_surface_however_many_sides_it_has(mo
         looks.clear()
         pairing = interface.pairing
         assert sum(looks) / interface.points - min(8 * sides, PROJECTION.most) / interface.points < first
-        pairing = contact(interface, bent(interface, 2.0), pairing).pairing
+        pairing = interface.contact(bent(interface, 2.0), pairing).pairing
         looks.clear()
-        found = contact(interface, bent(interface, 2.0 + 0.3 * LENGTH / sides), pairing)
+        found = interface.contact(bent(interface, 2.0 + 0.3 * LENGTH / sides), pairing)
         # one of them is that of the gap
         assert sum(looks) / interface.points < 6 and np.all(found.g_q > 0.29) and np.all(found.on_q)
 
@@ -234,10 +234,10 @@ def test_the_gap_of_a_point_costs_the_same_on_100_and_on_10_000_sides():
     calls = {}
     for sides in (100, 10_000):
         interface = strips(sides)
-        pairing = contact(interface, bent(interface, 2.0), interface.pairing).pairing
+        pairing = interface.contact(bent(interface, 2.0), interface.pairing).pairing
         calls["first", sides] = partial(paired_anew, interface)
         for name, further in (("again", 0.0), ("part of a side", 0.3 * LENGTH / sides), ("far", 0.1)):
-            calls[name, sides] = partial(contact, interface, bent(interface, 2.0 + further), pairing)
+            calls[name, sides] = partial(interface.contact, bent(interface, 2.0 + further), pairing)
     microseconds = costs(calls)
     for name in ("again", "part of a side", "first", "far"):
         few, many = microseconds[name, 100], microseconds[name, 10_000]

@@ -14,7 +14,7 @@ from iga.bases.nurbs import nurbs_rectangle
 from iga.files.cad_body import body_mesh
 from iga.files.iga_format import write_iga
 from iga.interface.closest_point import PROJECTION
-from iga.interface.interface import Interface, contact, forces, stiffness, traction
+from iga.interface.interface import Interface, forces, stiffness, traction
 from iga.interface.laws import BilinearLaw
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
@@ -97,7 +97,7 @@ def certain(smooth: bool) -> None:
 
 
 def residual_at(interface: Interface, u_d: np.ndarray, start, k_q, closed_q) -> np.ndarray:
-    touch = contact(interface, u_d, start)
+    touch = interface.contact(u_d, start)
     return forces(interface, touch, traction(interface, touch, k_q, closed_q)[0], u_d.size)
 
 
@@ -108,11 +108,11 @@ def tangent_error(
 
     Only where no point changes its side or its branch of the law within the difference.
     """
-    start = contact(interface, u_d, interface.pairing).pairing
-    touch, v = contact(interface, u_d, start), rng.standard_normal(u_d.size)
+    start = interface.contact(u_d, interface.pairing).pairing
+    touch, v = interface.contact(u_d, start), rng.standard_normal(u_d.size)
     closed_q = touch.g_q < 0.0
     for sign in (-1.0, 1.0):
-        near = contact(interface, u_d + sign * h * v, start)
+        near = interface.contact(u_d + sign * h * v, start)
         require(np.array_equal(near.pairing.c_q, touch.pairing.c_q))
         require(np.array_equal(near.pairing.on_q, touch.pairing.on_q))
         kinks = np.array([0.0, LAW.g_max, LAW.g_u]), k_q
@@ -212,7 +212,7 @@ def test_forces_do_not_jump_where_a_point_slides_off_the_end(gap, slave, rng):
             u_d = bent(
                 one, gap * LAW.g_max, slide if slave == "upper" else -slide, 0.2, 30.0, np.random.default_rng(seed)
             )
-            touch = contact(interface, u_d, pairing)
+            touch = interface.contact(u_d, pairing)
             pairing = touch.pairing
             R_d = forces(interface, touch, traction(interface, touch, k_q, touch.g_q < 0.0)[0], u_d.size)
             change = max(change, 0.0 if before is None else float(np.abs(R_d - before).max()))
@@ -229,7 +229,7 @@ def test_forces_and_moments_are_in_balance_past_the_end(slave, rng):
     for over in (0.02, 0.1, 0.15):
         slide = end + over
         u_d = bent(one, 0.6 * LAW.g_max, slide if slave == "upper" else -slide, 0.25, 70.0, rng)
-        touch = contact(one.interface, u_d, one.interface.pairing)
+        touch = one.interface.contact(u_d, one.interface.pairing)
         assert np.any(~touch.pairing.on_q & touch.on_q), "a point is held beyond the end"
         p_q = traction(one.interface, touch, np.zeros(one.interface.points), touch.g_q < 0.0)[0]
         R, x = forces(one.interface, touch, p_q, u_d.size).reshape(-1, 2), one.interface.P_AI + u_d.reshape(-1, 2)
@@ -242,5 +242,5 @@ def test_flush_ends_keep_their_points_whatever_rounding_does(rng):
     one = rig(nurbs(9, 3, UPPER), nurbs(9, 3, LOWER), "upper", points=8)
     for slide in (-1e-3, 1e-15, 1e-3, PROJECTION.held * 6.0 / 9.0):
         u_d = bent(one, 0.5 * LAW.g_max, slide, 0.0, 37.0, np.random.default_rng(1))
-        touch = contact(one.interface, u_d, one.interface.pairing)
+        touch = one.interface.contact(u_d, one.interface.pairing)
         assert np.all(touch.share_q == 1.0)

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from iga.bases.lagrange import lagrange_rectangle
 from iga.dcb import Problem, build
 from iga.interface.closest_point import PROJECTION, closest_points, nearest_samples
-from iga.interface.interface import contact, forces, rounding, settled, stiffness, traction
+from iga.interface.contact import DenseRows, Rows
+from iga.interface.interface import SettledInterface, forces, settled, stiffness, traction
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
 from tests.iga.bases.test_splines import quarter_annulus
@@ -112,14 +113,14 @@ def test_tangent_on_a_curved_sliding_interface(state, basis, slave, rng):
     u, h = deformed(system, opening, 0.11, rng), 1e-6
     k = np.full(interface.points, history)
     start = system.start().pairing
-    touch = contact(interface, u, start)
+    touch = interface.contact(u, start)
     closed = touch.g_q < 0
     assert np.ptp(touch.n_qi[:, 0]) > 0.1, "the surface is curved"
     on = touch.on_q
     assert np.all(closed[on] == (opening < 0)) and np.sum(~on) < 5, f"gaps {touch.g_q.min()} .. {touch.g_q.max()}"
 
     def residual(u):
-        touch = contact(interface, u, start)
+        touch = interface.contact(u, start)
         return forces(interface, touch, traction(interface, touch, k, closed)[0], system.n_dof)
 
     p, dp, _ = traction(interface, touch, k, closed)
@@ -143,7 +144,7 @@ def test_the_gap_does_not_change_when_everything_turns(rng):
     Q = np.array([[0.8, -0.6], [0.6, 0.8]])
     turned = (interface.P_AI + u) @ Q.T - interface.P_AI
     start = system.start().pairing
-    before, after = contact(interface, u.ravel(), start), contact(interface, turned.ravel(), start)
+    before, after = interface.contact(u.ravel(), start), interface.contact(turned.ravel(), start)
     assert np.max(np.abs(before.g_q - after.g_q)) < 1e-12
     assert np.allclose(before.n_qi @ Q.T, after.n_qi, atol=1e-10)
 
@@ -156,13 +157,14 @@ def test_gaps_are_rounded_as_displacements_are_wherever_the_specimen_lies(kinema
     moved = replace(interface, P_AI=interface.P_AI @ Q.T + [1e4, -2e4], X_qi=interface.X_qi @ Q.T + [1e4, -2e4])
     moved = settled(moved) if kinematics == "linear" else moved
     start, u_Ai = moved.pairing, np.zeros_like(moved.P_AI)
-    assert np.max(np.abs(contact(moved, u_Ai.ravel(), start).g_q)) < 1e-25
+    assert np.max(np.abs(moved.contact(u_Ai.ravel(), start).g_q)) < 1e-25
     u_Ai[: len(u_Ai) // 2] = 1e-9 * Q[:, 1]
-    touch = contact(moved, u_Ai.ravel(), start)
+    touch = moved.contact(u_Ai.ravel(), start)
     assert np.max(np.abs(touch.g_q - 1e-9)) < 1e-23
-    small = rounding(moved, u_Ai.ravel())
-    assert small == pytest.approx(0.5 * rounding(moved, 2.0 * u_Ai.ravel())) and small > 0.0
-    assert rounding(moved, u_Ai.ravel(), np.zeros(moved.points)) == 0.0
+    rows, slope_q = touch.gap_rows, moved.law.penalty * moved.dA_q
+    small = rows.rounding(u_Ai.ravel(), slope_q)
+    assert small == pytest.approx(0.5 * rows.rounding(2.0 * u_Ai.ravel(), slope_q)) and small > 0.0
+    assert rows.rounding(u_Ai.ravel(), np.zeros(moved.points)) == 0.0
 
 
 def test_gaps_are_the_distances_between_positions_however_far_the_projection_has_slid(rng):
@@ -171,7 +173,7 @@ def test_gaps_are_the_distances_between_positions_however_far_the_projection_has
     interface, start = system.interface, system.start().pairing
     for shift, elsewhere in ((0.005, 0.0), (0.11, 1.0), (0.9, 1.0)):
         u = deformed(system, 0.05, shift, rng)
-        x, touch = interface.P_AI + u.reshape(-1, 2), contact(interface, u, start)
+        x, touch = interface.P_AI + u.reshape(-1, 2), interface.contact(u, start)
         assert np.mean(touch.pairing.c_q != start.c_q) == pytest.approx(elsewhere, abs=0.2)
         apart = interface.at_slave(x) - position(interface.master, touch.pairing, x)
         assert np.max(np.abs(touch.g_q - np.sum(apart * touch.n_qi, 1))) < 1e-13
@@ -182,7 +184,7 @@ def test_interface_forces_are_in_balance_when_meshes_do_not_match(rng):
     system = build(PROBLEM).system
     interface = system.interface
     u = deformed(system, 0.04, 0.3, rng)
-    touch = contact(interface, u, system.start().pairing)
+    touch = interface.contact(u, system.start().pairing)
     R = forces(interface, touch, touch.on_q * rng.standard_normal(interface.points), system.n_dof).reshape(-1, 2)
     x = interface.P_AI + u.reshape(-1, 2)
     scale = np.abs(R).sum()
@@ -195,7 +197,7 @@ def test_a_point_off_the_master_is_free():
     interface = system.interface
     u = np.zeros((system.n_dof // 2, 2))
     u[: len(u) // 2] = [1.0, 0.1]
-    touch = contact(interface, u.ravel(), system.start().pairing)
+    touch = interface.contact(u.ravel(), system.start().pairing)
     X = interface.master.bezier_points(interface.P_AI)[-1, :, 0]
     beyond = interface.X_qi[:, 0] + 1.0 - PROBLEM.length
     gone = beyond > PROJECTION.free * (X[-1] - X[0])
@@ -221,7 +223,8 @@ def test_partners_that_stay_are_searched_for_once(monkeypatch):
     """Where gaps change in proportion all is known of the points, and what reads them asks for no search."""
     probe = build(replace(PROBLEM, kinematics="linear")).probe
     monkeypatch.setattr("iga.interface.interface.nearest_samples", lambda *given: pytest.fail("searched for again"))
-    assert probe.at_rest is not None and np.array_equal(probe.pairing.c_q, probe.at_rest.pairing.c_q)
+    assert isinstance(probe, SettledInterface) and np.all(probe.pairing.on_q)
+    probe.contact(np.zeros(probe.P_AI.size), probe.pairing)
 
 
 @pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
@@ -237,3 +240,16 @@ def test_surfaces_touch_that_are_apart_by_less_than_a_billionth_of_the_model(uni
         assert np.all(apart_qi == 0.0) == touches
         if not touches:
             assert np.abs(apart_qi[:, 1]) == pytest.approx(part * 6.0 * unit, rel=1e-3)
+
+
+def test_rows_over_all_unknowns_are_those_over_a_few(rng):
+    """Rates, gradients and forces, of all and of some points."""
+    dof_qd = np.array([[0, 3, 5], [1, 3, 4], [5, 0, 2], [2, 2, 1]])  # the last one names an unknown twice
+    few, n_dof, q = Rows(dof_qd, rng.standard_normal((4, 3))), 6, np.array([3, 1])
+    every = DenseRows.of(few, n_dof)
+    for v in (rng.standard_normal(n_dof), rng.standard_normal((n_dof, 2))):
+        assert np.allclose(every.rates(v), few.rates(v), atol=1e-14)
+        assert np.allclose(every.rates(v, q), few.rates(v, q), atol=1e-14)
+    assert np.array_equal(every.gradients(q, n_dof), few.gradients(q, n_dof))
+    f_q = rng.standard_normal(4)
+    assert np.allclose(every.forces(f_q, n_dof), few.forces(f_q, n_dof), atol=1e-14)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-import iga.interface.interface
 import iga.path.condensation
 from iga import dcb, peel
 from iga.path.condensation import _rigid_motions, _rows, _without, condensed
@@ -93,9 +92,9 @@ def test_an_opening_that_a_gap_tells_already_is_not_condensed(problem, narrow, m
     limits = iga.path.condensation.CondensationLimits(narrow=narrow)
     monkeypatch.setattr(iga.path.condensation, "CONDENSATION", limits)
     system = solver(problem).build(problem).system
-    rows, small = _rows(system, system.interface.at_rest)[0].tocsr(), condensed(system)
-    stiffest = max(np.abs(K).max() for K in system.linear_matrices)
-    assert np.abs(small.system.bulk_dd).max() < 1e2 * stiffest
+    rows, small = _rows(system)[0].tocsr(), condensed(system)
+    stiffest = max(np.abs(K).max() for K in system.bulk.matrices)
+    assert np.abs(small.system.bulk.K_dd).max() < 1e2 * stiffest
     for row in (0, 7, 15):
         same = np.asarray(rows[[row]].todense()).ravel()
         assert condensed(replace(system, load_d=same)) is None
@@ -111,8 +110,7 @@ def test_of_meshes_that_match_only_differences_are_left(name):
     """One unknown for each control point of the slave, or for every one of both sides, and the opening."""
     system = solver(CASES[name]).build(CASES[name]).system
     interface = system.interface
-    slave = np.unique(interface.conn_qa).size
-    both = slave if interface.master is None else np.unique(system.reference_dof_qd // 2).size
+    slave, both = np.unique(interface.conn_qa).size, np.unique(interface.rest.dof_qd // 2).size
     alike = CASES[name].mismatch == 1.0 and not name.startswith("peel")
     assert condensed(system).system.n_dof == 1 + (slave if alike else both)
 
@@ -124,7 +122,7 @@ def test_the_stiffness_of_the_interface_does_not_depend_on_units(name):
     def stiffness(unit):
         problem = CASES[name]
         forces = {key: unit * getattr(problem, key) for key in ("E1", "E2", "G12", "strength", "toughness", "penalty")}
-        return condensed(dcb.build(replace(problem, **forces)).system).system.bulk_dd / unit
+        return condensed(dcb.build(replace(problem, **forces)).system).system.bulk.K_dd / unit
 
     same = stiffness(1.0)
     for unit in (1e-6, 1e6):
@@ -154,11 +152,10 @@ def test_a_rigid_motion_asks_for_no_force(name):
     """Of what is kept of it, to the last digit of the stiffness: more would be lost of the balance of forces."""
     system = solver(CASES[name]).build(CASES[name]).system
     small = condensed(system).system
-    rest = iga.interface.interface.contact(system.interface, np.zeros(system.n_dof), system.interface.pairing)
-    B_rd, _, _ = iga.path.condensation._rows(system, rest)
-    rigid_rm, _ = np.linalg.qr(B_rd @ _without(system.springs_rd, _rigid_motions(system)))
-    assert rigid_rm.shape[1] == 2 and np.array_equal(small.bulk_dd, small.bulk_dd.T)
-    assert np.abs(small.bulk_dd @ rigid_rm).max() < 5e-16 * np.abs(small.bulk_dd).max()
+    B_rd, _ = _rows(system)
+    rigid_rm, _ = np.linalg.qr(B_rd @ _without(system.springs_rd, _rigid_motions(system, system.bulk)))
+    assert rigid_rm.shape[1] == 2 and np.array_equal(small.bulk.K_dd, small.bulk.K_dd.T)
+    assert np.abs(small.bulk.K_dd @ rigid_rm).max() < 5e-16 * np.abs(small.bulk.K_dd).max()
 
 
 @pytest.mark.parametrize(("kept", "pays"), [(24, True), (25, False)])
@@ -166,9 +163,10 @@ def test_a_rigid_motion_asks_for_no_force(name):
 def test_dense_equations_pay_where_they_are_less_work_than_the_band(kept, pays, told):
     """2/3 n^3 operations against 4 n k^2, of 100 unknowns in a band of 5; one element may tell enough."""
     few = 6 if told == "elements" else 2
-    system = SimpleNamespace(element_dofs=(np.zeros((3, few)), np.zeros((1, 2))), free_d=np.ones(100, dtype=bool))
-    system.band = SimpleNamespace(n=100, k=5 if told == "band" else 0)
-    assert iga.path.condensation._pays(system, kept) == pays
+    bulk = SimpleNamespace(element_dofs=(np.zeros((3, few)), np.zeros((1, 2))))
+    band = SimpleNamespace(n=100, k=5 if told == "band" else 0)
+    system = SimpleNamespace(band=band, free_d=np.ones(100, dtype=bool))
+    assert iga.path.condensation._pays(system, bulk, kept) == pays
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -178,7 +176,7 @@ def test_a_banded_and_a_sparse_factorisation_give_one_stiffness(name, monkeypatc
         limits = iga.path.condensation.CondensationLimits(narrow=narrow)
         monkeypatch.setattr(iga.path.condensation, "CONDENSATION", limits)
         found.append(condensed(system))
-    banded, sparse = (one.system.bulk_dd for one in found)
+    banded, sparse = (one.system.bulk.K_dd for one in found)
     assert np.abs(banded - sparse).max() < 1e-11 * np.abs(sparse).max()
 
 
@@ -187,9 +185,9 @@ def test_springs_hold_nothing_that_no_row_feels(name):
     """A whole that floats is in balance by itself, to the last digits of its forces and not of its stiffness."""
     system = solver(CASES[name]).build(CASES[name]).system
     small = condensed(system)
-    rows = _rows(system, system.interface.at_rest)[0]
-    unfelt_dm = _without(rows, _rigid_motions(system))
+    rows = _rows(system)[0]
+    unfelt_dm = _without(rows, _rigid_motions(system, system.bulk))
     assert unfelt_dm.shape[1] > 0
     held_rm = system.spring_r[:, None] * (system.springs_rd @ small.U_dr)
     on_motions = np.abs((system.springs_rd @ unfelt_dm).T @ held_rm).max()
-    assert on_motions < 1e-13 * np.abs(small.system.bulk_dd).max()
+    assert on_motions < 1e-13 * np.abs(small.system.bulk.K_dd).max()

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from iga.interface.contact import Contact
 from iga.interface.laws import BilinearLaw
 from iga.path.energy import leaks, slid_off
 from iga.peel import solve
@@ -91,13 +92,13 @@ def sliding(gaps: list[float], histories: list[float], before: list[float], afte
     g_q, k_q = np.array(gaps), np.array(histories)
     start, end = (
         SimpleNamespace(
-            response=SimpleNamespace(contact=SimpleNamespace(share_q=share, g_q=g_q, m_q=None)),
+            response=SimpleNamespace(contact=Contact(None, g_q, np.zeros((g_q.size, 2)), share, None)),
             tangent=SimpleNamespace(rate_q=0.0 * g_q, du_d=np.zeros(2)),
             state=SimpleNamespace(k_q=k_q),
         )
         for share in shares
     )
-    interface = SimpleNamespace(law=LAW, bonded_q=None, dA_q=np.array([0.5, 0.25])[: g_q.size])
+    interface = SimpleNamespace(law=LAW, bonded_q=g_q == g_q, dA_q=np.array([0.5, 0.25])[: g_q.size])
     return slid_off(SimpleNamespace(interface=interface), start, end, 1.0, 1.0)
 
 

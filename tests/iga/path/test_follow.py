@@ -95,7 +95,7 @@ def test_rounding_of_the_input_is_not_amplified(basis, kinematics, rng):
 def test_what_has_come_apart_carries_nothing_and_will_not(broken, load, d_load, slope, separated, bonded):
     """More than half of the bond broken, no load, and none that the path brings over its reach of 3; the peak is 1."""
     k_q = np.where(np.arange(10) < 10 * broken, 2.0, 1.9)
-    bonded_q, area_q = None, np.ones(10)
+    bonded_q, area_q = np.ones(10, dtype=bool), np.ones(10)
     if bonded:  # as many points that only touch count for nothing
         k_q, area_q, bonded_q = np.append(k_q, np.zeros(10)), np.ones(20), np.arange(20) < 10
     interface = SimpleNamespace(dA_q=area_q, bonded_q=bonded_q, law=SimpleNamespace(g_u=2.0))

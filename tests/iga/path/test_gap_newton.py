@@ -10,7 +10,7 @@ from specimens import PAPER
 
 from iga.algebra.factors import bordered
 from iga.dcb import build
-from iga.interface.interface import Contact
+from iga.interface.contact import Contact, Rows
 from iga.path import gap_newton
 from iga.path.control import Prescribed, gap_control, opening_control
 from iga.path.follow import follow
@@ -88,7 +88,8 @@ def test_too_many_points_are_left_to_a_new_tangent(monkeypatch):
 
 def step_of_a_point(law, plain: float, guess: float | None = None, n_dof: int = 1) -> float | None:
     """How far one point on a spring of stiffness 1 goes, the first of some unknowns: ``g = plain - w(g)``."""
-    touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), np.array([[0]]), np.ones((1, 1, 1)))
+    rows = Rows(np.array([[0]]), np.ones((1, 1)))
+    touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), rows)
     spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm[:1]]))
     flat, guess_q = (np.zeros(1), np.zeros(1)), None if guess is None else np.array([guess])
     one = GapLaw(SimpleNamespace(dA_q=np.ones(1)), touch, law, *flat)
@@ -128,7 +129,7 @@ def test_a_guess_with_all_points_on_their_tangents_is_no_step_of_its_own():
 def test_a_bordered_step_meets_both_equations(chosen, rng):
     system = build(CZM1).system
     response = respond(system, system.start(), decide=False)
-    known, a_load = factorise(system, response, untimed), 0.0 if chosen == "opening" else 3.0
+    known, a_load = factorise(system, response, system.pattern(response), untimed), 0.0 if chosen == "opening" else 3.0
     tied = bordered(known, system.load_d, a_load)
     b_dm = rng.standard_normal((system.n_dof, 2))
     step_dm = tied.solve(b_dm, 0.7)
@@ -159,7 +160,8 @@ def test_points_of_one_element_span_no_more_than_its_functions(rng):
 @pytest.mark.parametrize(("off", "agrees"), [(0.9e-12, True), (1.1e-12, False), (-1.1e-12, False)])
 def test_tractions_agree_with_the_law_to_a_part_of_the_largest(off, agrees):
     """Of a traction of 5, all of which the tangent knows but for what it is off by."""
-    touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), np.array([[0]]), np.ones((1, 1, 1)))
+    rows = Rows(np.array([[0]]), np.ones((1, 1)))
+    touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), rows)
     spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm[:1]]))
     plain_d, known = np.array([1.0, *np.zeros(GAP_NEWTON.solutions + 1)]), (np.full(1, 5.0), np.zeros(1))
 

@@ -62,7 +62,7 @@ def test_what_is_past_a_kink_is_little_against_both_branches():
     one = np.zeros(1)
     for law in (LAW, brittle):
         touch = SimpleNamespace(g_q=one, share_q=one + 1.0, on_q=one == 0.0)
-        system = SimpleNamespace(interface=SimpleNamespace(law=law, bonded_q=None))
+        system = SimpleNamespace(interface=SimpleNamespace(law=law, bonded_q=one == 0.0))
         point = SimpleNamespace(
             response=SimpleNamespace(contact=touch),
             state=SimpleNamespace(k_q=one),

@@ -17,6 +17,7 @@ from iga.path.newton import Iterate, Line, _holds, _hopeless, _searched, equilib
 from iga.path.point import Point
 from iga.path.solver import DEFAULT, MANY_DECIDE, Newton, Solver
 from iga.path.tangent import tangent
+from iga.system.bulk import CondensedBulk
 from iga.system.system import respond
 
 CZM1 = replace(PAPER, opening=(0.9,), dofs=400)
@@ -225,11 +226,16 @@ def test_of_a_condensed_bulk_forces_that_rounding_hides_are_none():
     """Moved as a whole it exerts none, and the scale is what its unknowns hold against each other, 6e6, times
     ten roundings over the least tolerance.
     """
-    small = replace(build(CZM1).system, bulk_dd=3e6 * np.array([[1.0, -1.0], [-1.0, 1.0]]))
-    u_d, held, eps = np.ones(2), 6e6, np.finfo(float).eps
-    forces_d, scale, stored, _ = iga.system.system._condensed_bulk(small, u_d)
-    assert not forces_d.any() and stored == 0.0 and scale == pytest.approx(10.0 * eps / 5e-12 * held)
-    assert iga.system.system.rounding(small, u_d, None) == pytest.approx(10.0 * eps * held)
-    stretched_d = np.array([0.0, 2.0])
-    forces_d, scale, stored, _ = iga.system.system._condensed_bulk(small, stretched_d)
-    assert forces_d.tolist() == [-6e6, 6e6] and scale == pytest.approx(6e6 * np.sqrt(2.0)) and stored == 6e6
+    small, u_d, held, eps = (
+        CondensedBulk(3e6 * np.array([[1.0, -1.0], [-1.0, 1.0]])),
+        np.ones(2),
+        6e6,
+        np.finfo(float).eps,
+    )
+    found = small.respond(u_d)
+    assert not found.internal_d.any() and found.energy == 0.0
+    assert found.scale == pytest.approx(10.0 * eps / 5e-12 * held)
+    assert small.rounding(u_d) == pytest.approx(10.0 * eps * held)
+    found = small.respond(np.array([0.0, 2.0]))
+    assert found.internal_d.tolist() == [-6e6, 6e6] and found.energy == 6e6
+    assert found.scale == pytest.approx(6e6 * np.sqrt(2.0))

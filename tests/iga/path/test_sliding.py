@@ -8,20 +8,22 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from iga.interface.contact import Contact, Rows, SlidingContact
 from iga.interface.laws import BilinearLaw
 from iga.interface.master_point import _share
 from iga.path.energy import _hermite, _left_rate, slid_off, step_work, straight_work
 
 LAW = BilinearLaw(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0)
 AREA = np.array([0.5, 0.25])
+NO_ROWS = Rows(np.zeros((2, 0), dtype=int), np.zeros((2, 0)))
 
 
 def step(g: tuple, k: tuple, share: tuple, rate: float = 0.0, bonded: np.ndarray | None = None):
     """System and both ends of a step of two points that do the same; the first stays on the master where told."""
-    interface = SimpleNamespace(law=LAW, dA_q=AREA, bonded_q=bonded)
+    interface = SimpleNamespace(law=LAW, dA_q=AREA, bonded_q=np.ones(2) if bonded is None else bonded)
     ends = []
     for i in (0, 1):
-        touch = SimpleNamespace(share_q=np.full(2, share[i]), g_q=np.full(2, g[i]), m_q=None)
+        touch = Contact(None, np.full(2, g[i]), np.zeros((2, 2)), np.full(2, share[i]), NO_ROWS)
         point = SimpleNamespace(
             response=SimpleNamespace(contact=touch),
             tangent=SimpleNamespace(rate_q=np.full(2, rate), du_d=np.zeros(1)),
@@ -119,16 +121,15 @@ def test_the_way_off_the_master_goes_on_as_its_share_does(left: float) -> None:
     rate, g, m, fading, Nb = 0.7, 0.02, 1.3, 0.4, 0.25
     d_share = rate * (share_of(left + 1e-6) - share_of(left - 1e-6)) / 2e-6
     T = d_share * m / (share_of(left) * fading) - g * Nb
-    touch = SimpleNamespace(
-        share_q=np.array([9.0, share_of(left)]), fading_q=np.array([9.0, fading]), g_q=np.array([9.0, g]),
-        m_q=np.array([9.0, m]), dof_qd=np.array([[0, 1], [1, 2]]),
-        V_qrd=np.array([np.full((3, 2), 9.0), [[9.0, 9.0], [T, 0.0], [Nb - 2.0, 1.0]]]),
-    )  # fmt: skip
+    V_qrd = np.array([np.full((3, 2), 9.0), [[9.0, 9.0], [T, 0.0], [Nb - 2.0, 1.0]]])
+    g_q, share_q, fading_q, m_q = (np.array([9.0, value]) for value in (g, share_of(left), fading, m))
+    rows, kappa_q = Rows(np.array([[0, 1], [1, 2]]), V_qrd[:, 0]), np.zeros(2)
+    touch = SlidingContact(None, g_q, np.zeros((2, 2)), share_q, rows, V_qrd, m_q, kappa_q, fading_q)
     tangent = SimpleNamespace(du_d=np.array([9.0, 1.0, 2.0]))
     point = SimpleNamespace(response=SimpleNamespace(contact=touch), tangent=tangent)
     assert _left_rate(point, np.array([1]), np.array([left])) == pytest.approx(rate, rel=1e-8)
     assert [_left_rate(point, np.array([1]), np.array([end]))[0] for end in (0.0, 1.0)] == [0.0, 0.0]
-    touch.m_q = None
+    point.response.contact = Contact(None, g_q, np.zeros((2, 2)), share_q, rows)
     assert _left_rate(point, np.array([1]), np.array([left])).tolist() == [0.0]
 
 

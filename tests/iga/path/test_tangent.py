@@ -64,7 +64,7 @@ def test_the_tangent_is_the_difference_quotient_of_two_converged_points(snapping
     """All points with growing damage, snap-backs among them: direction, slope, and the rates of the gaps."""
     system, points = snapping
     # straight as a linear path is between two kinks, a longer step stands out better from what the balance leaves open
-    step = (1e-6 if system.kinematics == "finite" else 1e-4) * system.interface.law.g_u
+    step = (1e-4 if system.linear else 1e-6) * system.interface.law.g_u
     worst, tried = 0.0, 0
     for point in growing(points):
         path = point.tangent

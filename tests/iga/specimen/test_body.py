@@ -13,7 +13,6 @@ from iga.elements.kinematics import KINEMATICS
 from iga.elements.shape_functions import block_basis
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss, square
-from iga.output.rows import face_energy
 from iga.specimen.body import Body
 
 LENGTH, THICKNESS = PAPER.length, PAPER.arm_thickness
@@ -92,13 +91,13 @@ ALIKE = [
 @pytest.mark.parametrize(("changes", "alike"), ALIKE)
 def test_a_body_that_is_another_one_moved_has_the_bases_that_it_would_make_itself(changes, alike, monkeypatch):
     problem = replace(PAPER, **({"basis": "nurbs", "dofs": 480} | changes))
-    _, lower = build(problem).bodies
-    assert (lower.original is not None) == alike
+    upper, lower = build(problem).bodies
+    assert (lower.solids[0].basis.N_eqa is upper.solids[0].basis.N_eqa) == alike
     monkeypatch.setattr(iga.specimen.body, "_alike", lambda *_: False)
     _, own = build(problem).bodies
     pairs = [(a.basis, b.basis) for a, b in zip(lower.solids + lower.sampled, own.solids + own.sampled, strict=True)]
-    for name in ("left", "right", "top"):
-        pairs += zip(lower.face(name), own.face(name), strict=True)
+    for name in ("left", "right"):
+        pairs += zip(lower.ends[name], own.ends[name], strict=True)
     for taken, made in pairs:
         assert np.array_equal(taken.conn_ea, made.conn_ea)
         for field in ("N_eqa", "dN_eqIa", "dV_eq", "X_eqI"):
@@ -109,6 +108,6 @@ def test_a_body_that_is_another_one_moved_has_the_bases_that_it_would_make_itsel
 def test_the_energy_of_an_end_in_small_strains_is_that_of_its_stresses(rng) -> None:
     specimen = build(replace(PAPER, basis="nurbs", kinematics="linear"))
     u_d, law = rng.normal(size=specimen.system.n_dof), KINEMATICS["linear"]
-    ends = [(side, gradient(side.basis, u_d.reshape(-1, 2))) for side in specimen.energy_sides]
+    ends = [(side, gradient(side.basis, u_d.reshape(-1, 2))) for side in specimen.ends.solids]
     by_stress = sum(float(np.sum(law.stress(side.D, H)[1] * side.basis.dV_eq)) for side, H in ends)
-    assert face_energy(specimen, u_d) == pytest.approx(by_stress, rel=1e-12) and by_stress > 0.0
+    assert specimen.ends.energy(u_d) == pytest.approx(by_stress, rel=1e-12) and by_stress > 0.0

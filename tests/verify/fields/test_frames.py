@@ -11,7 +11,6 @@ from vtu_files import arrays
 
 from iga.delamination.meshes import drawn
 from iga.elements.bulk import gradient
-from iga.elements.kinematics import cauchy_stress
 from iga.elements.shape_functions import block_basis
 from iga.files.cad_body import body_mesh
 from iga.interface.surface import surface
@@ -167,7 +166,7 @@ def test_files_say_what_the_solver_found(case, tmp_path):
         for body in specimen.bodies:
             u_Ai = point.state.u_d.reshape(-1, 2)[body.points]
             for block in body.mesh.blocks:
-                first = compared(found, first, body, block, u_Ai, specimen.system.kinematics, method, scene)
+                first = compared(found, first, body, block, u_Ai, specimen.system.bulk.kinematics, method, scene)
         assert first == len(found["offsets"])
     if case == "adaptive":
         assert len({specimen.meshes[0].elements for specimen, _ in watched.written}) > 1
@@ -200,10 +199,10 @@ def compared(found, first, body, block, u_Ai, kinematics, method, scene) -> int:
     assert np.abs(at_points("Points")[..., :2] - basis.X_eqI).max() < 1e-13 * size
     u_eqi = np.einsum("eqa,eai->eqi", basis.N_eqa, u_Ai[basis.conn_ea])
     assert np.abs(at_points("displacement")[..., :2] - u_eqi).max() < 1e-12 * max(np.abs(u_eqi).max(), 1e-3)
-    sigma = cauchy_stress(body.D, gradient(basis, u_Ai), kinematics)
+    sigma = kinematics.cauchy(body.D, gradient(basis, u_Ai))
     stress, largest = at_points("stress"), max(np.abs(sigma).max(), 1e-3)
     # linear: the stress is a polynomial of the element; finite: nearly one
-    near = (1e-11 if kinematics == "linear" else 0.02) * largest
+    near = (1e-11 if kinematics.linear else 0.02) * largest
     for component, (i, j) in ((0, (0, 0)), (1, (1, 1)), (3, (0, 1))):
         assert np.abs(stress[..., component] - sigma[i, j]).max() < near
     if scene.specimen.plane == "stress":

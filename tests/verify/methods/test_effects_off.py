@@ -17,7 +17,8 @@ import pytest
 
 from iga.dcb import Problem, build
 from iga.interface import interface as interface_of
-from iga.interface.interface import Contact, Interface
+from iga.interface.contact import Contact
+from iga.interface.interface import SearchedInterface, SettledInterface
 from iga.interface.laws import BilinearLaw
 from iga.path import tangent as tangent_of
 from iga.path.condensation import condensed
@@ -25,8 +26,10 @@ from iga.path.follow import follow
 from iga.path.point import End, Point
 from iga.path.solver import Solver
 from iga.run import Solution, run
+from iga.specimen import bond as bond_of
 from iga.specimen.specimen import Specimen
 from iga.system import system as system_of
+from iga.system.bulk import FiniteBulk, LinearBulk
 from iga.system.system import untimed
 from verify.methods.solve import prepare
 from verify.scene.load import load_scene
@@ -99,15 +102,15 @@ class WithoutHistory(BilinearLaw):
         return stored, np.where(closed, 0.5 * self.penalty * g**2, 0.0), nothing
 
 
-def gaps_in_proportion(interface: Interface, u_d: np.ndarray, guess: object) -> Contact:
+def gaps_in_proportion(interface: SettledInterface, u_d: np.ndarray, guess: object) -> Contact:
     """All that linear kinematics asks of the geometry."""
     return replace(interface.at_rest, g_q=interface.at_rest.g_q + interface.at_rest.rates(u_d))
 
 
-def material_stiffness(interface: Interface, contact: Contact, p_q: np.ndarray, dp_q: np.ndarray) -> np.ndarray:
+def material_stiffness(contact: Contact, f_q: np.ndarray, slope_q: np.ndarray) -> np.ndarray:
     """The tangent without its geometric part."""
-    V_q1d = contact.V_qrd
-    return V_q1d.swapaxes(1, 2) @ ((dp_q * interface.dA_q)[:, None, None] * V_q1d)
+    G_q1d = contact.gap_rows.G_qd[:, None]
+    return G_q1d.swapaxes(1, 2) @ (slope_q[:, None, None] * G_q1d)
 
 
 def never(*_: object, **__: object) -> None:
@@ -146,12 +149,12 @@ OFF = {
     "kinematics": Off(
         ("effects.kinematics=linear",),
         None,
-        {(system_of, "contact"): gaps_in_proportion, (system_of, "stiffness"): material_stiffness},
+        {(SettledInterface, "contact"): gaps_in_proportion, (Contact, "stiffness"): material_stiffness},
     ),
     "kinematics, one arm": Off(
         ("effects.kinematics=linear", "effects.symmetry=true"),
         None,
-        {(system_of, "contact"): gaps_in_proportion, (system_of, "stiffness"): material_stiffness},
+        {(SettledInterface, "contact"): gaps_in_proportion, (Contact, "stiffness"): material_stiffness},
     ),
 }
 
@@ -201,15 +204,15 @@ def test_linear_kinematics_never_searches_nor_turns_a_normal(monkeypatch: pytest
     searched = []
     found = interface_of.closest_points
     monkeypatch.setattr(interface_of, "closest_points", lambda *a: searched.append(1) or found(*a))
-    for name in ("_finite_bulk", "_linear_bulk"):
-        monkeypatch.setattr(system_of, name, never)
+    for kind in (FiniteBulk, LinearBulk):
+        monkeypatch.setattr(kind, "respond", never)
     counts = []
     for steps in (5, 40):
         searched.clear()
         assert run(replace(one, steps=steps), build(replace(one, steps=steps)), None, untimed).status == "complete"
         counts.append(len(searched))
     assert counts[0] == counts[1], "searches grow with the steps"
-    assert specimen.system.interface.at_rest is not None
+    assert isinstance(specimen.system.interface, SettledInterface)
 
 
 def test_one_arm_has_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -217,10 +220,11 @@ def test_one_arm_has_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     one, both = problem("effects.symmetry=true"), problem()
     half, whole = build(one), build(both)
     assert len(half.bodies) == 1 and 2 * half.system.n_dof == whole.system.n_dof
-    assert half.system.interface.master is None and whole.system.interface.mirror_i is None
+    assert np.array_equal(half.system.interface.rest.dof_qd[:, ::2] // 2, half.system.interface.conn_qa)
+    assert isinstance(whole.system.interface, SearchedInterface)
     for name in ("closest_points", "nearest_samples", "master_points"):
         monkeypatch.setattr(interface_of, name, never)
     assert solved(one).status == "complete"
     monkeypatch.undo()
-    monkeypatch.setattr(interface_of, "_known", never)
+    monkeypatch.setattr(bond_of, "PairedInterface", never)
     assert solved(replace(both, opening=(0.2,), steps=5)).status == "complete"

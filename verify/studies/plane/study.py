@@ -15,11 +15,10 @@ from typing import Any
 import numpy as np
 
 from iga.elements.bulk import gradient
-from iga.elements.edge_points import side_points
 from iga.elements.elasticity import isotropic
 from iga.elements.kinematics import small_stress
 from iga.elements.plane_elasticity import no_rigid_motion, solve, stiffness, traction_forces
-from iga.elements.shape_functions import block_basis
+from iga.elements.shape_functions import block_basis, side_bases
 from iga.files.iga_format import mesh as mesh_of
 from iga.files.iga_reader import read_iga
 from iga.mesh.boundary import boundary_chains
@@ -158,11 +157,11 @@ _BOUNDARY = "boundary-"
 
 def _hole(mesh: Mesh) -> float | None:
     """Radius of a circle about the origin that has whole sides on it and the body outside; None without one."""
-    sides = side_points(mesh, list(mesh.chains.values()), 2)
+    sides = side_bases(mesh, list(mesh.chains.values()), 2)
     radius = min(float(np.linalg.norm(side.X_eqI, axis=-1).min()) for side in sides)
     for side in sides:
         on_e = np.all(np.linalg.norm(side.X_eqI, axis=-1) <= radius * (1.0 + 1e-9), axis=1)
-        inwards_e = np.all(np.sum(side.X_eqI * side.ndL_eqI, axis=-1) < 0.0, axis=1)
+        inwards_e = np.all(np.sum(side.X_eqI * side.n_eqI, axis=-1) < 0.0, axis=1)
         if radius > 0.0 and np.any(on_e & inwards_e):
             return radius
     return None

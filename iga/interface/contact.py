@@ -1,0 +1,166 @@
+"""The interface in one configuration: the gap at every point, with its first and second variation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from iga.interface.closest_point import Pairing
+
+
+@dataclass(frozen=True)
+class Rows:
+    """First variation of a scalar at every point: ``G_qd`` (n_q, n_d), derivatives by the unknowns ``dof_qd``.
+
+    The gap is such a scalar; whatever else a law depends on is one more.
+    """
+
+    dof_qd: np.ndarray
+    G_qd: np.ndarray
+
+    def rates(self, v_d: np.ndarray, q: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Rates (n_q, ...) at all or some points when the displacements change by v_d (n_dof, ...)."""
+        G_qd, v_qd = self.G_qd[q], v_d.take(self.dof_qd[q], axis=0)
+        return np.sum(G_qd * v_qd, axis=1) if v_d.ndim == 1 else (G_qd[:, None] @ v_qd)[:, 0]
+
+    def gradients(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
+        """Gradients (n_dof, n_m) at some points."""
+        rows_dm = np.zeros((n_dof, q_m.size), order="F")
+        np.add.at(rows_dm, (self.dof_qd[q_m], np.arange(q_m.size)[:, None]), self.G_qd[q_m])
+        return rows_dm
+
+    def forces(self, f_q: np.ndarray, n_dof: int) -> np.ndarray:
+        """Forces (n_dof,) on the unknowns from forces f_q (n_q,) that are conjugate to the scalar."""
+        R_qd = self.G_qd * f_q[:, None]
+        return np.bincount(self.dof_qd.ravel(), weights=R_qd.ravel(), minlength=n_dof)
+
+    def rounding(self, u_d: np.ndarray, slope_q: np.ndarray) -> float:
+        """Norm of the change of such forces, of slopes slope_q (n_q,), when displacements u_d change by rounding."""
+        u_q = np.abs(u_d[self.dof_qd]).max(1)
+        return float(np.finfo(float).eps * np.linalg.norm(slope_q * u_q))
+
+
+@dataclass(frozen=True)
+class DenseRows(Rows):
+    """The same over all of a few unknowns, as of a condensed bulk: G_qd is (n_q, n_dof)."""
+
+    @staticmethod
+    def of(rows: Rows, n_dof: int) -> DenseRows:
+        every_q, all_d = np.arange(len(rows.G_qd)), np.arange(n_dof)
+        return DenseRows(np.broadcast_to(all_d, (every_q.size, n_dof)), rows.gradients(every_q, n_dof).T)
+
+    def rates(self, v_d: np.ndarray, q: np.ndarray | slice = slice(None)) -> np.ndarray:
+        return self.G_qd[q] @ v_d
+
+    def gradients(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
+        return self.G_qd[q_m].T
+
+    def forces(self, f_q: np.ndarray, n_dof: int) -> np.ndarray:
+        return f_q @ self.G_qd
+
+    def rounding(self, u_d: np.ndarray, slope_q: np.ndarray) -> float:
+        """Zero: it is counted with the condensed bulk, whose unknowns are those of the gaps."""
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Gaps and their variation in one configuration, along normals that do not turn.
+
+    ``g_q`` (n_q,) gaps with their first variation ``gap_rows``, ``n_qi`` (n_q, 2) master normals, ``share_q`` (n_q,)
+    part of each point's area that faces the master, ``pairing`` where the points meet it if that was searched for.
+    """
+
+    pairing: Pairing | None
+    g_q: np.ndarray
+    n_qi: np.ndarray
+    share_q: np.ndarray
+    gap_rows: Rows
+
+    @property
+    def dof_qd(self) -> np.ndarray:
+        """Unknowns (n_q, n_d) of slave and master side on which each point depends."""
+        return self.gap_rows.dof_qd
+
+    @cached_property
+    def on_q(self) -> np.ndarray:
+        """Points (n_q,) that face the master; the others are free."""
+        return self.share_q > 0.0
+
+    @cached_property
+    def whole(self) -> bool:
+        """Whether the whole area of every point faces the master."""
+        return bool((self.share_q == 1.0).all())
+
+    def rates(self, v_d: np.ndarray, q: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Rates (n_q, ...) of all or some gaps when the displacements change by v_d (n_dof, ...)."""
+        return self.gap_rows.rates(v_d, q)
+
+    def rows(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
+        """Gradients (n_dof, n_m) of the gaps at some points."""
+        return self.gap_rows.gradients(q_m, n_dof)
+
+    def row(self, q: int, n_dof: int) -> np.ndarray:
+        """Gradient (n_dof,) of the gap at one point."""
+        return self.rows(np.array([q]), n_dof)[:, 0]
+
+    def share_rates(self, _v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Rates (n_m,) of the share of some points when the displacements change by v_d (n_dof,)."""
+        return np.zeros(q.size)
+
+    def stiffness(self, _f_q: np.ndarray, slope_q: np.ndarray) -> np.ndarray:
+        """Tangent of each point (n_q, n_d, n_d), ``slope G'G + f D(dg)``, for forces f_q and their slopes (n_q,)."""
+        G_q1d = self.gap_rows.G_qd[:, None]
+        return G_q1d.swapaxes(1, 2) @ (slope_q[:, None, None] * G_q1d)
+
+    def unsymmetric(self, _f_q: np.ndarray) -> np.ndarray:
+        """Points (n_m,) with an unsymmetric tangent."""
+        return np.arange(0)
+
+
+@dataclass(frozen=True)
+class SlidingContact(Contact):
+    """Contact at closest points, which move along the master, and normals that turn with it.
+
+    ``V_qrd`` (n_q, 3, n_d) are the rows G, T and Nb of the variations, with the quantities ``m_q``, ``kappa_q`` of
+    `stiffness` and ``fading_q`` (see `iga.interface.master_point.MasterPoints`).
+    """
+
+    V_qrd: np.ndarray
+    m_q: np.ndarray
+    kappa_q: np.ndarray
+    fading_q: np.ndarray
+
+    def share_rates(self, v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """``share' = share fading (T + g Nb) / m``."""
+        T, Nb = np.sum(self.V_qrd[q, 1:] * v_d[self.dof_qd[q]][:, None], axis=2).T
+        return self.share_q[q] * self.fading_q[q] * (T + self.g_q[q] * Nb) / self.m_q[q]
+
+    def stiffness(self, f_q: np.ndarray, slope_q: np.ndarray) -> np.ndarray:
+        """Complete tangent of each point (n_q, n_d, n_d), ``slope G'G + f D(dg)``.
+
+        With y' = t, m = t.t, kappa = n.y'', a = m - g kappa, T = t.(dx - dy), Nb = n.dy', the second variation of the
+        gap is ``D(dg) = -1/a [T Nb + Nb T + g Nb Nb + (kappa / m) T T]`` (Wriggers 2006, sec. 9.1, in the present
+        notation).
+
+        Symmetric except at points that slide off the master: their share changes with the place on its continuation,
+        ``d eta = (T + g Nb) / m``, and the force along the normal with it. A force along the surface, which would make
+        it symmetric, does not exist: what slides off loses its bond and is not pulled back.
+        """
+        V, g_q, m_q, kappa_q = self.V_qrd, self.g_q, self.m_q, self.kappa_q
+        c_qrs = np.zeros((len(V), V.shape[1], V.shape[1]))
+        c_qrs[:, 0, 0] = slope_q
+        a_q = m_q - g_q * kappa_q
+        f = -f_q / np.where(np.abs(a_q) > 1e-12 * m_q, a_q, m_q)
+        c_qrs[:, 1, 1] = f * kappa_q / m_q
+        c_qrs[:, 1, 2] = c_qrs[:, 2, 1] = f
+        c_qrs[:, 2, 2] = f * g_q
+        slides = f_q * self.fading_q / m_q
+        c_qrs[:, 0, 1] += slides
+        c_qrs[:, 0, 2] += slides * g_q
+        return V.swapaxes(1, 2) @ (c_qrs @ V)
+
+    def unsymmetric(self, f_q: np.ndarray) -> np.ndarray:
+        return np.flatnonzero(self.fading_q * f_q)

@@ -1,0 +1,230 @@
+"""The bulk: its forces and energy, what it adds to the tangent, and what of that is kept from one state to the next.
+
+There are three kinds. A `FiniteBulk` evaluates its elements in every state, a `LinearBulk` has one stiffness for good,
+a `CondensedBulk` is such a stiffness for the few displacements of the interface.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+from iga.algebra.banded import Band, number
+from iga.algebra.dense import Dense
+from iga.elements.bulk import Solid, element_forces, element_stiffness, energy, full_matrices, gradient, relative
+from iga.elements.kinematics import FINITE, LINEAR, Kinematics
+from iga.interface.interface import dofs
+from iga.system.assembly import DensePattern, Gradients, Pattern, Springs, TangentPattern, element_sums, element_values
+
+
+@dataclass(frozen=True)
+class Rounding:
+    """What rounding leaves of forces.
+
+    ``of_elements``: part of the largest entry of an element's stiffness times its displacements. ``lost``: part of a
+    sum of forces of a condensed bulk; Newton would see the part ``hidden`` of these at its tolerance, 5e-12.
+    """
+
+    of_elements: float = 40.0 * float(np.finfo(float).eps)
+    lost: float = 10.0 * float(np.finfo(float).eps)
+    hidden: float = 10.0 * float(np.finfo(float).eps) / 5e-12
+
+
+ROUNDING = Rounding()
+
+
+@dataclass(frozen=True)
+class BulkResponse:
+    """Forces ``internal_d`` (n_dof,) of the bulk, the norm ``scale`` of those of its parts, and the stored energy.
+
+    Of a finite bulk the displacement ``gradients`` of its solids, from which the tangent is made when it is needed.
+    """
+
+    internal_d: np.ndarray
+    scale: float
+    energy: float
+    gradients: Gradients = ()
+
+
+class Bulk(Protocol):
+    """What a system needs to know of its bulk."""
+
+    kinematics: ClassVar[Kinematics]
+
+    def respond(self, u_d: np.ndarray) -> BulkResponse:
+        """Forces and energy at displacements (n_dof,)."""
+        ...
+
+    def rounding(self, u_d: np.ndarray) -> float:
+        """Norm of the change of the forces when the displacements (n_dof,) change by rounding."""
+        ...
+
+    def numbering(self, groups: Sequence[np.ndarray], x_d: np.ndarray, free_d: np.ndarray) -> Band | Dense:
+        """Equations of the free unknowns, numbered along x_d, for groups (n, n_d) of unknowns coupled by others."""
+        ...
+
+    def pattern(
+        self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
+    ) -> TangentPattern:
+        """Where all entries of the tangent go when the points depend on dof_qd; ``kept`` is the pattern before."""
+        ...
+
+
+@dataclass(frozen=True)
+class ElementBulk(ABC):
+    """A bulk of elements, in blocks of one shape."""
+
+    solids: tuple[Solid, ...]
+    kinematics: ClassVar[Kinematics]
+
+    @property
+    def connectivity(self) -> tuple[np.ndarray, ...]:
+        """Control points (n_e, n_a) of the elements of each block."""
+        return tuple(solid.basis.conn_ea for solid in self.solids)
+
+    @cached_property
+    def element_dofs(self) -> tuple[np.ndarray, ...]:
+        """Degrees of freedom (n_e, 2 n_a) of the elements of each block."""
+        return tuple(dofs(conn_ea) for conn_ea in self.connectivity)
+
+    @cached_property
+    def unloaded_stiffness(self) -> list[np.ndarray]:
+        """Element stiffness (n_e, n_a, 3, n_a) of each block in the reference configuration."""
+        return self.element_stiffness([np.zeros((2, 2, *solid.basis.dV_eq.shape)) for solid in self.solids])
+
+    @cached_property
+    def stiffest(self) -> tuple[np.ndarray, ...]:
+        """Largest entry (n_e,) of the stiffness of each element."""
+        return tuple(np.abs(K).max((1, 2, 3)) for K in self.unloaded_stiffness)
+
+    def element_stiffness(self, gradients: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """Element stiffness (n_e, n_a, 3, n_a) of each block at displacement gradients."""
+        return [
+            element_stiffness(solid.basis, self.kinematics.moduli(solid.D, H))
+            for solid, H in zip(self.solids, gradients, strict=True)
+        ]
+
+    def rounding(self, u_d: np.ndarray) -> float:
+        """Long thin elements are stiff across, and make much of the rounding of the displacements."""
+        squares = (
+            np.sum((size_e * np.abs(relative(conn_ea, u_d.reshape(-1, 2))).max((1, 2))) ** 2)
+            for size_e, conn_ea in zip(self.stiffest, self.connectivity, strict=True)
+        )
+        return float(ROUNDING.of_elements * np.sqrt(sum(squares)))
+
+    def numbering(self, groups: Sequence[np.ndarray], x_d: np.ndarray, free_d: np.ndarray) -> Band | Dense:
+        return number([*self.element_dofs, *groups], x_d, free_d)
+
+    def pattern(
+        self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
+    ) -> Pattern:
+        return Pattern.of(numbering, dof_qd, springs, self.assembler, kept)
+
+    @abstractmethod
+    def energy(self, u_d: np.ndarray) -> float:
+        """Stored energy at displacements (n_dof,)."""
+
+    @abstractmethod
+    def assembler(self, band: Band | Dense) -> Callable[[Gradients], np.ndarray]:
+        """Makes the lower half (band.size,) of the tangent stiffness from displacement gradients."""
+
+
+@dataclass(frozen=True)
+class FiniteBulk(ElementBulk):
+    """Finite strains: stresses and stiffness follow from the displacement gradients of each state."""
+
+    kinematics = FINITE
+
+    def respond(self, u_d: np.ndarray) -> BulkResponse:
+        internal_d, square, stored, gradients = np.zeros(u_d.size), 0.0, 0.0, []
+        for solid, d in zip(self.solids, self.element_dofs, strict=True):
+            H = gradient(solid.basis, u_d.reshape(-1, 2))
+            P, W = self.kinematics.stress(solid.D, H)
+            f = element_forces(solid.basis, P)
+            internal_d += np.bincount(d.ravel(), f.ravel(), u_d.size)
+            square += float(np.sum(f * f))
+            stored += energy(solid.basis, W)
+            gradients.append(H)
+        return BulkResponse(internal_d, square**0.5, stored, tuple(gradients))
+
+    def energy(self, u_d: np.ndarray) -> float:
+        stress, u_Ai = self.kinematics.stress, u_d.reshape(-1, 2)
+        return sum(energy(solid.basis, stress(solid.D, gradient(solid.basis, u_Ai))[1]) for solid in self.solids)
+
+    def assembler(self, band: Band | Dense) -> Callable[[Gradients], np.ndarray]:
+        sums = element_sums(self.connectivity, band)
+        return lambda gradients: sums @ element_values(self.element_stiffness(gradients))
+
+
+@dataclass(frozen=True)
+class LinearBulk(ElementBulk):
+    """Small strains: forces are proportional to the displacements, by one stiffness."""
+
+    kinematics = LINEAR
+
+    @cached_property
+    def matrices(self) -> tuple[np.ndarray, ...]:
+        """Element stiffness (n_e, 2 n_a, 2 n_a) of each block."""
+        return tuple(full_matrices(K) for K in self.unloaded_stiffness)
+
+    def respond(self, u_d: np.ndarray) -> BulkResponse:
+        internal_d, square = np.zeros(u_d.size), 0.0
+        for K, conn_ea, d in zip(self.matrices, self.connectivity, self.element_dofs, strict=True):
+            f = K @ relative(conn_ea, u_d.reshape(-1, 2)).reshape(len(d), -1, 1)
+            internal_d += np.bincount(d.ravel(), f.ravel(), u_d.size)
+            square += float(np.sum(f * f))
+        return BulkResponse(internal_d, square**0.5, 0.5 * float(u_d @ internal_d))
+
+    def energy(self, u_d: np.ndarray) -> float:
+        doubled = 0.0
+        for K, conn_ea in zip(self.matrices, self.connectivity, strict=True):
+            u_ed = relative(conn_ea, u_d.reshape(-1, 2)).reshape(len(K), -1, 1)
+            doubled += float(np.sum(u_ed * (K @ u_ed)))
+        return 0.5 * doubled
+
+    def assembler(self, band: Band | Dense) -> Callable[[Gradients], np.ndarray]:
+        half = element_sums(self.connectivity, band) @ element_values(self.unloaded_stiffness)
+        return lambda _: half
+
+
+@dataclass(frozen=True)
+class CondensedBulk:
+    """A linear bulk by its stiffness ``K_dd`` (n_dof, n_dof) for the displacements that it has been condensed to."""
+
+    K_dd: np.ndarray
+    kinematics: ClassVar[Kinematics] = LINEAR
+
+    @cached_property
+    def squares_d(self) -> np.ndarray:
+        """Sums (n_dof,) of the squares of the columns of the stiffness."""
+        return np.sum(self.K_dd**2, axis=0)
+
+    def held(self, u_d: np.ndarray) -> float:
+        """Norm of the forces that the unknowns exert on each other."""
+        return float(self.squares_d @ u_d**2) ** 0.5
+
+    def respond(self, u_d: np.ndarray) -> BulkResponse:
+        """Forces below rounding count as zero: at this scale they are below Newton's tolerance."""
+        internal_d = self.K_dd @ u_d
+        scale = max(float(internal_d @ internal_d) ** 0.5, ROUNDING.hidden * self.held(u_d))
+        return BulkResponse(internal_d, scale, 0.5 * float(u_d @ internal_d))
+
+    def rounding(self, u_d: np.ndarray) -> float:
+        return ROUNDING.lost * self.held(u_d)
+
+    def numbering(self, groups: Sequence[np.ndarray], x_d: np.ndarray, free_d: np.ndarray) -> Dense:
+        return Dense(free_d.size)
+
+    def pattern(
+        self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
+    ) -> DensePattern:
+        return DensePattern(dof_qd, numbering, springs.held(numbering), self.K_dd.ravel())
+
+
+#: Bulk of a specimen by the name of its kinematics.
+BULKS: dict[str, type[FiniteBulk] | type[LinearBulk]] = {"finite": FiniteBulk, "linear": LinearBulk}
