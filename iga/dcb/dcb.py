@@ -9,7 +9,6 @@ import numpy as np
 from iga.dcb.adaptive import Window, adapted_tmeshes, carried, first_window, followed
 from iga.dcb.meshes import arm_meshes, crack_path, tmeshes
 from iga.dcb.problem import Problem
-from iga.elements.elasticity import orthotropic
 from iga.path.point import Point
 from iga.run import OnFrame, Solution, run
 from iga.specimen.body import Body, edge_row, mean_row, point_row
@@ -37,11 +36,10 @@ def build(problem: Problem, phase: Phase = untimed, window: Window | None = None
         )
     arms = slice(1 if problem.symmetry else 2)
     with phase("basis"):
-        D = orthotropic(problem.E1, problem.E2, problem.G12, problem.nu12, problem.plane)
         layout = Delamination(
             meshes=meshes[arms],
             tmeshes=drawn[arms],
-            elasticity=(D,) * len(meshes[arms]),
+            elasticity=(problem.elasticity,) * len(meshes[arms]),
             bonded=(problem.precrack, problem.length),
             face=(0.0, problem.length),
             loads=(("left", 2.0),) if problem.symmetry else (("left", 1.0), ("left", -1.0)),

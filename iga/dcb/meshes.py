@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from iga.elements.elasticity import orthotropic
 from iga.mesh.extraction import Mesh
 from iga.specimen.grading import GRADING, columns, elements_within, largest, most_halvings, pieces, rectangle, unequal
 from iga.specimen.problem import presses
@@ -60,7 +59,7 @@ def arm_meshes(problem: Problem) -> tuple[Mesh, ...]:
 
     Raises
     ------
-    ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or T-splines of another degree than 3.
+    ValueError : ``dofs`` is too small for a mesh, or T-splines of another degree than 3.
     """
     if problem.basis == "tspline":
         meshes = tuple(tspline_rectangle(mesh) for mesh in tmeshes(problem))
@@ -94,7 +93,7 @@ def crack_path(problem: Problem) -> float:
     """
     h, opening = problem.arm_thickness, max(0.0, *problem.opening)
     crack = (1.5 * opening * (problem.E1 * h**3 / (12.0 * problem.toughness)) ** 0.5) ** 0.5
-    soft = (problem.E1 * h**3 / (3.0 * problem.penalty)) ** 0.25
+    soft = (problem.E1 * h**3 / (3.0 * problem.law.penalty)) ** 0.25
     ahead = max(CRACK_PATH.margin * zone_length(problem), soft if problem.contact else 0.0)
     return min(max(np.hypot(crack, 0.5 * opening), problem.precrack) + ahead, problem.length)
 
@@ -121,7 +120,7 @@ def coarsening(problem: Problem) -> float:
     which grows with the cube of the length of an element, and costs stress ``1 / (1 - D12^2 / (D11 D22))`` times that
     of bending: an arm that is nearly incompressible locks in long elements.
     """
-    D = orthotropic(problem.E1, problem.E2, problem.G12, problem.nu12, problem.plane)
+    D = problem.elasticity
     return max(CRACK_PATH.coarsening, GRADING.coarsening * (1.0 - D[0, 1] ** 2 / (D[0, 0] * D[1, 1])) ** (1.0 / 3.0))
 
 

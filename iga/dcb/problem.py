@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from iga.specimen.problem import Debonding
+import numpy as np
+
+from iga.specimen.problem import Debonding, Moduli, require, require_positive
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -12,9 +14,10 @@ class Problem(Debonding):
     """A double cantilever beam in its own frame.
 
     X runs from 0 (loaded end) to ``length``, the interface lies on Y = 0 and is bonded from ``precrack`` on; each arm
-    is ``arm_thickness`` thick and elastic with axis 1 along X. The opening is the separation of the loaded faces. Where
-    it goes below zero the faces are pressed together from X = 0 on: the load, spread over the faces at X = 0, and the
-    contact next to them are a couple, which makes the arms gape behind.
+    is ``arm_thickness`` thick and elastic with axis 1 along X, isotropic where ``E2`` and ``G12`` are left out. The
+    opening is the separation of the loaded faces. Where it goes below zero the faces are pressed together from X = 0
+    on: the load, spread over the faces at X = 0, and the contact next to them are a couple, which makes the arms gape
+    behind.
     ``symmetry`` models the upper arm alone against its mirror image. ``adaptive`` T-splines follow the process zone and
     have at most ``dofs`` unknowns at any time.
     """
@@ -23,8 +26,18 @@ class Problem(Debonding):
     arm_thickness: float
     precrack: float
     E1: float
-    E2: float
-    G12: float
     nu12: float
+    E2: float | None = None
+    G12: float | None = None
     symmetry: bool = False
     adaptive: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_positive(self, "length", "arm_thickness", "precrack", "E1", "E2", "G12")
+        require(self, "precrack", self.precrack < self.length, f"< length = {self.length:g}")
+
+    @property
+    def elasticity(self) -> np.ndarray:
+        """Elasticity matrix (3, 3) of the arms."""
+        return Moduli(E1=self.E1, nu12=self.nu12, E2=self.E2, G12=self.G12).elasticity(self.plane)

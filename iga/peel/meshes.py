@@ -48,9 +48,8 @@ def meshes(problem: Problem) -> tuple[Mesh, Mesh]:
 
     Raises
     ------
-    ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or the bond is longer than a body.
+    ValueError : ``dofs`` is too small for a mesh.
     """
-    _require_bodies(problem)
     end, depth = problem.bond_length, problem.substrate_thickness
     for layers in range(LAYERS_BELOW.most, 0, -1):
         tops = np.concatenate([[0.0], np.cumsum(LAYERS_BELOW.thickening ** np.arange(layers))])
@@ -96,9 +95,8 @@ def tmeshes(problem: Problem) -> tuple[TMesh, TMesh]:
 
     Raises
     ------
-    ValueError : ``dofs`` is too small for a mesh, the degree is not 3, or the bond is longer than a body.
+    ValueError : ``dofs`` is too small for a mesh, or the degree is not 3.
     """
-    _require_bodies(problem)
     if problem.degree != DEGREE:
         raise ValueError(f"degree must be {DEGREE} for T-splines, got {problem.degree}")
     thickness = problem.strip_thickness, problem.substrate_thickness
@@ -172,8 +170,3 @@ def _breaks(problem: Problem, length: float, path: int, beyond: int, layers: int
     if not presses(problem) or face <= bond:
         return breaks
     return finer_towards(breaks, face, GRADING.pressed * problem.strip_thickness, most_halvings(path))
-
-
-def _require_bodies(problem: Problem) -> None:
-    if not 0.0 < problem.bond_length < problem.strip_length or problem.bond_length > problem.substrate_length:
-        raise ValueError(f"bond_length must be > 0, < strip_length and <= substrate_length, got {problem.bond_length}")

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from iga.elements.elasticity import orthotropic
 from iga.peel.meshes import meshes, tmeshes
 from iga.peel.problem import Problem
 from iga.run import OnFrame, Solution, run
@@ -22,11 +21,10 @@ def build(problem: Problem, phase: Phase = untimed) -> Specimen:
     with phase("mesh"):
         drawn, pair = meshes_of(problem, lambda: tmeshes(problem), lambda: meshes(problem))
     with phase("basis"):
-        moduli = (problem.strip, problem.substrate)
         layout = Delamination(
             meshes=pair,
             tmeshes=drawn,
-            elasticity=tuple(orthotropic(m.E1, m.E2, m.G12, m.nu12, problem.plane) for m in moduli),
+            elasticity=tuple(one.elasticity(problem.plane) for one in (problem.strip, problem.substrate)),
             bonded=(problem.bond_length, 0.0),
             face=(min(problem.strip_length, problem.substrate_length), 0.0),
             loads=(("right", 1.0), ("", 0.0)),

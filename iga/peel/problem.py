@@ -4,17 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from iga.specimen.problem import Debonding
-
-
-@dataclass(frozen=True)
-class Moduli:
-    """Elastic constants, axis 1 along the specimen."""
-
-    E1: float
-    E2: float
-    G12: float
-    nu12: float
+from iga.specimen.problem import Debonding, Moduli, require, require_positive
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,3 +23,11 @@ class Problem(Debonding):
     bond_length: float
     strip: Moduli
     substrate: Moduli
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        lengths = ("strip_length", "strip_thickness", "substrate_length", "substrate_thickness", "bond_length")
+        require_positive(self, *lengths)
+        bond, strip, substrate = self.bond_length, self.strip_length, self.substrate_length
+        rule = f"< strip_length = {strip:g} and <= substrate_length = {substrate:g}"
+        require(self, "bond_length", bond < strip and bond <= substrate, rule)

@@ -12,6 +12,9 @@ from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_rectangle
 from iga.mesh.extraction import Mesh
 
+#: Names of the bases; T-splines have meshes of their own, `iga.specimen.tmesh_strip`.
+BASES = ("nurbs", "tspline", "lagrange")
+
 
 @dataclass(frozen=True)
 class Grading:
@@ -39,14 +42,7 @@ def most_halvings(path: int) -> int:
 
 
 def columns(basis: str, degree: int, elements: int) -> int:
-    """Functions of one direction.
-
-    Raises
-    ------
-    ValueError : the basis is unknown.
-    """
-    if basis not in ("nurbs", "lagrange"):
-        raise ValueError(f'basis must be "tspline", "nurbs" or "lagrange", got {basis!r}')
+    """Functions of one direction."""
     return elements + degree if basis == "nurbs" else elements * degree + 1
 
 

@@ -10,7 +10,7 @@ from iga.peel.problem import Moduli, Problem
 
 
 def isotropic(young: float, poisson: float) -> Moduli:
-    return Moduli(young, young, young / (2.0 * (1.0 + poisson)), poisson)
+    return Moduli(E1=young, nu12=poisson)
 
 
 PEEL = Problem(
