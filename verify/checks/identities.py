@@ -32,7 +32,7 @@ from verify.scene.bodies import elastic_constants
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.theory.law import KNOWN_LAWS
-from verify.verdict import Check, Kind
+from verify.verdict import Check, Checks, Kind
 
 #: Measured up to 0.05, of a strip that lies on the edge of its substrate; without the contact the deviation is 1.
 J_PRESSED_TOLERANCE = 0.1
@@ -60,12 +60,12 @@ KINDS: Mapping[str, Kind] = {"growth-angle": "analytical"}
 Identity = tuple[str, Callable[[Scene, Steps], float | None], float, str]
 
 
-def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, ...]:
+def run_checks(scene: Scene, result: Result, subject: str = "") -> Checks:
     """The checks of one run, as far as its columns go; ``subject`` as in `checks_of`."""
     return checks_of(prepare(scene, result.method), result, subject)
 
 
-def checks_of(prepared: Prepared, result: Result, subject: str = "") -> tuple[Check, ...]:
+def checks_of(prepared: Prepared, result: Result, subject: str = "") -> Checks:
     """The checks of one run, as far as its columns go.
 
     Parameters
@@ -84,7 +84,7 @@ def checks_of(prepared: Prepared, result: Result, subject: str = "") -> tuple[Ch
         for name, value, tolerance, meaning in found
         if value is not None and (spread or name not in OF_THE_FACE)
     )
-    return tuple(replace(check, unresolved=_cannot_judge(prepared, result, check)) for check in checks)
+    return Checks(replace(check, unresolved=_cannot_judge(prepared, result, check)) for check in checks)
 
 
 def _identities(prepared: Prepared, result: Result) -> list[Identity]:
