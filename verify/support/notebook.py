@@ -60,7 +60,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Rows of text below a head."""
 
     def row(cells: Sequence[str], tag: str) -> str:
-        made = (f'<{tag} style="text-align: left">{escape(text)}</{tag}>' for text in cells)
+        made = (f'<{tag} style="text-align: left; padding-right: 1em">{escape(text)}</{tag}>' for text in cells)
         return f"<tr>{''.join(made)}</tr>"
 
     body = "".join(row(cells, "td") for cells in rows)
