@@ -37,6 +37,8 @@ ORDER = (
     "t_junctions",
     "verify_your_own_code",
     "what_accuracy_costs",
+    "solve_in_python",
+    "check_in_python",
 )
 EQUATION = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 

@@ -11,14 +11,12 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from verify.curves.curve import curve_error
+import verify
 from verify.methods.dolfinx import dolfinx_installed
-from verify.methods.solve import solve
-from verify.scene import load_scene
 
-scene = load_scene("dcb-czm1")
+scene = verify.load_scene("dcb-czm1")
 methods = ["nurbs", "beam", "lefm"] + ["dolfinx"] * dolfinx_installed()
-results = {method: solve(scene, method) for method in methods}
+results = {method: verify.solve(scene, method) for method in methods}
 
 # %% [markdown]
 # How far are the load-opening curves apart? The beam is a theory of its own, not a mesh: what is left between it and
@@ -27,7 +25,7 @@ results = {method: solve(scene, method) for method in methods}
 
 # %%
 nurbs, beam = results["nurbs"], results["beam"]
-distance = curve_error((nurbs.opening, nurbs.load), (beam.opening, beam.load), scene.load.opening[-1])
+distance = verify.compare(nurbs, beam).curve_error
 print(f"NURBS against the beam: {distance:.3%} of the load over the whole curve")
 
 # %% [markdown]

@@ -8,6 +8,7 @@ from functools import cached_property
 from iga.delamination import build, solve
 from iga.specimen.layout import Layout, Moduli, Rectangle
 from iga.specimen.problem import Debonding
+from iga.specimen.ranges import require, require_positive
 
 __all__ = ["Problem", "build", "solve"]
 
@@ -17,20 +18,27 @@ class Problem(Debonding):
     """A double cantilever beam in its own frame.
 
     X runs from 0 (loaded end) to ``length``, the interface lies on Y = 0 and is bonded from ``precrack`` on; each arm
-    is ``arm_thickness`` thick and elastic with axis 1 along X. The opening is the separation of the loaded faces. Where
-    it goes below zero the faces are pressed together from X = 0 on: the load, spread over the faces at X = 0, and the
-    contact next to them are a couple, which makes the arms gape behind.
+    is ``arm_thickness`` thick and elastic with axis 1 along X, isotropic where ``E2`` and ``G12`` are left out. The
+    opening is the separation of the loaded faces. Where it goes below zero the faces are pressed together from X = 0
+    on: the load, spread over the faces at X = 0, and the contact next to them are a couple, which makes the arms gape
+    behind.
     """
 
     length: float
     arm_thickness: float
     precrack: float
     E1: float
-    E2: float
-    G12: float
     nu12: float
+    E2: float | None = None
+    G12: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_positive(self, "length", "arm_thickness", "precrack", "E1", "E2", "G12")
+        require(self, "precrack", self.precrack < self.length, f"< length = {self.length:g}")
 
     @cached_property
     def layout(self) -> Layout:
-        arm = Rectangle(self.length, self.arm_thickness, Moduli(self.E1, self.E2, self.G12, self.nu12))
+        moduli = Moduli(E1=self.E1, nu12=self.nu12, E2=self.E2, G12=self.G12)
+        arm = Rectangle(self.length, self.arm_thickness, moduli)
         return Layout((arm, arm), (self.precrack, self.length))

@@ -8,6 +8,7 @@ from functools import cached_property
 from iga.delamination import build, solve
 from iga.specimen.layout import Clamp, Layout, Load, Moduli, Rectangle
 from iga.specimen.problem import Debonding
+from iga.specimen.ranges import require, require_positive
 
 __all__ = ["Moduli", "Problem", "build", "solve"]
 
@@ -28,6 +29,14 @@ class Problem(Debonding):
     bond_length: float
     strip: Moduli
     substrate: Moduli
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        lengths = ("strip_length", "strip_thickness", "substrate_length", "substrate_thickness", "bond_length")
+        require_positive(self, *lengths)
+        bond, strip, substrate = self.bond_length, self.strip_length, self.substrate_length
+        rule = f"< strip_length = {strip:g} and <= substrate_length = {substrate:g}"
+        require(self, "bond_length", bond < strip and bond <= substrate, rule)
 
     @cached_property
     def layout(self) -> Layout:

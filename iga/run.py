@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from iga.output.frames import frame
 from iga.output.rows import row
-from iga.output.snapshots import snapshot
+from iga.output.snapshots import Snapshot, snapshot
 from iga.path.condensation import condensed
 from iga.path.follow import follow
 from iga.path.point import End, Point
@@ -29,6 +31,7 @@ class Solution:
     """What a run leaves: a row a converged step (see `iga.output.rows`), snapshots (see `iga.output.snapshots`), and
     how it ended.
 
+    ``status`` is "complete" where the whole programme was run, and else says why it was not.
     ``ending`` is the opening at which a specimen came apart, if it did; ``condition`` is the larger condition number of
     the tangents at the first and at the last converged point.
     """
@@ -38,9 +41,27 @@ class Solution:
     elements: int
     rejected_steps: int
     status: str
-    snapshots: tuple[Mapping[str, object], ...]
+    snapshots: tuple[Snapshot, ...]
     ending: str = ""
     condition: float = 0.0
+
+    @property
+    def steps(self) -> dict[str, np.ndarray]:
+        """The rows as columns: name -> array (n_steps,)."""
+        return {name: np.array([row[name] for row in self.rows]) for name in self.rows[0]}
+
+    @property
+    def opening(self) -> np.ndarray:
+        return self.steps["opening"]
+
+    @property
+    def load(self) -> np.ndarray:
+        return self.steps["load"]
+
+    def __repr__(self) -> str:
+        peak = max(self.rows, key=lambda row: row["load"])
+        at = f"peak load {peak['load']:.6g} at opening {peak['opening']:.6g}"
+        return f"<Solution: {self.dofs} unknowns, {len(self.rows)} points, {at}, {self.ending or self.status}>"
 
 
 def run(
@@ -56,7 +77,7 @@ def run(
     ``adapt`` may answer a converged point with another mesh and the state on it.
     """
     rows: list[dict[str, float]] = []
-    snapshots: list[dict[str, object]] = []
+    snapshots: list[Snapshot] = []
     wanted = sorted(problem.snapshot_openings)
     first, last, end, most = None, None, End("complete", 0), specimen
 

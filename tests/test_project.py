@@ -85,3 +85,8 @@ def test_hooks_run_what_is_here() -> None:
         "ruff format --force-exclude",
         "mypy",
     ]
+
+
+def test_type_checkers_of_users_are_told_that_there_are_types() -> None:
+    (packages,) = re.findall(r"^packages = \[(.*)\]$", (PROJECT / "pyproject.toml").read_text(), re.MULTILINE)
+    assert all((PROJECT / name.strip('" ') / "py.typed").is_file() for name in packages.split(","))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from html import escape
 from math import nan
 
 import numpy as np
@@ -115,6 +116,24 @@ class Result:
     @property
     def complete(self) -> bool:
         return self.status == "complete"
+
+    def __repr__(self) -> str:
+        return f"<Result: {self._in_short}>"
+
+    @property
+    def _in_short(self) -> str:
+        size = f"{self.dofs} unknowns, " if self.dofs else ""
+        end = self.ending or self.status
+        if not self.load.size:
+            return f"{self.method}, {size}no point, {end}"
+        peak = int(np.argmax(self.load))
+        at = f"peak load {self.load[peak]:.6g} at opening {self.opening[peak]:.6g}"
+        return f"{self.method}, {size}{self.load.size} points, {at}, {end}"
+
+    def _repr_html_(self) -> str:
+        from verify.support.notebook import Drawn, chart
+
+        return f"<p>{escape(self._in_short)}</p>{chart([Drawn(self.method, self.opening, self.load)])}"
 
 
 def steps_from_rows(rows: list[Mapping[str, float]]) -> dict[str, np.ndarray]:

@@ -111,7 +111,7 @@ def assert_curves_close(
     if programme is not None and not _are_numbers(programme):
         raise TypeError(f"programme: must be openings, got {programme!r}")
     names = ("actual", "expected")
-    curves = _points("actual", actual, actual_as), _points("expected", expected, expected_as)
+    curves = points("actual", actual, actual_as), points("expected", expected, expected_as)
     found = compare(*curves, end, names, programme=programme)
     judged = checks(found, **limits)
     if not all(check.passed for check in judged):
@@ -134,7 +134,8 @@ def _tolerance(name: str, limit: float | None) -> None:
         raise ValueError(f"{name}: must be >= 0 and finite, got {limit!r}")
 
 
-def _points(name: str, source: CurveLike, reading: Reading | None) -> Points:
+def points(name: str, source: CurveLike, reading: Reading | None) -> Points:
+    """Opening (n,) and load (n,) of a curve in any of its forms; ``name`` begins the sentence of a refusal."""
     if reading is not None and not isinstance(reading, Reading):
         raise TypeError(f"{name}_as: must be a Reading, got {type(reading).__name__}")
     reading = reading or Reading()

@@ -45,6 +45,18 @@ class Check:
         return self.state == "holds"
 
 
+class Checks(tuple[Check, ...]):
+    """The checks of one run; a table in a notebook."""
+
+    __slots__ = ()
+
+    def _repr_html_(self) -> str:
+        from verify.support.notebook import table
+
+        rows = [(c.name, f"{abs(c.value):.1e}", f"{c.tolerance:.1e}", c.state, c.unresolved or c.meaning) for c in self]
+        return table(("check", "value", "tolerance", "state", ""), rows)
+
+
 def of_state(check: Check) -> dict[str, Any]:
     """What JSON files say of the state of a check; ``unresolved`` and ``uncertainty`` only where there is one."""
     said: dict[str, Any] = {"passed": check.passed, "state": check.state}

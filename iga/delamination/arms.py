@@ -53,7 +53,7 @@ def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
 
     Raises
     ------
-    ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or the arms are not those of `require_arms`.
+    ValueError : ``dofs`` is too small for a mesh, or the arms are not those of `require_arms`.
     """
     require_arms(problem)
     q = problem.degree
@@ -116,7 +116,7 @@ def crack_path(problem: Debonding) -> float:
     one, other = (body.moduli.E1 * body.thickness**3 for body in problem.layout.bodies)
     mean = one * (2.0 * other / (one + other))
     crack = (1.5 * opening * (mean / (12.0 * problem.toughness)) ** 0.5) ** 0.5
-    soft = (max(one, other) / (3.0 * problem.penalty)) ** 0.25
+    soft = (max(one, other) / (3.0 * problem.law.penalty)) ** 0.25
     ahead = max(CRACK_PATH.margin * zone_length(problem), soft if problem.contact else 0.0)
     return min(max(np.hypot(crack, 0.5 * opening), precrack) + ahead, end)
 

@@ -43,7 +43,7 @@ def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
 
     Raises
     ------
-    ValueError : ``dofs`` is too small for a mesh, the basis is unknown, or the bond is longer than a body.
+    ValueError : ``dofs`` is too small for a mesh, or the bond is longer than a body.
     """
     _require_bodies(problem)
     (strip, substrate), (end, _) = problem.layout.bodies, problem.layout.bonded

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 
+#: Points (n,) and weights (n,) of a rule on [0, 1].
+Rule = tuple[np.ndarray, np.ndarray]
+
 
 @cache
-def gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
+def gauss(n: int) -> Rule:
     """Gauss-Legendre points and weights (n,), exact for degree 2n - 1."""
     xi, weights = np.polynomial.legendre.leggauss(n)  # on [-1, 1]
     x, w = 0.5 * (xi + 1.0), 0.5 * weights
@@ -16,7 +20,7 @@ def gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
     return x, w
 
 
-def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
+def lobatto(n: int) -> Rule:
     """Gauss-Lobatto points and weights (n,), end points included, exact for degree 2n - 3.
 
     Inner points are the roots of P'_{n-1}; ``w = 2 / (n (n - 1) P_{n-1}(x)^2)`` on [-1, 1] (Abramowitz and Stegun
@@ -33,9 +37,11 @@ def lobatto(n: int) -> tuple[np.ndarray, np.ndarray]:
     return 0.5 * (x + 1.0), 1.0 / (n * (n - 1) * P(x) ** 2)
 
 
-def square(
-    rule_s: tuple[np.ndarray, np.ndarray], rule_t: tuple[np.ndarray, np.ndarray]
-) -> tuple[np.ndarray, np.ndarray]:
+#: Name in a scene -> rule of so many points.
+QUADRATURE: dict[str, Callable[[int], Rule]] = {"gauss": gauss, "lobatto": lobatto}
+
+
+def square(rule_s: Rule, rule_t: Rule) -> Rule:
     """Product of two rules: points (n, 2) and weights (n,) on the unit square, s running fastest."""
     (s, w_s), (t, w_t) = rule_s, rule_t
     points = np.stack([np.tile(s, len(t)), np.repeat(t, len(s))], -1)

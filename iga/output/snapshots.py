@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from iga.elements.bulk import Solid, gradient
@@ -10,44 +12,52 @@ from iga.specimen.body import ELEMENT_SAMPLES
 from iga.specimen.specimen import Specimen
 
 
-def snapshot(specimen: Specimen, point: Point) -> dict[str, object]:
+@dataclass(frozen=True)
+class Snapshot:
     """Interface profile, ordered along the specimen, and one grid of samples an element, in the specimen's own frame.
 
-    Keys: opening, load; s_q, gap_q, traction_q, damage_q (n_q,); X_euvi, u_euvi (n_e, k+1, k+1, 2) and stress_euv
-    (n_e, k+1, k+1), the Cauchy stress along it, with k = `ELEMENT_SAMPLES`; of T-splines the edges line_nki (n, 2, 2)
-    and T-junctions junction_ni (n, 2) of the T-meshes.
+    ``s_q``, ``gap_q``, ``traction_q``, ``damage_q`` (n_q,): distance from the loaded end, normal gap, normal traction
+    and damage from 0 to 1. ``X_euvi``, ``u_euvi`` (n_e, k+1, k+1, 2) and ``stress_euv`` (n_e, k+1, k+1): places,
+    displacements and the Cauchy stress along the specimen, with k = `ELEMENT_SAMPLES`. ``line_nki`` (n, 2, 2) and
+    ``junction_ni`` (n, 2): edges and T-junctions of the T-meshes, of other bases none.
     """
+
+    opening: float
+    load: float
+    s_q: np.ndarray
+    gap_q: np.ndarray
+    traction_q: np.ndarray
+    damage_q: np.ndarray
+    X_euvi: np.ndarray
+    u_euvi: np.ndarray
+    stress_euv: np.ndarray
+    line_nki: np.ndarray
+    junction_ni: np.ndarray
+
+
+def snapshot(specimen: Specimen, point: Point) -> Snapshot:
+    """The fields of a converged point."""
     system, state, response = specimen.system, point.state, point.response
     interface = system.interface
     s, order = specimen.ordered
     u_Ai, sampled = state.u_d.reshape(-1, 2), zip(specimen.sampled, specimen.sampled_places, strict=True)
     grids = [_grid(specimen, solid, X_eqi, u_Ai) for solid, X_eqi in sampled]
     X, u, stress = (np.concatenate([grid[i] for grid in grids]) for i in range(3))
-    return {
-        "opening": point.opening,
-        "load": state.load,
-        "s_q": s,
-        "gap_q": response.contact.g_q[order],
-        "traction_q": response.p_q[order],
-        "damage_q": np.where(interface.bonded_q, interface.law.damage(state.k_q), 1.0)[order],
-        "X_euvi": X,
-        "u_euvi": u,
-        "stress_euv": stress,
-        **_tmesh(specimen),
-    }
-
-
-def _tmesh(specimen: Specimen) -> dict[str, np.ndarray]:
-    """Edges and T-junctions of the T-meshes, if any."""
-    meshes = specimen.drawn.tmeshes
-    if not meshes:
-        return {}
-    return {
-        "line_nki": np.concatenate([mesh.edges() for mesh in meshes]),
-        "junction_ni": np.concatenate(
-            [np.stack([m.knots_i[m.junctions[:, 0]], m.knots_j[m.junctions[:, 1]]], -1) for m in meshes]
-        ),
-    }
+    tmeshes = specimen.drawn.tmeshes
+    places = [np.stack([m.knots_i[m.junctions[:, 0]], m.knots_j[m.junctions[:, 1]]], -1) for m in tmeshes]
+    return Snapshot(
+        opening=point.opening,
+        load=state.load,
+        s_q=s,
+        gap_q=response.contact.g_q[order],
+        traction_q=response.p_q[order],
+        damage_q=np.where(interface.bonded_q, interface.law.damage(state.k_q), 1.0)[order],
+        X_euvi=X,
+        u_euvi=u,
+        stress_euv=stress,
+        line_nki=np.concatenate([np.zeros((0, 2, 2)), *(mesh.edges() for mesh in tmeshes)]),
+        junction_ni=np.concatenate([np.zeros((0, 2)), *places]),
+    )
 
 
 def _grid(

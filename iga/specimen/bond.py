@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -13,17 +12,12 @@ from iga.interface.interface import Interface, PairedInterface, SearchedInterfac
 from iga.interface.laws import TractionLaw
 from iga.interface.lumping import lumped
 from iga.interface.surface import Surface
-from iga.mesh.quadrature import gauss, lobatto
+from iga.mesh.quadrature import QUADRATURE, Rule, gauss
 from iga.specimen.body import Body
 from iga.specimen.problem import Debonding, unloads
 
-#: Points (n,) and weights (n,) of a rule on [0, 1].
-Rule = tuple[np.ndarray, np.ndarray]
 #: Sides c_q, parameters xi_q and weights w_q (n_q,) of points on a surface.
 Places = tuple[np.ndarray, np.ndarray, np.ndarray]
-
-#: Name in a scene -> rule of so many points.
-QUADRATURE: dict[str, Callable[[int], Rule]] = {"gauss": gauss, "lobatto": lobatto}
 
 #: Surface by which each body, upper and lower, meets the other.
 FACING = ("bottom", "top")
@@ -181,12 +175,5 @@ def control_points(bodies: tuple[Body, ...]) -> np.ndarray:
 
 
 def slave_number(problem: Debonding, bodies: tuple[Body, ...]) -> int:
-    """0 where the upper body's points are projected, 1 where the lower one's are.
-
-    Raises
-    ------
-    ValueError : the problem names neither.
-    """
-    if problem.slave not in ("upper", "lower"):
-        raise ValueError(f'slave must be "upper" or "lower", got {problem.slave!r}')
+    """0 where the upper body's points are projected, 1 where the lower one's are."""
     return int(problem.slave == "lower" and len(bodies) > 1)

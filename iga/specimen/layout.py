@@ -8,20 +8,31 @@ from typing import NamedTuple
 import numpy as np
 
 from iga.elements.elasticity import orthotropic
+from iga.specimen.ranges import require_positive
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Moduli:
-    """Elastic constants, axis 1 along the specimen."""
+    """Elastic constants, axis 1 along the specimen; isotropic where ``E2`` and ``G12`` are left out.
+
+    Raises
+    ------
+    ValueError : a modulus that is not positive.
+    """
 
     E1: float
-    E2: float
-    G12: float
     nu12: float
+    E2: float | None = None
+    G12: float | None = None
+
+    def __post_init__(self) -> None:
+        require_positive(self, "E1", "E2", "G12")
 
     def stiffness(self, plane: str) -> np.ndarray:
         """Elasticity matrix (3, 3), stress = D (E11, E22, 2 E12); raises as `orthotropic` does."""
-        return orthotropic(self.E1, self.E2, self.G12, self.nu12, plane)
+        E2 = self.E1 if self.E2 is None else self.E2
+        G12 = self.E1 / (2.0 * (1.0 + self.nu12)) if self.G12 is None else self.G12
+        return orthotropic(self.E1, E2, G12, self.nu12, plane)
 
 
 @dataclass(frozen=True)

@@ -3,23 +3,45 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Collection
 from dataclasses import dataclass
 
-from iga.bases.names import find
+import numpy as np
+
+from iga.bases.names import BASES, find
+from iga.elements.kinematics import KINEMATICS
 from iga.interface.laws import LAWS, TractionLaw
 from iga.mesh.extraction import Mesh
+from iga.mesh.quadrature import QUADRATURE
 from iga.specimen.layout import Layout
 from iga.specimen.pose import Pose
+from iga.specimen.ranges import require, require_positive
+
+#: Stiffness of the contact over that of the intact bond, where a problem does not state its penalty.
+CONTACT = 100.0
+
+#: Keys that have names as values, and these names.
+CHOICES: dict[str, Collection[str]] = {
+    "law_name": LAWS,
+    "load_at": ("face", "node", "hinge"),
+    "plane": ("stress", "strain"),
+    "kinematics": KINEMATICS,
+    "basis": BASES,
+    "slave": ("upper", "lower"),
+    "interface_rule": (*QUADRATURE, "lumped"),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Debonding(ABC):
     """Common part of a problem in plain numbers, any consistent units.
 
-    ``opening`` is the programme of the displacement of where the load acts, ``load_at``: "face" (a uniform dead
-    traction, the mean displacement), "node" (the corner of the loaded face away from the interface) or "hinge" (its
-    middle). ``steps`` is the number of steps asked for over the whole programme; None lets the path choose them.
-    ``dofs`` is the number of unknowns aimed at. ``law_name`` is one of `iga.interface.laws.LAWS`.
+    ``opening`` is the programme of the displacement of where the load acts, such as (3.0,) or (1.5, 0.2, 3.0); one
+    number is a programme of one leg. ``load_at`` says where: "face" (a uniform dead traction, the mean displacement),
+    "node" (the corner of the loaded face away from the interface) or "hinge" (its middle). ``steps`` is the number of
+    steps asked for over the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed
+    at. ``law_name`` is one of `iga.interface.laws.LAWS`, ``ductility`` the gap at separation over the gap at the
+    strength, ``penalty`` the stiffness of the contact, `CONTACT` times that of the bond where left out.
     ``meshes`` are those of the bodies, upper first, in the specimen's own frame; made by the solver where left out.
 
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
@@ -32,12 +54,16 @@ class Debonding(ABC):
 
     The specimen is reflected X -> -X where ``mirror`` is set, then turned by ``angle`` degrees counter-clockwise, then
     moved by ``shift``, with its supports and its load; what is read from it is in its own frame, wherever it lies.
+
+    Raises
+    ------
+    ValueError : a value out of its range; the message has key, range and value.
     """
 
     strength: float
     toughness: float
-    ductility: float
-    penalty: float
+    ductility: float = 12.5
+    penalty: float | None = None
     law_name: str = "bilinear"
     opening: tuple[float, ...]
     load_at: str = "face"
@@ -64,6 +90,23 @@ class Debonding(ABC):
     mirror: bool = False
     shift: tuple[float, float] = (0.0, 0.0)
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "opening", tuple(np.ravel(self.opening).astype(float).tolist()))
+        for key, names in CHOICES.items():
+            require(self, key, getattr(self, key) in names, f"one of {', '.join(names)}")
+        require_positive(self, "strength", "toughness", "penalty", "width", "mismatch", "bend")
+        require(self, "ductility", 1.0 < self.ductility < np.inf, "> 1 and finite")
+        require(self, "degree", self.degree >= 1, ">= 1")
+        require(self, "interface_points", self.interface_points >= 1, ">= 1")
+        require(self, "steps", self.steps is None or self.steps >= 1, ">= 1, or None")
+        moves = len(self.opening) > 0 and all(0.0 < abs(after - before) < np.inf for before, after in self.legs)
+        require(self, "opening", moves, "finite, and different from the opening before it (the first one: from 0)")
+
+    @property
+    def legs(self) -> tuple[tuple[float, float], ...]:
+        """First and last opening of every leg of the programme."""
+        return tuple(zip((0.0, *self.opening), self.opening, strict=False))
+
     @property
     @abstractmethod
     def layout(self) -> Layout:
@@ -71,11 +114,10 @@ class Debonding(ABC):
 
     @property
     def law(self) -> TractionLaw:
-        """The traction law. Raises ValueError where the name is unknown."""
-        if self.law_name not in LAWS:
-            raise ValueError(f"law_name: must be one of {', '.join(LAWS)}, got {self.law_name!r}")
-        shape = LAWS[self.law_name]
-        return shape(self.strength, self.toughness, self.ductility, self.penalty, self.contact, self.irreversible)
+        """The traction law."""
+        shape, stiffness = LAWS[self.law_name], 0.5 * self.strength**2 * self.ductility / self.toughness
+        penalty = CONTACT * stiffness if self.penalty is None else self.penalty
+        return shape(self.strength, self.toughness, self.ductility, penalty, self.contact, self.irreversible)
 
     @property
     def pose(self) -> Pose:
@@ -97,4 +139,4 @@ def presses(problem: Debonding) -> bool:
 
 def unloads(problem: Debonding) -> bool:
     """Whether the programme goes down anywhere."""
-    return any(after < before for before, after in zip((0.0, *problem.opening), problem.opening, strict=False))
+    return any(after < before for before, after in problem.legs)

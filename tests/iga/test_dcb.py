@@ -225,13 +225,13 @@ def test_a_linear_system_is_solved_at_once():
 
 def test_snapshots_are_taken_where_asked():
     solution = solve(replace(SHORT, dofs=400, steps=20, snapshot_openings=(0.3, 0.8)))
-    assert [s["opening"] >= o for s, o in zip(solution.snapshots, (0.3, 0.8), strict=True)] == [True, True]
+    assert [s.opening >= o for s, o in zip(solution.snapshots, (0.3, 0.8), strict=True)] == [True, True]
     snap = solution.snapshots[-1]
-    assert np.all(np.diff(snap["s_q"]) > 0) and len(snap["gap_q"]) == len(snap["traction_q"]) == len(snap["damage_q"])
-    assert snap["X_euvi"].shape == snap["u_euvi"].shape == (*snap["stress_euv"].shape, 2)
-    assert snap["stress_euv"].shape[0] == solution.elements
-    force = np.trapezoid(snap["traction_q"], snap["s_q"])
-    assert force == pytest.approx(snap["load"], rel=0.1)
+    assert np.all(np.diff(snap.s_q) > 0) and len(snap.gap_q) == len(snap.traction_q) == len(snap.damage_q)
+    assert snap.X_euvi.shape == snap.u_euvi.shape == (*snap.stress_euv.shape, 2)
+    assert snap.stress_euv.shape[0] == solution.elements
+    force = np.trapezoid(snap.traction_q, snap.s_q)
+    assert force == pytest.approx(snap.load, rel=0.1)
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 4, 5])

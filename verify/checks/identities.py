@@ -32,7 +32,7 @@ from verify.scene.effects import simulated
 from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 from verify.theory.law import KNOWN_LAWS
-from verify.verdict import Check, Kind
+from verify.verdict import Check, Checks, Kind
 
 #: Up to 0.05 were measured, for a strip that rests on the edge of its substrate; without contact the deviation is 1.
 J_PRESSED_TOLERANCE = 0.1
@@ -94,12 +94,12 @@ def identity(
     return register
 
 
-def run_checks(scene: Scene, result: Result, subject: str = "") -> tuple[Check, ...]:
+def run_checks(scene: Scene, result: Result, subject: str = "") -> Checks:
     """The checks of one run that its columns allow; ``subject`` as in `checks_of`."""
     return checks_of(prepare(scene, result.method), result, subject)
 
 
-def checks_of(prepared: Prepared, result: Result, subject: str = "") -> tuple[Check, ...]:
+def checks_of(prepared: Prepared, result: Result, subject: str = "") -> Checks:
     """The checks of one run that its columns allow.
 
     Parameters
@@ -118,7 +118,7 @@ def checks_of(prepared: Prepared, result: Result, subject: str = "") -> tuple[Ch
         meaning = one.meaning if isinstance(one.meaning, str) else one.meaning(scene)
         check = Check(one.name, subject or result.method, value, tolerance, one.kind, meaning)
         checks.append(replace(check, unresolved=_cannot_judge(prepared, result, check)))
-    return tuple(checks)
+    return Checks(checks)
 
 
 def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:

@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from verify import __version__
 from verify.curves.compare import Comparison, Part, compare
 from verify.curves.read import Reading, read_curve
 from verify.curves.wording import remarks, rows
 from verify.runs.folder import write_json
 from verify.support.say import say
 from verify.verdict import Check
+from verify.version import __version__
 
 PAGE, NUMBERS = "comparison.html", "comparison.json"
 

@@ -92,6 +92,35 @@ class Comparison:
             i = int(np.argmax(np.abs(self.load_a_n - self.load_b_n)))
         return float(self.opening_n[i]), float(self.load_a_n[i]), float(self.load_b_n[i])
 
+    def agrees(self, curve: float | None = None, peak: float | None = None, energy: float | None = None) -> bool:
+        """Whether A is within the given relative tolerances of B, at least one; see `checks`."""
+        found = checks(self, curve, peak, energy)
+        if not found:
+            raise TypeError("agrees needs a tolerance: curve, peak or energy")
+        return all(check.passed for check in found)
+
+    @property
+    def _in_short(self) -> dict[str, str]:
+        """The differences of A in words, by their names."""
+        at, P_a, P_b = self.worst
+        return {
+            "curve error": f"{100 * self.curve_error:.3g} %",
+            "peak load": f"{100 * self.peak_difference:+.3g} %",
+            "energy": f"{100 * self.energy_difference:+.3g} %",
+            f"largest deviation, at {at:.6g}": f"{100 * _ratio(P_a - P_b, abs(P_b)):+.3g} %",
+        }
+
+    def __repr__(self) -> str:
+        numbers = ", ".join(f"{name} {value}" for name, value in self._in_short.items())
+        return f"<Comparison: {self.names[0]} against {self.names[1]}, {numbers}>"
+
+    def _repr_html_(self) -> str:
+        from verify.support.notebook import Drawn, chart, table
+
+        (a, b), A, B = self.names, self.a, self.b
+        curves = Drawn(a, A.opening, A.load), Drawn(b, B.opening, B.load, behind=True)
+        return chart(curves) + table(["", f"{a} against {b}"], self._in_short.items())
+
     def loads_at(self, openings: Sequence[float]) -> list[tuple[float, float, float]]:
         """Opening, load of A and load of B, on the envelopes.
 

@@ -52,7 +52,7 @@ class Reading:
         return self.opening or "opening", self.load or "load"
 
 
-def read_curve(path: Path, reading: Reading | None = None) -> tuple[np.ndarray, np.ndarray]:
+def read_curve(path: Path | str, reading: Reading | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Opening (n,) and load (n,) of a text file or of the folder of a run, scaled.
 
     Semicolons, tabs, commas or blanks separate; the decimal mark is a point or, where it does not separate, a comma.
@@ -64,7 +64,7 @@ def read_curve(path: Path, reading: Reading | None = None) -> tuple[np.ndarray, 
     CurveError
         Naming the file, the line and the column.
     """
-    reading = reading or Reading()
+    reading, path = reading or Reading(), Path(path)
     path = path / "curve.csv" if path.is_dir() else path
     table = read_table(_text(path))
     if not (table.lead or table.body):

@@ -227,9 +227,14 @@ def result_of(name: str, solution: Any, watch: Stopwatch) -> Result:
         dofs=getattr(solution, "dofs", 0),
         elements=getattr(solution, "elements", 0),
         rejected_steps=getattr(solution, "rejected_steps", 0),
-        snapshots=tuple(Snapshot(**snapshot) for snapshot in getattr(solution, "snapshots", ())),
+        snapshots=tuple(_snapshot(one) for one in getattr(solution, "snapshots", ())),
         seconds=watch.seconds(),
         peak_memory_mb=peak_memory_mb(),
         nonzeros=getattr(solution, "nonzeros", 0),
         jit_seconds=watch.compile,
     )
+
+
+def _snapshot(fields: Any) -> Snapshot:
+    """The snapshot of a solver: a mapping, or a value with these attributes."""
+    return Snapshot(**(fields if isinstance(fields, Mapping) else vars(fields)))

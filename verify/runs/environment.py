@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from verify import __version__
+from verify.version import __version__
 
 
 def mpi_rank() -> int:

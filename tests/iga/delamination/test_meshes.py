@@ -202,12 +202,12 @@ def test_the_crack_at_the_end_of_the_path_releases_the_toughness():
 @pytest.mark.parametrize("penalty", [1.0, 10.0])
 def test_the_path_goes_on_as_far_as_soft_contact_gives_way(penalty):
     """The decay of a beam on springs, EI d4w/dx4 + penalty w = 0, by the roots of its polynomial."""
-    soft = replace(CZM1, opening=(0.0,), penalty=penalty)
+    soft = replace(CZM1, opening=(1e-9,), penalty=penalty)
     roots = np.roots([E * soft.arm_thickness**3 / 12.0, 0.0, 0.0, 0.0, penalty])
     decay = 1.0 / np.abs(roots.real).min()
     assert decay > zone_length(CZM1)
     assert crack_path(soft) - soft.precrack == pytest.approx(decay, rel=1e-12)
-    assert crack_path(replace(soft, contact=False)) == crack_path(replace(CZM1, opening=(0.0,), contact=False))
+    assert crack_path(replace(soft, contact=False)) == crack_path(replace(CZM1, opening=(1e-9,), contact=False))
     assert crack_path(replace(soft, penalty=1e9)) == crack_path(replace(soft, contact=False))
 
 
@@ -260,8 +260,6 @@ def test_what_no_mesh_can_be_made_of_is_refused():
         drawn(replace(CZM1, basis="tspline", degree=2))
     with pytest.raises(ValueError, match="degree must be 3 for T-splines, got 4"):
         peel_tmeshes(replace(PEEL, basis="tspline", degree=4))
-    with pytest.raises(ValueError, match="basis must be .*, got 'fourier'"):
-        drawn(replace(CZM1, basis="fourier"))
     for basis in BASES:
         with pytest.raises(ValueError, match="needs at least [0-9]+ unknowns, got 60"):
             drawn(replace(CZM1, basis=basis, dofs=60))

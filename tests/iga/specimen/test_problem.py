@@ -1,0 +1,60 @@
+"""The input: defaults, and what is refused before any work."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from specimens import NU, PAPER, E
+
+from iga.dcb import Problem
+from iga.elements.elasticity import isotropic
+from iga.specimen.layout import Moduli
+from iga.specimen.problem import CONTACT
+
+#: As little as must be stated.
+LEAST = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=E, nu12=NU, strength=4.0, toughness=0.1, opening=1.0)
+
+
+def test_contact_is_stiff_beside_the_bond_where_no_penalty_is_given() -> None:
+    assert LEAST.law.penalty == pytest.approx(CONTACT * LEAST.law.stiffness, rel=1e-12)
+    assert replace(LEAST, strength=8.0).law.penalty == pytest.approx(4.0 * LEAST.law.penalty)
+    assert replace(LEAST, penalty=7.0).law.penalty == 7.0
+
+
+def test_a_programme_is_a_number_or_several() -> None:
+    assert LEAST.opening == (1.0,) == replace(LEAST, opening=[1]).opening
+    assert replace(LEAST, opening=np.array([1.5, 0.2, 3.0])).legs == ((0.0, 1.5), (1.5, 0.2), (0.2, 3.0))
+
+
+def test_moduli_left_out_are_isotropic() -> None:
+    for same in (isotropic(E, NU, "stress"), PAPER.elasticity):
+        assert np.array_equal(LEAST.elasticity, same)
+    assert Moduli(E1=E, nu12=NU, E2=E / 10).stiffness("stress")[1, 1] < 0.11 * E
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"strength": 0.0}, "strength: must be > 0 and finite, got 0.0"),
+        ({"toughness": np.nan}, "toughness: must be > 0 and finite, got nan"),
+        ({"penalty": -1.0}, "penalty: must be > 0 and finite, got -1.0"),
+        ({"E1": np.inf}, "E1: must be > 0 and finite, got inf"),
+        ({"ductility": 1.0}, "ductility: must be > 1 and finite, got 1.0"),
+        ({"precrack": 14.0}, "precrack: must be < length = 14, got 14.0"),
+        ({"opening": ()}, "opening: must be finite, and different from the opening before it .*, got \\(\\)"),
+        ({"opening": (1.0, 1.0)}, "opening: must be .*, got \\(1.0, 1.0\\)"),
+        ({"opening": np.nan}, "opening: must be .*, got \\(nan,\\)"),
+        ({"basis": "fourier"}, "basis: must be one of nurbs, tspline, lagrange, got 'fourier'"),
+        ({"kinematics": "large"}, "kinematics: must be one of finite, linear, got 'large'"),
+        ({"interface_rule": "simpson"}, "interface_rule: must be one of gauss, lobatto, lumped, got 'simpson'"),
+        ({"slave": "top"}, "slave: must be one of upper, lower, got 'top'"),
+        ({"degree": 0}, "degree: must be >= 1, got 0"),
+        ({"steps": 0}, "steps: must be >= 1, or None, got 0"),
+    ],
+    ids=lambda one: next(iter(one)) if isinstance(one, dict) else "",
+)
+def test_what_cannot_be_solved_is_refused_with_key_rule_and_value(changes: dict, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        replace(LEAST, **changes)
