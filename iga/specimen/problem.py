@@ -18,7 +18,7 @@ from iga.specimen.pose import Pose
 from iga.specimen.ranges import require, require_positive
 
 #: Stiffness of the contact over that of the intact bond, where a problem does not state its penalty.
-CONTACT = 100.0
+CONTACT_RATIO = 100.0
 
 #: Keys that have names as values, and these names.
 CHOICES: dict[str, Collection[str]] = {
@@ -41,7 +41,7 @@ class Debonding(ABC):
     "node" (the corner of the loaded face away from the interface) or "hinge" (its middle). ``steps`` is the number of
     steps asked for over the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed
     at. ``law_name`` is one of `iga.interface.laws.LAWS`, ``ductility`` the gap at separation over the gap at the
-    strength, ``penalty`` the stiffness of the contact, `CONTACT` times that of the bond where left out.
+    strength, ``penalty`` the stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out.
     ``meshes`` are those of the bodies, upper first, in the specimen's own frame; made by the solver where left out.
 
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
@@ -116,7 +116,7 @@ class Debonding(ABC):
     def law(self) -> TractionLaw:
         """The traction law."""
         shape, stiffness = LAWS[self.law_name], 0.5 * self.strength**2 * self.ductility / self.toughness
-        penalty = CONTACT * stiffness if self.penalty is None else self.penalty
+        penalty = CONTACT_RATIO * stiffness if self.penalty is None else self.penalty
         return shape(self.strength, self.toughness, self.ductility, penalty, self.contact, self.irreversible)
 
     @property

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 WIDTH, HEIGHT = 460, 260
 #: Room for numbers and labels left of and below the axes, and beyond their ends.
-LEFT, BELOW, BEYOND = 64, 42, 12
+MARGIN_LEFT, BELOW, BEYOND = 64, 42, 12
 #: Tick marks of an axis at most.
 TICKS = 6
 
@@ -95,7 +95,7 @@ class _Axis:
 
 
 #: Pixels of both axes, the origin first.
-_ENDS = (LEFT, WIDTH - BEYOND), (HEIGHT - BELOW, 2 * BEYOND)
+_ENDS = (MARGIN_LEFT, WIDTH - BEYOND), (HEIGHT - BELOW, 2 * BEYOND)
 
 
 def _mark(x: _Axis, y: _Axis, at: float, upright: bool) -> str:

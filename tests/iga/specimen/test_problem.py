@@ -11,14 +11,14 @@ from specimens import NU, PAPER, E
 from iga.dcb import Problem
 from iga.elements.elasticity import isotropic
 from iga.specimen.layout import Moduli
-from iga.specimen.problem import CONTACT
+from iga.specimen.problem import CONTACT_RATIO
 
 #: As little as must be stated.
 LEAST = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=E, nu12=NU, strength=4.0, toughness=0.1, opening=1.0)
 
 
 def test_contact_is_stiff_beside_the_bond_where_no_penalty_is_given() -> None:
-    assert LEAST.law.penalty == pytest.approx(CONTACT * LEAST.law.stiffness, rel=1e-12)
+    assert LEAST.law.penalty == pytest.approx(CONTACT_RATIO * LEAST.law.stiffness, rel=1e-12)
     assert replace(LEAST, strength=8.0).law.penalty == pytest.approx(4.0 * LEAST.law.penalty)
     assert replace(LEAST, penalty=7.0).law.penalty == 7.0
 
