@@ -96,16 +96,6 @@ def finite_material(sigma: np.ndarray, H: np.ndarray) -> np.ndarray:
     return np.einsum("...Ii,ij...,...Jj->IJ...", inverse, sigma, inverse)
 
 
-def small_cauchy(D: np.ndarray, H: np.ndarray) -> np.ndarray:
-    """Linear kinematics has one stress."""
-    return small_stress(D, H)[0]
-
-
-def small_material(sigma: np.ndarray, _H: np.ndarray) -> np.ndarray:
-    """Linear kinematics has one stress."""
-    return sigma
-
-
 def _deformation(H: np.ndarray) -> np.ndarray:
     F = H.copy()
     F[0, 0] += 1.0
@@ -133,5 +123,6 @@ def _moduli_of_parts(D: np.ndarray) -> np.ndarray:
 
 
 FINITE = Kinematics(False, finite_stress, finite_moduli, finite_cauchy, finite_material)
-LINEAR = Kinematics(True, small_stress, small_moduli, small_cauchy, small_material)
+# linear kinematics has one stress
+LINEAR = Kinematics(True, small_stress, small_moduli, lambda D, H: small_stress(D, H)[0], lambda sigma, _: sigma)
 KINEMATICS = {"finite": FINITE, "linear": LINEAR}

@@ -124,8 +124,9 @@ class Contact:
 class SlidingContact(Contact):
     """Contact at closest points, which move along the master, and normals that turn with it.
 
-    ``V_qrd`` (n_q, 3, n_d) are the rows G, T and Nb of the variations, with the quantities ``m_q``, ``kappa_q`` of
-    `stiffness` and ``fading_q`` (see `iga.interface.master_point.MasterPoints`).
+    ``V_qrd`` (n_q, 3, n_d) are the rows G, T and Nb of `stiffness`, of which the variations of every function of the
+    closest point are made, with the factors ``m_q``, ``kappa_q`` and ``fading_q`` (see
+    `iga.interface.master_point.MasterPoints`).
     """
 
     V_qrd: np.ndarray

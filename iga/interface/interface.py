@@ -79,20 +79,6 @@ class Interface(ABC):
 
 
 @dataclass(frozen=True)
-class Home:
-    """Where the slave points lie on the master in the reference configuration.
-
-    ``c_q`` sides, ``N_qb`` (n_q, n_b) master functions and ``Y_qi`` positions there, in local coordinates; ``apart_qi``
-    (n_q, 2) vector from there to the slave point, zero where the surfaces touch.
-    """
-
-    c_q: np.ndarray
-    N_qb: np.ndarray
-    Y_qi: np.ndarray
-    apart_qi: np.ndarray
-
-
-@dataclass(frozen=True)
 class SearchedInterface(Interface):
     """Every point meets the closest point of the ``master``, searched for in every configuration.
 
@@ -114,18 +100,23 @@ class SearchedInterface(Interface):
         return master_points(self.master, self.pairing, self.at_slave(self.local_AI), self.local_AI)
 
     @cached_property
-    def home(self) -> Home:
+    def home_qi(self) -> np.ndarray:
+        """The home (n_q, 2) of each point: where it meets the master then, in local coordinates."""
         there = self.reference
-        Y_qi = (there.M_qb[:, None] @ self.local_AI[self.master.conn_ca[there.c_q]])[:, 0]
-        apart_qi = self.at_slave(self.local_AI) - Y_qi
+        return (there.M_qb[:, None] @ self.local_AI[self.master.conn_ca[there.c_q]])[:, 0]
+
+    @cached_property
+    def apart_qi(self) -> np.ndarray:
+        """Vectors (n_q, 2) from the homes to the slave points, exactly zero where the surfaces touch."""
+        apart_qi = self.at_slave(self.local_AI) - self.home_qi
         touching = np.linalg.norm(apart_qi, axis=1) < FACES_TOUCH * np.ptp(self.local_AI, axis=0).max()
-        return Home(there.c_q, there.M_qb, Y_qi, np.where(touching[:, None], 0.0, apart_qi))
+        return np.where(touching[:, None], 0.0, apart_qi)
 
     @cached_property
     def rest(self) -> Contact:
         there = self.reference
         conn_qa, D_qa, n_qi = self._pairs(there)
-        g_q, rows = np.sum(self.home.apart_qi * n_qi, -1), Rows(dofs(conn_qa), _along(D_qa, n_qi))
+        g_q, rows = np.sum(self.apart_qi * n_qi, -1), Rows(dofs(conn_qa), _along(D_qa, n_qi))
         return Contact(self.pairing, g_q, n_qi, there.share_q, rows)
 
     def contact(self, u_d: np.ndarray, guess: Pairing | None) -> SlidingContact:
@@ -153,12 +144,11 @@ class SearchedInterface(Interface):
 
         Exactly zero at home, free of rounding: bodies that touch in the reference configuration have no gap.
         """
-        home, conn_qb = self.home, self.master.conn_ca.take(there.c_q, axis=0)
-        X_qbi, at_home_q1 = self.local_AI.take(conn_qb, axis=0), (there.c_q == home.c_q)[:, None]
-        origin_qi = X_qbi[:, -1]
-        change_qb = np.where(at_home_q1, home.N_qb - there.M_qb, -there.M_qb)
+        home, X_qbi = self.reference, self.local_AI.take(self.master.conn_ca.take(there.c_q, axis=0), axis=0)
+        origin_qi, at_home_q1 = X_qbi[:, -1], (there.c_q == home.c_q)[:, None]
+        change_qb = np.where(at_home_q1, home.M_qb - there.M_qb, -there.M_qb)
         moved_qi = (change_qb[:, None] @ (X_qbi - origin_qi[:, None]))[:, 0]
-        return moved_qi + np.where(at_home_q1, 0.0, home.Y_qi - origin_qi) + home.apart_qi
+        return moved_qi + np.where(at_home_q1, 0.0, self.home_qi - origin_qi) + self.apart_qi
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ FACING = ("bottom", "top")
 #: Samples of the gap on each side, between which faces may pass through each other unnoticed.
 FACE_SAMPLES = 5
 
-#: Part of a side that is too little to touch.
+#: Parts of a side that are shorter than this fraction of it have no points for contact.
 SLIVER = 1e-6
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -50,29 +49,17 @@ class Springs:
 
 
 @dataclass(frozen=True)
-class TangentPattern(ABC):
-    """The lower half of the tangent, and where in it all entries go while the points depend on the unknowns dof_qd.
+class Pattern:
+    """Where all entries of the tangent go in its lower half, while the points depend on the unknowns ``dof_qd``.
 
-    ``band`` is the numbering of the equations, ``held`` the places of a spring across the opening.
+    ``band`` is the numbering of the equations, ``held`` the places of the spring that holds the opening. ``bulk`` makes
+    the lower half of the stiffness of the bulk from its displacement gradients; ``positions`` are the places of
+    interface and springs, and ``values`` the entries of the springs.
     """
 
     dof_qd: np.ndarray
     band: Band | Dense
     held: np.ndarray
-
-    @abstractmethod
-    def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, Skew | None]:
-        """The lower half (band.size,) of the tangent at a response, and the upper half minus the lower one."""
-
-
-@dataclass(frozen=True)
-class Pattern(TangentPattern):
-    """The pattern of elements, interface points and springs.
-
-    ``bulk`` makes the lower half of the stiffness of the bulk from its displacement gradients; ``positions`` are the
-    places of interface and springs, and ``values`` the entries of the springs.
-    """
-
     bulk: Callable[[Gradients], np.ndarray]
     positions: np.ndarray
     values: np.ndarray
@@ -83,7 +70,7 @@ class Pattern(TangentPattern):
         dof_qd: np.ndarray,
         springs: Springs,
         assembler: Callable[[Band | Dense], Callable[[Gradients], np.ndarray]],
-        kept: TangentPattern | None,
+        kept: Pattern | DensePattern | None,
     ) -> Pattern:
         """The pattern of a numbering, of a wider band than that where a point has slid too far for it.
 
@@ -99,6 +86,7 @@ class Pattern(TangentPattern):
         return Pattern(dof_qd, band, springs.held(band), bulk, positions, springs.value)
 
     def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, Skew | None]:
+        """The lower half (band.size,) of the tangent at a response, and the upper half minus the lower one."""
         touch = response.contact
         K_qdd = stiffness(interface, touch, response.p_q, response.dp_q)
         i, j = _tril(K_qdd.shape[1])
@@ -109,18 +97,22 @@ class Pattern(TangentPattern):
 
 
 @dataclass(frozen=True)
-class DensePattern(TangentPattern):
-    """The full matrix of a condensed bulk and an interface that depends on all its unknowns.
+class DensePattern:
+    """The same of a full matrix: a condensed bulk of stiffness ``bulk`` (band.size,), and points on all unknowns."""
 
-    ``bulk`` (band.size,) is the stiffness of the bulk.
-    """
-
+    dof_qd: np.ndarray
+    band: Band | Dense
+    held: np.ndarray
     bulk: np.ndarray
 
     def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, None]:
         G_qd = response.contact.gap_rows.G_qd
         weighted_qd = (response.dp_q * interface.dA_q)[:, None] * G_qd
         return self.bulk + (G_qd.T @ weighted_qd).ravel(), None
+
+
+#: The pattern of a tangent, of either kind.
+TangentPattern = Pattern | DensePattern
 
 
 def element_sums(conns: Sequence[np.ndarray], band: Band | Dense) -> csr_array:

@@ -58,21 +58,17 @@ class Bulk(Protocol):
 
     def respond(self, u_d: np.ndarray) -> BulkResponse:
         """Forces and energy at displacements (n_dof,)."""
-        ...
 
     def rounding(self, u_d: np.ndarray) -> float:
         """Norm of the change of the forces when the displacements (n_dof,) change by rounding."""
-        ...
 
     def numbering(self, groups: Sequence[np.ndarray], x_d: np.ndarray, free_d: np.ndarray) -> Band | Dense:
         """Equations of the free unknowns, numbered along x_d, for groups (n, n_d) of unknowns coupled by others."""
-        ...
 
     def pattern(
         self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
     ) -> TangentPattern:
         """Where all entries of the tangent go when the points depend on dof_qd; ``kept`` is the pattern before."""
-        ...
 
 
 @dataclass(frozen=True)

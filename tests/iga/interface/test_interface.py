@@ -236,7 +236,7 @@ def test_surfaces_touch_that_are_apart_by_less_than_a_billionth_of_the_model(uni
     upper[np.unique(interface.conn_qa)] = True
     for part, touches in ((0.5e-9, True), (2e-9, False)):
         P_AI = interface.P_AI + part * 6.0 * unit * upper[:, None] * np.array([0.0, 1.0])
-        apart_qi = replace(interface, P_AI=P_AI).home.apart_qi
+        apart_qi = replace(interface, P_AI=P_AI).apart_qi
         assert np.all(apart_qi == 0.0) == touches
         if not touches:
             assert np.abs(apart_qi[:, 1]) == pytest.approx(part * 6.0 * unit, rel=1e-3)
