@@ -46,7 +46,10 @@ CONFIRMING = "tspline"
 
 @dataclass(frozen=True)
 class Trust:
-    """When an uncertainty of the reference may excuse a distance; larger values excuse more faults.
+    """When an uncertainty of the reference may excuse a distance.
+
+    Larger ``confirmed`` and ``models`` excuse more faults of the projection; a larger ``certain`` gives more verdicts
+    by a less accurate reference.
 
     confirmed : distance within which T-splines confirm the NURBS with projection
     models : largest plausible difference of the models: 0.0 to 0.7 % were measured on most of 60 random scenes, 2.0 %

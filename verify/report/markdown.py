@@ -206,7 +206,7 @@ def _scaling(found: Scaling) -> Iterator[str]:
             *table(["Method, growth with the unknowns", *found.columns], found.growth),
         )
     if found.shared:
-        heads = ["Unknowns", "Ranks", "Iteration", "Efficiency", "Not shared", *found.parts]
+        heads = ["Unknowns", "Ranks", "Iteration", "Efficiency", "Serial part", *found.parts]
         yield from ("", *table(heads, found.shared))
 
 

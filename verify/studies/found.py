@@ -100,9 +100,12 @@ def _commands(folder: Path) -> list[str]:
 def _study(command: str, folder: Path) -> Included:
     if command == "hard":
         return Included(command, folder, {}, tuple(_verdicts(folder)))
-    row = import_module(f"verify.studies.{command}.row").Row
+    module = import_module(f"verify.studies.{command}.row")
     about = read_json(folder / f"{command}.json", {**_SUMMARY, **_OWN_SUMMARY[command]})
-    return Included(command, folder, about, tuple(read_table(folder / f"{command}.csv", row)))
+    rows = read_table(folder / f"{command}.csv", module.Row)
+    if command == "cost":
+        module.refuse_unknown(rows, folder / "cost.csv")
+    return Included(command, folder, about, tuple(rows))
 
 
 def _verdicts(folder: Path) -> Iterator[Any]:

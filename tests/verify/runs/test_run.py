@@ -363,7 +363,7 @@ def test_a_rank_that_fails_says_which_it_is_and_ends_at_once(monkeypatch, capsys
     def broken(on_step: Callable | None) -> Result:
         raise ArithmeticError("no luck")
 
-    run_of._silent(broken)
+    run_of._without_files(broken)
     assert ended == [1] and capsys.readouterr().err.strip().endswith("rank 3: ArithmeticError: no luck")
 
 

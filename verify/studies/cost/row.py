@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite, nan
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from verify.runs.jobs import Outcome
 from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES, Try
 from verify.studies.cost.reference import Reference
 from verify.studies.frame import unmeasured
+from verify.support.checked_files import Damaged
 from verify.support.timing import PHASES
 
 
@@ -60,10 +62,6 @@ class Row:
     times: int
     run: str
     status: str
-
-    def __post_init__(self) -> None:
-        if (self.method, self.degree) not in {(family.method, family.degree) for family in (*FAMILIES, BEAM_FAMILY)}:
-            raise ValueError(f"the method {self.method[:30]!r} of degree {self.degree}")
 
     @property
     def family(self) -> str:
@@ -140,6 +138,13 @@ def traction_error(snapshots: Sequence[Snapshot], exact: Sequence[Snapshot]) -> 
         return nan
     found = np.interp(known.s_q[zone] - b, mine.s_q - a, mine.traction_q)
     return float(np.sqrt(np.mean((found - known.traction_q[zone]) ** 2)) / np.max(known.traction_q))
+
+
+def refuse_unknown(rows: Sequence[Row], path: Path) -> None:
+    """Raise Damaged where the file has a row of an unknown method or degree."""
+    known = {(family.method, family.degree) for family in (*FAMILIES, BEAM_FAMILY)}
+    if strange := [row for row in rows if (row.method, row.degree) not in known]:
+        raise Damaged(path, f"the method {strange[0].method[:30]!r} of degree {strange[0].degree}")
 
 
 def _middle(snapshot: Snapshot) -> float:

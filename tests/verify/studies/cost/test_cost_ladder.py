@@ -250,5 +250,5 @@ def test_entries_are_counted_where_a_run_that_is_measured_does_not_tell_them(mon
     rows = {"told": replace(told, nonzeros=7), "untold": untold, "failed": failed}
     job = SimpleNamespace(job=SimpleNamespace(solved="the scene", method="nurbs"))
     runner = SimpleNamespace(rows=rows, found=dict.fromkeys(rows, job))
-    counted = list(study_of._counted(runner))
+    counted = list(study_of._with_nonzeros(runner))
     assert [one.nonzeros for one in counted] == [7, 123, 0] and asked == [("the scene", "nurbs")]

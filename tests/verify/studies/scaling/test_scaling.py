@@ -232,7 +232,7 @@ def test_a_study_from_runs_to_files(two_cores: None, tmp_path: Path, monkeypatch
     pytest.importorskip("matplotlib")
     page = (tmp_path / "report.html").read_text()
     assert page.count("<svg") == 3 and "And on many ranks?" in page and "None were tried" in page
-    assert re.search(r"the part f = 0\.\d+ that", page) and "about 5 ranks" in page
+    assert re.search(r"the serial part f = 0\.\d+ were", page) and "about 5 ranks" in page
     assert "http://" not in page.replace("http://www.w3.org", "") and "https://" not in page
 
 
