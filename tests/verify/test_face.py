@@ -54,8 +54,8 @@ def test_scenes_are_loaded_and_verified(monkeypatch: pytest.MonkeyPatch, tmp_pat
     asked = []
     monkeypatch.setattr(face, "verify", lambda *what: bool(asked.append(what)) or True)
     assert verify.verify_scenes(["dcb-czm1", "peel-60"], tmp_path, jobs=2) is True
-    ((scenes, out, jobs, full),) = asked
-    assert [(source, scene.name) for source, scene in scenes] == [("dcb-czm1",) * 2, ("peel-60",) * 2]
-    assert (out, jobs, full) == (tmp_path, 2, False)
+    ((subjects, out, jobs),) = asked
+    assert [(source, scene.name) for source, scene in subjects.scenes] == [("dcb-czm1",) * 2, ("peel-60",) * 2]
+    assert (out, jobs, subjects.full) == (tmp_path, 2, False)
     with pytest.raises(ValueError, match="no-such-scene"):
         verify.verify_scenes(["no-such-scene"], tmp_path)
