@@ -174,7 +174,5 @@ def _require_bodies(problem: Debonding) -> None:
     layout = problem.layout
     (bond, start), (strip, substrate) = layout.bonded, (body.length for body in layout.bodies)
     if start != 0.0 or not 0.0 < bond < strip or bond > substrate or layout.loaded_at != strip:
-        rule = (
-            "must begin at X = 0, end before the strip, which is loaded at its right end, and not beyond the substrate"
-        )
-        raise ValueError(f"bond {rule}, got {layout.bonded}")
+        rule = "begin at X = 0, end before the strip, which is loaded at its right end, and not beyond the substrate"
+        raise ValueError(f"bond must {rule}, got {layout.bonded}")
