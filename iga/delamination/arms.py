@@ -98,7 +98,7 @@ def require_arms(problem: Debonding) -> None:
     layout = problem.layout
     (precrack, end), lengths = layout.bonded, [body.length for body in layout.bodies]
     if lengths != [end, end] or layout.loaded_at != 0.0 or not 0.0 < precrack < end:
-        raise ValueError(f"arms must be as long as the bond reaches, and opened at X = 0, got {layout}")
+        raise ValueError(f"arms must end with the bond and be opened at X = 0, got {lengths} and {layout.bonded}")
 
 
 def _thinner(problem: Debonding) -> float:

@@ -174,5 +174,5 @@ def _require_bodies(problem: Debonding) -> None:
     layout = problem.layout
     (bond, start), (strip, substrate) = layout.bonded, (body.length for body in layout.bodies)
     if start != 0.0 or not 0.0 < bond < strip or bond > substrate or layout.loaded_at != strip:
-        text = "the bond must begin at X = 0 and be shorter than the strip, which is loaded at its right end, and no"
-        raise ValueError(f"{text} longer than the substrate, got {layout}")
+        rule = "begin at X = 0, end before the strip, which is loaded at its right end, and not beyond the substrate"
+        raise ValueError(f"bond must {rule}, got {layout.bonded}")

@@ -130,7 +130,7 @@ class Method:
     is_limit : whether it is a limit that codes approach, and is held against none
     mesh_error : error of the load curve that its mesh leaves at the unknowns of a packaged scene; 0 where that is less
         than the tolerances between codes
-    equal_arms : whether it takes arms that bend only where one can stand for both
+    equal_arms : whether two arms must be equal
     place : among the methods in messages; equal ones are sorted by name
     besides, per_step : seconds of a run besides its steps, and a step and a thousand unknowns, see
         `verify.runs.estimate`

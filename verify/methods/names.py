@@ -39,12 +39,11 @@ def refuse_law(scene: Scene, who: str, has: Sequence[str]) -> None:
 
 
 def refuse_arms(scene: Scene, method: Method) -> None:
-    """Raise Unsuitable where the arms of a scene differ and the method takes equal ones alone."""
+    """Raise Unsuitable where the arms of a scene differ and the method needs equal ones."""
     specimen = scene.specimen
     if method.equal_arms and specimen.arms == 2 and not specimen.symmetric:
         able = _have_it(name for name, other in METHODS.items() if not other.equal_arms)
-        text = f"must have arms that are alike for {method.name}, got a {specimen.kind}; {able}"
-        raise Unsuitable(f"specimen: {text}")
+        raise Unsuitable(f"specimen: must have equal arms for {method.name}, got kind {specimen.kind!r}; {able}")
 
 
 def _have_it(names: Iterable[str]) -> str:

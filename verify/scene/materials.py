@@ -40,7 +40,7 @@ class Orthotropic(Section):
 
 
 def material_kind(value: object) -> str:
-    """Tell the two materials apart by their keys."""
+    """Whether a material is isotropic or orthotropic, by its keys."""
     keys = set(value) if isinstance(value, Mapping) else {value.__class__.__name__}
     return "orthotropic" if keys & {*Orthotropic.model_fields, "Orthotropic"} else "isotropic"
 

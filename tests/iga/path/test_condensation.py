@@ -8,7 +8,7 @@ import pytest
 from specimens import PAPER
 
 import iga.path.condensation
-from iga import dcb, peel
+from iga.delamination import build, solve
 from iga.path.condensation import _rigid_motions, _rows, _without, condensed
 from iga.path.follow import follow
 from iga.path.point import End
@@ -33,17 +33,13 @@ CASES = {
 }
 
 
-def solver(problem):
-    return peel if isinstance(problem, peel.Problem) else dcb
-
-
 @pytest.mark.parametrize("name", CASES)
 def test_the_condensed_path_is_that_of_the_whole(name, monkeypatch):
     """All that a run tells, at all its steps, to a part of 1e-7 of the largest value of its kind."""
     problem = CASES[name]
-    small = solver(problem).solve(problem)
+    small = solve(problem)
     monkeypatch.setattr(iga.run, "condensed", lambda system: None)
-    whole = solver(problem).solve(problem)
+    whole = solve(problem)
     assert small.status == whole.status == "complete" and len(small.rows) == len(whole.rows)
     for key in small.rows[0]:
         if key == "newton_iterations":
@@ -56,9 +52,9 @@ def test_the_condensed_path_is_that_of_the_whole(name, monkeypatch):
 def test_unloading_and_closing_come_to_the_same_ends(monkeypatch):
     """Where the programme turns, rounding decides how long the first steps are, and nothing else."""
     problem = replace(BEAM, opening=(1.0, -0.002, 1.5))
-    small = dcb.solve(problem)
+    small = solve(problem)
     monkeypatch.setattr(iga.run, "condensed", lambda system: None)
-    whole = dcb.solve(problem)
+    whole = solve(problem)
     assert small.status == whole.status == "complete"
     for goal in (1.0, -0.002, 0.0, 1.5):
         a, b = ([row for row in run.rows if abs(row["opening"] - goal) < 1e-12] for run in (small, whole))
@@ -70,7 +66,7 @@ def test_unloading_and_closing_come_to_the_same_ends(monkeypatch):
 @pytest.mark.parametrize("name", CASES)
 def test_the_whole_is_in_equilibrium_where_the_condensed_system_is(name):
     problem = CASES[name]
-    whole = solver(problem).build(problem).system
+    whole = build(problem).system
     small = condensed(whole)
     points = [item for item in follow(Solver(small.system), problem.opening, 40) if not isinstance(item, End)]
     for point in points[1::8]:
@@ -91,7 +87,7 @@ def test_an_opening_that_a_gap_tells_already_is_not_condensed(problem, narrow, m
     """Two rows say the same, exactly or but for rounding: then the stiffness of what is kept has no bound."""
     limits = iga.path.condensation.CondensationLimits(narrow=narrow)
     monkeypatch.setattr(iga.path.condensation, "CONDENSATION", limits)
-    system = solver(problem).build(problem).system
+    system = build(problem).system
     rows, small = _rows(system)[0].tocsr(), condensed(system)
     stiffest = max(np.abs(K).max() for K in system.bulk.matrices)
     assert np.abs(small.system.bulk.K_dd).max() < 1e2 * stiffest
@@ -101,14 +97,14 @@ def test_an_opening_that_a_gap_tells_already_is_not_condensed(problem, narrow, m
 
 
 def test_a_bulk_that_moves_far_or_has_too_many_partners_is_not_condensed():
-    assert condensed(dcb.build(replace(BEAM, kinematics="finite")).system) is None
-    assert condensed(dcb.build(replace(BEAM, dofs=40_000)).system) is None
+    assert condensed(build(replace(BEAM, kinematics="finite")).system) is None
+    assert condensed(build(replace(BEAM, dofs=40_000)).system) is None
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_of_meshes_that_match_only_differences_are_left(name):
     """One unknown for each control point of the slave, or for every one of both sides, and the opening."""
-    system = solver(CASES[name]).build(CASES[name]).system
+    system = build(CASES[name]).system
     interface = system.interface
     slave, both = np.unique(interface.conn_qa).size, np.unique(interface.rest.dof_qd // 2).size
     alike = CASES[name].mismatch == 1.0 and not name.startswith("peel")
@@ -122,7 +118,7 @@ def test_the_stiffness_of_the_interface_does_not_depend_on_units(name):
     def stiffness(unit):
         problem = CASES[name]
         forces = {key: unit * getattr(problem, key) for key in ("E1", "E2", "G12", "strength", "toughness", "penalty")}
-        return condensed(dcb.build(replace(problem, **forces)).system).system.bulk.K_dd / unit
+        return condensed(build(replace(problem, **forces)).system).system.bulk.K_dd / unit
 
     same = stiffness(1.0)
     for unit in (1e-6, 1e6):
@@ -132,14 +128,14 @@ def test_the_stiffness_of_the_interface_does_not_depend_on_units(name):
 def test_a_step_to_a_kink_takes_one_look_at_the_forces():
     """With a linear bulk the law is settled on the way to where a step is to end: nothing is left to Newton."""
     problem = replace(BEAM, steps=None, interface_points=4)
-    points = [*follow(Solver(condensed(dcb.build(problem).system).system), problem.opening, None, bend=0.05)]
+    points = [*follow(Solver(condensed(build(problem).system).system), problem.opening, None, bend=0.05)]
     looks = [point.iterations for point in points[1:] if not isinstance(point, End)]
     assert len(looks) > 5 and max(looks) == 1, looks
 
 
 def test_without_damage_nothing_bends_and_one_step_goes_to_its_begin():
     """There the load has worked along a line, and all of that work is stored."""
-    system = condensed(dcb.build(BEAM).system).system
+    system = condensed(build(BEAM).system).system
     law = system.interface.law
     first = next(item for item in follow(Solver(system), BEAM.opening, None) if item.opening > 0.0)
     assert first.state.k_q.max() == pytest.approx(law.g_max, rel=1e-2) and first.tangent.growing_q.any()
@@ -150,7 +146,7 @@ def test_without_damage_nothing_bends_and_one_step_goes_to_its_begin():
 @pytest.mark.parametrize("name", ["twins", "mirror", "unlike", "peel", "posed"])
 def test_a_rigid_motion_asks_for_no_force(name):
     """Of what is kept of it, to the last digit of the stiffness: more would be lost of the balance of forces."""
-    system = solver(CASES[name]).build(CASES[name]).system
+    system = build(CASES[name]).system
     small = condensed(system).system
     B_rd, _ = _rows(system)
     rigid_rm, _ = np.linalg.qr(B_rd @ _without(system.springs_rd, _rigid_motions(system, system.bulk)))
@@ -171,7 +167,7 @@ def test_dense_equations_pay_where_they_are_less_work_than_the_band(kept, pays, 
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_banded_and_a_sparse_factorisation_give_one_stiffness(name, monkeypatch):
-    system, found = solver(CASES[name]).build(CASES[name]).system, []
+    system, found = build(CASES[name]).system, []
     for narrow in (np.inf, 0.0):
         limits = iga.path.condensation.CondensationLimits(narrow=narrow)
         monkeypatch.setattr(iga.path.condensation, "CONDENSATION", limits)
@@ -183,7 +179,7 @@ def test_a_banded_and_a_sparse_factorisation_give_one_stiffness(name, monkeypatc
 @pytest.mark.parametrize("name", CASES)
 def test_springs_hold_nothing_that_no_row_feels(name):
     """A whole that floats is in balance by itself, to the last digits of its forces and not of its stiffness."""
-    system = solver(CASES[name]).build(CASES[name]).system
+    system = build(CASES[name]).system
     small = condensed(system)
     rows = _rows(system)[0]
     unfelt_dm = _without(rows, _rigid_motions(system, system.bulk))

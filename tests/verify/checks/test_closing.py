@@ -136,7 +136,7 @@ def test_both_codes_press_alike(words: tuple[str, ...], openings: tuple[float, .
 
 def test_faces_that_pass_through_each_other_are_found_in_dolfinx(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
-    from fem_reference.problem.dcb import Problem
+    from fem_reference.problem.delamination import Problem
 
     scene = scene_of(*DCB, "load.opening=[0.3, -0.004, 0.4]")
     monkeypatch.setattr(Problem, "presses", False)

@@ -16,8 +16,8 @@ from verify.scene.specimens.delamination import Delamination
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
-_THINNEST = 5.0 / 72.0  # smallest drawn thickness of a body, inches
-_ARROW = 0.36  # of a load above or below its body, inches
+_THINNEST = 5.0 / 72.0  # smallest drawn thickness of the thinner body, inches
+_ARROW, _LABEL = 0.36, 0.22  # heights of the arrow of a load and of its label above or below the body, inches
 
 
 def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = None) -> Panel:
@@ -85,14 +85,12 @@ def _bond(axes: Axes, body: Delamination, scale: float) -> None:
 
 def _loads(axes: Axes, body: Delamination, scale: float, outer: tuple[float, float]) -> None:
     """Arrows from the middles of the loaded faces to beyond their ``outer`` edges."""
-    for number_of, end, share in body.loads:
-        x, sign, edge = (0.0 if end == "left" else body.lengths[number_of] * scale), np.sign(share), outer[number_of]
-        beyond = _ARROW if body.arms == 2 else 0.4
-        pull(axes, (x, edge / 2), sign * (abs(edge) / 2 + beyond))
-        part = f", {'+' if share > 0 else '−'}Δ/2" if body.symmetric else ", Δ" if body.arms == 1 else ""
-        side, at = (-0.1, "right") if end == "left" else (0.1, "left")
-        y = edge + sign * (0.22 if body.arms == 2 else 0.25)
-        axes.text(x + side, y, f"P{part}", ha=at, va="center", color=colour("bad"))
+    for loaded, end, share in body.loads:
+        sign, edge = np.sign(share), outer[loaded]
+        x, beside, align = (0.0, -0.1, "right") if end == "left" else (body.lengths[loaded] * scale, 0.1, "left")
+        pull(axes, (x, edge / 2), sign * (abs(edge) / 2 + _ARROW))
+        moved = f", {'+' if share > 0 else '−'}Δ/2" if body.symmetric else ", Δ" if body.arms == 1 else ""
+        axes.text(x + beside, edge + sign * _LABEL, f"P{moved}", ha=align, va="center", color=colour("bad"))
 
 
 def pull(axes: Axes, foot: tuple[float, float], length: float) -> None:

@@ -25,7 +25,7 @@ SPECIMENS: Mapping[str, type[Delamination]] = _found()
 
 
 def specimen_kind(value: object) -> str:
-    """Tell the specimens apart by their kind; one without a known kind is refused as a dcb."""
+    """The kind of a specimen; "dcb" for an unknown one, which is refused with the keys of a dcb."""
     kind = value.get("kind") if isinstance(value, Mapping) else getattr(value, "kind", None)
     return kind if isinstance(kind, str) and kind in SPECIMENS else "dcb"
 

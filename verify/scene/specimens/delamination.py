@@ -1,4 +1,4 @@
-"""What every specimen answers: two bodies, bonded along a part of a straight interface, loaded at one end."""
+"""What all specimens share: two bodies, bonded along a part of a straight interface, loaded at one end."""
 
 from __future__ import annotations
 
@@ -43,22 +43,24 @@ class Clamp(NamedTuple):
 
 
 class Delamination(Section):
-    """Two rectangles that begin at X = 0 and meet on Y = 0, upper and lower, bonded along a part of it.
+    """The table ``[specimen]``: two rectangles, upper and lower, that begin at X = 0 and meet on Y = 0, bonded along a
+    part of that line.
 
-    A specimen is a class of its own with the keys of its table, ``kind``, ``width``, ``plane`` and ``mesh`` among them.
-    Of itself it says:
+    Each kind is a subclass. Its fields are the keys of the table: ``kind``, lengths, ``width``, ``plane`` and ``mesh``.
+    Its class variables describe it:
 
-    ``materials`` : names of the tables of its materials, one for both bodies or one each
-    ``bodies``, ``body`` : names of the bodies, and of one that the load bends
+    ``materials`` : names of the tables of its materials, one for both bodies or one for each
+    ``bodies``, ``body`` : names of the bodies, and of a body that the load bends
     ``length_keys``, ``thickness_keys`` : keys of the lengths and thicknesses of the bodies
-    ``tip_key`` : key of X of the bond's end next to the load; the other end is where the upper body ends
-    ``bond_key`` : the key that is larger where the bond is longer
-    ``loads``, ``clamps`` : where the load acts, all at one end; sides that are clamped, none if the loads balance
-    ``pressed`` : how many thicknesses the loaded faces can be pressed together, and why no more
-    ``ratios`` : proportions that are solved
-    ``sentence`` : what is done to the specimen, with the keys of its lengths
-    ``example`` : the packaged scene with values for ``debond new``; those of keys that it lacks are the first
-        ``examples`` of their fields
+    ``tip_key`` : key of X of the end of the bond next to the load; the far end is the far end of the upper body
+    ``bond_key`` : the key to increase for a longer bond
+    ``loads`` : loads on end faces, all at the same X
+    ``clamps`` : sides that are clamped; none if the loads balance each other
+    ``pressed`` : largest negative opening, in thicknesses of the loaded body, and its reason in words
+    ``ratios`` : limits of the proportions
+    ``sentence`` : the test in words, with the keys of its lengths in braces
+    ``example`` : the packaged scene whose values ``debond new`` writes; a key that it lacks needs ``examples`` in its
+        field
     """
 
     materials: ClassVar[tuple[str, ...]] = ("material",)
@@ -75,7 +77,7 @@ class Delamination(Section):
     sentence: ClassVar[str]
     example: ClassVar[str] = "dcb-czm1"
 
-    if TYPE_CHECKING:  # keys of every specimen, which stand after its lengths
+    if TYPE_CHECKING:  # fields of every subclass, which declares them itself: after its lengths in the table
         kind: str
         width: float
         plane: Plane
@@ -141,5 +143,5 @@ class Delamination(Section):
         return min(self.thicknesses[: self.arms])
 
     def place(self, s: float) -> float:
-        """Coordinate X of what is ``s`` away from the loaded end."""
+        """Coordinate X at the distance ``s`` from the loaded end."""
         return self.loaded_at + (s if self.tip > self.loaded_at else -s)

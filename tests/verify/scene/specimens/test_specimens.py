@@ -36,6 +36,11 @@ def test_it_is_drawn_and_described(kind: str) -> None:
     scene = example(kind)
     lines = sketch(scene, 80)
     assert all(f"{thickness:.4g} thick" in "\n".join(lines) for thickness in scene.specimen.thicknesses)
+    pytest.importorskip("matplotlib")
+    from verify.report.figures import drawing
+
+    zone = (scene.specimen.free_length, 0.5 * (scene.specimen.free_length + scene.specimen.extent), 1.0)
+    assert drawing.specimen(scene, "key", zone).caption.startswith("The undeformed specimen")
     assert "{" not in sentence(scene) and {row[0] for row in inputs(scene)} >= {"specimen", *scene.specimen.materials}
 
 
