@@ -58,6 +58,7 @@ try:
     verify.assert_curves_close(file, beam, actual_as=columns, curve=0.01, peak=0.01)
 except AssertionError as error:
     print(error)
+file.unlink()
 
 figure, axes = plt.subplots(figsize=(6, 3.4), constrained_layout=True)
 axes.plot(beam.opening, beam.load, color="#999999", linewidth=4, alpha=0.5, label="cohesive beam")

@@ -107,7 +107,7 @@ class Comparison:
             "curve error": f"{100 * self.curve_error:.3g} %",
             "peak load": f"{100 * self.peak_difference:+.3g} %",
             "energy": f"{100 * self.energy_difference:+.3g} %",
-            f"largest deviation, at {at:.6g}": f"{100 * _ratio(P_a - P_b, abs(P_b)):+.3g} %",
+            f"largest deviation (at {at:.4g})": f"{100 * _ratio(P_a - P_b, abs(P_b)):+.3g} %",
         }
 
     def __repr__(self) -> str:
