@@ -78,7 +78,8 @@ def test_good_runs_make_a_report_and_exit_zero(
     assert report.runs[1].folder == f"{LINEAR}/lefm" and report.runs[1].command.startswith("debond solve ")
     assert (tmp_path / LINEAR / "beam" / "curve.csv").exists()
     said = capsys.readouterr()
-    assert said.out.splitlines()[-1] == f"8 of 8 checks hold: {tmp_path / 'report.html'}"
+    all_ = f"{len(report.checks)} of {len(report.checks)}"
+    assert said.out.splitlines()[-1] == f"{all_} checks hold: {tmp_path / 'report.html'}" and len(report.checks) >= 8
     assert "beam: complete" in said.err
 
 
