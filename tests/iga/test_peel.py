@@ -151,7 +151,7 @@ def test_snapshots_and_clamped_base():
 
 
 def test_bad_lengths_and_names_are_refused():
-    with pytest.raises(ValueError, match="bond must begin at X = 0, end before the strip"):
+    with pytest.raises(ValueError, match="bond_length: must be < strip_length = 150 and <= substrate_length"):
         build(replace(PEEL, bond_length=150.0))
     with pytest.raises(ValueError, match="at least"):
         build(replace(PEEL, dofs=60))

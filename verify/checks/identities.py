@@ -75,16 +75,16 @@ def identity(
     meaning: str | Callable[[Scene], str],
     **more: Any,
 ) -> Callable[[F], F]:
-    """Makes a function of scene and columns a check of every run; checks stand in the order of their definition.
+    """Register a function of scene and columns as a check of every run, in the order of definition.
 
     Parameters
     ----------
     tolerance : a number, or a function of the run
     meaning : one sentence for the reader of the report, or a function of the scene
-    kind : what stands behind it, "exact" of an identity
-    of_zone : it holds as well as the mesh resolves the process zone
-    of_face : it needs the load to be spread evenly over the end face; under a point load the slope is that of no mesh
-    element : the function has a third argument, which makes a mesh and returns the length of its longest element
+    kind : "exact" for an identity; see `verify.verdict.Check`
+    of_zone : the error is that of the mesh in the process zone
+    of_face : requires a load that is evenly distributed over the end face, as slopes under a point load do not converge
+    element : the function has a third argument, which builds a mesh and returns the length of its longest element
     """
 
     def register(value: F) -> F:
@@ -141,13 +141,13 @@ def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
 
 @identity("completed", 1e-9, "The run reached the end of the load programme, or the specimen separated.")
 def _missing_part(scene: Scene, steps: Steps) -> float:
-    """Distance from the end of the programme over its largest opening."""
+    """Distance of the last opening from the end of the programme, over the largest opening."""
     programme = np.array(scene.load.opening)
     reached = steps["opening"][-1] if steps["opening"].size else 0.0
     return float(abs(reached - programme[-1]) / np.max(np.abs(programme)))
 
 
-@identity("penetration", PENETRATION_TOLERANCE, "Faces are in each other by no more than contact gives way.")
+@identity("penetration", PENETRATION_TOLERANCE, "Faces penetrate each other no deeper than the penalty explains.")
 def penetration(scene: Scene, steps: Steps) -> float | None:
     """Largest penetration of the faces over the one expected under their contact pressure, less 1.
 
@@ -229,7 +229,7 @@ def clamp_gap(scene: Scene, steps: Steps) -> float | None:
     return worst((steps["load_moment"] + steps["clamp_moment"]) / scale(scene.specimen.extent * peak(steps["load"])))
 
 
-@identity("lengthwise", balance.force_tolerance, "What tilted tractions pull lengthwise, the anchor holds.")
+@identity("lengthwise", balance.force_tolerance, "The anchor carries the axial resultant of tilted tractions.")
 def lengthwise_gap(scene: Scene, steps: Steps) -> float | None:
     """Largest sum of the axial forces on a strip over the peak load: tractions on a tilted master, and the anchor."""
     if not has(steps, "interface_pull", "anchor_pull"):
