@@ -12,7 +12,7 @@ from browser import Browser, found
 
 from verify.curves.compare import compare
 from verify.result import Result
-from verify.support.notebook import BELOW, BEYOND, HEIGHT, LEFT, WIDTH, Drawn, chart, table
+from verify.support.notebook import BELOW, BEYOND, HEIGHT, MARGIN_LEFT, WIDTH, Drawn, chart, table
 from verify.verdict import Check, Checks
 
 OPENING = np.linspace(0.0, 3.0, 61)
@@ -34,7 +34,7 @@ def lines(svg: str) -> list[np.ndarray]:
 
 def test_a_chart_is_to_scale_from_the_origin() -> None:
     (points,) = lines(chart([Drawn("a", OPENING, LOAD)]))
-    x = LEFT + OPENING / 3.0 * (WIDTH - BEYOND - LEFT)
+    x = MARGIN_LEFT + OPENING / 3.0 * (WIDTH - BEYOND - MARGIN_LEFT)
     y = HEIGHT - BELOW - LOAD / LOAD.max() * (HEIGHT - BELOW - 2 * BEYOND)
     assert np.allclose(points, np.stack([x, y], 1), atol=0.051)
 
