@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import PROPAGATION, SAMPLES, curve_error, envelope, load_at, oscillation, peak
+from verify.curves import legs
+from verify.curves.curve import PROPAGATION, SAMPLES, Curve, curve_error, envelope, load_at, oscillation, peak
+from verify.curves.leg_checks import leg_differences
 from verify.result import Result
+from verify.support.programme import only_opens
 from verify.verdict import Run, SceneReport
 
 
@@ -16,7 +20,7 @@ from verify.verdict import Run, SceneReport
 class Agreement:
     """One run against the reference run of its scene."""
 
-    error: float  # relative L2 of the load over the opening
+    error: float  # relative L2 of the load over the opening; where the programme turns, the largest one of its legs
     oscillation: float  # RMS of load / reference - 1 on the propagation branch, mean removed
     peak_load: float
     peak_opening: float
@@ -73,7 +77,7 @@ def branch(result: Result, reference: Result) -> tuple[np.ndarray, np.ndarray]:
     return openings, load_at(path(result), openings) / load_at(path(reference), openings) - 1
 
 
-def agreement(run: Run, reference: Run | None) -> Agreement:
+def agreement(run: Run, reference: Run | None, programme: Sequence[float]) -> Agreement:
     """The measures of one run; distances are NaN without a reference, for the reference itself and for LEFM."""
     curve = _curve(run)
     top, end = peak(curve), float(np.max(curve[0]))
@@ -82,12 +86,20 @@ def agreement(run: Run, reference: Run | None) -> Agreement:
     base = _curve(reference)
     end = min(end, float(np.max(base[0])))
     return Agreement(
-        error=curve_error(curve, base, end),
+        error=_error(curve, base, end, programme),
         oscillation=oscillation(curve, base, end)["rms"],
         peak_load=top[1],
         peak_opening=top[0],
         end=end,
     )
+
+
+def _error(curve: Curve, base: Curve, end: float, programme: Sequence[float]) -> float:
+    """The envelope alone does not show how a curve unloads."""
+    errors = [curve_error(curve, base, end)]
+    if not only_opens(programme):
+        errors += [leg.error for leg in leg_differences(legs.path(curve, programme), legs.path(base, programme))]
+    return max((error for error in errors if not math.isnan(error)), default=math.nan)
 
 
 def _curve(run: Run) -> tuple[np.ndarray, np.ndarray]:

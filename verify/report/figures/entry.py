@@ -69,6 +69,6 @@ def entries(report: SceneReport) -> tuple[Entry, ...]:
         kind = run.method if run.method in IN_TABLES else ""  # the others share a line
         repeat = seen.get(kind, 0)
         seen[kind] = repeat + 1
-        compared = agreement(run, reference) if usable(run) else None
+        compared = agreement(run, reference, report.scene.load.opening) if usable(run) else None
         found.append(Entry(run, repeat, line(run.method, repeat), compared, run is reference))
     return tuple(found)

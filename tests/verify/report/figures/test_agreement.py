@@ -52,21 +52,38 @@ def test_the_reference_is_the_finest_whole_run_of_the_first_code_that_has_one() 
 
 def test_a_factor_of_the_load_is_an_error_and_no_oscillation() -> None:
     base = run("dolfinx")
-    found = agreement(run("nurbs", 1.02), base)
+    found = agreement(run("nurbs", 1.02), base, (3.0,))
     assert found.error == pytest.approx(0.02, rel=1e-9) and found.oscillation == pytest.approx(0.0, abs=1e-9)
     assert (found.peak_load, found.peak_opening, found.end) == pytest.approx((1.02, 1.0, 3.0), rel=1e-6)
     for one, against in ((base, base), (run("lefm"), base), (run("nurbs"), None)):
-        alone = agreement(one, against)
+        alone = agreement(one, against, (3.0,))
         assert isnan(alone.error) and isnan(alone.oscillation) and (alone.peak_load, alone.end) == (1.0, 3.0)
 
 
 @pytest.mark.parametrize(("mine", "theirs", "end"), [(2.0, 3.0, 2.0), (3.0, 2.0, 2.0), (2.5, 2.5, 2.5)])
 def test_curves_are_compared_as_far_as_both_came(mine: float, theirs: float, end: float) -> None:
-    found = agreement(run("nurbs", 1.01, end=mine), run("dolfinx", end=theirs))
+    found = agreement(run("nurbs", 1.01, end=mine), run("dolfinx", end=theirs), (3.0,))
     assert found.end == end and found.error == pytest.approx(0.01, rel=1e-2)
     openings, ratio = branch(run("nurbs", 1.01, end=mine).result, run("dolfinx", end=theirs).result)
     assert openings[0] == pytest.approx(1.3, rel=1e-2) and openings[-1] == end and len(openings) == 400
     assert ratio == pytest.approx(0.01, abs=1e-4)
+
+
+def test_the_error_of_a_programme_that_turns_is_that_of_its_worst_leg() -> None:
+    """Both draw one envelope; the other curve heals: it unloads to twice the load of the secant at opening 0.2."""
+    up, down, on = np.linspace(0.0, 1.5, 151), np.linspace(1.5, 0.2, 51)[1:], np.linspace(0.2, 1.5, 51)[1:]
+    beyond = np.linspace(1.5, 3.0, 151)[1:]
+    opening = np.concatenate([up, down, on, beyond])
+
+    def unloads_to(low: float) -> Run:
+        inside = 1.5 * np.exp(-1.5) * np.interp(np.concatenate([down, on]), [0.2, 1.5], [low, 1.0])
+        load = np.concatenate([up * np.exp(-up), inside, beyond * np.exp(-beyond)])
+        return Run("nurbs", "nurbs", Result("nurbs", {"opening": opening, "load": load}, dofs=100))
+
+    secant = 0.2 / 1.5
+    base, healed = unloads_to(secant), unloads_to(2.0 * secant)
+    assert agreement(healed, base, (3.0,)).error < 1e-12, "the envelope alone does not tell"
+    assert agreement(healed, base, (1.5, 0.2, 3.0)).error > 0.05
 
 
 def test_before_the_branch_there_is_nothing_to_compare() -> None:
