@@ -9,6 +9,7 @@ import numpy as np
 
 from verify.checks.between_codes import BEAM_RUN, CODE_TOLERANCE, CROSS_CODE, distance
 from verify.checks.proof import LIMIT_METHODS, MATCHED, REFERENCE, RUNS, SECOND, proof
+from verify.curves.leg_checks import worst_leg
 from verify.result import Result
 from verify.scene.schema import Scene
 from verify.verdict import Check
@@ -34,11 +35,12 @@ def odd_one_out(scene: Scene, checks: Sequence[Check], results: Mapping[str, Res
     compared = {name: run for name, run in results.items() if name not in LIMIT_METHODS and run.load.size > 1}
     if not pairs or len(compared) < 2 or max(scene.load.opening) <= 0.0:
         return ()
-    end = max(scene.load.opening)
-    return (odd_one(compared, end, proof(compared, end).models.curve if REFERENCE in compared else 0.0),)
+    programme = scene.load.opening
+    models = proof(compared, max(programme)).models.curve if REFERENCE in compared else 0.0
+    return (odd_one(compared, programme, models),)
 
 
-def odd_one(results: Mapping[str, Result], end: float, models: float = 0.0) -> str:
+def odd_one(results: Mapping[str, Result], programme: Sequence[float], models: float = 0.0) -> str:
     """A sentence that names the runs which no other code confirms.
 
     Two runs agree if their distance is at most `AGREE`, plus the difference of models where only one of them has fixed
@@ -49,10 +51,10 @@ def odd_one(results: Mapping[str, Result], end: float, models: float = 0.0) -> s
     Parameters
     ----------
     results : runs to compare, by name
-    end : largest opening of the programme
+    programme : openings at which the load turns, and the last one; legs count as well as the envelope
     models : change of the curve by fixed pairs of points
     """
-    apart = {frozenset(pair): _distance(results, pair, end, models) for pair in combinations(results, 2)}
+    apart = {frozenset(pair): _distance(results, pair, programme, models) for pair in combinations(results, 2)}
     ranked = sorted(_groups(list(results), {pair for pair, far in apart.items() if far <= AGREE}), key=_weight)[::-1]
     main = ranked[0]
     if len(ranked) > 1 and _weight(main) > _weight(ranked[1]):
@@ -68,10 +70,12 @@ def odd_one(results: Mapping[str, Result], end: float, models: float = 0.0) -> s
     return f"{ODD}, though not by much: {far}, on average {mean[far]:.2%} from the other runs, those {rest:.2%}"
 
 
-def _distance(results: Mapping[str, Result], pair: tuple[str, str], end: float, models: float) -> float:
+def _distance(results: Mapping[str, Result], pair: tuple[str, str], programme: Sequence[float], models: float) -> float:
     """Distance of the second run to the first, less the difference of their models; infinite instead of NaN."""
+    first, second = (results[name] for name in pair)
     with np.errstate(all="ignore"):  # a curve of another code may be zero
-        far = distance(results[pair[1]], results[pair[0]], end)
+        envelopes = distance(second, first, max(programme))
+        far = max(envelopes, worst_leg((second.opening, second.load), (first.opening, first.load), programme))
     far -= models * (len(FIXED_PAIRS & set(pair)) == 1)
     return max(0.0, far) if np.isfinite(far) else np.inf
 

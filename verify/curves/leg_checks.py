@@ -78,6 +78,12 @@ def leg_differences(a: Path, b: Path) -> tuple[LegDifference, ...]:
     )
 
 
+def worst_leg(a: Curve, b: Curve, programme: Sequence[float]) -> float:
+    """Relative L2 distance of the leg that differs most; 0 where the opening only grows, as the envelope shows all."""
+    legs = () if only_opens(programme) else leg_differences(path(a, programme), path(b, programme))
+    return max((leg.error for leg in legs if not np.isnan(leg.error)), default=0.0)
+
+
 @np.errstate(all="ignore")
 def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthest | None:
     """The point of A that is farthest from B, leg by leg, as far as B goes; see `verify.curves.nearness.distances`.

@@ -8,11 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves import legs
-from verify.curves.curve import PROPAGATION, SAMPLES, Curve, curve_error, envelope, load_at, oscillation, peak
-from verify.curves.leg_checks import leg_differences
+from verify.curves.curve import PROPAGATION, SAMPLES, curve_error, envelope, load_at, oscillation, peak
+from verify.curves.leg_checks import worst_leg
 from verify.result import Result
-from verify.support.programme import only_opens
 from verify.verdict import Run, SceneReport
 
 
@@ -86,20 +84,12 @@ def agreement(run: Run, reference: Run | None, programme: Sequence[float]) -> Ag
     base = _curve(reference)
     end = min(end, float(np.max(base[0])))
     return Agreement(
-        error=_error(curve, base, end, programme),
+        error=max(curve_error(curve, base, end), worst_leg(curve, base, programme)),
         oscillation=oscillation(curve, base, end)["rms"],
         peak_load=top[1],
         peak_opening=top[0],
         end=end,
     )
-
-
-def _error(curve: Curve, base: Curve, end: float, programme: Sequence[float]) -> float:
-    """The envelope alone does not show how a curve unloads."""
-    errors = [curve_error(curve, base, end)]
-    if not only_opens(programme):
-        errors += [leg.error for leg in leg_differences(legs.path(curve, programme), legs.path(base, programme))]
-    return max((error for error in errors if not math.isnan(error)), default=math.nan)
 
 
 def _curve(run: Run) -> tuple[np.ndarray, np.ndarray]:
