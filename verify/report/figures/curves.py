@@ -111,7 +111,7 @@ def j_figure(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
         reach = max(0.006, 1.2 * float(np.max(np.abs(settled - 1), initial=0.0)))
         inset.axhspan(0.995, 1.005, color=colour("muted"), alpha=0.15, linewidth=0)
         inset.set(xlim=(start, end), ylim=(1 - min(reach, 0.2), 1 + min(reach, 0.2)))
-        inset.set_title("close-up; band ± 0.5 %", fontsize=7)
+        inset.set_title("close-up; band ± 0.5 %", fontsize=7, pad=-8)  # inside, where no curve of a programme runs
         inset.tick_params(labelsize=6.5)
         axes.axhline(1, color=colour("ink"), linewidth=0.6, zorder=1)
         axes.set(xlim=(0, None), ylim=(0, 1.12))
