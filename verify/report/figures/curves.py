@@ -108,10 +108,10 @@ def j_figure(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
                 plot.plot(entry.result.opening, values, **entry.line.options())
         start, end = _plateau(known)
         settled = np.concatenate([v[(d.result.opening >= start) & np.isfinite(v)] for d, v in known])
-        reach = max(0.006, 1.2 * float(np.max(np.abs(settled - 1), initial=0.0)))
+        reach = min(max(0.006, 1.2 * float(np.max(np.abs(settled - 1), initial=0.0))), 0.2)
         inset.axhspan(0.995, 1.005, color=colour("muted"), alpha=0.15, linewidth=0)
-        inset.set(xlim=(start, end), ylim=(1 - min(reach, 0.2), 1 + min(reach, 0.2)))
-        inset.set_title("close-up; band ± 0.5 %", fontsize=7, pad=-8)  # inside, where no curve of a programme runs
+        inset.set(xlim=(start, end), ylim=(1 - reach, 1 + 1.5 * reach))  # room for the title, clear of other curves
+        inset.set_title("close-up; band ± 0.5 %", loc="center", fontsize=7, y=0.88, pad=0)
         inset.tick_params(labelsize=6.5)
         axes.axhline(1, color=colour("ink"), linewidth=0.6, zorder=1)
         axes.set(xlim=(0, None), ylim=(0, 1.12))
