@@ -109,11 +109,12 @@ def crack_path(problem: Debonding) -> float:
     """Where the crack path ends: beyond the crack at the largest opening, and part of a process zone, or with the bond.
 
     Beam theory without shear or root rotation has the crack at ``a^2 = 3/2 opening sqrt(E h^3 / (12 G))`` in slender
-    arms, with the harmonic mean of the ``E h^3`` of both; an arm that is deflected far is longer than it reaches. Soft
-    contact gives way over the length ``(E h^3 / (3 penalty))^(1/4)`` of a beam on springs (Hetenyi 1946).
+    arms, with the harmonic mean of the ``E h^3`` of both and E the axial modulus of the plane; an arm that is deflected
+    far is longer than it reaches. Soft contact gives way over the length ``(E h^3 / (3 penalty))^(1/4)`` of a beam on
+    springs (Hetenyi 1946).
     """
     (precrack, end), opening = problem.layout.bonded, max(0.0, *problem.opening)
-    one, other = (body.moduli.E1 * body.thickness**3 for body in problem.layout.bodies)
+    one, other = (body.moduli.axial(problem.plane) * body.thickness**3 for body in problem.layout.bodies)
     mean = one * (2.0 * other / (one + other))
     crack = (1.5 * opening * (mean / (12.0 * problem.toughness)) ** 0.5) ** 0.5
     soft = (max(one, other) / (3.0 * problem.law.penalty)) ** 0.25
@@ -125,7 +126,7 @@ def zone_length(problem: Debonding) -> float:
     """Length of the process zone of slender arms, ``(E G / p_max^2)^(1/4) h^(3/4)`` (Williams and Hadavinia 2002); of
     unequal arms that of the more flexible one, which is at most 2^(1/4) times too short."""
     return min(
-        (body.moduli.E1 * problem.toughness / problem.strength**2) ** 0.25 * body.thickness**0.75
+        (body.moduli.axial(problem.plane) * problem.toughness / problem.strength**2) ** 0.25 * body.thickness**0.75
         for body in problem.layout.bodies
     )
 

@@ -34,6 +34,11 @@ class Moduli:
         G12 = self.E1 / (2.0 * (1.0 + self.nu12)) if self.G12 is None else self.G12
         return orthotropic(self.E1, E2, G12, self.nu12, plane)
 
+    def axial(self, plane: str) -> float:
+        """Modulus of an arm that is bent or stretched: E1, and ``E1 / (1 - nu12^2 E2 / E1)`` in plane strain."""
+        E2 = self.E1 if self.E2 is None else self.E2
+        return self.E1 if plane == "stress" else self.E1 / (1.0 - self.nu12**2 * E2 / self.E1)
+
 
 @dataclass(frozen=True)
 class Rectangle:

@@ -167,10 +167,11 @@ def test_lengths_on_the_path_are_in_the_ratio_asked_for(basis, mismatch):
     assert shortest[1] / shortest[0] == pytest.approx(mismatch, rel=0.05)
 
 
-RUNS = [(CZM1, "finite"), (CZM2, "linear"), (replace(CZM1, opening=(1.0,)), "finite")]
+STRAIN = replace(CZM1, plane="strain", nu12=0.45, G12=E / (2 * (1 + 0.45)))
+RUNS = [(CZM1, "finite"), (CZM2, "linear"), (replace(CZM1, opening=(1.0,)), "finite"), (STRAIN, "linear")]
 
 
-@pytest.mark.parametrize(("problem", "kinematics"), RUNS, ids=["czm1", "czm2", "a third"])
+@pytest.mark.parametrize(("problem", "kinematics"), RUNS, ids=["czm1", "czm2", "a third", "plane strain"])
 def test_the_crack_path_is_as_long_as_the_damage_goes_and_not_much_longer(problem, kinematics):
     last = solve(replace(problem, basis="tspline", dofs=400, steps=12, kinematics=kinematics)).rows[-1]
     ahead = crack_path(problem) - last["damage_front"]
@@ -197,6 +198,13 @@ def test_the_crack_at_the_end_of_the_path_releases_the_toughness():
     load = opening / compliance(a)
     released = 0.5 * load**2 * (compliance(a + da) - compliance(a - da)) / (2.0 * da)
     assert released == pytest.approx(problem.toughness, rel=1e-3)
+
+
+def test_arms_in_plane_strain_are_those_of_the_modulus_of_the_plane():
+    """Path and zone as with E / (1 - nu^2) in plane stress: the crack of stiffer arms runs farther."""
+    stiffer = replace(CZM1, E1=E / (1.0 - 0.45**2))
+    assert crack_path(STRAIN) == pytest.approx(crack_path(stiffer), rel=1e-12)
+    assert zone_length(STRAIN) == pytest.approx(zone_length(stiffer), rel=1e-12)
 
 
 @pytest.mark.parametrize("penalty", [1.0, 10.0])
