@@ -222,6 +222,17 @@ def test_a_gap_worth_no_force_leaves_contact_as_it_was():
         assert iga.system.system._closed(system, touch, trial, 100.0).tolist() == [True, False, False, True, True]
 
 
+@pytest.mark.parametrize("kinematics", ["finite", "linear"])
+def test_displacements_are_rounded_as_they_are_stored_however_little_they_strain(kinematics):
+    """A body moved as a whole: changes of half a rounding make forces, which the estimate bounds, not too widely."""
+    bulk = build(replace(PAPER, kinematics=kinematics)).system.bulk
+    u_d = np.full(2 * (1 + max(conn_ea.max() for conn_ea in bulk.connectivity)), 7.0)
+    half = 0.5 * np.finfo(float).eps * np.random.default_rng(1).uniform(-1.0, 1.0, u_d.size)
+    seen = np.linalg.norm(bulk.respond(u_d * (1.0 + half)).internal_d)
+    print(f"seen {seen:.2e}, estimated {bulk.rounding(u_d):.2e}")
+    assert seen < bulk.rounding(u_d) < 20.0 * seen
+
+
 def test_of_a_condensed_bulk_forces_that_rounding_hides_are_none():
     """Moved as a whole it exerts none, and the scale is what its unknowns hold against each other, 6e6, times
     ten roundings over the least tolerance.
