@@ -94,6 +94,11 @@ class Model:
         self.displace(u_n)
         return self.internal.assemble()
 
+    def bulk_energy(self, u_n: np.ndarray) -> float:
+        """Strain energy of the bodies."""
+        self.displace(u_n)
+        return float(self.comm.allreduce(fem.assemble_scalar(self.energy)))
+
     def traction(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Traction and slope (n_q,) each: those of `Law.traction` where bonded, elsewhere contact alone."""
         carries_q = self.bonded_q | ((g_q < 0.0) & self.law.contact)

@@ -14,8 +14,9 @@ from scipy.interpolate import CubicHermiteSpline
 
 from fem_reference.model.model import build_model
 from fem_reference.path import newton
+from fem_reference.path import path as following
 from fem_reference.path.control import front_of, gap_row
-from fem_reference.path.path import Failure, departing, path
+from fem_reference.path.path import Failure, departing, leaps, path
 from fem_reference.path.state import State
 from fem_reference.path.work import work_along
 from fem_reference.problem.dcb import Problem
@@ -205,6 +206,17 @@ def test_a_path_that_cannot_go_on_says_why(monkeypatch):
     assert points[-1].final
     assert "no equilibrium beyond opening 0" in points[-1].reason
     assert "more elements" in points[-1].reason
+
+
+def test_a_step_onto_another_branch_is_a_failure(monkeypatch):
+    """Its work is not the change of the energy; whoever converges there has left the path."""
+    model = build_model(replace(COARSE, opening=(0.5,)), lambda name: nullcontext(), MPI.COMM_SELF)
+    states = path(model)
+    before, after = next(states), next(states)
+    assert not leaps(before, after)
+    assert leaps(before, replace(after, bulk=0.8 * after.bulk)) and leaps(before, replace(after, work=1.2 * after.work))
+    monkeypatch.setattr(following, "leaps", lambda state, reached: True)
+    assert "energy leaps at opening" in next(states).reason
 
 
 @pytest.mark.parametrize("turn", [0.5, 3.0])
