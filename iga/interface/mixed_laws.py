@@ -1,0 +1,264 @@
+"""Traction laws for opening and sliding, with one damage variable, contact and friction, for many points at once.
+
+A law is a class in `MIXED_LAWS`, whose names are those of ``interface.law`` in a scene: the damage on first loading to
+a jump. What all laws share, secant, contact, friction, viscosity and energies, is `MixedLaw`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from iga.interface.mode_ratio import ModeRatio
+
+#: Points that are evaluated at a time: their arrays stay in the cache.
+BATCH = 8192
+#: Smallest squared jump that divides; a jump without one has mode ratio 0.
+TINY = float(np.finfo(float).tiny)
+
+
+class History(NamedTuple):
+    """Damage (n,), 0 to 1, and with friction the slip (n,) at which friction holds nothing; of a converged step."""
+
+    d: np.ndarray
+    slip: np.ndarray | None = None
+
+
+class Response(NamedTuple):
+    """Tractions (n,), their derivatives by opening and slip (n,), and the new history."""
+
+    p: np.ndarray
+    t: np.ndarray
+    dp_dg: np.ndarray
+    dp_ds: np.ndarray
+    dt_dg: np.ndarray
+    dt_ds: np.ndarray
+    history: History
+
+
+class Stored(NamedTuple):
+    """Energies per area (n,): in cohesion, in contact, and in the elastic slip of friction."""
+
+    cohesion: np.ndarray
+    contact: np.ndarray
+    friction: np.ndarray
+
+
+class Driving(NamedTuple):
+    """Damage (n,) on first loading to a jump, and its derivatives by opening, slip and shear strength."""
+
+    d: np.ndarray
+    by_g: np.ndarray
+    by_s: np.ndarray
+    by_strength: np.ndarray | float = 0.0
+
+
+@dataclass(frozen=True)
+class MixedLaw(ABC):
+    """``p = (1 - d) K g`` for openings g and ``penalty g``, free of damage, for g < 0; ``t = (1 - d) Ks s + d t_f``.
+
+    The damage d is the largest so far of those that the jumps (max(g, 0), s) drive to (`driving`). Pressure
+    ``q = max(-p, 0)`` makes the damaged part rub by Coulomb's law, ``|t_f| <= friction q``, elastic with Ks below that
+    (Alfano and Sacco 2006), and raises the shear strength, not the toughness, by ``pressure_strength q``. With
+    ``viscosity`` damage follows at the rate ``(driving - d) / viscosity``, integrated by the implicit Euler method.
+
+    Parameters
+    ----------
+    modes : strength, toughness and stiffness in opening and sliding, and how they mix.
+    penalty : stiffness against closing [stress per length]; without ``contact`` the secant goes on to g < 0.
+    irreversible : if False, damage follows the jump up and down, and nothing is dissipated.
+    friction : coefficient of Coulomb's law, at least 0.
+    viscosity : time in which damage follows, in the unit of ``dt``.
+    pressure_strength : shear strength gained per pressure, at least 0.
+    """
+
+    modes: ModeRatio
+    penalty: float
+    contact: bool = True
+    irreversible: bool = True
+    friction: float = 0.0
+    viscosity: float = 0.0
+    pressure_strength: float = 0.0
+
+    @abstractmethod
+    def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
+        """Damage on first loading to g (n,) >= 0 and s (n,); zero slopes where there is none, or nothing is left.
+
+        ``stronger`` (n,) is the shear strength over that without pressure, None where that is the same.
+        """
+
+    @property
+    def stiffness(self) -> tuple[float, float]:
+        """Initial stiffness (K, Ks) in opening and sliding."""
+        return self.modes.stiffness
+
+    def start(self, n: int) -> History:
+        """Undamaged points that have not slid."""
+        return History(np.zeros(n), np.zeros(n) if self.friction else None)
+
+    def traction(self, g: np.ndarray, s: np.ndarray, history: History, dt: float = 0.0) -> Response:
+        """Tractions at openings and slips (n,), consistent tangent, new history.
+
+        Parameters
+        ----------
+        history : of all converged steps so far.
+        dt : time that the step takes, which `viscosity` alone asks for.
+
+        Raises
+        ------
+        ValueError : viscosity without a ``dt`` > 0.
+        """
+        if self.viscosity and not dt > 0.0:
+            raise ValueError(f"a law with viscosity needs the time of a step, dt > 0, got {dt}")
+        if g.size <= BATCH:
+            return self._traction(g, s, history, dt)
+        whole = np.empty((7 + (history.slip is not None), g.size))
+        for first in range(0, g.size, BATCH):
+            part = slice(first, first + BATCH)
+            before = History(history.d[part], None if history.slip is None else history.slip[part])
+            found = self._traction(g[part], s[part], before, dt)
+            arrays = (*found[:6], *(one for one in found.history if one is not None))
+            for to, one in zip(whole, arrays, strict=True):
+                to[part] = one
+        return Response(*whole[:6], history=History(*whole[6:]))
+
+    def stored(self, g: np.ndarray, s: np.ndarray, history: History) -> Stored:
+        """Energies per area (n,) at a jump with the history that it has left."""
+        K, Ks = self.stiffness
+        closed = (g < 0.0) & self.contact
+        opening = np.where(closed, 0.0, 0.5 * K * g**2)
+        rubbing = 0.0 if history.slip is None else 0.5 * Ks * history.d * (s - history.slip) ** 2
+        cohesion = (1.0 - history.d) * (opening + 0.5 * Ks * s**2)
+        return Stored(cohesion, np.where(closed, 0.5 * self.penalty * g**2, 0.0), rubbing + np.zeros_like(g))
+
+    def released(self, g: np.ndarray, s: np.ndarray, history: History) -> np.ndarray:
+        """Energy per area (n,) that a unit of damage releases at a jump; what friction takes over is not released."""
+        K, Ks = self.stiffness
+        rubbing = 0.0 if history.slip is None else 0.5 * Ks * (s - history.slip) ** 2
+        return 0.5 * K * np.maximum(g, 0.0) ** 2 + 0.5 * Ks * s**2 - rubbing
+
+    def _traction(self, g: np.ndarray, s: np.ndarray, history: History, dt: float) -> Response:
+        (K, Ks), gain = self.stiffness, self.pressure_strength / self.modes.strength[1]
+        closed = (g < 0.0) & self.contact
+        any_closed = bool(closed.any())
+        pressure = np.where(closed, -self.penalty * g, 0.0) if any_closed else None
+        strengthened = pressure is not None and gain > 0.0
+        driven = self.driving(np.maximum(g, 0.0), s, 1.0 + gain * pressure if strengthened else None)
+        by_g = np.where(g < 0.0, 0.0, driven.by_g)
+        if strengthened:
+            by_g = by_g - np.where(closed, gain * self.penalty * driven.by_strength, 0.0)
+        d, part = driven.d, 1.0
+        if self.irreversible:
+            part = (d > history.d) * (dt / (dt + self.viscosity) if self.viscosity else 1.0)
+            d = np.maximum(d, history.d) if not self.viscosity else history.d + part * (d - history.d)
+        left, p_d, t_d = 1.0 - d, -K * g * part, -Ks * s * part
+        p, dp_dg, dp_ds = left * K * g, left * K + p_d * by_g, p_d * driven.by_s
+        slip = history.slip
+        if slip is None:
+            t, t_by_g, t_by_s = left * Ks * s, 0.0, left * Ks
+        else:
+            held = 0.0 if pressure is None else self.friction * pressure
+            elastic = Ks * (s - slip)
+            rubs = np.clip(elastic, -held, held)
+            slides, slip = rubs != elastic, s - rubs / Ks
+            t, t_d = left * Ks * s + d * rubs, t_d + part * rubs
+            t_by_g = d * np.where(slides & closed, -self.friction * self.penalty * np.sign(elastic), 0.0)
+            t_by_s = left * Ks + d * np.where(slides, 0.0, Ks)
+        if any_closed:
+            p, dp_dg = np.where(closed, self.penalty * g, p), np.where(closed, self.penalty, dp_dg)
+            dp_ds = np.where(closed, 0.0, dp_ds)
+        return Response(p, t, dp_dg, dp_ds, t_by_g + t_d * by_g, t_by_s + t_d * driven.by_s, History(d, slip))
+
+
+@dataclass(frozen=True)
+class TrapezoidalMixed(MixedLaw):
+    """In the energy norm ``lambda`` of the jump the traction rises to lambda0, stays, and falls to 0 along a line.
+
+    ``lambda0`` and the area G_c follow from the mode ratio (see `iga.interface.mode_ratio`); the traction stays for the
+    part ``plateau`` of the way from lambda0 to lambda_f.
+    """
+
+    plateau: float = 0.5
+
+    def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
+        (K, Ks), flat = self.stiffness, self.plateau
+        Kg, Kss = K * g, Ks * s
+        opening, sliding = Kg * g, Kss * s
+        square = np.maximum(opening + sliding, TINY)
+        B, size = sliding / square, np.sqrt(square)
+        (m, dm), (G, dG) = self.modes.at(B)
+        if stronger is not None:
+            m, dm = m * stronger**2, dm * stronger**2
+        onset = np.sqrt(m)
+        way = (2.0 * G - m) / ((1.0 + flat) * onset)  # from lambda0 to lambda_f
+        d_onset = 0.5 * dm / onset
+        d_way = (2.0 * dG - dm) / ((1.0 + flat) * onset) - way * d_onset / onset
+        fall = (1.0 - flat) * way
+        height = np.clip((onset + way - size) / fall, 0.0, 1.0)
+        ratio = onset / size
+        d = np.where(size > onset, 1.0 - ratio * height, 0.0)
+        falls = height < 1.0
+        loads = (size > onset) & (height > 0.0)
+        steep = np.where(falls, ratio / fall, 0.0)  # of the traction over lambda, by the height's numerator
+        by_size = np.where(loads, ratio * height / size + steep, 0.0)
+        by_onset = height / size + steep
+        by_way = steep * (size - onset) / way
+        by_B = np.where(loads, -by_onset * d_onset - by_way * d_way, 0.0)
+        # lambda by g is K g / lambda, B by g -2 sliding K g / lambda^4; alike for the slip
+        along, across = by_size / size, 2.0 * by_B / square**2
+        by_g, by_s = Kg * (along - across * sliding), Kss * (along + across * opening)
+        if stronger is None:
+            return Driving(d, by_g, by_s)
+        shorter = way + 2.0 * m / ((1.0 + flat) * onset)
+        return Driving(d, by_g, by_s, np.where(loads, (by_way * shorter - by_onset * onset) / stronger, 0.0))
+
+
+@dataclass(frozen=True)
+class BilinearMixed(TrapezoidalMixed):
+    """Softening along a line from the onset on (Camanho and Davila 2002; Turon et al. 2006)."""
+
+    plateau: float = 0.0
+
+
+@dataclass(frozen=True)
+class ExponentialMixed(MixedLaw):
+    """``p = e p_max x exp(-x - y^2)``, ``t = sqrt(2 e) t_max y exp(-x - y^2)`` (Salehani and Irani 2018).
+
+    Lengths of ``x = g / g0`` and ``y = s / s0`` follow from strength and toughness in pure modes, ``g0 = G_I / (e
+    p_max)``, ``s0 = sqrt(2) G_II / (sqrt(e) t_max)``, and give the stiffnesses: those of `modes` must be these. Damage
+    is ``1 - exp(-x - y^2)``; it begins at once and has no end. The coupling gives the toughness of mixed modes.
+    """
+
+    def __post_init__(self) -> None:
+        if self.pressure_strength:
+            raise ValueError("the exponential law has no pressure_strength")
+
+    @staticmethod
+    def stiffnesses(toughness: tuple[float, float], strength: tuple[float, float]) -> tuple[float, float]:
+        """Initial stiffness in opening and sliding, ``e p_max / g0`` and ``sqrt(2 e) t_max / s0``."""
+        (first, second), (p, t) = toughness, strength
+        return (np.e * p) ** 2 / first, np.e * t**2 / second
+
+    @cached_property
+    def lengths(self) -> tuple[float, float]:
+        """g0 and s0."""
+        (first, second), (p, t) = self.modes.toughness, self.modes.strength
+        return first / (np.e * p), (2.0 / np.e) ** 0.5 * second / t
+
+    def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
+        g0, s0 = self.lengths
+        y = s / s0
+        left = np.exp(-g / g0 - y * y)
+        return Driving(1.0 - left, left / g0, left * (2.0 / s0) * y)
+
+
+#: Name in a scene -> law.
+MIXED_LAWS: dict[str, type[MixedLaw]] = {
+    "bilinear": BilinearMixed,
+    "trapezoidal": TrapezoidalMixed,
+    "exponential": ExponentialMixed,
+}

@@ -1,0 +1,93 @@
+"""Onset and toughness of a bond that opens and slides, as functions of the mode ratio.
+
+The mode ratio by energy is ``B = Ks s^2 / (K g^2 + Ks s^2)``: 0 in pure opening, 1 in pure sliding; with the jump
+``lambda`` in the energy norm, ``lambda^2 = K g^2 + Ks s^2``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+#: A function of the mode ratio (n,): its value and its slope.
+OfRatio = tuple[np.ndarray, np.ndarray]
+
+#: Names of the failure criteria and of the onset criteria in a scene.
+CRITERIA = ("bk", "power")
+ONSETS = ("turon", "quadratic")
+
+
+@dataclass(frozen=True)
+class ModeRatio:
+    """Toughness by Benzeggagh and Kenane (1996, "bk") or by a power law ("power"), each with its ``exponent`` >= 1;
+    onset by Turon et al. (2006, "turon", with the exponent of BK) or by the quadratic criterion of the tractions
+    ("quadratic"; Ye 1988).
+
+    ``toughness`` and ``strength`` are pairs (opening, sliding), ``stiffness`` the pair (K, Ks).
+
+    Raises
+    ------
+    ValueError : another name, Turon's onset with a power law, an exponent below 1, or a mode ratio at which the
+        toughness is used up before damage begins.
+    """
+
+    toughness: tuple[float, float]
+    strength: tuple[float, float]
+    stiffness: tuple[float, float]
+    criterion: str = "bk"
+    exponent: float = 2.0
+    onset: str = "turon"
+
+    def __post_init__(self) -> None:
+        if self.criterion not in CRITERIA or self.onset not in ONSETS:
+            raise ValueError(
+                f"criterion must be in {CRITERIA} and onset in {ONSETS}, got {self.criterion!r}, {self.onset!r}"
+            )
+        if self.onset == "turon" and self.criterion != "bk":
+            raise ValueError('onset "turon" takes the exponent of criterion "bk"; take onset "quadratic"')
+        if not self.exponent >= 1.0:
+            raise ValueError(f"exponent must be >= 1, got {self.exponent}")
+        ratios = np.linspace(0.0, 1.0, 101)
+        (m, _), (G, _) = self.at(ratios)
+        if not np.all(m < 2.0 * G):
+            worst = ratios[np.argmax(m / G)]
+            raise ValueError(
+                f"the energy stored at the onset of damage must be below the toughness; it is not at mode "
+                f"ratio {worst:.2f}: raise the stiffness or the toughness, or lower the strength"
+            )
+
+    def at(self, B: np.ndarray) -> tuple[OfRatio, OfRatio]:
+        """``lambda0^2``, twice the energy at onset, and toughness ``G_c`` at mode ratios (n,), with their slopes."""
+        (p, t), (K, Ks), (first, second) = self.strength, self.stiffness, self.toughness
+        if self.criterion == "bk":
+            before = B ** (self.exponent - 1.0)
+            part, slope = B * before, self.exponent * before
+            G = first + (second - first) * part, (second - first) * slope
+            if self.onset == "turon":
+                jump = t * t / Ks - p * p / K
+                return (p * p / K + jump * part, jump * slope), G
+        else:
+            G = self._power(B)
+        softness = (1.0 - B) * (K / p**2) + B * (Ks / t**2)
+        return (1.0 / softness, (K / p**2 - Ks / t**2) / softness**2), G
+
+    def _power(self, B: np.ndarray) -> OfRatio:
+        """``1 / G_c = [((1 - B) / G_I)^a + (B / G_II)^a]^(1 / a)``."""
+        a, (first, second) = self.exponent, self.toughness
+        opening, sliding = (1.0 - B) / first, B / second
+        summed = opening**a + sliding**a
+        G = summed ** (-1.0 / a)
+        change = sliding ** (a - 1.0) / second - opening ** (a - 1.0) / first
+        return G, -G * change / summed
+
+
+def consistent_shear_stiffness(
+    stiffness: float, toughness: tuple[float, float], strength: tuple[float, float]
+) -> float:
+    """``K (G_I / G_II) (t_max / p_max)^2``, with which ``lambda0 / lambda_f`` is that of opening (Turon et al. 2010).
+
+    With any other ratio ``lambda0 / lambda_f`` depends on the mode, and the energy that a changing mode costs on its
+    way.
+    """
+    return stiffness * toughness[0] / toughness[1] * (strength[1] / strength[0]) ** 2
