@@ -17,9 +17,9 @@ import numpy as np
 
 from iga.interface.closest_point import Pairing, closest_points, nearest_samples
 from iga.interface.contact import Contact, Rows, SlidingContact
-from iga.interface.laws import TractionLaw
 from iga.interface.master_point import MasterPoints, master_points
 from iga.interface.surface import Surface, normal
+from iga.interface.traction_law import TractionLaw
 
 #: Part of the model's size within which surfaces count as touching in the reference configuration.
 FACES_TOUCH = 1e-9

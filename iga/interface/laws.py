@@ -1,121 +1,18 @@
 """Traction laws in mode I with damage and contact, for all points of an interface at once.
 
 A law is a class in `LAWS`, whose names are those of ``interface.law`` in a scene: the shape of its envelope. What all
-laws share, history, secant, contact and energies, is `TractionLaw`.
+laws share is `iga.interface.traction_law.TractionLaw`.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-
-@dataclass(frozen=True)
-class TractionLaw(ABC):
-    """What holds of every law: linear up to the strength, then an envelope down to nothing, and damage on the way.
-
-    ``strength`` p_max [stress], ``toughness`` G_Ic [force/length], ``ductility`` 2 G_Ic / (p_max g_max) > 1,
-    ``penalty`` [stress/length]. Without ``contact`` the secant stiffness of the opening side continues to negative
-    gaps; without ``irreversible`` the damage follows the present gap down as well as up, and nothing is dissipated.
-
-    A law is a frozen dataclass that says `g_u`, `envelope`, `softening` and `work`, and its `kinks` where it has more
-    than two; numbers of its own have defaults.
-    """
-
-    strength: float
-    toughness: float
-    ductility: float
-    penalty: float
-    contact: bool = True
-    irreversible: bool = True
-
-    @property
-    @abstractmethod
-    def g_u(self) -> float:
-        """Opening from which there is no traction, finite."""
-
-    @abstractmethod
-    def envelope(self, k: np.ndarray) -> np.ndarray:
-        """Traction on first loading to the opening k >= 0, `stiffness` times k up to g_max."""
-
-    @abstractmethod
-    def softening(self, k: np.ndarray) -> np.ndarray | float:
-        """Slope of the envelope at g_max <= k < g_u, at a kink of the branch that begins there; asked anywhere."""
-
-    @abstractmethod
-    def work(self, k: np.ndarray) -> np.ndarray:
-        """Integral of the envelope from 0 to k >= 0; G_Ic from g_u on."""
-
-    @cached_property
-    def g_max(self) -> float:
-        """Opening at the strength, where damage begins."""
-        return 2.0 * self.toughness / self.strength / self.ductility
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        """Openings at which the slope of the envelope jumps, rising, from g_max to g_u, and these where it does not."""
-        return self.g_max, self.g_u
-
-    @cached_property
-    def stiffness(self) -> float:
-        """Initial slope p_max / g_max."""
-        return self.strength / self.g_max
-
-    def jump(self, kink: float) -> float:
-        """Change of the slope of the envelope at one of its kinks."""
-        before = self.stiffness if kink <= self.g_max else self.softening(np.nextafter(kink, 0.0))
-        return float((self.softening(np.asarray(kink)) if kink < self.g_u else 0.0) - before)
-
-    def dissipation_rate(self, k: np.ndarray) -> np.ndarray:
-        """Energy dissipated per area and increase of the largest opening k, (p - p' k) / 2, while softening."""
-        return 0.5 * (self.envelope(k) - self.softening(k) * k)
-
-    def secant(self, k: np.ndarray) -> np.ndarray:
-        """Secant stiffness (1 - d) K0 after the largest opening k."""
-        k = np.maximum(k, self.g_max)
-        return self.envelope(k) / k
-
-    def damage(self, k: np.ndarray) -> np.ndarray:
-        """d = 1 - secant / stiffness: 0 up to g_max, 1 from g_u on."""
-        return 1.0 - self.secant(k) / self.stiffness
-
-    def traction(
-        self, g: np.ndarray, k: np.ndarray, closed: np.ndarray | None = None
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Traction, consistent tangent and new history.
-
-        Parameters
-        ----------
-        g : (...,) normal gap, positive when open.
-        k : (...,) largest gap of all converged states so far, the history.
-        closed : (...,) which points are in contact; those with a negative gap if left out.
-
-        Returns
-        -------
-        p, dp_dg, k_new : (...,) each.
-        """
-        closed = g < 0.0 if closed is None else closed
-        closed = closed if self.contact else np.zeros_like(closed)
-        k_new = np.maximum(k, g) if self.irreversible else np.maximum(g, 0.0)
-        secant = self.secant(k_new)
-        softening = (g >= k_new) & (g > self.g_max) & (g < self.g_u)
-        slope = np.where(softening, self.softening(g), secant)
-        return np.where(closed, self.penalty, secant) * g, np.where(closed, self.penalty, slope), k_new
-
-    def energies(self, g: np.ndarray, k: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Energies per area: stored in cohesion, stored in contact, dissipated; k includes the present gap."""
-        work = self.work(k)
-        if self.irreversible:
-            secant = self.secant(k)
-            recoverable, dissipated = 0.5 * secant * g**2, work - 0.5 * secant * k**2
-        else:
-            secant = np.full_like(g, self.stiffness)
-            recoverable, dissipated = np.where(g > 0.0, work, 0.5 * secant * g**2), np.zeros_like(g)
-        closed = (g < 0.0) & self.contact
-        return np.where(closed, 0.0, recoverable), np.where(closed, 0.5 * self.penalty * g**2, 0.0), dissipated
+from iga.interface.traction_law import TractionLaw
 
 
 @dataclass(frozen=True)
@@ -146,5 +43,169 @@ class BilinearLaw(TractionLaw):
         return rising + 0.5 * (self.strength + self.envelope(k)) * (k - self.g_max)
 
 
+@dataclass(frozen=True)
+class PolylineLaw(TractionLaw):
+    """An envelope of straight lines: from zero to the first of its `points`, and on to the last one."""
+
+    @property
+    @abstractmethod
+    def points(self) -> np.ndarray:
+        """Openings and tractions (n, 2) of the corners, rising openings, the last traction zero."""
+
+    @property
+    def g_u(self) -> float:
+        """Opening of the last corner."""
+        return float(self.points[-1, 0])
+
+    @cached_property
+    def kinks(self) -> tuple[float, ...]:
+        """Openings of the corners."""
+        return tuple(self.points[:, 0].tolist())
+
+    def envelope(self, k: np.ndarray) -> np.ndarray:
+        """Traction on first loading to the opening k >= 0."""
+        g_n, p_n = np.vstack([[0.0, 0.0], self.points]).T
+        return np.interp(k, g_n, p_n)
+
+    def softening(self, k: np.ndarray) -> np.ndarray:
+        """Slope of the line that begins at or before k."""
+        (g_n, p_n), lines = self.points.T, len(self.points) - 1
+        return (np.diff(p_n) / np.diff(g_n))[np.clip(np.searchsorted(g_n, k, side="right") - 1, 0, lines - 1)]
+
+    def work(self, k: np.ndarray) -> np.ndarray:
+        """Integral of the envelope from 0 to k >= 0: trapezia up to the last corner before k, and one from there."""
+        g_n, p_n = np.vstack([[0.0, 0.0], self.points]).T
+        at_n = np.concatenate([[0.0], np.cumsum(0.5 * (p_n[1:] + p_n[:-1]) * np.diff(g_n))])
+        n = np.clip(np.searchsorted(g_n, k, side="right") - 1, 0, None)
+        return at_n[n] + 0.5 * (p_n[n] + self.envelope(k)) * np.maximum(np.minimum(k, g_n[-1]) - g_n[n], 0.0)
+
+
+@dataclass(frozen=True)
+class TrapezoidalLaw(PolylineLaw):
+    """The traction stays for the part ``plateau`` of the way from g_max to g_u, then falls along a line.
+
+    Raises
+    ------
+    ValueError : ``plateau`` outside of 0 to 1.
+    """
+
+    plateau: float = 0.5
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.plateau < 1.0:
+            raise ValueError(f"plateau must be >= 0 and < 1, got {self.plateau}")
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Ends of the plateau, and where nothing is left; the area is the toughness."""
+        way = (2.0 * self.toughness / self.strength - self.g_max) / (1.0 + self.plateau)
+        ends = self.g_max, self.g_max + self.plateau * way, self.g_max + way
+        corners = np.column_stack([ends, [self.strength, self.strength, 0.0]])
+        return corners if self.plateau else corners[1:]
+
+
+@dataclass(frozen=True)
+class TabularLaw(PolylineLaw):
+    """Lines through a ``table`` of openings and tractions, as of fibres that bridge a crack.
+
+    Strength, toughness and ductility are those of the table, whatever else is given.
+
+    Raises
+    ------
+    ValueError : less than two corners, openings that do not rise from above zero, a traction below zero, a last one
+        that is not zero, or a secant that rises: damage would heal.
+    """
+
+    table: tuple[tuple[float, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        corners = np.asarray(self.table, dtype=float)
+        if corners.ndim != 2 or corners.shape[0] < 2 or corners.shape[1] != 2 or not np.all(np.isfinite(corners)):
+            raise ValueError(f"table must be two or more pairs of opening and traction, got {self.table}")
+        g_n, p_n = corners.T
+        if not (g_n[0] > 0.0 and np.all(np.diff(g_n) > 0.0)):
+            raise ValueError(f"openings of the table must rise from above zero, got {g_n.tolist()}")
+        if not (p_n[0] > 0.0 and np.all(p_n >= 0.0) and p_n[-1] == 0.0):
+            raise ValueError(
+                f"tractions of the table must be >= 0, the first one > 0, the last one 0, got {p_n.tolist()}"
+            )
+        if not np.all(np.diff(p_n / g_n) < 0.0):
+            raise ValueError(f"traction over opening must fall from corner to corner, got {(p_n / g_n).tolist()}")
+        object.__setattr__(self, "strength", float(p_n.max()))
+        object.__setattr__(self, "toughness", float(self.work(np.asarray(g_n[-1]))))
+        object.__setattr__(self, "ductility", 2.0 * self.toughness / (self.strength * g_n[0]))
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """The table."""
+        return np.asarray(self.table, dtype=float)
+
+    @cached_property
+    def stiffness(self) -> float:
+        """Slope of the first line."""
+        return float(self.points[0, 1] / self.points[0, 0])
+
+
+@dataclass(frozen=True)
+class ExponentialLaw(TractionLaw):
+    """``p = e p_max (g / g0) exp(-g / g0)`` with ``g0 = G_Ic / (e p_max)`` (Salehani and Irani 2018, in mode I).
+
+    Damage begins at once and has no end; a path needs both. So the law is linear up to the part ``begins`` of g0,
+    softer there by that part, and the traction is zero from ``ends`` g0 on, where 5e-16 of the strength is left.
+    ``ductility`` means nothing here.
+    """
+
+    begins: float = 1e-3
+    ends: float = 40.0
+
+    @cached_property
+    def g0(self) -> float:
+        """Opening at the strength."""
+        return self.toughness / (np.e * self.strength)
+
+    @cached_property
+    def g_max(self) -> float:
+        """Opening at which damage begins."""
+        return self.begins * self.g0
+
+    @cached_property
+    def g_u(self) -> float:
+        """Opening from which the traction is zero."""
+        return self.ends * self.g0
+
+    @cached_property
+    def stiffness(self) -> float:
+        """Initial slope."""
+        return float(self._falling(np.asarray(self.g_max)) / self.g_max)
+
+    def envelope(self, k: np.ndarray) -> np.ndarray:
+        """Traction on first loading to the opening k >= 0."""
+        return np.where(k < self.g_max, self.stiffness * k, np.where(k < self.g_u, self._falling(k), 0.0))
+
+    def softening(self, k: np.ndarray) -> np.ndarray:
+        """Slope of the envelope."""
+        x = k / self.g0
+        return np.e * self.strength / self.g0 * (1.0 - x) * np.exp(-x)
+
+    def work(self, k: np.ndarray) -> np.ndarray:
+        """Integral of the envelope from 0 to k >= 0; what is left out of the toughness is added where all is broken."""
+        x = k / self.g0
+        linear = 0.5 * self.stiffness * np.minimum(k, self.g_max) ** 2
+        beyond = self._area(np.maximum(x, self.begins)) - self._area(np.asarray(self.begins))
+        return np.where(k < self.g_u, linear + beyond, self.toughness)
+
+    def _falling(self, k: np.ndarray) -> np.ndarray:
+        x = k / self.g0
+        return np.e * self.strength * x * np.exp(-x)
+
+    def _area(self, x: np.ndarray) -> np.ndarray:
+        return self.toughness * (1.0 - (1.0 + x) * np.exp(-x))
+
+
 #: Name in a scene -> law.
-LAWS: dict[str, type[TractionLaw]] = {"bilinear": BilinearLaw}
+LAWS: dict[str, type[TractionLaw]] = {
+    "bilinear": BilinearLaw,
+    "trapezoidal": TrapezoidalLaw,
+    "tabular": TabularLaw,
+    "exponential": ExponentialLaw,
+}

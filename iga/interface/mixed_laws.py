@@ -59,12 +59,12 @@ class Driving(NamedTuple):
 
 @dataclass(frozen=True)
 class MixedLaw(ABC):
-    """``p = (1 - d) K g`` for openings g and ``penalty g``, free of damage, for g < 0; ``t = (1 - d) Ks s + d t_f``.
+    """``p = (1 - d) K g`` for openings g and ``penalty g``, free of damage, for g < 0; ``t = (1 - d) Ks s + a t_f``.
 
     The damage d is the largest so far of those that the jumps (max(g, 0), s) drive to (`driving`). Pressure
-    ``q = max(-p, 0)`` makes the damaged part rub by Coulomb's law, ``|t_f| <= friction q``, elastic with Ks below that
-    (Alfano and Sacco 2006), and raises the shear strength, not the toughness, by ``pressure_strength q``. With
-    ``viscosity`` damage follows at the rate ``(driving - d) / viscosity``, integrated by the implicit Euler method.
+    ``q = max(-p, 0)`` makes the damaged part a of the area rub by Coulomb's law, ``|t_f| <= friction q``, elastic with
+    Ks below that (Alfano and Sacco 2006), and raises the shear strength, not the toughness, by ``pressure_strength q``.
+    With ``viscosity`` damage follows at the rate ``(driving - d) / viscosity``, by the implicit Euler method.
 
     Parameters
     ----------
@@ -74,6 +74,8 @@ class MixedLaw(ABC):
     friction : coefficient of Coulomb's law, at least 0.
     viscosity : time in which damage follows, in the unit of ``dt``.
     pressure_strength : shear strength gained per pressure, at least 0.
+    rubs : what a is, "damage" for d (Alfano and Sacco 2006), or "area" for the part of the way from onset to failure in
+        pure shear, ``d / (d + (1 - d) s_f / s_0)`` (as in CompDam), of laws that soften along a line.
     """
 
     modes: ModeRatio
@@ -83,6 +85,7 @@ class MixedLaw(ABC):
     friction: float = 0.0
     viscosity: float = 0.0
     pressure_strength: float = 0.0
+    rubs: str = "damage"
 
     @abstractmethod
     def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
@@ -131,15 +134,23 @@ class MixedLaw(ABC):
         K, Ks = self.stiffness
         closed = (g < 0.0) & self.contact
         opening = np.where(closed, 0.0, 0.5 * K * g**2)
-        rubbing = 0.0 if history.slip is None else 0.5 * Ks * history.d * (s - history.slip) ** 2
+        rubbing = 0.0 if history.slip is None else 0.5 * Ks * self.rubbing(history.d)[0] * (s - history.slip) ** 2
         cohesion = (1.0 - history.d) * (opening + 0.5 * Ks * s**2)
         return Stored(cohesion, np.where(closed, 0.5 * self.penalty * g**2, 0.0), rubbing + np.zeros_like(g))
 
     def released(self, g: np.ndarray, s: np.ndarray, history: History) -> np.ndarray:
         """Energy per area (n,) that a unit of damage releases at a jump; what friction takes over is not released."""
         K, Ks = self.stiffness
-        rubbing = 0.0 if history.slip is None else 0.5 * Ks * (s - history.slip) ** 2
+        rubbing = 0.0 if history.slip is None else 0.5 * Ks * self.rubbing(history.d)[1] * (s - history.slip) ** 2
         return 0.5 * K * np.maximum(g, 0.0) ** 2 + 0.5 * Ks * s**2 - rubbing
+
+    def rubbing(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The part (n,) of the area that rubs at a damage (n,), and its slope."""
+        if self.rubs == "damage":
+            return d, np.ones_like(d)
+        slender = 2.0 * self.modes.toughness[1] * self.stiffness[1] / self.modes.strength[1] ** 2  # s_f / s_0
+        below = d + (1.0 - d) * slender
+        return d / below, slender / below**2
 
     def _traction(self, g: np.ndarray, s: np.ndarray, history: History, dt: float) -> Response:
         (K, Ks), gain = self.stiffness, self.pressure_strength / self.modes.strength[1]
@@ -165,9 +176,10 @@ class MixedLaw(ABC):
             elastic = Ks * (s - slip)
             rubs = np.clip(elastic, -held, held)
             slides, slip = rubs != elastic, s - rubs / Ks
-            t, t_d = left * Ks * s + d * rubs, t_d + part * rubs
-            t_by_g = d * np.where(slides & closed, -self.friction * self.penalty * np.sign(elastic), 0.0)
-            t_by_s = left * Ks + d * np.where(slides, 0.0, Ks)
+            area, d_area = self.rubbing(d)
+            t, t_d = left * Ks * s + area * rubs, t_d + part * d_area * rubs
+            t_by_g = area * np.where(slides & closed, -self.friction * self.penalty * np.sign(elastic), 0.0)
+            t_by_s = left * Ks + area * np.where(slides, 0.0, Ks)
         if any_closed:
             p, dp_dg = np.where(closed, self.penalty * g, p), np.where(closed, self.penalty, dp_dg)
             dp_ds = np.where(closed, 0.0, dp_ds)
@@ -209,7 +221,7 @@ class TrapezoidalMixed(MixedLaw):
         by_way = steep * (size - onset) / way
         by_B = np.where(loads, -by_onset * d_onset - by_way * d_way, 0.0)
         # lambda by g is K g / lambda, B by g -2 sliding K g / lambda^4; alike for the slip
-        along, across = by_size / size, 2.0 * by_B / square**2
+        along, across = by_size / size, 2.0 * by_B / square / square  # whose square may be below the smallest number
         by_g, by_s = Kg * (along - across * sliding), Kss * (along + across * opening)
         if stronger is None:
             return Driving(d, by_g, by_s)
@@ -234,8 +246,8 @@ class ExponentialMixed(MixedLaw):
     """
 
     def __post_init__(self) -> None:
-        if self.pressure_strength:
-            raise ValueError("the exponential law has no pressure_strength")
+        if self.pressure_strength or self.rubs != "damage":
+            raise ValueError('the exponential law has no pressure_strength, and what rubs of it is the "damage"')
 
     @staticmethod
     def stiffnesses(toughness: tuple[float, float], strength: tuple[float, float]) -> tuple[float, float]:

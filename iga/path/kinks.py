@@ -17,7 +17,7 @@ import numpy as np
 
 from iga.interface.contact import Contact
 from iga.interface.interface import Interface, holding
-from iga.interface.laws import TractionLaw
+from iga.interface.traction_law import TractionLaw
 from iga.system.state import State
 from iga.system.system import System
 

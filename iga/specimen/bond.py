@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from iga.interface.interface import Interface, PairedInterface, SearchedInterface, settled
-from iga.interface.laws import TractionLaw
 from iga.interface.lumping import lumped
 from iga.interface.surface import Surface
+from iga.interface.traction_law import TractionLaw
 from iga.mesh.quadrature import QUADRATURE, Rule, gauss
 from iga.specimen.body import Body
 from iga.specimen.problem import Debonding, unloads

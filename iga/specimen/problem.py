@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from iga.bases.names import BASES, find
 from iga.elements.kinematics import KINEMATICS
-from iga.interface.laws import LAWS, TractionLaw
+from iga.interface.laws import LAWS
+from iga.interface.traction_law import TractionLaw
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import QUADRATURE
 from iga.specimen.layout import Layout
@@ -41,8 +42,9 @@ class Debonding(ABC):
     "node" (the corner of the loaded face away from the interface) or "hinge" (its middle). ``steps`` is the number of
     steps asked for over the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed
     at. ``law_name`` is one of `iga.interface.laws.LAWS`, ``ductility`` the gap at separation over the gap at the
-    strength, ``penalty`` the stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out.
-    ``meshes`` are those of the bodies, upper first, in the specimen's own frame; made by the solver where left out.
+    strength, ``penalty`` the stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out;
+    ``plateau`` and ``table`` are numbers of the trapezoidal and of the tabular law. ``meshes`` are those of the bodies,
+    upper first, in the specimen's own frame; made by the solver where left out.
 
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
     body, "upper" or "lower", whose points are projected: in every configuration where ``search`` is set, else once, and
@@ -65,6 +67,8 @@ class Debonding(ABC):
     ductility: float = 12.5
     penalty: float | None = None
     law_name: str = "bilinear"
+    plateau: float = 0.5
+    table: tuple[tuple[float, float], ...] = ()
     opening: tuple[float, ...]
     load_at: str = "face"
     width: float = 1.0
@@ -117,7 +121,8 @@ class Debonding(ABC):
         """The traction law."""
         shape, stiffness = LAWS[self.law_name], 0.5 * self.strength**2 * self.ductility / self.toughness
         penalty = CONTACT_RATIO * stiffness if self.penalty is None else self.penalty
-        return shape(self.strength, self.toughness, self.ductility, penalty, self.contact, self.irreversible)
+        own = {field.name: getattr(self, field.name) for field in fields(shape) if field.name in ("plateau", "table")}
+        return shape(self.strength, self.toughness, self.ductility, penalty, self.contact, self.irreversible, **own)
 
     @property
     def pose(self) -> Pose:

@@ -1,42 +1,23 @@
-"""Traction laws that no scene has, for tests of what is to hold of any law: one of lines with a plateau, one curved."""
+"""Traction laws that no scene has, for tests of what is to hold of any law: one of lines, one curved."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from iga.interface.laws import TractionLaw
+from iga.interface.laws import PolylineLaw
+from iga.interface.traction_law import TractionLaw
 
 
 @dataclass(frozen=True)
-class TrapezoidalLaw(TractionLaw):
-    """A plateau over a part of what is left after g_max, then a line; its area says where it ends."""
+class BridgedLaw(PolylineLaw):
+    """A steep line down to a quarter of the strength, as of a matrix, and a flat one, as of fibres that bridge it."""
 
-    plateau: float = 0.5
-
-    @property
-    def g_u(self):
-        return self.g_max + (2.0 * self.toughness / self.strength - self.g_max) / (1.0 + self.plateau)
-
-    @property
-    def g_2(self):
-        """Opening at the end of the plateau."""
-        return self.g_max + self.plateau * (self.g_u - self.g_max)
-
-    @property
-    def kinks(self):
-        return self.g_max, self.g_2, self.g_u
-
-    def envelope(self, k):
-        return np.interp(k, [0.0, *self.kinks], [0.0, self.strength, self.strength, 0.0])
-
-    def softening(self, k):
-        return np.where(k < self.g_2, 0.0, -self.strength / (self.g_u - self.g_2))
-
-    def work(self, k):
-        rising = 0.5 * self.stiffness * np.minimum(k, self.g_max) ** 2
-        flat = self.strength * (np.clip(k, self.g_max, self.g_2) - self.g_max)
-        k = np.clip(k, self.g_2, self.g_u)
-        return rising + flat + 0.5 * (self.strength + self.envelope(k)) * (k - self.g_2)
+    @cached_property
+    def points(self):
+        way = 2.0 * self.toughness / self.strength - self.g_max  # of a single line
+        corner, end = 0.4 * way, 2.4 * way  # 0.4 (1 + 1/4) + 2 (1/4) = 1
+        return np.array([[0.0, 1.0], [corner, 0.25], [end, 0.0]]) * [1.0, self.strength] + [self.g_max, 0.0]
 
 
 @dataclass(frozen=True)
@@ -62,4 +43,4 @@ class ParabolicLaw(TractionLaw):
         return rising + self.strength * (self.g_u - self.g_max) * (1.0 - self.left(k) ** 3) / 3.0
 
 
-MADE_UP = {"a-trapezoid": TrapezoidalLaw, "a-parabola": ParabolicLaw}
+MADE_UP = {"bridged": BridgedLaw, "a-parabola": ParabolicLaw}

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_up_laws import MADE_UP, TrapezoidalLaw
+from made_up_laws import MADE_UP
 from specimens import PAPER
 
 from iga.dcb import build, solve
-from iga.interface.laws import LAWS
+from iga.interface.laws import LAWS, TrapezoidalLaw
 from iga.path.control import dissipation_control
 from iga.path.follow import follow
 from iga.path.kinks import Kink, first_kink, nearest_end

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from made_up_laws import MADE_UP, TrapezoidalLaw
+from made_up_laws import MADE_UP
 
 from iga.bases.names import BASES
-from iga.interface.laws import LAWS
+from iga.interface.laws import LAWS, TrapezoidalLaw
 from verify.checks.between_codes import cross_checks
 from verify.checks.identities import J_OF_ANY_LAW, J_OF_LAW, run_checks
 from verify.cli import main

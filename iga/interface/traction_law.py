@@ -1,0 +1,114 @@
+"""What all traction laws in mode I share: history, secant, contact and energies, for all points at once."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class TractionLaw(ABC):
+    """What holds of every law: linear up to the strength, then an envelope down to nothing, and damage on the way.
+
+    ``strength`` p_max [stress], ``toughness`` G_Ic [force/length], ``ductility`` 2 G_Ic / (p_max g_max) > 1,
+    ``penalty`` [stress/length]. Without ``contact`` the secant stiffness of the opening side continues to negative
+    gaps; without ``irreversible`` the damage follows the present gap down as well as up, and nothing is dissipated.
+
+    A law is a frozen dataclass that says `g_u`, `envelope`, `softening` and `work`, and its `kinks` where it has more
+    than two; numbers of its own have defaults.
+    """
+
+    strength: float
+    toughness: float
+    ductility: float
+    penalty: float
+    contact: bool = True
+    irreversible: bool = True
+
+    @property
+    @abstractmethod
+    def g_u(self) -> float:
+        """Opening from which there is no traction, finite."""
+
+    @abstractmethod
+    def envelope(self, k: np.ndarray) -> np.ndarray:
+        """Traction on first loading to the opening k >= 0, `stiffness` times k up to g_max."""
+
+    @abstractmethod
+    def softening(self, k: np.ndarray) -> np.ndarray | float:
+        """Slope of the envelope at g_max <= k < g_u, at a kink of the branch that begins there; asked anywhere."""
+
+    @abstractmethod
+    def work(self, k: np.ndarray) -> np.ndarray:
+        """Integral of the envelope from 0 to k >= 0; G_Ic from g_u on."""
+
+    @cached_property
+    def g_max(self) -> float:
+        """Opening at the strength, where damage begins."""
+        return 2.0 * self.toughness / self.strength / self.ductility
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Openings at which the slope of the envelope jumps, rising, from g_max to g_u, and these where it does not."""
+        return self.g_max, self.g_u
+
+    @cached_property
+    def stiffness(self) -> float:
+        """Initial slope p_max / g_max."""
+        return self.strength / self.g_max
+
+    def jump(self, kink: float) -> float:
+        """Change of the slope of the envelope at one of its kinks."""
+        before = self.stiffness if kink <= self.g_max else self.softening(np.nextafter(kink, 0.0))
+        return float((self.softening(np.asarray(kink)) if kink < self.g_u else 0.0) - before)
+
+    def dissipation_rate(self, k: np.ndarray) -> np.ndarray:
+        """Energy dissipated per area and increase of the largest opening k, (p - p' k) / 2, while softening."""
+        return 0.5 * (self.envelope(k) - self.softening(k) * k)
+
+    def secant(self, k: np.ndarray) -> np.ndarray:
+        """Secant stiffness (1 - d) K0 after the largest opening k."""
+        k = np.maximum(k, self.g_max)
+        return self.envelope(k) / k
+
+    def damage(self, k: np.ndarray) -> np.ndarray:
+        """d = 1 - secant / stiffness: 0 up to g_max, 1 from g_u on."""
+        return 1.0 - self.secant(k) / self.stiffness
+
+    def traction(
+        self, g: np.ndarray, k: np.ndarray, closed: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Traction, consistent tangent and new history.
+
+        Parameters
+        ----------
+        g : (...,) normal gap, positive when open.
+        k : (...,) largest gap of all converged states so far, the history.
+        closed : (...,) which points are in contact; those with a negative gap if left out.
+
+        Returns
+        -------
+        p, dp_dg, k_new : (...,) each.
+        """
+        closed = g < 0.0 if closed is None else closed
+        closed = closed if self.contact else np.zeros_like(closed)
+        k_new = np.maximum(k, g) if self.irreversible else np.maximum(g, 0.0)
+        secant = self.secant(k_new)
+        softening = (g >= k_new) & (g > self.g_max) & (g < self.g_u)
+        slope = np.where(softening, self.softening(g), secant)
+        return np.where(closed, self.penalty, secant) * g, np.where(closed, self.penalty, slope), k_new
+
+    def energies(self, g: np.ndarray, k: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Energies per area: stored in cohesion, stored in contact, dissipated; k includes the present gap."""
+        work = self.work(k)
+        if self.irreversible:
+            secant = self.secant(k)
+            recoverable, dissipated = 0.5 * secant * g**2, work - 0.5 * secant * k**2
+        else:
+            secant = np.full_like(g, self.stiffness)
+            recoverable, dissipated = np.where(g > 0.0, work, 0.5 * secant * g**2), np.zeros_like(g)
+        closed = (g < 0.0) & self.contact
+        return np.where(closed, 0.0, recoverable), np.where(closed, 0.5 * self.penalty * g**2, 0.0), dissipated
