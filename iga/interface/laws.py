@@ -60,7 +60,7 @@ class PolylineLaw(TractionLaw):
     @cached_property
     def kinks(self) -> tuple[float, ...]:
         """Openings of the corners."""
-        return tuple(self.points[:, 0].tolist())
+        return tuple(float(g) for g in self.points[:, 0])
 
     def envelope(self, k: np.ndarray) -> np.ndarray:
         """Traction on first loading to the opening k >= 0."""

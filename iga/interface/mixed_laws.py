@@ -119,7 +119,7 @@ class MixedLaw(ABC):
             raise ValueError(f"a law with viscosity needs the time of a step, dt > 0, got {dt}")
         if g.size <= BATCH:
             return self._traction(g, s, history, dt)
-        whole = np.empty((7 + (history.slip is not None), g.size))
+        whole = np.empty((8 if history.slip is not None else 7, g.size))
         for first in range(0, g.size, BATCH):
             part = slice(first, first + BATCH)
             before = History(history.d[part], None if history.slip is None else history.slip[part])
@@ -127,7 +127,8 @@ class MixedLaw(ABC):
             arrays = (*found[:6], *(one for one in found.history if one is not None))
             for to, one in zip(whole, arrays, strict=True):
                 to[part] = one
-        return Response(*whole[:6], history=History(*whole[6:]))
+        p, t, dp_dg, dp_ds, dt_dg, dt_ds, *after = whole
+        return Response(p, t, dp_dg, dp_ds, dt_dg, dt_ds, History(*after))
 
     def stored(self, g: np.ndarray, s: np.ndarray, history: History) -> Stored:
         """Energies per area (n,) at a jump with the history that it has left."""
@@ -153,37 +154,41 @@ class MixedLaw(ABC):
         return d / below, slender / below**2
 
     def _traction(self, g: np.ndarray, s: np.ndarray, history: History, dt: float) -> Response:
-        (K, Ks), gain = self.stiffness, self.pressure_strength / self.modes.strength[1]
+        K, Ks = self.stiffness
         closed = (g < 0.0) & self.contact
-        any_closed = bool(closed.any())
-        pressure = np.where(closed, -self.penalty * g, 0.0) if any_closed else None
-        strengthened = pressure is not None and gain > 0.0
-        driven = self.driving(np.maximum(g, 0.0), s, 1.0 + gain * pressure if strengthened else None)
-        by_g = np.where(g < 0.0, 0.0, driven.by_g)
-        if strengthened:
-            by_g = by_g - np.where(closed, gain * self.penalty * driven.by_strength, 0.0)
-        d, part = driven.d, 1.0
-        if self.irreversible:
-            part = (d > history.d) * (dt / (dt + self.viscosity) if self.viscosity else 1.0)
-            d = np.maximum(d, history.d) if not self.viscosity else history.d + part * (d - history.d)
-        left, p_d, t_d = 1.0 - d, -K * g * part, -Ks * s * part
-        p, dp_dg, dp_ds = left * K * g, left * K + p_d * by_g, p_d * driven.by_s
-        slip = history.slip
-        if slip is None:
-            t, t_by_g, t_by_s = left * Ks * s, 0.0, left * Ks
-        else:
-            held = 0.0 if pressure is None else self.friction * pressure
-            elastic = Ks * (s - slip)
+        pressure = np.where(closed, -self.penalty * g, 0.0)
+        driven = self._driven(g, s, pressure)
+        d, part = self._follows(driven.d, history.d, dt)
+        left, d_g, d_s = 1.0 - d, part * driven.by_g, part * driven.by_s
+        p = np.where(closed, -pressure, left * K * g)
+        dp_dg = np.where(closed, self.penalty, left * K - K * g * d_g)
+        dp_ds = np.where(closed, 0.0, -K * g * d_s)
+        t, t_d, t_g, t_s, slip = left * Ks * s, -Ks * s, np.zeros_like(g), left * Ks, history.slip
+        if slip is not None:
+            held, elastic = self.friction * pressure, Ks * (s - slip)
             rubs = np.clip(elastic, -held, held)
             slides, slip = rubs != elastic, s - rubs / Ks
             area, d_area = self.rubbing(d)
-            t, t_d = left * Ks * s + area * rubs, t_d + part * d_area * rubs
-            t_by_g = area * np.where(slides & closed, -self.friction * self.penalty * np.sign(elastic), 0.0)
-            t_by_s = left * Ks + area * np.where(slides, 0.0, Ks)
-        if any_closed:
-            p, dp_dg = np.where(closed, self.penalty * g, p), np.where(closed, self.penalty, dp_dg)
-            dp_ds = np.where(closed, 0.0, dp_ds)
-        return Response(p, t, dp_dg, dp_ds, t_by_g + t_d * by_g, t_by_s + t_d * driven.by_s, History(d, slip))
+            t, t_d = t + area * rubs, t_d + d_area * rubs
+            t_g = np.where(slides & closed, -self.friction * self.penalty * np.sign(elastic) * area, 0.0)
+            t_s = t_s + np.where(slides, 0.0, Ks * area)
+        return Response(p, t, dp_dg, dp_ds, t_g + t_d * d_g, t_s + t_d * d_s, History(d, slip))
+
+    def _driven(self, g: np.ndarray, s: np.ndarray, pressure: np.ndarray) -> Driving:
+        """`driving` at openings of any sign, with the shear strength that pressure raises."""
+        gain = self.pressure_strength / self.modes.strength[1]
+        driven = self.driving(np.maximum(g, 0.0), s, 1.0 + gain * pressure if gain > 0.0 else None)
+        by_pressure = np.where(pressure > 0.0, -self.penalty * gain * driven.by_strength, 0.0)
+        return driven._replace(by_g=np.where(g < 0.0, by_pressure, driven.by_g))
+
+    def _follows(self, driven: np.ndarray, d: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray | float]:
+        """The damage (n,) that follows on d when the jump drives to another one, and its derivative by that."""
+        if not self.irreversible:
+            return driven, 1.0
+        if not self.viscosity:
+            return np.maximum(driven, d), (driven > d).astype(float)
+        part = np.where(driven > d, dt / (dt + self.viscosity), 0.0)
+        return d + part * (driven - d), part
 
 
 @dataclass(frozen=True)
