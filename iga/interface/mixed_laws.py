@@ -17,6 +17,8 @@ from iga.interface.mode_ratio import ModeRatio
 
 #: Points that are evaluated at a time: their arrays stay in the cache.
 BATCH = 8192
+#: Least way from the onset to failure, in parts of the onset: pressure may leave none.
+BRITTLE = 1e-14
 #: Smallest squared jump that divides; a jump without one has mode ratio 0.
 TINY = float(np.finfo(float).tiny)
 
@@ -73,7 +75,7 @@ class MixedLaw(ABC):
     irreversible : if False, damage follows the jump up and down, and nothing is dissipated.
     friction : coefficient of Coulomb's law, at least 0.
     viscosity : time in which damage follows, in the unit of ``dt``.
-    pressure_strength : shear strength gained per pressure, at least 0.
+    pressure_strength : shear strength gained per pressure, at least 0; the most is what uses up the toughness at onset.
     rubs : what a is, "damage" for d (Alfano and Sacco 2006), or "area" for the part of the way from onset to failure in
         pure shear, ``d / (d + (1 - d) s_f / s_0)`` (as in CompDam), of laws that soften along a line.
     """
@@ -209,9 +211,10 @@ class TrapezoidalMixed(MixedLaw):
         B, size = sliding / square, np.sqrt(square)
         (m, dm), (G, dG) = self.modes.at(B)
         if stronger is not None:
+            stronger = np.minimum(stronger, np.sqrt(2.0 * G / m))
             m, dm = m * stronger**2, dm * stronger**2
         onset = np.sqrt(m)
-        way = (2.0 * G - m) / ((1.0 + flat) * onset)  # from lambda0 to lambda_f
+        way = np.maximum((2.0 * G - m) / ((1.0 + flat) * onset), BRITTLE * onset)  # from lambda0 to lambda_f
         d_onset = 0.5 * dm / onset
         d_way = (2.0 * dG - dm) / ((1.0 + flat) * onset) - way * d_onset / onset
         fall = (1.0 - flat) * way
@@ -231,7 +234,8 @@ class TrapezoidalMixed(MixedLaw):
         if stronger is None:
             return Driving(d, by_g, by_s)
         shorter = way + 2.0 * m / ((1.0 + flat) * onset)
-        return Driving(d, by_g, by_s, np.where(loads, (by_way * shorter - by_onset * onset) / stronger, 0.0))
+        rises = loads & (way > BRITTLE * onset)
+        return Driving(d, by_g, by_s, np.where(rises, (by_way * shorter - by_onset * onset) / stronger, 0.0))
 
 
 @dataclass(frozen=True)

@@ -332,6 +332,16 @@ def test_the_numbers_of_compdam():
     assert t.max() == pytest.approx(95.81492261285975, rel=1e-3) and t[-1] == pytest.approx(3.0, rel=1e-3)
 
 
+def test_pressure_that_uses_up_the_toughness_leaves_a_brittle_bond():
+    """Its energy at onset is the toughness: it breaks at once, and no later under more pressure."""
+    law = law_of(material=SOFT, pressure_strength=1.0, penalty=10.0)
+    s = np.linspace(0.0, 2.0, 2001)
+    for g in (-1.0, -10.0):
+        found = law.traction(np.full(s.size, g), s, law.start(s.size))
+        assert set(found.history.d) == {0.0, 1.0} and np.all(np.isfinite(found.dt_ds))
+        assert np.trapezoid(found.t, s) == pytest.approx(SOFT["toughness"][1], rel=5e-3)
+
+
 def test_viscosity_costs_what_moose_measures():
     """`traction_curve_modeI_viscous.i`: 0.01 s at an opening rate of 0.3 / s, steps of 0.01 s; peak 50.98 for 50."""
     mortar = {"toughness": (5.0, 5.0), "strength": (50.0, 50.0), "stiffness": (1e3, 1e3)}
