@@ -68,7 +68,7 @@ def damage_history(D: np.ndarray, dt: np.ndarray, viscosity: float, irreversible
 
 
 def slip_history(s: np.ndarray, reach: np.ndarray) -> np.ndarray:
-    """Slip s_p (n,): it stays while |s - s_p| <= ``reach`` (n,), the elastic slip that friction bears, else it is dragged.
+    """Slip s_p (n,), which stays while |s - s_p| <= ``reach`` (n,), the elastic slip that friction bears.
 
     This is Coulomb's law t_f = clip(Ks (s - s_p), -mu q, mu q) with reach = mu q / Ks, started at s_p = 0.
     """
