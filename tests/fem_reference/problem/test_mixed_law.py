@@ -137,6 +137,14 @@ def test_work_is_stored_or_lost_along_any_path(name):
     assert work == pytest.approx(cohesive_t[-1] + contact_t[-1] + friction_t[-1] + np.sum(lost_t), rel=2e-3)
 
 
+@pytest.mark.parametrize("name", ["friction", "no contact"])
+def test_damage_releases_what_is_stored(name):
+    law, h = LAWS[name], 1e-6
+    g_q, s_q, slip_q = np.random.default_rng(3).normal(0.0, 0.05, (3, 200))
+    more, less = (sum(law.energies(g_q, s_q, np.full(200, 0.5 + change), slip_q)) for change in (h, -h))
+    np.testing.assert_allclose(law.release(g_q, s_q, slip_q), (less - more) / (2 * h), rtol=1e-6, atol=1e-8)
+
+
 def test_contact_is_not_damaged_and_shear_goes_on_across_it():
     law, tiny = LAWS["friction"], np.nextafter(0.0, 1.0)
     g_q, s_q, d_q = np.array([-tiny, 0.0, tiny]), np.full(3, 0.01), np.full(3, 0.7)
