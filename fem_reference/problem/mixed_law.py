@@ -18,10 +18,10 @@ from fem_reference.problem.mode_mix import ONSET_WITH
 class MixedLaw(ABC):
     """Tractions with one damage for both directions, contact, friction and viscosity.
 
-    p = (1 - d) K g for g >= 0, penalty g for g < 0; t = (1 - d) Ks s + d t_f. Damage is the largest D(g, s) so far,
+    p = (1 - d) K g for g >= 0, penalty g for g < 0; t = (1 - d) Ks s + a t_f. Damage is the largest D(g, s) so far,
     with lambda^2 = K g+^2 + Ks s^2, B = Ks s^2 / lambda^2 (Camanho and Davila 2002, NASA/TM-2002-211737; Turon et al.
-    2006, Mech. Mater. 38, 1072-1089). Friction acts on the damaged part (Alfano and Sacco 2006, Int. J. Numer. Methods
-    Eng. 68, 542-582): t_f = clip(Ks (s - s_p), -mu q, mu q) under the contact pressure q = penalty <-g>.
+    2006, Mech. Mater. 38, 1072-1089). Friction acts on the part a of the bond (Alfano and Sacco 2006, Int. J. Numer.
+    Methods Eng. 68, 542-582): t_f = clip(Ks (s - s_p), -mu q, mu q) under the contact pressure q = penalty <-g>.
 
     Parameters
     ----------
@@ -31,13 +31,15 @@ class MixedLaw(ABC):
     contact : if False, (1 - d) K continues into closing, which does no damage.
     irreversible : if False, d = D(g, s).
     friction : mu.
+    rubs : "damage", a = d, or "area", a = d / (d + (1 - d) s_f / s_0) with onset s_0 and failure s_f in pure sliding:
+        the part of the way between them, as in NASA's CompDam.
     viscosity : v, a time; d_new = d + dt / (dt + v) <D - d>, implicit Euler of d' = <D - d> / v.
     pressure_strength : c; under the pressure q the onset in shear is t_max + c q with the same toughness, at most the
         onset that stores all of it.
 
     Raises
     ------
-    ValueError : an unknown criterion or onset, an exponent below 1, a negative friction, viscosity or
+    ValueError : an unknown name, an exponent below 1, a negative friction, viscosity or
         pressure_strength, or a bond that stores its toughness before damage; the message names the parameter.
     """
 
@@ -56,6 +58,7 @@ class MixedLaw(ABC):
     friction: float = 0.0
     viscosity: float = 0.0
     pressure_strength: float = 0.0
+    rubs: str = "damage"
 
     def __post_init__(self) -> None:
         if self.criterion not in ONSET_WITH:
@@ -63,6 +66,8 @@ class MixedLaw(ABC):
         if self.onset and self.onset not in ONSET_WITH[self.criterion]:
             wish = " or ".join(ONSET_WITH[self.criterion])
             raise ValueError(f"onset: must be {wish} with the criterion {self.criterion}, got {self.onset}")
+        if self.rubs not in ("damage", "area"):
+            raise ValueError(f"rubs: must be damage or area, got {self.rubs}")
         if not self.exponent >= 1:
             raise ValueError(f"exponent: must be >= 1, got {self.exponent}")
         for name in ("friction", "viscosity", "pressure_strength"):
@@ -101,11 +106,12 @@ class MixedLaw(ABC):
         closed_q = self._closed(g_q)
         p_q = np.where(closed_q, self.penalty, (1.0 - d_new_q) * K) * g_q
         t_f_q, dt_f_qj, slip_new_q = self._friction(g_q, s_q, slip_q)
-        t_q = (1.0 - d_new_q) * Ks * s_q + d_new_q * t_f_q
+        a_q, da_q = self.rubbing_part(d_new_q)
+        t_q = (1.0 - d_new_q) * Ks * s_q + a_q * t_f_q
         tangent_qij = np.zeros((g_q.size, 2, 2))
         tangent_qij[:, 0] = np.where(closed_q, 0.0, -K * g_q)[:, None] * dd_qj
         tangent_qij[:, 0, 0] += np.where(closed_q, self.penalty, (1.0 - d_new_q) * K)
-        tangent_qij[:, 1] = (t_f_q - Ks * s_q)[:, None] * dd_qj + d_new_q[:, None] * dt_f_qj
+        tangent_qij[:, 1] = (da_q * t_f_q - Ks * s_q)[:, None] * dd_qj + a_q[:, None] * dt_f_qj
         tangent_qij[:, 1, 1] += (1.0 - d_new_q) * Ks
         return p_q, t_q, tangent_qij, d_new_q, slip_new_q
 
@@ -118,15 +124,23 @@ class MixedLaw(ABC):
         """
         closed_q = self._closed(g_q)
         contact_q = np.where(closed_q, 0.5 * self.penalty * g_q**2, 0.0)
-        return (1.0 - d_q) * self._elastic(g_q, s_q), contact_q, d_q * self._held(s_q, slip_q)
+        return (1.0 - d_q) * self._elastic(g_q, s_q), contact_q, self.rubbing_part(d_q)[0] * self._held(s_q, slip_q)
 
-    def release(self, g_q: np.ndarray, s_q: np.ndarray, slip_q: np.ndarray) -> np.ndarray:
+    def release(self, g_q: np.ndarray, s_q: np.ndarray, d_q: np.ndarray, slip_q: np.ndarray) -> np.ndarray:
         """Energy per area (n_q,) that damage sets free per unit of d: minus the derivative of what is stored."""
-        return self._elastic(g_q, s_q) - self._held(s_q, slip_q)
+        return self._elastic(g_q, s_q) - self.rubbing_part(d_q)[1] * self._held(s_q, slip_q)
 
     def rubbing(self, g_q: np.ndarray, d_q: np.ndarray) -> np.ndarray:
-        """Energy per area and unit of slip (n_q,) that sliding surfaces turn into heat: d mu q."""
-        return d_q * self.friction * self._pressure(g_q)
+        """Energy per area and unit of slip (n_q,) that sliding surfaces turn into heat: a mu q."""
+        return self.rubbing_part(d_q)[0] * self.friction * self._pressure(g_q)
+
+    def rubbing_part(self, d_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The part a (n_q,) of the bond that friction acts on, and da/dd."""
+        if self.rubs == "damage":
+            return d_q, np.ones_like(d_q)
+        stretch = 2.0 * self.shear_toughness * self.shear_stiffness / self.shear_strength**2  # s_f / s_0
+        whole_q = d_q + (1.0 - d_q) * stretch
+        return d_q / whole_q, stretch / whole_q**2
 
     def _friction(
         self, g_q: np.ndarray, s_q: np.ndarray, slip_q: np.ndarray

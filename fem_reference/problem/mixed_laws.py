@@ -130,6 +130,8 @@ class MixedExponential(MixedLaw):
         super().__post_init__()
         if self.pressure_strength != 0.0:
             raise ValueError(f"pressure_strength: must be 0 with the exponential law, got {self.pressure_strength}")
+        if self.rubs != "damage":
+            raise ValueError(f"rubs: must be damage with the exponential law, got {self.rubs}")
 
     @property
     def slope_j(self) -> np.ndarray:

@@ -3,7 +3,7 @@
 With the jump (g, s), stiffness (K, Ks), g+ = max(g, 0), and one damage d for both tractions:
 
     lambda^2 = K g+^2 + Ks s^2,  B = Ks s^2 / lambda^2          (energy norm and mode ratio by energy)
-    p = (1 - d) K g, in contact penalty g where g < 0;  t = (1 - d) Ks s + d t_f with friction t_f
+    p = (1 - d) K g, in contact penalty g where g < 0;  t = (1 - d) Ks s + a t_f with friction t_f
 
 Sources: Camanho and Davila (2002), NASA/TM-2002-211737 (one damage, mode ratio); Benzeggagh and Kenane (1996), Compos.
 Sci. Technol. 56 (toughness); Turon et al. (2006), Mech. Mater. 38 (onset); Turon et al. (2010), Eng. Fract. Mech. 77
@@ -13,6 +13,7 @@ exponential law.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +27,8 @@ from verify.theory.mixed_path import Path, accumulated, damage_history, slip_his
 KNOWN_MIXED_LAWS = ("bilinear", "trapezoidal", "exponential")
 #: Criterion of the toughness -> onsets that go with it, the default first.
 ONSETS_OF = {"bk": ("turon", "quadratic"), "power": ("quadratic",)}
+#: What friction acts on.
+RUBBING = ("damage", "area")
 
 
 @dataclass(frozen=True)
@@ -44,12 +47,14 @@ class MixedBond:
     onset : "turon", lambda0^2 = p_max^2/K + (t_max^2/Ks - p_max^2/K) B^a, with "bk" alone and its default; or
         "quadratic", 1/lambda0^2 = (1-B) K/p_max^2 + B Ks/t_max^2, the default with "power"
     contact : if False, (1 - d) K continues into closing, from which no damage comes
-    friction : Coulomb's mu on the damaged part of the bond
+    friction : Coulomb's mu on the part a of the bond, see ``rubs``
     viscosity : a time; damage follows what the jumps ask for by d' = <D - d> / viscosity
     pressure_strength : c; under a contact pressure q the strength is t_max + c q, the toughness G_II. The strength ends
         where the elastic energy at onset is the toughness: there the bond is brittle
     plateau : part of the way from onset to failure at the full traction, of the trapezoidal law alone
     irreversible : if False, d is what the present jump asks for
+    rubs : the part a of the bond that friction acts on: "damage", a = d (Alfano and Sacco), or "area", the part of the
+        way from onset to failure in pure sliding that has the damage d (CompDam), of laws that fall along a line
 
     The exponential law has no criterion and no onset: p = e p_max x exp(-x - y^2), t = sqrt(2 e) t_max y exp(-x - y^2)
     with x = g+ / g0, y = s / s0, g0 = G_I / (e p_max), s0 = sqrt(2/e) G_II / t_max.
@@ -73,6 +78,7 @@ class MixedBond:
     pressure_strength: float = 0.0
     plateau: float = 0.5
     irreversible: bool = True
+    rubs: str = "damage"
 
     def __post_init__(self) -> None:
         _require_names(self)
@@ -145,12 +151,20 @@ class MixedBond:
         """Contact pressure q, 0 where the bond is open or knows no contact (stress)."""
         return np.maximum(-self.penalty * np.asarray(g, dtype=float), 0.0) * self.contact
 
+    def rubbing_part(self, d: ArrayLike) -> np.ndarray:
+        """The part a of the bond that friction acts on at a damage d."""
+        d = np.asarray(d, dtype=float)
+        if self.rubs == "damage":
+            return d
+        onset, end = self.strength[1] / self.stiffness[1], 2.0 * self.toughness[1] / self.strength[1]
+        return d * onset / (d * onset + (1.0 - d) * end)  # (s - onset) / (end - onset) of the bilinear law
+
     def path(self, g: ArrayLike, s: ArrayLike, time: ArrayLike | None = None) -> Path:
         """Tractions, histories and energies at the points (n,) of a path from rest, ``time`` from 0 to 1 by default.
 
         The energies lost are sums over the steps, of second order in their length (`accumulated`): released with each
-        dd is (K g+^2 + Ks s^2)/2 less that of elastic friction, without contact g^2 in place of g+^2; rubbed with each
-        |ds_p| is d mu q, for slip moves at the limit of friction alone.
+        dd is (K g+^2 + Ks s^2)/2, without contact g^2 in place of g+^2, less Ks (s - s_p)^2/2 with each da where there
+        is friction; rubbed with each |ds_p| is a mu q, for slip moves at the limit of friction alone.
 
         Raises `Refusal` for arrays that are no numbers or of other lengths, and for times that decrease.
         """
@@ -166,18 +180,19 @@ class MixedBond:
         if self.friction > 0.0:
             before = np.concatenate([[0.0], slip[:-1]])
             t_f, held = np.clip(Ks * (s - before), -limit, limit), 0.5 * Ks * (s - slip) ** 2
+        a = self.rubbing_part(d)
         closed = (g < 0.0) & self.contact
         elastic = 0.5 * (K * np.where(closed, 0.0, g) ** 2 + Ks * s**2)
         return Path(
             p=np.where(closed, self.penalty, (1.0 - d) * K) * g,
-            t=(1.0 - d) * Ks * s + d * t_f,
+            t=(1.0 - d) * Ks * s + a * t_f,
             d=d,
             slip=slip,
             stored=(1.0 - d) * elastic,
             contact=np.where(closed, 0.5 * self.penalty * g**2, 0.0),
-            friction_stored=d * held,
-            released=accumulated(elastic - held, d),
-            rubbed=accumulated(d * limit, np.cumsum(np.abs(np.diff(slip, prepend=0.0)))),
+            friction_stored=a * held,
+            released=accumulated(elastic, d) - accumulated(held, a),
+            rubbed=accumulated(a * limit, np.cumsum(np.abs(np.diff(slip, prepend=0.0)))),
         )
 
 
@@ -195,7 +210,8 @@ def _area_of_exponential(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def _require_names(bond: MixedBond) -> None:
     """Raise `Refusal` for a law, criterion or onset that is not known, or does not go with the others."""
-    for key, allowed in (("law", KNOWN_MIXED_LAWS), ("criterion", ONSETS_OF)):
+    names: dict[str, Collection[str]] = {"law": KNOWN_MIXED_LAWS, "criterion": ONSETS_OF, "rubs": RUBBING}
+    for key, allowed in names.items():
         if getattr(bond, key) not in allowed:
             raise Refusal(f"{key}: must be one of {', '.join(allowed)}, got {getattr(bond, key)}")
     onsets = ONSETS_OF[bond.criterion]
@@ -204,6 +220,8 @@ def _require_names(bond: MixedBond) -> None:
         raise Refusal(f"onset: must be {wish} with the criterion {bond.criterion}, got {bond.onset}")
     if bond.law == "exponential" and bond.pressure_strength != 0.0:
         raise Refusal(f"pressure_strength: must be 0 with the exponential law, got {bond.pressure_strength:g}")
+    if bond.law == "exponential" and bond.rubs != "damage":
+        raise Refusal(f"rubs: must be damage with the exponential law, got {bond.rubs}")
 
 
 def _require_numbers(bond: MixedBond) -> None:

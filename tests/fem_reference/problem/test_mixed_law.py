@@ -19,6 +19,7 @@ LAWS = {
     "power": MixedTrapezoidal(**STIFF, criterion="power", exponent=1.6, plateau=0.2),
     "exponential": MixedExponential(**BOND),
     "friction": MixedBilinear(**STIFF, friction=0.4),
+    "friction by area": MixedTrapezoidal(**STIFF, friction=0.4, rubs="area"),
     "viscosity": MixedExponential(**BOND, viscosity=0.3, friction=0.2),
     "pressure": MixedTrapezoidal(**STIFF, pressure_strength=0.5, friction=0.2),
     "reversible": MixedBilinear(**STIFF, irreversible=False),
@@ -31,7 +32,9 @@ def along(law: MixedLaw, g_t: np.ndarray, s_t: np.ndarray) -> tuple[np.ndarray, 
     d_q, slip_q, before, rows = np.zeros(1), np.zeros(1), np.zeros(4), []
     for g_q, s_q in zip(g_t[:, None], s_t[:, None], strict=True):
         p_q, t_q, _, d_new_q, slip_new_q = law.traction(g_q, s_q, d_q, slip_q, 1.0 / g_t.size)
-        now = np.array([law.release(g_q, s_q, slip_new_q), law.rubbing(g_q, d_new_q), d_new_q, slip_new_q])[:, 0]
+        now = np.array([law.release(g_q, s_q, d_new_q, slip_new_q), law.rubbing(g_q, d_new_q), d_new_q, slip_new_q])[
+            :, 0
+        ]
         mean = 0.5 * (now[:2] + before[:2])
         lost = mean @ [now[2] - before[2], abs(now[3] - before[3])]
         rows.append((p_q[0], t_q[0], *(e[0] for e in law.energies(g_q, s_q, d_new_q, slip_new_q)), lost))
@@ -137,12 +140,14 @@ def test_work_is_stored_or_lost_along_any_path(name):
     assert work == pytest.approx(cohesive_t[-1] + contact_t[-1] + friction_t[-1] + np.sum(lost_t), rel=2e-3)
 
 
-@pytest.mark.parametrize("name", ["friction", "no contact"])
+@pytest.mark.parametrize("name", ["friction", "friction by area", "no contact"])
 def test_damage_releases_what_is_stored(name):
     law, h = LAWS[name], 1e-6
     g_q, s_q, slip_q = np.random.default_rng(3).normal(0.0, 0.05, (3, 200))
     more, less = (sum(law.energies(g_q, s_q, np.full(200, 0.5 + change), slip_q)) for change in (h, -h))
-    np.testing.assert_allclose(law.release(g_q, s_q, slip_q), (less - more) / (2 * h), rtol=1e-6, atol=1e-8)
+    np.testing.assert_allclose(
+        law.release(g_q, s_q, np.full(200, 0.5), slip_q), (less - more) / (2 * h), rtol=1e-6, atol=1e-8
+    )
 
 
 def test_contact_is_not_damaged_and_shear_goes_on_across_it():
@@ -186,6 +191,7 @@ def test_under_a_pressure_beyond_all_strength_the_bond_is_brittle():
         ({"onset": "ye"}, "onset: must be turon or quadratic with the criterion bk, got ye"),
         ({"criterion": "power", "onset": "turon"}, "onset: must be quadratic with the criterion power, got turon"),
         ({"exponent": 0.5}, "exponent: must be >= 1, got 0.5"),
+        ({"rubs": "all"}, "rubs: must be damage or area, got all"),
         ({"friction": -0.5}, "friction: must be >= 0, got -0.5"),
         ({"plateau": 1.0}, "plateau: must be in [0, 1), got 1.0"),
         ({"shear_stiffness": 10.0}, "stiffness: must be so large "),
