@@ -146,7 +146,7 @@ class MixedExponential(MixedLaw):
         s_0 = np.sqrt(2.0 / np.e) * self.shear_toughness / self.shear_strength
         x_q, y_q = np.maximum(g_q, 0.0) / g_0, s_q / s_0
         intact_q = np.exp(-x_q - y_q**2)
-        return 1.0 - intact_q, np.stack([np.where(g_q > 0.0, intact_q / g_0, 0.0), 2.0 * y_q / s_0 * intact_q], -1)
+        return 1.0 - intact_q, np.stack([np.where(g_q >= 0.0, intact_q / g_0, 0.0), 2.0 * y_q / s_0 * intact_q], -1)
 
 
 #: Name in a scene -> law, a class with the fields and methods of `MixedLaw`.
