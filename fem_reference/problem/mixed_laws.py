@@ -1,0 +1,157 @@
+"""The laws of opening and sliding by name: the damage that each asks for."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_reference.problem.mixed_law import MixedLaw
+from fem_reference.problem.mode_mix import ONSET_WITH, Criterion, mix_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class ByCriterion(MixedLaw):
+    """A law whose damage is a function of lambda, of lambda0 at the onset and of the toughness G_c."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if (B := self.by_mode.brittle_at()) is not None:
+            raise ValueError(
+                f"stiffness: must be so large that the bond stores less than its toughness before damage begins, "
+                f"got {self.stiffness}, {self.shear_stiffness} in shear, which is too low at the mode ratio {B:g}"
+            )
+
+    @property
+    def by_mode(self) -> Criterion:
+        """Onset and toughness of all mode ratios."""
+        normal = self.strength, self.toughness, self.stiffness
+        shear = self.shear_strength, self.shear_toughness, self.shear_stiffness
+        return Criterion(normal, shear, self.criterion, self.onset or ONSET_WITH[self.criterion][0], self.exponent)
+
+    def driving(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `MixedLaw.driving`."""
+        mix, by_mode = mix_of(g_q, s_q, self.slope_j), self.by_mode
+        (G_q, dG_q), (begins_q, dbegins_q) = by_mode.critical(mix.B_q), by_mode.begins(mix.B_q)
+        dG_qj = dG_q[:, None] * mix.dB_qj
+        rise_q = 1.0 + self.pressure_strength / self.shear_strength * self._pressure(g_q)
+        onset_q, donset_qj = rise_q * begins_q, (rise_q * dbegins_q)[:, None] * mix.dB_qj
+        steepness = self.pressure_strength / self.shear_strength * self.penalty
+        donset_qj[:, 0] -= np.where(self._closed(g_q), steepness * begins_q, 0.0)
+        whole_q = np.sqrt(2.0 * G_q)
+        brittle_q = onset_q >= whole_q  # under pressure alone: no stress beyond that which stores the toughness
+        grows_q = (mix.norm_q > onset_q) & ~brittle_q
+        D_q, dD_qj = ((brittle_q & (mix.norm_q > whole_q)).astype(float), np.zeros_like(dG_qj))
+        D_q[grows_q], part_qk = self.softening(mix.norm_q[grows_q], onset_q[grows_q], G_q[grows_q])
+        along_qkj = np.stack([mix.dnorm_qj, donset_qj, dG_qj], 1)[grows_q]
+        dD_qj[grows_q] = np.einsum("qk,qkj->qj", part_qk, along_qkj)
+        return D_q, dD_qj
+
+    @abstractmethod
+    def softening(self, norm_q: np.ndarray, onset_q: np.ndarray, G_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """D (n_q,) at points with lambda > lambda0, and its derivatives (n_q, 3) by lambda, lambda0 and G_c."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MixedBilinear(ByCriterion):
+    """Tractions fall along a line from lambda0 to lambda_f = 2 G_c / lambda0.
+
+    D = lambda_f (lambda - lambda0) / (lambda (lambda_f - lambda0)).
+    """
+
+    def softening(self, norm_q: np.ndarray, onset_q: np.ndarray, G_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `ByCriterion.softening`."""
+        rest_q = 2.0 * G_q - onset_q**2  # lambda0 (lambda_f - lambda0)
+        beyond_q = 1.0 - onset_q / norm_q
+        D_q = 2.0 * G_q * beyond_q / rest_q
+        part_qk = np.stack(
+            [
+                2.0 * G_q * onset_q / (norm_q**2 * rest_q),
+                2.0 * G_q / rest_q * (2.0 * onset_q * beyond_q / rest_q - 1.0 / norm_q),
+                -2.0 * beyond_q * onset_q**2 / rest_q**2,
+            ],
+            -1,
+        )
+        open_q = norm_q * onset_q >= 2.0 * G_q
+        return np.where(open_q, 1.0, np.minimum(D_q, 1.0)), np.where(open_q[:, None], 0.0, part_qk)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MixedTrapezoidal(ByCriterion):
+    """Tractions stay at the onset for the part ``plateau`` of the way w to failure, then fall along a line.
+
+    w = (2 G_c - lambda0^2) / ((1 + plateau) lambda0), so that the area is G_c; with lambda_f = lambda0 + w,
+    D = 1 - lambda0 / lambda min(1, (lambda_f - lambda) / ((1 - plateau) w)).
+    """
+
+    plateau: float = 0.5
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0.0 <= self.plateau < 1.0:
+            raise ValueError(f"plateau: must be in [0, 1), got {self.plateau}")
+
+    def softening(self, norm_q: np.ndarray, onset_q: np.ndarray, G_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `ByCriterion.softening`."""
+        way_q = (2.0 * G_q - onset_q**2) / ((1.0 + self.plateau) * onset_q)
+        fall_q = (1.0 - self.plateau) * way_q
+        share_q = (onset_q + way_q - norm_q) / fall_q
+        level_q, open_q = share_q >= 1.0, share_q <= 0.0
+        held_q = onset_q * np.clip(share_q, 0.0, 1.0)  # the traction in the energy norm
+        dway_q = -1.0 / (1.0 + self.plateau) * (2.0 * G_q / onset_q**2 + 1.0), 2.0 / ((1.0 + self.plateau) * onset_q)
+        by_way_q = np.where(level_q, 0.0, onset_q * (norm_q - onset_q) / (fall_q * way_q))
+        dheld_qk = np.stack(
+            [
+                np.where(level_q, 0.0, -onset_q / fall_q),
+                np.where(level_q, 1.0, share_q + onset_q / fall_q) + by_way_q * dway_q[0],
+                by_way_q * dway_q[1],
+            ],
+            -1,
+        )
+        part_qk = -np.where(open_q[:, None], 0.0, dheld_qk) / norm_q[:, None]
+        part_qk[:, 0] += held_q / norm_q**2
+        return 1.0 - held_q / norm_q, part_qk
+
+
+@dataclass(frozen=True, kw_only=True)
+class MixedExponential(MixedLaw):
+    """Tractions of one exponential without onset or criterion (Salehani and Irani 2018).
+
+    p = e p_max x exp(-x - y^2), t = sqrt(2 e) t_max y exp(-x - y^2), with x = g+ / g0, y = s / s0, g0 = G_I / (e p_max)
+    and s0 = sqrt(2 / e) G_II / t_max. That is D = 1 - exp(-x - y^2) with the stiffness of `slope_j`; ``stiffness`` and
+    ``shear_stiffness`` are not used.
+    """
+
+    stiffness: float = 0.0
+    shear_stiffness: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.pressure_strength != 0.0:
+            raise ValueError(f"pressure_strength: must be 0 with the exponential law, got {self.pressure_strength}")
+        if self.rubs != "damage":
+            raise ValueError(f"rubs: must be damage with the exponential law, got {self.rubs}")
+
+    @property
+    def slope_j(self) -> np.ndarray:
+        """K = (e p_max)^2 / G_I and Ks = e t_max^2 / G_II."""
+        return np.array(
+            [np.e**2 * self.strength**2 / self.toughness, np.e * self.shear_strength**2 / self.shear_toughness]
+        )
+
+    def driving(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `MixedLaw.driving`."""
+        g_0 = self.toughness / (np.e * self.strength)
+        s_0 = np.sqrt(2.0 / np.e) * self.shear_toughness / self.shear_strength
+        x_q, y_q = np.maximum(g_q, 0.0) / g_0, s_q / s_0
+        intact_q = np.exp(-x_q - y_q**2)
+        return 1.0 - intact_q, np.stack([np.where(g_q >= 0.0, intact_q / g_0, 0.0), 2.0 * y_q / s_0 * intact_q], -1)
+
+
+#: Name in a scene -> law, a class with the fields and methods of `MixedLaw`.
+MODELLED_MIXED_LAWS: dict[str, type[MixedLaw]] = {
+    "bilinear": MixedBilinear,
+    "trapezoidal": MixedTrapezoidal,
+    "exponential": MixedExponential,
+}

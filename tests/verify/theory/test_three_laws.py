@@ -1,0 +1,114 @@
+"""The laws of opening and sliding of `iga`, of `fem_reference` and of the checks, each written from the definition."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
+from iga.interface.mixed_laws import MIXED_LAWS
+from iga.interface.mode_ratio import ModeRatio
+from verify.theory.mixed_law import KNOWN_MIXED_LAWS, ONSETS_OF, MixedBond
+
+#: Paths of each case, and steps of each path.
+PATHS, STEPS = 60, 40
+MODES = [(criterion, onset) for criterion, onsets in ONSETS_OF.items() for onset in onsets]
+EXTRAS = [
+    {},
+    {"contact": False},
+    {"irreversible": False},
+    {"friction": 0.4},
+    {"viscosity": 0.05},
+    {"pressure_strength": 0.6},
+    {"friction": 0.3, "rubs": "area"},
+    {"friction": 0.3, "viscosity": 0.02, "pressure_strength": 0.3},
+]
+CASES = [
+    (law, *mode, extra)
+    for law, mode, extra in itertools.product(KNOWN_MIXED_LAWS, MODES, EXTRAS)
+    if law != "exponential" or (mode == MODES[0] and not {"pressure_strength", "rubs"} & extra.keys())
+]
+
+
+def bond_of(law: str, criterion: str, onset: str, extra: dict, rng: np.random.Generator) -> MixedBond:
+    """A bond with random numbers in any ratio of the modes; it begins to fail at 1.5 to 30 % of its toughness."""
+    strength, toughness = (tuple(10.0 ** rng.uniform(-1.0, 1.0, 2)) for _ in range(2))
+    share = rng.uniform(0.015, 0.3, 2)
+    stiffness = tuple(p**2 / (2.0 * G * part) for p, G, part in zip(strength, toughness, share, strict=True))
+    exponent, plateau = rng.uniform(1.0, 4.0), rng.uniform(0.0, 0.9)
+    penalty = stiffness[0] * rng.uniform(0.5, 20.0)
+    return MixedBond(law, strength, toughness, stiffness, penalty, criterion, exponent, onset, plateau=plateau, **extra)
+
+
+def random_paths(bond: MixedBond, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Jumps (STEPS + 1, PATHS) from rest, of the size of those at failure; closed ones are smaller, some are zero."""
+    sizes = [2.0 * G / p for G, p in zip(bond.toughness, bond.strength, strict=True)]
+    g, s = (size * rng.normal(0.0, 0.4, (STEPS + 1, PATHS)) * rng.random(PATHS) for size in sizes)
+    g = np.where(g < 0.0, 0.05 * g, g) * rng.choice([0.0, 1.0], (STEPS + 1, PATHS), p=[0.1, 0.9])
+    s = s * rng.choice([0.0, 1.0], (STEPS + 1, PATHS), p=[0.1, 0.9])
+    return np.concatenate([np.zeros((1, PATHS)), g[1:]]), np.concatenate([np.zeros((1, PATHS)), s[1:]])
+
+
+def by_theory(bond: MixedBond, g: np.ndarray, s: np.ndarray) -> dict[str, np.ndarray]:
+    """Tractions, histories and energies (STEPS, PATHS), whole paths at once."""
+    paths = [bond.path(*jumps) for jumps in zip(g.T, s.T, strict=True)]
+    names = ("p", "t", "d", "slip", "stored", "contact", "friction_stored")
+    return {name: np.stack([getattr(path, name)[1:] for path in paths], -1) for name in names}
+
+
+def by_fem(bond: MixedBond, g: np.ndarray, s: np.ndarray) -> dict[str, np.ndarray]:
+    """The same, all points of a step at once, what a unit of damage releases, and the tangent (STEPS, PATHS, 2, 2)."""
+    names = ("contact", "irreversible", "friction", "viscosity", "pressure_strength", "rubs")
+    own = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
+    law = MODELLED_MIXED_LAWS[bond.law](
+        **{key: getattr(bond, key)[0] for key in ("strength", "toughness", "stiffness")},
+        **{f"shear_{key}": getattr(bond, key)[1] for key in ("strength", "toughness", "stiffness")},
+        **{key: getattr(bond, key) for key in ("penalty", "criterion", "exponent", "onset", *names)},
+        **own,
+    )
+    d, slip, rows = np.zeros(PATHS), np.zeros(PATHS), []
+    for g_q, s_q in zip(g[1:], s[1:], strict=True):
+        p, t, tangent, d, slip = law.traction(g_q, s_q, d, slip, 1.0 / STEPS)
+        stored, contact, rubbing = law.energies(g_q, s_q, d, slip)
+        rows.append({"p": p, "t": t, "d": d, "slip": slip, "stored": stored, "contact": contact})
+        rows[-1] |= {"friction_stored": rubbing, "tangent": tangent, "released": law.release(g_q, s_q, d, slip)}
+    return {name: np.stack([row[name] for row in rows]) for name in rows[0]}
+
+
+def by_iga(bond: MixedBond, g: np.ndarray, s: np.ndarray) -> dict[str, np.ndarray]:
+    """As `by_fem`."""
+    modes = ModeRatio(bond.toughness, bond.strength, bond.slopes, bond.criterion, bond.exponent, bond.onset)
+    names = ("contact", "irreversible", "friction", "viscosity", "pressure_strength", "rubs")
+    own = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
+    law = MIXED_LAWS[bond.law](modes, bond.penalty, **{key: getattr(bond, key) for key in names}, **own)
+    history, rows = law.start(PATHS), []
+    for g_q, s_q in zip(g[1:], s[1:], strict=True):
+        found = law.traction(g_q, s_q, history, 1.0 / STEPS)
+        history = found.history
+        slip = np.zeros(PATHS) if history.slip is None else history.slip
+        tangent = np.stack([found.dp_dg, found.dp_ds, found.dt_dg, found.dt_ds], -1).reshape(PATHS, 2, 2)
+        stored = law.stored(g_q, s_q, history)
+        rows.append({"p": found.p, "t": found.t, "d": history.d, "slip": slip, "tangent": tangent})
+        rows[-1] |= {"stored": stored.cohesion, "contact": stored.contact, "friction_stored": stored.friction}
+        rows[-1]["released"] = law.released(g_q, s_q, history)
+    return {name: np.stack([row[name] for row in rows]) for name in rows[0]}
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join([*case[:3], *case[3]]))
+@pytest.mark.parametrize("seed", range(3))
+def test_three_codes_have_one_law(case, seed):
+    """To 1e-12 of strengths, sizes and toughnesses; tractions and energies of contact to 1e-12 of themselves."""
+    rng = np.random.default_rng([seed, CASES.index(case)])
+    bond = bond_of(*case, rng)
+    g, s = random_paths(bond, rng)
+    theory, fem, iga = (code(bond, g, s) for code in (by_theory, by_fem, by_iga))
+    assert 0.05 < np.mean(theory["d"] > 0.0) and np.any(theory["d"] < 1.0)
+    scale = dict.fromkeys(("stored", "contact", "friction_stored"), sum(bond.toughness))
+    scale |= {"d": 1.0, "p": bond.strength[0], "t": bond.strength[1], "slip": bond.toughness[1] / bond.strength[1]}
+    for other in (fem, iga):
+        for name, unit in scale.items():
+            np.testing.assert_allclose(other[name], theory[name], rtol=1e-12, atol=1e-12 * unit, err_msg=name)
+    unit = sum(bond.toughness)
+    np.testing.assert_allclose(iga["released"], fem["released"], rtol=1e-12, atol=1e-12 * unit, err_msg="released")
+    K = np.sqrt(np.outer(bond.slopes, bond.slopes))
+    np.testing.assert_allclose(iga["tangent"] / K, fem["tangent"] / K, rtol=1e-9, atol=1e-9, err_msg="tangent")
