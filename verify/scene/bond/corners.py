@@ -30,17 +30,16 @@ def _as_pairs(value: object) -> object:
 def _of_a_law(table: _Pairs) -> _Pairs:
     """Refuse what is not the envelope of a law with damage: secants that do not fall would heal it."""
     for i, (opening, traction) in enumerate(table):
-        before = table[i - 1][0] if i else 0.0
+        before, held = table[i - 1] if i else (0.0, 0.0)
         if opening <= before:
             raise refuse(f"> {before:g}, the opening before it" if i else "> 0", ((i, 0), opening))
         if i == len(table) - 1:
             if traction != 0:
                 raise refuse("0, at the end of the law", ((i, 1), traction))
-        elif i == 0:
-            if traction <= 0:
-                raise refuse("> 0", ((i, 1), traction))
-        elif not 0 <= traction < (most := opening * table[i - 1][1] / before):
-            rule = f">= 0 and < {most:g}, as traction over opening falls from corner to corner"
+        elif traction <= 0:
+            raise refuse("> 0, up to the last corner", ((i, 1), traction))
+        elif i and traction >= opening * held / before:
+            rule = f"< {opening * held / before:g}, as traction over opening falls from corner to corner"
             raise refuse(rule, ((i, 1), traction))
     return table
 
