@@ -33,6 +33,14 @@ PEEL = {
     "strip": {"E1": 135e3, "E2": 9e3, "G12": 5e3, "nu12": 0.3},
     "substrate": {"young": 70e3, "poisson": 0.3},
 }  # fmt: skip
+SLIDING = {
+    **DCB,
+    "interface": {
+        "law": "trapezoidal", "plateau": 0.3, "strength": 4.0, "toughness": 0.1, "stiffness": 1e3, "penalty": 1e5,
+        "shear_strength": 5.0, "shear_toughness": 0.2, "criterion": "bk", "exponent": 2.284, "onset": "turon",
+        "shear_stiffness": 1e3, "friction": 0.3, "viscosity": 0.01, "pressure_strength": 0.5,
+    },
+}  # fmt: skip
 METHODS = ("tspline", "nurbs", "lagrange", "dolfinx", "beam", "lefm")
 
 
@@ -62,7 +70,7 @@ def paths_of(table: dict, before: tuple = ()) -> list[tuple]:
     ]
 
 
-KEYS = sorted({".".join(path) for path in [*paths_of(DCB), *paths_of(PEEL)]})
+KEYS = sorted({".".join(path) for path in [path for scene in (DCB, PEEL, SLIDING) for path in paths_of(scene)]})
 
 
 def as_toml(value: object) -> str:
@@ -80,7 +88,7 @@ def as_toml(value: object) -> str:
 @st.composite
 def scene_texts(draw: st.DrawFn) -> str:
     """A scene of which some keys are something else, more, or gone."""
-    table = json.loads(json.dumps(draw(st.sampled_from([DCB, PEEL]))))
+    table = json.loads(json.dumps(draw(st.sampled_from([DCB, PEEL, SLIDING]))))
     for _ in range(draw(st.integers(0, 3))):
         *way, last = draw(st.sampled_from(paths_of(table) or [("x",)]))
         inner = table

@@ -103,11 +103,11 @@ def _kept(options: argparse.Namespace) -> Keep:
 
 
 def _say_before(prepared: Prepared, frames: bool) -> None:
-    """Messages before a run: automatic decisions, and warnings of coarse meshes."""
-    from verify.methods import through_thickness, zone_resolution
+    """Messages before a run: automatic decisions, keys without effect, and warnings of coarse meshes."""
+    from verify.methods import sliding, through_thickness, zone_resolution
 
     coarse = (*zone_resolution.warnings(prepared), *through_thickness.warnings(prepared))
-    for remark in (*prepared.decisions, *coarse):
+    for remark in (*prepared.decisions, *sliding.remarks(prepared.scene), *coarse):
         say(str(remark))
     if frames and not prepared.method.has_mesh:
         say(f"--fields: the method {prepared.method.name} has no bodies to draw: no frames for ParaView")
@@ -161,6 +161,7 @@ def _print_result(result: Result, checks: Sequence[Check], folder: Path) -> None
 
 def verify(options: argparse.Namespace) -> int:
     from verify.checks.judgement import Demands
+    from verify.methods import sliding
     from verify.methods.given_meshes import given_meshes
     from verify.scene.load import load_scene, verified_scenes
     from verify.studies.found import named
@@ -192,6 +193,8 @@ def verify(options: argparse.Namespace) -> int:
     if options.dry_run:
         return _listed(would_run(subjects, options.out, options.jobs))
     _folder(options.out)
+    for remark in {remark for _, scene in scenes for remark in sliding.remarks(scene)}:
+        say(remark)
     text = options.format == "md"
     return 0 if verify(subjects, options.out, options.jobs, options.scheduler, text, demands) else FAILED
 

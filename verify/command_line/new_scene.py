@@ -105,10 +105,17 @@ def _least(kind: str) -> dict[str, Any]:
 
 
 def _assigned(raw: Mapping[str, Any], key: Key) -> list[str]:
-    """The key with its value, as a comment where the default depends on the scene."""
-    value = (raw[key.table] if key.table else raw)[key.name]
+    """The key with its value, as a comment where the default depends on the scene, or where others must be there."""
+    table = raw[key.table] if key.table else raw
+    if key.name not in table:
+        return [f"# {key.name} = {_toml(_example(key))}"]
     own = key.field.default_factory is not None or key.field.default == ()
-    return [f"{'# ' * own}{key.name} = {_toml(value)}"]
+    return [f"{'# ' * own}{key.name} = {_toml(table[key.name])}"]
+
+
+def _example(key: Key) -> object:
+    """A value of a key that a scene need not have: an example, where its default is none or depends on others."""
+    return key.field.examples[0] if key.field.examples else key.field.default
 
 
 def _instead(raw: Mapping[str, Any], table: str) -> list[str]:

@@ -6,6 +6,8 @@ import textwrap
 
 from verify.command_line.sketch import sketch
 from verify.methods.reference_mesh import reference_mesh
+from verify.scene.bond.interface import Interface
+from verify.scene.laws import EXPONENTIAL
 from verify.scene.materials import Isotropic, Material
 from verify.scene.schema import Scene
 
@@ -31,6 +33,7 @@ def page(scene: Scene, width: int) -> str:
         "specimen": f"{scene.specimen.kind}, plane {scene.specimen.plane}, width {scene.specimen.width:g}",
         **{name: _material(getattr(scene, name)) for name in scene.specimen.materials},
         "interface": f"{law.law}, strength {law.strength:g}, toughness {law.toughness:g}, ductility {law.ductility:g}",
+        "sliding": _sliding(law),
         "opening": " -> ".join(f"{opening:g}" for opening in scene.load.opening),
         "effects": ", ".join(_effect(name, getattr(scene.effects, name)) for name in type(scene.effects).model_fields),
         "meshes": f"{mesh.dofs} unknowns of degree {mesh.degree}; DOLFINx {other.elements} elements along, "
@@ -42,6 +45,17 @@ def page(scene: Scene, width: int) -> str:
     )
     body = [part for name, text in facts.items() if text for part in whole_words.wrap(f"{name:11}{text}")]
     return "\n".join([f"{scene.name} ({scene.units})", "", *sketch(scene, width), "", *body])
+
+
+def _sliding(law: Interface) -> str:
+    """Nothing for a bond that opens alone."""
+    if not law.slides:
+        return ""
+    others = {key: getattr(law, key) for key in ("friction", "viscosity", "pressure_strength")}
+    more = [f"{key} {value:g}" for key, value in others.items() if value]
+    mixing = [] if law.law == EXPONENTIAL else [f"{law.criterion} of exponent {law.exponent:g}, onset {law.onset}"]
+    strengths = f"strength {law.shear_strength:g}, toughness {law.shear_toughness:g}"
+    return ", ".join([f"{strengths}, stiffness {law.shear_stiffness:g}", *mixing, *more])
 
 
 def _material(material: Material) -> str:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from verify.export.mesh import SceneMesh
-from verify.export.numbers import effects, header, law
+from verify.export.numbers import effects, header, law, sliding
 from verify.scene.materials import Isotropic, Material, elastic_constants
 from verify.scene.schema import Scene, counted_steps
+from verify.theory.law import Bilinear
 
 #: Solid elements by plane and degree. Of degree 1 those with incompatible modes: fully integrated ones lock in bending,
 #: by 20 % in one layer as long as it is thick.
@@ -103,11 +105,30 @@ def _materials(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
     K, p = bond.stiffness, bond.strength
     yield "*MATERIAL, NAME=bond"
     yield "*ELASTIC, TYPE=TRACTION"
+    if scene.interface.slides:
+        yield from _sliding(sliding(scene), bond)
+        return
     yield ", ".join(map(_number, (K, SLIDING * K, SLIDING * K)))
     yield "*DAMAGE INITIATION, CRITERION=MAXS"
     yield ", ".join(map(_number, (p, BEYOND_DAMAGE * p, BEYOND_DAMAGE * p)))
     yield "*DAMAGE EVOLUTION, TYPE=ENERGY, SOFTENING=LINEAR"
     yield f"{_number(bond.toughness)},"
+
+
+def _sliding(shear: Mapping[str, Any], bond: Bilinear) -> Iterator[str]:
+    """The law of opening and sliding; the onset of Turon et al., which Abaqus has not, is alike in pure modes."""
+    t, toughness, stiffness = (shear[f"shear_{key}"] for key in ("strength", "toughness", "stiffness"))
+    yield ", ".join(map(_number, (bond.stiffness, stiffness, stiffness)))
+    if shear["onset"] == "turon":
+        yield "** debond has the onset of Turon et al. (2006), which is that of QUADS in pure modes alone"
+    beside = ("friction", "viscosity", "pressure_strength")
+    yield from (f"** left out: interface.{key} = {shear[key]:g}" for key in beside if shear[key])
+    yield "*DAMAGE INITIATION, CRITERION=QUADS"
+    yield ", ".join(map(_number, (bond.strength, t, t)))
+    mixed = {"bk": "BK", "power": "POWER LAW"}[shear["criterion"]]
+    behavior = f"MIXED MODE BEHAVIOR={mixed}, POWER={_number(shear['exponent'])}"
+    yield f"*DAMAGE EVOLUTION, TYPE=ENERGY, SOFTENING=LINEAR, {behavior}"
+    yield ", ".join(map(_number, (bond.toughness, toughness, toughness)))
 
 
 def _elastic(material: Material, plane: str) -> Iterator[str]:

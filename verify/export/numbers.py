@@ -17,11 +17,22 @@ from verify.theory.law import Bilinear
 #: Exported laws, each described.
 LAW_NOTES: Mapping[str, str] = {"bilinear": "bilinear, mode I: the gap along the normal alone bears traction"}
 
+#: The same law of a bond that slides as well.
+SLIDING_LAW = "bilinear, of opening and sliding with one damage; mode ratio by energy"
+
 
 def law(scene: Scene) -> Bilinear:
     """The scene's traction law."""
     i = scene.interface
     return Bilinear(i.strength, i.toughness, i.ductility, i.penalty, effects(scene)["contact"])
+
+
+def sliding(scene: Scene) -> dict[str, float | str]:
+    """The keys of shear; nothing for a bond that opens alone."""
+    i = scene.interface
+    keys = ("shear_strength", "shear_toughness", "shear_stiffness", "criterion", "exponent", "onset")
+    beside = ("friction", "viscosity", "pressure_strength")
+    return {key: getattr(i, key) for key in (*keys, *beside)} if i.slides else {}
 
 
 def effects(scene: Scene) -> dict[str, Any]:
@@ -41,7 +52,7 @@ def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
             for name, material in zip(mesh.names, scene.materials, strict=True)
         },
         "law": {
-            "kind": LAW_NOTES[scene.interface.law],
+            "kind": SLIDING_LAW if scene.interface.slides else LAW_NOTES[scene.interface.law],
             "strength": bond.strength,
             "toughness": bond.toughness,
             "stiffness": bond.stiffness,
@@ -49,6 +60,7 @@ def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
             "g_u": bond.g_open,
             "ductility": bond.ductility,
             "penalty": bond.penalty,
+            **sliding(scene),
         },
         "effects": effects(scene),
         "programme": {"opening": list(scene.load.opening), "steps": counted_steps(scene)},

@@ -23,6 +23,7 @@ def common_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
         "toughness": interface.toughness,
         "ductility": interface.ductility,
         "law_name": interface.law,
+        **interface.numbers_of_the_law,
         "penalty": interface.penalty,
         "contact": effects["contact"],
         "irreversible": effects["irreversible"],

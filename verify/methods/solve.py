@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from verify.methods.method import OnFrame, OnStep, Prepared
 from verify.methods.names import refuse_arms, refuse_law
 from verify.methods.plugins import find
+from verify.methods.sliding import refuse_sliding
 from verify.result import Result
 from verify.scene.schema import Scene
 
@@ -52,6 +53,7 @@ def require(prepared: Prepared) -> None:
         given_meshes(scene) if method.takes_files else refuse_files(scene, method.name)
     refuse_law(scene, method.name, method.laws())
     refuse_arms(scene, method)
+    refuse_sliding(scene, method.name)
     method.require(prepared)
 
 

@@ -15,6 +15,7 @@ from verify.methods.solve import prepare
 from verify.scene.effects import simulated
 
 if TYPE_CHECKING:
+    from verify.scene.bond.interface import Interface
     from verify.scene.materials import Material
     from verify.scene.schema import Discretization, Scene
     from verify.scene.specimens.delamination import Delamination
@@ -188,6 +189,7 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         ("interface", "opening at peak g_max", quantity(scale / law.ductility, units.length)),
         ("interface", f"ductility {'g_u / g_max' if bilinear else '2 G_Ic / (p_max g_max)'}", number(law.ductility, 6)),
         ("interface", "contact penalty", quantity(law.penalty, units.stiffness)),
+        *_sliding(law, units),
         ("isogeometric mesh", "degree", str(mesh.degree)),
         ("isogeometric mesh", "target unknowns", str(mesh.dofs)),
         ("isogeometric mesh", "interface points", _points(mesh)),
@@ -196,6 +198,16 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         ("DOLFINx mesh", f"elements through the {specimen.body}", str(other.layers)),
     ]
     return rows
+
+
+def _sliding(law: Interface, units: Units) -> list[tuple[str, str, str]]:
+    """Strength, toughness and stiffness on sliding, where the scene has them."""
+    given = (
+        ("shear strength t_max", law.shear_strength, units.stress),
+        ("shear toughness G_IIc", law.shear_toughness, units.toughness),
+        ("shear stiffness K_s", law.shear_stiffness, units.stiffness),
+    )
+    return [("interface", name, quantity(value, unit)) for name, value, unit in given if value is not None]
 
 
 def _points(mesh: Discretization) -> str:

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
+from verify.scene.bond.corners import CORNERS
 from verify.scene.materials import Isotropic, Orthotropic
 from verify.scene.schema import Scene
 from verify.scene.specimens import SPECIMENS
@@ -117,6 +118,8 @@ def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) 
     if get_origin(annotation) is Literal:
         return one_of(get_args(annotation))
     if get_origin(annotation) is tuple and _table(annotation) is None:
+        if path[-1] == "table":
+            return CORNERS
         if "mesh" in path:
             return "a file name" if isinstance(path[-1], int) else "a file name, or a list of two"
         how_many = "at least one number" if get_args(annotation)[-1] is ... else "two"

@@ -5,10 +5,20 @@ from __future__ import annotations
 #: The law that every method has.
 PLAIN = "bilinear"
 
+#: Laws with numbers of their own among the keys of a scene.
+TRAPEZOIDAL, TABULAR, EXPONENTIAL = "trapezoidal", "tabular", "exponential"
+
 
 def known() -> tuple[str, ...]:
-    """Names of the laws that any solver has."""
+    """Names of the laws that any solver has, for opening or for opening and sliding."""
     from fem_reference.problem.law import MODELLED_LAWS
     from iga.interface.laws import LAWS
 
-    return tuple(dict.fromkeys((*LAWS, *MODELLED_LAWS)))
+    return tuple(dict.fromkeys((*LAWS, *MODELLED_LAWS, *mixed())))
+
+
+def mixed() -> tuple[str, ...]:
+    """Names of the laws for opening and sliding."""
+    from iga.interface.mixed_laws import MIXED_LAWS
+
+    return tuple(MIXED_LAWS)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from verify.scene.bond.interface import Interface
 from verify.scene.materials import Isotropic, Material
 from verify.scene.schema import Scene
 
@@ -71,9 +72,28 @@ def _cohesion(scene: Scene) -> Iterator[Range]:
     yield _beside("interface.strength", law.strength, 1e-12, 1e3, f"the modulus of {key}", _modulus(material))
     bending = "interface.strength times the thickness of what is peeled"
     yield _beside("interface.toughness", law.toughness, 1e-9, 1e6, bending, law.strength * thickness)
-    yield "interface.ductility", law.ductility, 1.000001, 1e6, "g_u / g_max"
+    if law.stiffness is None:
+        yield "interface.ductility", law.ductility, 1.000001, 1e6, "g_u / g_max"
+    else:
+        least, why = law.strength**2 / (2 * law.toughness), "interface.strength^2 / (2 interface.toughness)"
+        yield _beside("interface.stiffness", law.stiffness, 1.000001, 1e6, why, least)
     steepness = law.strength**2 * law.ductility / (2 * law.toughness)
     yield _beside("interface.penalty", law.penalty, 1e-6, 1e12, "the stiffness of the bond", steepness)
+    if law.slides:
+        yield from _sliding(law, steepness)
+
+
+def _sliding(law: Interface, steepness: float) -> Iterator[Range]:
+    """Numbers of sliding beside those of opening; the others are pure numbers."""
+    of_opening = {"strength": law.strength, "toughness": law.toughness}
+    for key, size in of_opening.items():
+        yield _beside(f"interface.shear_{key}", getattr(law, f"shear_{key}"), 1e-6, 1e6, f"interface.{key}", size)
+    other = "the stiffness of the bond"
+    yield _beside("interface.shear_stiffness", law.shear_stiffness or 0.0, 1e-12, 1e12, other, steepness)
+    yield "interface.exponent", law.exponent, 1.0, 100.0, "which is steeper than any bond"
+    yield "interface.friction", law.friction, 0.0, 100.0, "which holds more than any face"
+    yield "interface.viscosity", law.viscosity, 0.0, 1e6, "durations of the programme"
+    yield "interface.pressure_strength", law.pressure_strength, 0.0, 1e6, "strength for a unit of pressure"
 
 
 def _paths(scene: Scene) -> Iterator[Range]:

@@ -42,7 +42,7 @@ def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: s
     sizes = too_large(raw)
     try:
         scene = Scene.model_validate(raw)
-        wrong += sizes or out_of_proportion(scene)
+        wrong += sizes or out_of_proportion(scene) or _of_the_bond(scene)
     except ValidationError as error:
         found = complaints(error, raw)
         named = {sentence.partition(":")[0] for sentence in found}
@@ -52,6 +52,15 @@ def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: s
     if wrong:
         raise SceneError(source, wrong)
     return scene
+
+
+def _of_the_bond(scene: Scene) -> list[str]:
+    """What is said of a law for opening and sliding, which takes NumPy, and time."""
+    if not scene.interface.slides:
+        return []
+    from verify.scene.bond.mixed import without_strength
+
+    return without_strength(scene)
 
 
 def _override(raw: Mapping[str, Any], override: str) -> dict[str, Any]:

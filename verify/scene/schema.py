@@ -6,43 +6,17 @@ user reads about a broken one are made in ``verify.scene.complaints``.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, ValidationInfo, ValidatorFunctionWrapHandler, field_validator
 from pydantic_core import PydanticCustomError
 
-from verify.scene.laws import PLAIN, known
+from verify.scene.bond.interface import Interface
 from verify.scene.materials import Material, definite
 from verify.scene.published import Published
 from verify.scene.specimens import Specimen
-from verify.scene.tables import Positive, Section, one_of, refuse
+from verify.scene.tables import Section, refuse
 from verify.support.programme import turns
-
-
-def _hundred_initial_stiffnesses(data: dict[str, Any]) -> float:
-    gap_at_strength = 2 * data["toughness"] / data["strength"] / data["ductility"]
-    return 100 * data["strength"] / gap_at_strength
-
-
-class Interface(Section):
-    law: str = PLAIN
-    """Traction over gap: up to the strength, then down to zero at g_u; the bilinear one along a line."""
-    strength: Positive
-    """Largest traction p_max [stress]."""
-    toughness: Positive
-    """Work of separation G_Ic [energy per area]."""
-    ductility: float = Field(default=12.5, gt=1)
-    """g_u / g_max, gap at separation over gap at the strength; 1 is a vertical drop, which no Newton follows. Of a law
-    that is not bilinear: 2 toughness / strength over the gap at the strength."""
-    penalty: float = Field(default_factory=_hundred_initial_stiffnesses, gt=0)
-    """Stiffness of the contact, on closing [stress per length]; left out: 100 times the stiffness of the bond."""
-
-    @field_validator("law", mode="before")
-    @classmethod
-    def _of_some_method(cls, law: object) -> object:
-        if law != PLAIN and law not in known():  # to know the others takes NumPy, and time
-            raise refuse(one_of(known()), ((), law))
-        return law
 
 
 def _as_programme(value: object) -> object:

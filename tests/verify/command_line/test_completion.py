@@ -13,6 +13,7 @@ from verify.cli import main, parser
 from verify.command_line.completion import SHELLS, commands, script
 from verify.methods.names import METHODS
 from verify.methods.plugins import plugins
+from verify.scene.bond.interface import Interface
 from verify.scene.keys import dotted_keys
 from verify.scene.load import packaged_scenes
 from verify.studies.hard.cases import CASES
@@ -48,7 +49,7 @@ def test_bash_completes_commands_options_and_words(bash: Path) -> None:
     assert completed(bash, "solve", "dcb-czm1", "--method", "") == [*METHODS, *plugins()]
     assert completed(bash, "effects", "dcb-czm1", "--method", "nu") == ["nurbs"]
     assert completed(bash, "solve", "dcb-czm1", "--set", "interface.") == [
-        f"interface.{key}=" for key in ("ductility", "law", "penalty", "strength", "toughness")
+        f"interface.{key}=" for key in sorted(Interface.model_fields)
     ]
     assert completed(bash, "solve", "dcb-czm1", "--set", "")[-1] == f"{dotted_keys()[-1]}="
     assert completed(bash, "solve", "dcb-czm1", "--dofs", "") == []

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from iga.interface.laws import LAWS, BilinearLaw
 from verify.cli import main
 from verify.command_line.new_scene import PUBLISHED, new_scene
 from verify.command_line.scene_list import line, page
@@ -21,6 +22,11 @@ from verify.scene.published import Published
 from verify.scene.schema import Scene
 
 KINDS = tuple(SPECIMENS)
+#: Keys of a bond that slides.
+SHEAR = (
+    "shear_strength", "shear_toughness", "criterion", "exponent", "onset", "shear_stiffness", "friction", "viscosity",
+    "pressure_strength",
+)  # fmt: skip
 MATERIALS = {kind: specimen.materials for kind, specimen in SPECIMENS.items()}
 
 
@@ -38,7 +44,7 @@ def test_it_is_a_scene_with_nothing_but_defaults(kind: str) -> None:
     least = scene.model_dump()
     for key in keys(kind):
         if key.table and not key.field.is_required():
-            del least[key.table][key.name]
+            least[key.table].pop(key.name, None)
     assert parse_scene({name: table for name, table in least.items() if table}) == scene
     assert scene.specimen.kind == kind
 
@@ -73,11 +79,27 @@ def test_no_table_of_the_schema_is_forgotten(kind: str) -> None:
 def test_what_stands_behind_comment_signs_is_valid_too(kind: str) -> None:
     scene = tomllib.loads(new_scene(kind))
     tables = given(new_scene(kind))
-    with_all = scene | {name: tables[name] for name in ("specimen", "interface")}
+    with_all = scene | {"specimen": tables["specimen"]}
+    with_all["interface"] = scene["interface"] | {key: tables["interface"][key] for key in ("ductility", "penalty")}
     for name in MATERIALS[kind]:
         with_all[name] = {key: tables[name][key] for key in Orthotropic.model_fields}
     full = parse_scene(with_all | {"published": [PUBLISHED | {"source": "a book"}]})
     assert full.interface == parse_scene(scene).interface
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_other_bonds_stand_behind_comment_signs_too(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their keys are taken together, in place of those that they exclude."""
+    monkeypatch.setitem(LAWS, "tabular", BilinearLaw)
+    scene, bond = tomllib.loads(new_scene(kind)), given(new_scene(kind))["interface"]
+    sliding = {key: bond[key] for key in SHEAR}
+    one, other = ({key: bond[key] for key in ("strength", "toughness", mine)} for mine in ("stiffness", "ductility"))
+    bonds = [one, other | sliding, other | {"plateau": bond["plateau"], "law": "trapezoidal"}]
+    for keys_of_it in bonds:
+        found = parse_scene(scene | {"interface": keys_of_it}).interface
+        assert {key: getattr(found, key) for key in keys_of_it} == keys_of_it
+    table = parse_scene(scene | {"interface": {"table": bond["table"], "law": "tabular"}}).interface.table
+    assert [list(corner) for corner in table] == bond["table"]
 
 
 def test_it_runs(tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -191,6 +213,9 @@ def test_a_page_of_a_scene_says_every_effect_and_number() -> None:
     chosen = load_scene("dcb-czm1", ["effects.contact=auto", "load.opening=[1.0, 0.5, 2.0]", "effects.search=false"])
     other = " ".join(page(chosen, 100).split())
     assert "contact auto, irreversible, no symmetry, no search" in other and "opening 1 -> 0.5 -> 2 " in other
+    sliding = " ".join(page(load_scene("dcb-as4peek", ["interface.friction=0.3"]), 100).split())
+    told = "sliding strength 100, toughness 1.719, stiffness 100000, bk of exponent 2.284, onset turon, friction 0.3 "
+    assert told in sliding and "sliding" not in plain
     layered = load_scene("dcb-czm1", ["material={E1=120e3, E2=9e3, G12=5e3, nu12=0.3}"])
     assert "material orthotropic, E1 120000, E2 9000, G12 5000, nu12 0.3" in " ".join(page(layered, 100).split())
 

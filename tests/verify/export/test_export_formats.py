@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from vtu_files import arrays
 
 from verify.cli import main
 from verify.export.mesh import scene_mesh
+from verify.export.numbers import SLIDING_LAW
 from verify.scene.load import load_scene
 
 
@@ -27,6 +29,28 @@ def abaqus_blocks(text: str) -> list[tuple[str, dict[str, str], list[list[str]]]
         else:
             blocks[-1][2].append([cell for cell in cells if cell])
     return blocks
+
+
+def test_abaqus_has_the_law_of_a_bond_that_slides(tmp_path: Path) -> None:
+    """Its own onset and criterion; a remark where those of the scene are others, or are left out."""
+    words = ["--set", "dolfinx.degree=1"]
+    for more, remarks in (("onset=turon", 1), ("onset=quadratic", 0), ("friction=0.3", 2), ("criterion=power", 0)):
+        sets = ["--set", f"interface.{more}", *(["--set", "interface.onset=quadratic"] if "power" in more else [])]
+        folder = exported("dcb-as4peek", "abaqus", tmp_path / more, *words, *sets)
+        text = (folder / "dcb-as4peek.inp").read_text().partition("*MATERIAL, NAME=bond")[2].partition("*EQUATION")[0]
+        assert sum(line.startswith("** ") for line in text.splitlines()) == remarks
+        blocks = {keyword: (known, rows) for keyword, known, rows in abaqus_blocks(text.strip())}
+        numbers = {keyword: [float(cell) for cell in rows[0]] for keyword, (_, rows) in blocks.items()}
+        assert numbers == {
+            "*ELASTIC": [1e5, 1e5, 1e5],
+            "*DAMAGE INITIATION": [80.0, 100.0, 100.0],
+            "*DAMAGE EVOLUTION": [0.969, 1.719, 1.719],
+        }
+        assert blocks["*DAMAGE INITIATION"][0] == {"CRITERION": "QUADS"}
+        mixed = {"MIXED MODE BEHAVIOR": "POWER LAW" if "power" in more else "BK", "POWER": "2.284"}
+        assert blocks["*DAMAGE EVOLUTION"][0] == {"TYPE": "ENERGY", "SOFTENING": "LINEAR", **mixed}
+        law = json.loads((folder / "scene.json").read_text())["law"]
+        assert (law["kind"], law["shear_toughness"], law["exponent"]) == (SLIDING_LAW, 1.719, 2.284)
 
 
 @pytest.mark.parametrize(("degree", "plane", "solid"), [(1, "strain", "CPE4I"), (2, "stress", "CPS8")])

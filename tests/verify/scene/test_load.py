@@ -48,7 +48,9 @@ BROKEN = {
     "interface.ductility=1": "interface.ductility: must be > 1, got 1",
     "interface.penalty=0": "interface.penalty: must be > 0, got 0",
     "interface.law=no-such-law": f"interface.law: must be {one_of(known())}, got 'no-such-law'",
-    "interface.strenght=6": 'interface.strenght: is not a key of a scene, got 6; did you mean "strength"?',
+    "interface.strenght=6": (
+        'interface.strenght: is not a key of a scene, got 6; did you mean "strength" or "shear_strength"?'
+    ),
     "interfce.strength=6": "interfce: is not a key of a scene, got {'strength': 6}; did you mean \"interface\"?",
     "specimen.kind=enf": 'specimen.kind: must be "dcb" or "peel", got \'enf\'',
     "specimen.precrack=14": "specimen.precrack: must be < specimen.length = 14, got 14",

@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 
 from iga.bases.names import BASES
+from iga.interface.laws import LAWS, BilinearLaw
 from verify.cli import main
 from verify.methods.solve import solve
 from verify.result import Result, steps_from_rows
 from verify.scene.load import load_scene
+from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.studies.hard import suite
 from verify.studies.hard.case import Case, Number, Trial, Trials, Variant, variant
@@ -194,6 +196,13 @@ def test_units_change_the_numbers_and_nothing_else() -> None:
     assert material.poisson == 0.2 and inches.discretization == scene.discretization
     back = in_units(inches, 1e3, 25.4, scene.units)
     assert back.interface.penalty == pytest.approx(scene.interface.penalty, rel=1e-14) and back.units == scene.units
+
+
+def test_corners_of_a_table_are_openings_and_tractions(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(LAWS, "tabular", BilinearLaw)
+    scene = load_scene("dcb-czm1").model_dump() | {"interface": {"law": "tabular", "table": [[0.1, 2.0], [0.5, 0.0]]}}
+    found = in_units(parse_scene(scene), 1e-3, 1 / 25.4, "kN, in, kN/in2").interface.table
+    assert found == (pytest.approx((0.1 / 25.4, 2e-3 * 25.4**2)), pytest.approx((0.5 / 25.4, 0.0)))
 
 
 def runs_of(name: str, change=lambda name, columns: columns) -> Trials:

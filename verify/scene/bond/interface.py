@@ -1,0 +1,235 @@
+"""The table ``[interface]`` of a scene: a traction law for opening, and with the keys of shear for sliding as well.
+
+``shear_strength`` and ``shear_toughness`` switch sliding on; the keys below them ask for these two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import e
+from typing import Any, Literal, TypeAlias
+
+from pydantic import (
+    Field,
+    SerializerFunctionWrapHandler,
+    ValidationInfo,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
+
+from verify.scene.bond.corners import Corners, numbers_of, stiffness_of, strength_of, toughness_of
+from verify.scene.laws import EXPONENTIAL, PLAIN, TABULAR, TRAPEZOIDAL, known, mixed
+from verify.scene.tables import Positive, Section, one_of, refuse
+
+#: Keys that are written down only where a scene gives them: most must be left out without others.
+LEFT_OUT = (
+    "plateau", "table", "stiffness", "shear_strength", "shear_toughness", "criterion", "exponent", "onset",
+    "shear_stiffness", "friction", "viscosity", "pressure_strength",
+)  # fmt: skip
+
+#: Criteria of the onset of damage between opening and sliding.
+Onset: TypeAlias = Literal["turon", "quadratic"]
+
+#: Relative difference of a strength or toughness beside a table.
+AGREES = 1e-6
+
+#: Ductility where nothing says another one.
+DUCTILITY = 12.5
+
+
+def bond_stiffness(data: Mapping[str, Any]) -> float:
+    """Initial stiffness K [stress per length] from the keys of opening."""
+    if data["law"] == EXPONENTIAL:
+        return float((e * data["strength"]) ** 2 / data["toughness"])
+    if data["stiffness"] is not None:
+        return float(data["stiffness"])
+    if data["table"]:
+        return stiffness_of(data["table"])
+    return float(0.5 * data["strength"] ** 2 * data["ductility"] / data["toughness"])
+
+
+def _ductility(data: dict[str, Any]) -> float:
+    """2 K toughness / strength^2 where a key or the law says K."""
+    said = data["law"] == EXPONENTIAL or data["stiffness"] is not None or data["table"]
+    return 2.0 * bond_stiffness(data) * data["toughness"] / data["strength"] ** 2 if said else DUCTILITY
+
+
+def _hundred_initial_stiffnesses(data: dict[str, Any]) -> float:
+    if data["stiffness"] is not None:
+        return 100.0 * float(data["stiffness"])
+    gap_at_strength = 2 * data["toughness"] / data["strength"] / data["ductility"]
+    return 100 * data["strength"] / gap_at_strength
+
+
+def _onset(data: dict[str, Any]) -> Onset:
+    return "quadratic" if data["criterion"] == "power" else "turon"
+
+
+def _consistent(data: dict[str, Any]) -> float | None:
+    """Ks with which onset and failure are in the same ratio at every mode (Turon et al. 2010), or that of the law."""
+    strength, toughness = data["shear_strength"], data["shear_toughness"]
+    if strength is None:
+        return None
+    if data["law"] == EXPONENTIAL:
+        return float(e * strength**2 / toughness)
+    ratio = data["toughness"] / toughness * (strength / data["strength"]) ** 2
+    return float(bond_stiffness(data) * ratio)
+
+
+class Interface(Section):
+    law: str = PLAIN
+    """Traction over gap: up to the strength, then down to zero at g_u; the bilinear one along a line, the trapezoidal
+    one after a plateau, the tabular one along the lines of its table, the exponential one without an end."""
+    plateau: float = Field(default=0.5, ge=0, lt=1)
+    """Of the trapezoidal law alone: part of the way from the onset of damage to separation on which the traction
+    stays."""
+    table: Corners = Field(default=(), validate_default=True, examples=[((0.001, 4.0), (0.02, 1.0), (0.08, 0.0))])
+    """Of the tabular law alone: its corners, opening [length] and traction [stress] of each. Openings rise, traction
+    over opening falls, the last traction is 0. Strength and toughness are those of the table, and may be left out."""
+    strength: Positive
+    """Largest traction p_max [stress]."""
+    toughness: Positive
+    """Work of separation G_Ic [energy per area]."""
+    stiffness: float | None = Field(default=None, gt=0, examples=[1e5])
+    """Initial stiffness K of the bond [stress per length], in place of the ductility, which is then 2 K toughness /
+    strength^2; left out with a law that has its own, the tabular and the exponential one."""
+    ductility: float = Field(default_factory=_ductility, gt=1)
+    """g_u / g_max, gap at separation over gap at the strength; 1 is a vertical drop, which no Newton follows. Of a law
+    that is not bilinear: 2 toughness / strength over the gap at the strength. Left out: 12.5, or what the stiffness or
+    the law makes it."""
+    penalty: float = Field(default_factory=_hundred_initial_stiffnesses, gt=0)
+    """Stiffness of the contact, on closing [stress per length]; left out: 100 times the stiffness of the bond."""
+    shear_strength: float | None = Field(default=None, gt=0, examples=[5.0])
+    """Largest traction t_max on sliding [stress]. With shear_toughness it makes a law for opening and sliding; without
+    both sliding costs nothing."""
+    shear_toughness: float | None = Field(default=None, gt=0, validate_default=True, examples=[0.2])
+    """Work of separation G_IIc on sliding [energy per area]. The keys below ask for this one and for shear_strength."""
+    criterion: Literal["bk", "power"] = "bk"
+    """Toughness between opening and sliding: of Benzeggagh and Kenane, or by a power law."""
+    exponent: float = Field(default=2.0, ge=1)
+    """Of the criterion."""
+    onset: Onset = Field(default_factory=_onset, examples=["turon"])
+    """Where damage begins between opening and sliding: as Turon et al. (2006), with the exponent of "bk", or where the
+    squares of traction over strength add up to 1; left out: "turon" with "bk", "quadratic" with "power"."""
+    shear_stiffness: float | None = Field(default_factory=_consistent, gt=0, examples=[781.25])
+    """Initial stiffness Ks on sliding [stress per length]; left out: the one for which gaps at separation and at the
+    onset are in the same ratio for every mode, K (toughness / shear_toughness) (shear_strength / strength)^2."""
+    friction: float = Field(default=0.0, ge=0)
+    """Coefficient of friction of the damaged part of the bond, on faces that are pressed together."""
+    viscosity: float = Field(default=0.0, ge=0)
+    """Time in which damage follows, as a part of the duration of the programme; 0: at once."""
+    pressure_strength: float = Field(default=0.0, ge=0)
+    """Shear strength gained for each unit of pressure on the bond; the toughness stays."""
+
+    @property
+    def slides(self) -> bool:
+        """Whether the law is one for opening and sliding."""
+        return self.shear_strength is not None
+
+    @property
+    def bond_stiffness(self) -> float:
+        """Initial stiffness K on opening [stress per length]."""
+        return bond_stiffness(vars(self))
+
+    @property
+    def numbers_of_the_law(self) -> dict[str, Any]:
+        """What the trapezoidal and the tabular law have besides strength, toughness, ductility and penalty."""
+        own = {TRAPEZOIDAL: "plateau", TABULAR: "table"}.get(self.law)
+        return {own: getattr(self, own)} if own else {}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _numbers_of_its_table(cls, given: Any) -> Any:
+        """Strength and toughness of a tabular law where they are left out."""
+        if not isinstance(given, Mapping) or given.get("law") != TABULAR:
+            return given
+        return {**numbers_of(given.get("table")), **given}
+
+    @field_validator("law", mode="before")
+    @classmethod
+    def _of_some_method(cls, law: object) -> object:
+        if law != PLAIN and law not in known():  # to know the others takes NumPy, and time
+            raise refuse(one_of(known()), ((), law))
+        return law
+
+    @field_validator("plateau", "table")
+    @classmethod
+    def _of_its_law(cls, value: object, info: ValidationInfo) -> object:
+        law, own = info.data.get("law"), {"plateau": TRAPEZOIDAL, "table": TABULAR}[str(info.field_name)]
+        if value == () and law == own:
+            raise PydanticCustomError("missing", "missing")
+        if value != () and law not in (None, own):
+            raise refuse(f"left out with the {law} law, it is a key of the {own} one", ((), value))
+        return value
+
+    @field_validator("strength", "toughness")
+    @classmethod
+    def _that_of_the_table(cls, value: float, info: ValidationInfo) -> float:
+        table = info.data.get("table")
+        if not table:
+            return value
+        own = {"strength": strength_of, "toughness": toughness_of}[str(info.field_name)](table)
+        if not abs(value - own) <= AGREES * own:
+            raise refuse(f"{own:.10g} within {AGREES:g} of it, as in interface.table, or left out", ((), value))
+        return own
+
+    @field_validator("stiffness", "ductility")
+    @classmethod
+    def _one_of_both(cls, value: float | None, info: ValidationInfo) -> float | None:
+        data = info.data
+        if value is None:
+            return value
+        if data.get("law") in (EXPONENTIAL, TABULAR):
+            raise refuse(f"left out with the {data['law']} law, which has a stiffness of its own", ((), value))
+        if info.field_name == "ductility":
+            if data.get("stiffness") is not None:
+                raise refuse("left out with interface.stiffness, which says the same", ((), value))
+        elif "strength" in data and "toughness" in data:
+            least = data["strength"] ** 2 / data["toughness"] / 2
+            if not value > least:
+                why = "strength^2 / (2 toughness), with which the traction would drop at once"
+                raise refuse(f"> {least:.10g}, {why}", ((), value))
+        return value
+
+    @field_validator("shear_strength")
+    @classmethod
+    def _of_a_law_that_slides(cls, value: float | None, info: ValidationInfo) -> float | None:
+        law = info.data.get("law")
+        if value is not None and law not in (None, PLAIN) and law not in mixed():
+            raise refuse(f"left out with the {law} law, which opens only: {one_of(mixed())} slide as well", ((), value))
+        return value
+
+    @field_validator("shear_toughness")
+    @classmethod
+    def _both_or_neither(cls, value: float | None, info: ValidationInfo) -> float | None:
+        if "shear_strength" in info.data:
+            with_strength = info.data["shear_strength"] is not None
+            if with_strength and value is None:
+                raise PydanticCustomError("missing", "missing")
+            if value is not None and not with_strength:
+                raise refuse("left out without interface.shear_strength", ((), value))
+        return value
+
+    @field_validator("criterion", "exponent", "onset", "shear_stiffness", "friction", "viscosity", "pressure_strength")
+    @classmethod
+    def _with_shear(cls, value: object, info: ValidationInfo) -> object:
+        data, key = info.data, info.field_name
+        if value is None:
+            return value
+        if data.get("shear_strength", 0) is None and data.get("shear_toughness", 0) is None:
+            raise refuse("left out without interface.shear_strength and interface.shear_toughness", ((), value))
+        if data.get("law") == EXPONENTIAL and key not in ("friction", "viscosity"):
+            raise refuse(f"left out with the {EXPONENTIAL} law, whose formula says it", ((), value))
+        if key == "onset" and value == "turon" and data.get("criterion") == "power":
+            raise refuse('"quadratic" with interface.criterion = "power"', ((), value))
+        return value
+
+    @model_serializer(mode="wrap")
+    def _as_given(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without keys that were left out, of which many must be; the ductility stays unless another key says it."""
+        absent = {key for key in LEFT_OUT if key not in self.model_fields_set}
+        if "stiffness" not in absent or self.law in (EXPONENTIAL, TABULAR):
+            absent.add("ductility")
+        return {key: value for key, value in write(self).items() if key not in absent}
