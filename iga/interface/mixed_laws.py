@@ -16,7 +16,7 @@ import numpy as np
 from iga.interface.mode_ratio import ModeRatio
 
 #: Points that are evaluated at a time: their arrays stay in the cache.
-BATCH = 8192
+POINTS_AT_ONCE = 8192
 #: Least way from the onset to failure, in parts of the onset: pressure may leave none.
 BRITTLE = 1e-14
 #: Smallest squared jump that divides; a jump without one has mode ratio 0.
@@ -119,11 +119,11 @@ class MixedLaw(ABC):
         """
         if self.viscosity and not dt > 0.0:
             raise ValueError(f"a law with viscosity needs the time of a step, dt > 0, got {dt}")
-        if g.size <= BATCH:
+        if g.size <= POINTS_AT_ONCE:
             return self._traction(g, s, history, dt)
         whole = np.empty((8 if history.slip is not None else 7, g.size))
-        for first in range(0, g.size, BATCH):
-            part = slice(first, first + BATCH)
+        for first in range(0, g.size, POINTS_AT_ONCE):
+            part = slice(first, first + POINTS_AT_ONCE)
             before = History(history.d[part], None if history.slip is None else history.slip[part])
             found = self._traction(g[part], s[part], before, dt)
             arrays = (*found[:6], *(one for one in found.history if one is not None))
@@ -145,7 +145,7 @@ class MixedLaw(ABC):
         """Energy per area (n,) that a unit of damage releases at a jump; what friction takes over is not released."""
         K, Ks = self.stiffness
         rubbing = 0.0 if history.slip is None else 0.5 * Ks * self.rubbing(history.d)[1] * (s - history.slip) ** 2
-        return 0.5 * K * np.maximum(g, 0.0) ** 2 + 0.5 * Ks * s**2 - rubbing
+        return np.where((g < 0.0) & self.contact, 0.0, 0.5 * K * g**2) + 0.5 * Ks * s**2 - rubbing
 
     def rubbing(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The part (n,) of the area that rubs at a damage (n,), and its slope."""
@@ -169,7 +169,7 @@ class MixedLaw(ABC):
         if slip is not None:
             held, elastic = self.friction * pressure, Ks * (s - slip)
             rubs = np.clip(elastic, -held, held)
-            slides, slip = rubs != elastic, s - rubs / Ks
+            slides, slip = (rubs != elastic) | ~closed, s - rubs / Ks  # open faces slide freely
             area, d_area = self.rubbing(d)
             t, t_d = t + area * rubs, t_d + d_area * rubs
             t_g = np.where(slides & closed, -self.friction * self.penalty * np.sign(elastic) * area, 0.0)

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from made_up_laws import MADE_UP
+from made_up_laws import MADE_UP, BridgedLaw
 
 from iga.bases.names import BASES
-from iga.interface.laws import LAWS, TrapezoidalLaw
+from iga.interface.laws import LAWS
 from verify.checks.between_codes import cross_checks
 from verify.checks.identities import J_OF_ANY_LAW, J_OF_LAW, run_checks
 from verify.cli import main
@@ -26,12 +26,12 @@ from verify.scene.schema import Scene
 from verify.scene.tables import one_of
 from verify.verdict import Check
 
-NAME = "a-trapezoid"
+NAME = "bridged"
 LACKING = tuple(name for name, method in METHODS.items() if name not in BASES and not method.is_limit)
 
 
 @dataclass(frozen=True)
-class TooTough(TrapezoidalLaw):
+class TooTough(BridgedLaw):
     """A law that takes 2 % more than the toughness that it is given, consistently."""
 
     def __post_init__(self) -> None:
@@ -69,7 +69,7 @@ def test_a_scene_takes_every_law_that_a_solver_has() -> None:
 def test_the_isogeometric_problem_has_the_law_of_the_scene(specimen: str) -> None:
     scene = load_scene(specimen, [f"interface.law={NAME}", "effects.contact=false"])
     law = prepare(scene, "nurbs").problem[1].law
-    assert isinstance(law, TrapezoidalLaw) and law.penalty == scene.interface.penalty and not law.contact
+    assert isinstance(law, BridgedLaw) and law.penalty == scene.interface.penalty and not law.contact
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -105,7 +105,7 @@ def test_a_plug_in_has_the_laws_that_it_names(tmp_path: Path, monkeypatch: pytes
     (place / "fakelaws-0.1.dist-info" / "METADATA").write_text("Metadata-Version: 2.1\nName: fakelaws\nVersion: 0.1\n")
     entries = "[debond.methods]\nplain = fakelaws:plain\nable = fakelaws:able\n"
     (place / "fakelaws-0.1.dist-info" / "entry_points.txt").write_text(entries)
-    module = "def plain(scene, on_step): ...\ndef able(scene, on_step): ...\nable.laws = ('bilinear', 'a-trapezoid')\n"
+    module = "def plain(scene, on_step): ...\ndef able(scene, on_step): ...\nable.laws = ('bilinear', 'bridged')\n"
     (place / "fakelaws.py").write_text(module)
     monkeypatch.syspath_prepend(str(place))
     monkeypatch.delitem(sys.modules, "fakelaws", raising=False)
@@ -113,14 +113,14 @@ def test_a_plug_in_has_the_laws_that_it_names(tmp_path: Path, monkeypatch: pytes
     require(prepare(scene_with("bilinear"), "plain"))
     with pytest.raises(Unsuitable, match='must be "bilinear" for plain'):
         require(prepare(scene_with(NAME), "plain"))
-    with pytest.raises(Unsuitable, match='must be "bilinear" or "a-trapezoid" for able'):
+    with pytest.raises(Unsuitable, match='must be "bilinear" or "bridged" for able'):
         require(prepare(scene_with("a-parabola"), "able"))
 
 
 @pytest.fixture(scope="module")
 def runs() -> dict[str, Result]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(LAWS, NAME, TrapezoidalLaw)
+        patch.setitem(LAWS, NAME, BridgedLaw)
         return {method: solve(scene_with(NAME), method) for method in ("tspline", "nurbs", "lefm")}
 
 
