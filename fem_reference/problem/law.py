@@ -1,4 +1,4 @@
-"""The bilinear traction law in mode I, for all points of the interface at once."""
+"""The traction laws in mode I, for all points of the interface at once: the bilinear one, and others on it."""
 
 from __future__ import annotations
 
@@ -53,12 +53,16 @@ class Law:
         k_q = np.clip(k_q, self.g_peak, self.g_open)
         return self.g_open * (k_q - self.g_peak) / (k_q * (self.g_open - self.g_peak))
 
+    def softening(self, k_q: np.ndarray) -> np.ndarray | float:
+        """Slope (n_q,) of the envelope between g_max and g_u."""
+        return -self.strength / (self.g_open - self.g_peak)
+
     def traction(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Traction p and slope dp/dg, (n_q,) each, from the present gap and the history committed before it."""
         k_new_q = self.history(g_q, k_q)
         secant_q = (1.0 - self.damage(k_new_q)) * self.K0
         softens_q = (g_q >= k_new_q) & (g_q > self.g_peak) & (g_q < self.g_open)
-        slope_q = np.where(softens_q, -self.strength / (self.g_open - self.g_peak), secant_q)
+        slope_q = np.where(softens_q, self.softening(k_new_q), secant_q)
         closed_q = self._closed(g_q)
         return np.where(closed_q, self.penalty, secant_q) * g_q, np.where(closed_q, self.penalty, slope_q)
 
@@ -86,5 +90,177 @@ class Law:
         return (g_q < 0.0) & self.contact
 
 
+@dataclass(frozen=True)
+class TrapezoidalLaw(Law):
+    """Bilinear with a level top: p = p_max for the part ``plateau`` of the way w from g_max to g_u, then a line to 0.
+
+    w = (2 G_Ic - p_max g_max) / ((1 + plateau) p_max). Raises ValueError for a ``plateau`` outside [0, 1).
+    """
+
+    plateau: float = 0.5
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.plateau < 1.0:
+            raise ValueError(f"plateau: must be in [0, 1), got {self.plateau}")
+
+    @property
+    def g_peak(self) -> float:
+        """Opening g_max at the strength."""
+        return 2.0 * self.toughness / self.strength / self.ductility
+
+    @property
+    def g_level(self) -> float:
+        """Opening at the end of the plateau."""
+        return self.g_peak + self.plateau * (self.g_open - self.g_peak)
+
+    @property
+    def g_open(self) -> float:
+        """Opening g_u from which the traction is zero."""
+        return self.g_peak + (2.0 * self.toughness / self.strength - self.g_peak) / (1.0 + self.plateau)
+
+    def damage(self, k_q: np.ndarray) -> np.ndarray:
+        """d (n_q,), 0 intact to 1 open."""
+        k_q = np.clip(k_q, self.g_peak, self.g_open)
+        left_q = np.minimum((self.g_open - k_q) / (self.g_open - self.g_level), 1.0)
+        return 1.0 - left_q * self.g_peak / k_q
+
+    def softening(self, k_q: np.ndarray) -> np.ndarray:
+        """Slope (n_q,) of the envelope between g_max and g_u."""
+        return np.where(k_q < self.g_level, 0.0, -self.strength / (self.g_open - self.g_level))
+
+    def area(self, k_q: np.ndarray) -> np.ndarray:
+        """Integral (n_q,) of the envelope from 0 to k >= 0; G_Ic from g_u on."""
+        rising_q, level_q = np.minimum(k_q, self.g_peak), np.clip(k_q, self.g_peak, self.g_level) - self.g_peak
+        falling_q = np.clip(k_q, self.g_level, self.g_open) - self.g_level
+        bend_q = falling_q**2 / (2.0 * (self.g_open - self.g_level))
+        return 0.5 * self.K0 * rising_q**2 + self.strength * (level_q + falling_q - bend_q)
+
+
+@dataclass(frozen=True)
+class TabularLaw(Law):
+    """Lines from the origin through the openings and tractions of ``table``; damage begins at the first.
+
+    Strength, toughness and ductility, 2 G_Ic / (p_max g_max), are those of the table, whatever is given. Raises
+    ValueError for less than two pairs, openings that do not rise from above 0, a last traction other than 0, another
+    one that is not > 0, or a secant p / g that does not fall.
+    """
+
+    table: tuple[tuple[float, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        if np.shape(self.table)[1:] != (2,) or len(self.table) < 2 or not np.all(np.isfinite(self.table)):
+            raise ValueError(f"table: must be two or more pairs of opening and traction, got {self.table}")
+        g_c, p_c = self.corners
+        if not np.all(np.diff(g_c) > 0.0):
+            raise ValueError(f"table: must have openings that rise from above 0, got {g_c[1:].tolist()}")
+        if not np.all(p_c[1:-1] > 0.0) or p_c[-1] != 0.0:
+            raise ValueError(f"table: must have tractions > 0 and a last one of 0, got {p_c[1:].tolist()}")
+        secant_c = p_c[1:] / g_c[1:]
+        if not np.all(np.diff(secant_c) < 0.0):
+            raise ValueError(f"table: must have a falling traction / opening, got {secant_c.tolist()}")
+        toughness = float(np.sum(0.5 * (p_c[1:] + p_c[:-1]) * np.diff(g_c)))
+        object.__setattr__(self, "strength", float(np.max(p_c)))
+        object.__setattr__(self, "toughness", toughness)
+        object.__setattr__(self, "ductility", 2.0 * toughness / (self.strength * g_c[1]))
+
+    @property
+    def corners(self) -> tuple[np.ndarray, np.ndarray]:
+        """Openings and tractions (n_c,) of the corners, the origin first."""
+        g_c, p_c = np.array([(0.0, 0.0), *self.table], dtype=float).T
+        return g_c, p_c
+
+    @property
+    def g_open(self) -> float:
+        """Opening g_u of the last corner."""
+        return float(self.corners[0][-1])
+
+    @property
+    def g_peak(self) -> float:
+        """Opening at which damage begins, of the first corner."""
+        return float(self.corners[0][1])
+
+    @property
+    def K0(self) -> float:
+        """Initial stiffness [stress per length]."""
+        return float(self.corners[1][1] / self.corners[0][1])
+
+    def damage(self, k_q: np.ndarray) -> np.ndarray:
+        """d (n_q,), 0 intact to 1 open."""
+        k_q = np.clip(k_q, self.g_peak, self.g_open)
+        return np.maximum(1.0 - np.interp(k_q, *self.corners) / (self.K0 * k_q), 0.0)
+
+    def softening(self, k_q: np.ndarray) -> np.ndarray:
+        """Slope (n_q,) of the envelope between its first and last corner."""
+        g_c, p_c = self.corners
+        return (np.diff(p_c) / np.diff(g_c))[self._line(k_q)]
+
+    def area(self, k_q: np.ndarray) -> np.ndarray:
+        """Integral (n_q,) of the envelope from 0 to k >= 0; G_Ic from g_u on."""
+        g_c, p_c = self.corners
+        before_c = np.cumsum(np.concatenate([[0.0], 0.5 * (p_c[1:] + p_c[:-1]) * np.diff(g_c)]))
+        line_q, k_q = self._line(k_q), np.minimum(k_q, g_c[-1])
+        return before_c[line_q] + 0.5 * (p_c[line_q] + np.interp(k_q, g_c, p_c)) * (k_q - g_c[line_q])
+
+    def _line(self, k_q: np.ndarray) -> np.ndarray:
+        """Number (n_q,) of the line that k >= 0 is on; at a corner of the one that begins there."""
+        g_c = self.corners[0]
+        return np.clip(np.searchsorted(g_c, k_q, side="right") - 1, 0, g_c.size - 2)
+
+
+@dataclass(frozen=True)
+class ExponentialLaw(Law):
+    """p = e p_max x exp(-x) with x = g / g0, g0 = G_Ic / (e p_max) (Salehani and Irani 2018, in mode I).
+
+    There damage begins at once and never ends. A path asks for g_max > 0 and a g_u: here damage begins at x =
+    ``begins``, below which p follows the chord, and p is zero from x = ``ends`` on. What the area lacks then, 2e-10 of
+    G_Ic, is lost there. ``ductility`` is not used.
+    """
+
+    begins: float = 1e-3
+    ends: float = 40.0
+
+    @property
+    def g_0(self) -> float:
+        """Opening at the strength."""
+        return self.toughness / (np.e * self.strength)
+
+    @property
+    def g_peak(self) -> float:
+        """Opening at which damage begins."""
+        return self.begins * self.g_0
+
+    @property
+    def g_open(self) -> float:
+        """Opening from which the traction is zero."""
+        return self.ends * self.g_0
+
+    @property
+    def K0(self) -> float:
+        """Initial stiffness [stress per length], of the chord."""
+        return (np.e * self.strength) ** 2 / self.toughness * float(np.exp(-self.begins))
+
+    def damage(self, k_q: np.ndarray) -> np.ndarray:
+        """d (n_q,), 0 intact to 1 open."""
+        beyond_q = np.maximum(k_q - self.g_peak, 0.0) / self.g_0
+        return np.where(k_q < self.g_open, 1.0 - np.exp(-beyond_q), 1.0)
+
+    def softening(self, k_q: np.ndarray) -> np.ndarray:
+        """Slope (n_q,) of the envelope beyond the chord; it rises up to g0."""
+        x_q = k_q / self.g_0
+        return np.e * self.strength / self.g_0 * (1.0 - x_q) * np.exp(-x_q)
+
+    def area(self, k_q: np.ndarray) -> np.ndarray:
+        """Integral (n_q,) of the envelope from 0 to k >= 0; G_Ic from g_u on."""
+        rising_q, x_q = np.minimum(k_q, self.g_peak), np.clip(k_q / self.g_0, self.begins, self.ends)
+        left, left_q = (1.0 + self.begins) * np.exp(-self.begins), (1.0 + x_q) * np.exp(-x_q)
+        spent_q = 0.5 * self.K0 * rising_q**2 + self.toughness * (left - left_q)
+        return np.where(k_q < self.g_open, spent_q, self.toughness)
+
+
 #: Name in a scene -> law, a class with the fields, properties and methods of `Law`.
-MODELLED_LAWS: dict[str, type[Law]] = {"bilinear": Law}
+MODELLED_LAWS: dict[str, type[Law]] = {
+    "bilinear": Law,
+    "trapezoidal": TrapezoidalLaw,
+    "tabular": TabularLaw,
+    "exponential": ExponentialLaw,
+}

@@ -5,9 +5,12 @@ import itertools
 import numpy as np
 import pytest
 
+from fem_reference.problem.law import MODELLED_LAWS
 from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
+from iga.interface.laws import LAWS
 from iga.interface.mixed_laws import MIXED_LAWS
 from iga.interface.mode_ratio import ModeRatio
+from verify.theory.law import KNOWN_LAWS
 from verify.theory.mixed_law import KNOWN_MIXED_LAWS, ONSETS_OF, MixedBond
 
 #: Paths of each case, and steps of each path.
@@ -112,3 +115,25 @@ def test_three_codes_have_one_law(case, seed):
     np.testing.assert_allclose(iga["released"], fem["released"], rtol=1e-12, atol=1e-12 * unit, err_msg="released")
     K = np.sqrt(np.outer(bond.slopes, bond.slopes))
     np.testing.assert_allclose(iga["tangent"] / K, fem["tangent"] / K, rtol=1e-9, atol=1e-9, err_msg="tangent")
+
+
+@pytest.mark.parametrize("contact", [True, False])
+@pytest.mark.parametrize("name", KNOWN_LAWS)
+def test_three_codes_have_one_law_in_opening(name, contact):
+    """Tractions, slopes, energies and damage to 1e-12 of strength and toughness, with histories and without."""
+    own = {"tabular": {"table": ((0.004, 4.0), (0.01, 1.0), (0.03, 0.8), (0.2, 0.0))}, "trapezoidal": {"plateau": 0.3}}
+    theory = KNOWN_LAWS[name](4.0, 0.1, 12.5, 3e3, contact, **own.get(name, {}))
+    fem, iga = (laws[name](4.0, 0.1, 12.5, 3e3, contact, True, **own.get(name, {})) for laws in (MODELLED_LAWS, LAWS))
+    rng = np.random.default_rng(5)
+    g, k = theory.g_open * rng.uniform(-0.4, 1.1, 4000) ** 3, theory.g_open * rng.uniform(0.0, 1.1, 4000) ** 3
+    k *= rng.random(4000) < 0.5
+    latest = np.maximum(g, k)
+    p, slope, _ = iga.traction(g, k)
+    for one, other in ((p, theory.traction(g, k)), (p, fem.traction(g, k)[0]), (iga.damage(k), theory.damage(k))):
+        np.testing.assert_allclose(one, other, rtol=1e-12, atol=4e-12)
+    np.testing.assert_allclose(slope, fem.traction(g, k)[1], rtol=1e-10, atol=1e-12 * theory.stiffness)
+    np.testing.assert_allclose(fem.damage(k), theory.damage(k), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(fem.energies(g, latest), iga.energies(g, latest), rtol=1e-12, atol=1e-13)
+    np.testing.assert_allclose(fem.energies(g, latest)[2], theory.dissipated(latest), rtol=1e-12, atol=1e-13)
+    for name in ("strength", "toughness", "ductility"):
+        assert getattr(fem, name) == pytest.approx(getattr(theory, name), rel=1e-13) == getattr(iga, name)
