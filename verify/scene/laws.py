@@ -19,6 +19,7 @@ def known() -> tuple[str, ...]:
 
 def mixed() -> tuple[str, ...]:
     """Names of the laws for opening and sliding."""
+    from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
     from iga.interface.mixed_laws import MIXED_LAWS
 
-    return tuple(MIXED_LAWS)
+    return tuple(dict.fromkeys((*MIXED_LAWS, *MODELLED_MIXED_LAWS)))
