@@ -209,7 +209,7 @@ class TrapezoidalMixed(MixedLaw):
         by_way = steep * (size - onset) / way
         by_B = np.where(loads, -by_onset * d_onset - by_way * d_way, 0.0)
         # lambda by g is K g / lambda, B by g -2 sliding K g / lambda^4; alike for the slip
-        along, across = by_size / size, 2.0 * by_B / square**2
+        along, across = by_size / size, 2.0 * by_B / square / square
         by_g, by_s = Kg * (along - across * sliding), Kss * (along + across * opening)
         if stronger is None:
             return Driving(d, by_g, by_s)
