@@ -164,7 +164,7 @@ class MixedLaw(ABC):
             held = 0.0 if pressure is None else self.friction * pressure
             elastic = Ks * (s - slip)
             rubs = np.clip(elastic, -held, held)
-            slides, slip = rubs != elastic, s - rubs / Ks
+            slides, slip = (rubs != elastic) | (held == 0.0), s - rubs / Ks
             t, t_d = left * Ks * s + d * rubs, t_d + part * rubs
             t_by_g = d * np.where(slides & closed, -self.friction * self.penalty * np.sign(elastic), 0.0)
             t_by_s = left * Ks + d * np.where(slides, 0.0, Ks)
