@@ -15,7 +15,7 @@ def built_in(bond: MixedBond) -> PointLaw:
     from iga.interface.mixed_laws import MIXED_LAWS
     from iga.interface.mode_ratio import ModeRatio
 
-    modes = ModeRatio(bond.toughness, bond.strength, bond.stiffness, bond.criterion, bond.exponent, bond.onset)
+    modes = ModeRatio(bond.toughness, bond.strength, bond.slopes, bond.criterion, bond.exponent, bond.onset_rule)
     own = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
     settings: dict[str, Any] = {
         "contact": bond.contact,
@@ -38,7 +38,7 @@ def opening_law(bond: MixedBond) -> PointLaw:
     """The mode I law of ``iga`` with the numbers of a bond; sliding costs nothing there."""
     from iga.interface.laws import LAWS
 
-    (p, _), (G, _), (K, _) = bond.strength, bond.toughness, bond.stiffness
+    (p, _), (G, _), (K, _) = bond.strength, bond.toughness, bond.slopes
     found = LAWS[bond.law](p, G, 2.0 * G * K / p**2, bond.penalty, bond.contact)
 
     def law(g: float, s: float, state: Any, dt: float) -> tuple:

@@ -68,11 +68,17 @@ def _lagged(bond: MixedBond) -> Iterator[Candidate]:
             before = np.append(0.0, bond.mode_ratio(g, s)[:-1])
             return bond.driving(*_as_if(bond, g, s, before))
 
-        yield Candidate("lagged-mode-ratio", "the mode ratio is that of the step before", driven(bond, driving))
+        def once_moved(g: np.ndarray, s: np.ndarray) -> np.ndarray:
+            now, size = bond.mode_ratio(g, s), bond.energy_norm(g, s)
+            before = np.where(np.append(0.0, size[:-1]) > 0.0, np.append(0.0, now[:-1]), now)
+            return bond.driving(*_as_if(bond, g, s, before))
+
+        for one in (driving, once_moved):
+            yield Candidate("lagged-mode-ratio", "the mode ratio is that of the step before", driven(bond, one))
 
 
 def _by_displacement(bond: MixedBond) -> Iterator[Candidate]:
-    if bond.law != "exponential" and bond.stiffness[0] != bond.stiffness[1]:
+    if bond.law != "exponential" and bond.slopes[0] != bond.slopes[1]:
 
         def driving(g: np.ndarray, s: np.ndarray) -> np.ndarray:
             square = np.maximum(g, 0.0) ** 2 + s**2
@@ -84,13 +90,13 @@ def _by_displacement(bond: MixedBond) -> Iterator[Candidate]:
 
 
 def _onset(bond: MixedBond) -> Iterator[Candidate]:
-    other = {"turon": "quadratic", "quadratic": "turon"}[bond.onset]
+    other = {"turon": "quadratic", "quadratic": "turon"}[bond.onset_rule]
     if bond.law != "exponential" and (other == "quadratic" or bond.criterion == "bk"):
-        yield from _made("onset", f'the onset is "{other}", not "{bond.onset}"', bond, onset=other)
+        yield from _made("onset", f'the onset is "{other}", not "{bond.onset_rule}"', bond, onset=other)
 
 
 def _stiffness(bond: MixedBond) -> Iterator[Candidate]:
-    (K, Ks), names = bond.stiffness, {(1, 0): "K", (0, 1): "Ks", (1, 1): "K and Ks"}
+    (K, Ks), names = bond.slopes, {(1, 0): "K", (0, 1): "Ks", (1, 1): "K and Ks"}
     for (of, name), factor, pressed in product(names.items(), (1e3, 1e-3), (False, True)):
         if bond.law == "exponential" or (pressed and not bond.contact):
             continue
@@ -105,10 +111,9 @@ def _stiffness(bond: MixedBond) -> Iterator[Candidate]:
 
 
 def _half(bond: MixedBond) -> Iterator[Candidate]:
-    (first, second), (K, Ks) = bond.toughness, bond.stiffness
-    of_law = {"stiffness": (2.0 * K, 2.0 * Ks)} if bond.law == "exponential" else {}
+    first, second = bond.toughness
     what = "half the toughness, as where the area of a triangle is halved twice"
-    yield from _made("half-area", what, bond, toughness=(0.5 * first, 0.5 * second), **of_law)
+    yield from _made("half-area", what, bond, toughness=(0.5 * first, 0.5 * second))
 
 
 def _contact(bond: MixedBond) -> Iterator[Candidate]:
@@ -149,7 +154,7 @@ def _brittle(bond: MixedBond, rest: float, changed: dict[str, Any]) -> MixedBond
 
 def _as_if(bond: MixedBond, g: np.ndarray, s: np.ndarray, ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Jumps of the same size lambda at other mode ratios (n,); what is closed and slides stays under its pressure."""
-    size, (K, Ks) = bond.energy_norm(g, s), bond.stiffness
+    size, (K, Ks) = bond.energy_norm(g, s), bond.slopes
     opened, slid = size * np.sqrt((1.0 - ratio) / K), size * np.sqrt(ratio / Ks)
     kept = (g < 0.0) & (bond.pressure_strength > 0.0)
     return np.where(kept, g, opened), np.where(kept, s, slid)

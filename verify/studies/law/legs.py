@@ -66,7 +66,7 @@ def legs(bond: MixedBond, corners: Sequence[Corner], steps: int | Sequence[int],
 
 def _with_kinks(bond: MixedBond, a: Corner, b: Corner, at: np.ndarray, kinks: Sequence[float]) -> np.ndarray:
     """Parts of the way from a to b (n,), those with steps at the kinks if the mode ratio is the same on the leg."""
-    (K, Ks), size = bond.stiffness, np.hypot
+    (K, Ks), size = bond.slopes, np.hypot
     (x, y), (u, v) = ((max(g, 0.0) * K**0.5, s * Ks**0.5) for g, s in (a, b))
     if abs(x * v - y * u) > _SAME_MODE * size(x, y) * size(u, v) or x * u + y * v < 0.0 or min(a[0], b[0]) < 0.0 < u:
         return at

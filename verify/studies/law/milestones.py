@@ -28,9 +28,10 @@ def milestones(bond: MixedBond, B: float, pressure: float = 0.0) -> Milestones:
         return Milestones(*(_exponential(bond, B, size) for size in (BEFORE, BEHIND, LEFT_NOTHING)), kinks=())
     ratio = np.array(B)
     gain = 1.0 + (bond.pressure_strength * pressure / bond.strength[1] if bond.contact else 0.0)
-    onset = float(bond.onset_norm(ratio)) * gain
+    toughness = float(bond.critical(ratio))
+    onset = min(float(bond.onset_norm(ratio)) * gain, (2.0 * toughness) ** 0.5)
     flat = bond.plateau if bond.law == "trapezoidal" else 0.0
-    way = (2.0 * float(bond.critical(ratio)) - onset**2) / ((1.0 + flat) * onset)
+    way = (2.0 * toughness - onset**2) / ((1.0 + flat) * onset)
     end = onset + way
     return Milestones(onset, onset + 0.5 * way, end, (onset, onset + flat * way, end))
 
@@ -38,7 +39,7 @@ def milestones(bond: MixedBond, B: float, pressure: float = 0.0) -> Milestones:
 def jump(bond: MixedBond, B: float, size: float) -> tuple[float, float]:
     """Opening and slip of the ``size`` lambda at the mode ratio B, ``sqrt((1 - B) / K) lambda``, ``sqrt(B / Ks)
     lambda``."""
-    K, Ks = bond.stiffness
+    K, Ks = bond.slopes
     return size * ((1.0 - B) / K) ** 0.5, size * (B / Ks) ** 0.5
 
 

@@ -158,7 +158,7 @@ class _Maker:
 
     def _kinks(self, pressure: float) -> tuple[float, ...]:
         """Of sliding under pressure: those of damage, and where friction begins to slip."""
-        return *self._found(1.0, pressure).kinks, self.bond.friction * pressure / self.bond.stiffness[1] ** 0.5
+        return *self._found(1.0, pressure).kinks, self.bond.friction * pressure / self.bond.slopes[1] ** 0.5
 
     def _found(self, B: float, pressure: float = 0.0) -> Milestones:
         return milestones(self.bond, B, pressure)
