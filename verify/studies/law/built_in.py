@@ -46,3 +46,34 @@ def opening_law(bond: MixedBond) -> PointLaw:
         return traction[0], 0.0, k, ((slope[0], 0.0), (0.0, 0.0))
 
     return law
+
+
+def modelled(bond: MixedBond) -> PointLaw:
+    """The law of ``fem_reference`` with the numbers of a bond."""
+    from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
+
+    own = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
+    found = MODELLED_MIXED_LAWS[bond.law](
+        strength=bond.strength[0],
+        shear_strength=bond.strength[1],
+        toughness=bond.toughness[0],
+        shear_toughness=bond.toughness[1],
+        stiffness=bond.slopes[0],
+        shear_stiffness=bond.slopes[1],
+        penalty=bond.penalty,
+        criterion=bond.criterion,
+        exponent=bond.exponent,
+        onset=bond.onset_rule,
+        contact=bond.contact,
+        friction=bond.friction,
+        viscosity=bond.viscosity,
+        pressure_strength=bond.pressure_strength,
+        **own,
+    )
+
+    def law(g: float, s: float, state: Any, dt: float) -> tuple:
+        d, slip = (np.zeros(1), np.zeros(1)) if state is None else state
+        p, t, tangent, d, slip = found.traction(np.array([g]), np.array([s]), d, slip, dt)
+        return p[0], t[0], (d, slip), tangent[0]
+
+    return law
