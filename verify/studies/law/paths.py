@@ -19,7 +19,7 @@ class Fineness:
     leg: int = 40  # steps of a leg through damage
     few: int = 6  # steps of a leg without any
     stairs: int = 12  # of the alternating path
-    beyond: float = 1.25  # where paths end, over the jump at failure
+    beyond: float = 1.5  # where paths end, over the jump at failure: more than sqrt(2)
     far: float = 100.0  # the same of the path that goes on
     pressures: tuple[float, ...] = (0.01, 0.3, 1.0)  # over the shear strength
 
