@@ -327,7 +327,7 @@ def law(options: argparse.Namespace) -> int:
     of, columns = subject(scene), PathColumns(dict(options.columns), dict(options.scales))
     if options.write is not None:
         _folder(options.write, "--write")
-        print("\n".join(f"written: {path}" for path in write_paths(of.bond, of.ways, scene, options.write)))
+        print("\n".join(f"written: {path}" for path in write_paths(of.bond, of.ways, scene.name, options.write)))
         if options.given is None and options.out is None:
             return 0
     found, name = work.judged(of, options.given, columns, options.tolerance)

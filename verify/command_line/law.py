@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 from verify.checks.table import check_table
 from verify.runs.folder import write_json
 from verify.scene.schema import Scene
 from verify.studies.law import record
-from verify.studies.law.judge import Judgement
+from verify.studies.law.judge import Judgement, worst_first
 from verify.studies.law.read import PathColumns
-from verify.studies.law.study import BUILT_IN, Subject, judge_built_in, judge_given, sentences, worst_first
+from verify.studies.law.study import BUILT_IN, Subject, judge_built_in, judge_given
+from verify.studies.law.wording import sentences
 from verify.support.refusal import Refusal
 from verify.support.say import say, write_page
 from verify.verdict import counted
 
 #: Broken checks that are printed.
 SHOWN = 12
-
-
-def columns_of(names: Mapping[str, str], scales: Mapping[str, float]) -> PathColumns:
-    """The options ``--columns`` and ``--scales``."""
-    return PathColumns(names, scales)
 
 
 def judged(of: Subject, given: str | None, columns: PathColumns, tolerance: float | None) -> tuple[Judgement, str]:
@@ -33,7 +28,7 @@ def judged(of: Subject, given: str | None, columns: PathColumns, tolerance: floa
     Refusal : a file or function that gives no tractions, or options for one that is not there.
     """
     if given is not None:
-        return judge_given(of, given, columns, tolerance), given
+        return judge_given(of, given, columns, tolerance), Path(given).name
     for option, value in (("--columns", columns.names), ("--scales", columns.scales), ("--tolerance", tolerance)):
         if value not in ({}, None):
             raise Refusal(f"{option}: is only for a law that --with names, got no --with")
@@ -53,9 +48,10 @@ def report(found: Judgement, scene: Scene, law: str) -> None:
     print("\n".join(check_table(broken[:SHOWN])), end="\n" if broken else "")
     if len(broken) > SHOWN:
         print(f"and {len(broken) - SHOWN} more")
-    for sentence in sentences(found):
+    for sentence in sentences(found.defects):
         print(f"defect: {sentence}")
     for remark in found.remarks:
         say(remark)
     total = counted(found.checks)
-    print(f"{law} on {scene.name}: {total.total} checks on {len(found.ways)} paths, {total.held} hold, {total.broken} broken")
+    counts = f"{total.total} checks on {len(found.ways)} paths, {total.held} hold, {total.broken} broken"
+    print(f"{law} on {scene.name}: {counts}")

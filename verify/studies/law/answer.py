@@ -22,9 +22,9 @@ PointLaw = Callable[..., Any]
 class Answer:
     """Tractions ``p``, ``t`` (n,) [stress] at the steps of a path.
 
-    ``tangent`` (n, 2, 2) holds the derivatives of (p, t) by (g, s) [stress per length]. ``differences`` (n_h, n_i, 3, 2,
-    2) are forward, central and backward differences of the law itself at the steps ``probed`` (n_i,), each with the
-    step sizes `DIFFERENCES.sizes`.
+    ``tangent`` (n, 2, 2) holds the derivatives of (p, t) by (g, s) [stress per length]. ``differences`` are forward,
+    central and backward differences of the law itself, (n_h, n_i, 3, 2, 2), at the steps ``probed`` (n_i,), with each
+    of the step sizes `DIFFERENCES.sizes`.
     """
 
     p: np.ndarray
@@ -66,14 +66,14 @@ def of_function(law: PointLaw, path: JumpPath, name: str = "law") -> Answer:
     ------
     LawError : naming the path, the step, and the line of the law that failed.
     """
-    state, found, states = None, [], []
+    state, found, given, states = None, [], [], []
     for i, (g, s) in enumerate(zip(path.g.tolist(), path.s.tolist(), strict=True)):
         place = f"{name}: path {path.name}, step {i}, g = {g:g}, s = {s:g}"
         states.append(copy.deepcopy(state))
-        p, t, state, tangent = _called(law, (g, s, state, path.dt), place)
-        found.append((p, t, tangent))
-    p, t = (np.array([one[k] for one in found]) for k in (0, 1))
-    given = [one[2] for one in found]
+        *tractions, state, tangent = _called(law, (g, s, state, path.dt), place)
+        found.append(tractions)
+        given.append(tangent)
+    p, t = np.array(found).T
     if any(one is None for one in given):
         if any(one is not None for one in given):
             raise LawError(f"{name}: must return a tangent at every step or at none, got some on path {path.name}")

@@ -1,4 +1,4 @@
-"""Which known defect explains tractions that are not those of the definition: found by trying each on the same paths."""
+"""Which known defect explains tractions that are off the definition: found by trying each on the same paths."""
 
 from __future__ import annotations
 

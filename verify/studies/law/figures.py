@@ -60,7 +60,9 @@ def toughness(found: Judgement, unit: str) -> Panel | None:
         figure, axes = panel(HALF, 2.8)
         axes.plot(B, found.bond.critical(B), **Line("accent", *_WIDE).options(), label="criterion")
         works = [work(way.g, way.s, found.given[way.name]) for way in straight]
-        axes.plot([way.ratio for way in straight], works, "o", color=colour("ink"), markersize=4, label="law")
+        axes.plot(
+            [float(way.ratio or 0.0) for way in straight], works, "o", color=colour("ink"), markersize=4, label="law"
+        )
         axes.set(xlabel="mode ratio by energy, B", ylabel=axis("work to failure", unit), ylim=(0, None))
         axes.legend(loc="best")
         svg = to_svg(figure, "toughness", "Work to failure over the mode ratio")
@@ -76,9 +78,13 @@ def tangents(found: Judgement) -> Panel | None:
         figure, axes = panel(HALF, 2.8)
         step, off = np.array(sizes).T
         axes.plot(step, np.maximum(off, 1e-16), "o-", color=colour("accent"), linewidth=1.2, markersize=4)
-        axes.set(xscale="log", yscale="log", xlabel="step over the largest jump", ylabel="median deviation of the tangent")
+        axes.set(
+            xscale="log", yscale="log", xlabel="step over the largest jump", ylabel="median deviation of the tangent"
+        )
         svg = to_svg(figure, "tangents", "Deviation of the tangent over the step size of the differences")
-    caption = "Tangent against central differences of the law, over the initial stiffness: down to rounding, not further."
+    caption = (
+        "Tangent against central differences of the law, over the initial stiffness: down to rounding, not further."
+    )
     return Panel(svg, caption)
 
 

@@ -61,9 +61,7 @@ class _Case:
         return Check(name, self.way.name, float(value), limit, kind, meaning)
 
 
-def judge(
-    bond: MixedBond, ways: Sequence[JumpPath], given: Answers, tolerances: Tolerances | None = None
-) -> Judgement:
+def judge(bond: MixedBond, ways: Sequence[JumpPath], given: Answers, tolerances: Tolerances | None = None) -> Judgement:
     """The verdict on tractions ``given`` on the paths ``ways`` of a bond."""
     tolerances = tolerances or Tolerances()
     expected = {way.name: of_bond(bond, way) for way in ways}
@@ -76,7 +74,7 @@ def judge(
 
 def _remarks(bond: MixedBond, given: Answers) -> Iterator[str]:
     if bond.viscosity:
-        yield "energies and peaks are held against those of the definition with its viscosity, not against the criterion"
+        yield "energies and peaks are held against the definition with its viscosity, not against the criterion"
     if bond.friction:
         yield "work under pressure contains friction, and is held against that of the definition"
     if all(answer.tangent is None for answer in given.values()):
@@ -99,7 +97,9 @@ def _energy(case: _Case) -> Iterator[Check]:
     named = f"{100.0 * B:g} % of the energy in sliding"
     whole = float(case.bond.critical(np.array(B)))
     off = work(way.g, way.s, case.given) - work(way.g, way.s, case.known)
-    yield case.check("toughness", off / whole, "analytical", f"Work to failure over the criterion's toughness, {named}.")
+    yield case.check(
+        "toughness", off / whole, "analytical", f"Work to failure over the criterion's toughness, {named}."
+    )
     peak, known = (_energy_norm(case.bond, answer).max() for answer in (case.given, case.known))
     text = f"Peak of the tractions in the energy norm, where damage begins, {named}."
     yield case.check("strength", peak / known - 1.0, "analytical", text)
@@ -153,7 +153,7 @@ def _dissipation(case: _Case) -> Iterator[Check]:
 
 
 def _continuity(case: _Case) -> Iterator[Check]:
-    """At one slip, tractions of faces that are closed, or open or pressed by 1e-9 of the onset at most, are the same."""
+    """At one slip, faces that are closed, or open or pressed by 1e-9 of the onset at most, bear the same tractions."""
     if not case.way.name.startswith("closed-") or case.bond.viscosity:  # with which damage goes on
         return
     s, t = case.way.s[1:], case.given.t[1:]
@@ -203,3 +203,8 @@ def _odd(case: _Case, cases: dict[str, _Case]) -> Check | None:
     off = max(np.abs(p).max() / case.bond.strength[0], np.abs(t).max() / case.bond.strength[1])
     text = f"Against {other.way.name}: p is even and t is odd in the slip, in parts of the strengths."
     return case.check("odd-in-slip", off, "exact", text)
+
+
+def worst_first(checks: Sequence[Check]) -> list[Check]:
+    """Broken checks first, those furthest beyond their tolerance at the top."""
+    return sorted(checks, key=lambda check: (check.passed, -abs(check.value) / (check.tolerance or 1.0)))

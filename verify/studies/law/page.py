@@ -11,8 +11,8 @@ from verify.pages.template import rendered
 from verify.pages.text import Units
 from verify.scene.schema import Scene
 from verify.studies.law import figures
-from verify.studies.law.judge import Judgement
-from verify.studies.law.study import sentences, worst_first
+from verify.studies.law.judge import Judgement, worst_first
+from verify.studies.law.wording import sentences
 from verify.verdict import Check, Counts, counted
 
 #: Kind of evidence -> what stands behind it.
@@ -51,7 +51,7 @@ def write(found: Judgement, scene: Scene, law: str, path: Path) -> None:
         evidence=EVIDENCE,
         rows=rows(found.checks),
         broken=[check for check in worst_first(found.checks) if not check.passed],
-        defects=sentences(found),
+        defects=sentences(found.defects),
         remarks=found.remarks,
         overview=_overview(found, scene),
         panels=[(way, _states(found, way.name), figures.path(found, way, stress)) for way in found.ways],

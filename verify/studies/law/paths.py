@@ -34,7 +34,15 @@ def paths(bond: MixedBond, shear: bool = True, fineness: Fineness | None = None)
     maker = _Maker(bond, fineness or Fineness())
     makers: tuple[Callable[[], Iterator[JumpPath]], ...] = (maker.opening,)
     if shear:
-        makers = (maker.opening, maker.monotonic, maker.unloading, maker.pressed, maker.changing, maker.signs, maker.near)
+        makers = (
+            maker.opening,
+            maker.monotonic,
+            maker.unloading,
+            maker.pressed,
+            maker.changing,
+            maker.signs,
+            maker.near,
+        )
     return tuple(path for make in makers for path in make())
 
 
@@ -117,7 +125,10 @@ class _Maker:
         found = self._found(1.0)
         sizes = [0.5 * found.onset, *np.linspace(found.onset, found.end, 6)[1:-1], self.fine.beyond * found.end]
         slips = [jump(self.bond, 1.0, size)[1] for size in sizes]
-        for name, order in (("closed-either-side", sides), ("closed-other-side", np.append(sides[2:], sides[:2])[::-1])):
+        for name, order in (
+            ("closed-either-side", sides),
+            ("closed-other-side", np.append(sides[2:], sides[:2])[::-1]),
+        ):
             g, s = np.append(0.0, np.tile(order, len(slips))), np.append(0.0, np.repeat(slips, order.size))
             yield JumpPath(name, "Sliding, with the faces a last digit or 1e-9 of the onset open and closed.", g, s)
 

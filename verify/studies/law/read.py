@@ -94,7 +94,9 @@ def _header(path: Path, table: Table, columns: PathColumns) -> tuple[dict[str, i
             return _places(f"{path}:{line}", names, wanted), len(cells), _below(table, line)
     heads = [row for row in (*table.lead, *table.remarks) if len(row[1]) > 1]
     if not heads:
-        raise PathsError(f"{path}: must have a header with the columns {', '.join(map(columns.called, needed))}, got none")
+        raise PathsError(
+            f"{path}: must have a header with the columns {', '.join(map(columns.called, needed))}, got none"
+        )
     line, cells = max(heads, key=lambda row: len({name.casefold() for name in row[1]} & set(wanted.values())))
     known = {cell.strip(" ,;").casefold() for cell in cells}
     missing = [columns.called(key) for key in needed if wanted[key] not in known]
@@ -145,7 +147,9 @@ def _rows(
 def _step(place: str, cell: str, table: Table, way: JumpPath) -> int:
     value = table.dialect.value(cell)
     if value is None or not math.isfinite(value) or value != int(value) or not 0 <= value < way.g.size:
-        raise PathsError(f"{place}: step must be an integer from 0 to {way.g.size - 1} on path {way.name}, got {cell[:30]!r}")
+        raise PathsError(
+            f"{place}: step must be an integer from 0 to {way.g.size - 1} on path {way.name}, got {cell[:30]!r}"
+        )
     return int(value)
 
 
@@ -165,7 +169,9 @@ def _all_there(path: Path, rows: Mapping[str, Mapping[int, object]], ways: Seque
         lacking = sorted(set(range(way.g.size)) - set(rows[way.name]))
         if lacking:
             n = len(rows[way.name])
-            raise PathsError(f"{path}: path {way.name} must have {way.g.size} steps, got {n}; step {lacking[0]} is missing")
+            raise PathsError(
+                f"{path}: path {way.name} must have {way.g.size} steps, got {n}; step {lacking[0]} is missing"
+            )
 
 
 def _one(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from verify.scene.bond.mixed import mixed_bond
@@ -78,19 +77,3 @@ def judge_given(of: Subject, text: str, columns: PathColumns, tolerance: float |
     ways, given = answered(text, of.ways, columns)
     tolerances = Tolerances() if tolerance is None else replace(Tolerances(), tractions=tolerance)
     return judge(of.bond, ways, given, tolerances)
-
-
-def sentences(found: Judgement) -> list[str]:
-    """A sentence for every defect."""
-    said = []
-    for one in found.defects:
-        rest = f"off by {one.error_without:.2g} of the strengths without it, {one.error_with:.2g} with it"
-        if one.candidate is None:
-            rest = f"off by {one.error_without:.2g} of the strengths"
-        said.append(f"{one.name}: {one.what}; {rest}, most on path {one.path}")
-    return said
-
-
-def worst_first(checks: Sequence[Check]) -> list[Check]:
-    """Broken checks first, those furthest beyond their tolerance at the top."""
-    return sorted(checks, key=lambda check: (check.passed, -abs(check.value) / check.tolerance))
