@@ -134,9 +134,9 @@ def assert_law(
 ) -> None:
     """Fail unless a traction law is that of a bond on all displacement paths of `debond law`.
 
-    ``law(g, s, state, dt)`` is called step by step with an opening, a slip, what it returned as state at the step before
-    (None at first) and the time of the step, of which a path takes 1 in all. It returns ``p, t, state``, or ``p, t,
-    state, ((dp_dg, dp_ds), (dt_dg, dt_ds))``; a tangent is held against differences.
+    ``law(g, s, state, dt)`` is called step by step with an opening, a slip, the state that it returned at the step
+    before (None at first) and the time of the step, of which a path takes 1 in all. It returns ``p, t, state``, or
+    ``p, t, state, ((dp_dg, dp_ds), (dt_dg, dt_ds))``; a tangent is held against differences.
 
     Parameters
     ----------
@@ -158,9 +158,9 @@ def assert_law(
     >>> from verify.testing import assert_law
     >>> from verify.theory.mixed_law import MixedBond
     >>> bond = MixedBond("bilinear", (80.0, 100.0), (0.969, 1.719), (1e5, 1e5), 1e5, exponent=2.284)
-    >>> def elastic(g, s, state, dt):
+    >>> def law(g, s, state, dt):
     ...     return 1e5 * g, 1e5 * s, state
-    >>> assert_law(elastic, bond)
+    >>> assert_law(law, bond)
     Traceback (most recent call last):
         ...
     AssertionError: the law is not that of the bond: unknown: ...

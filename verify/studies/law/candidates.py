@@ -12,6 +12,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from verify.studies.law.answer import Answer, of_bond
 from verify.studies.law.legs import JumpPath
@@ -105,9 +106,8 @@ def _stiffness(bond: MixedBond) -> Iterator[Candidate]:
         what = f"{name}{' and the penalty' if pressed else ''} times {factor:g}, as by a mistake in units"
         made = tuple(_made("stiffness-unit", what, bond, **changed))
         yield from made
-        if not made:  # so soft that what is stored at the onset exceeds the toughness
-            for rest in (0.0, 1.0):
-                yield Candidate("stiffness-unit", what, _brittle(bond, rest, changed))
+        for rest in () if made else (0.0, 1.0):
+            yield Candidate("stiffness-unit", what, _soft(bond, rest, changed))
 
 
 def _half(bond: MixedBond) -> Iterator[Candidate]:
@@ -129,27 +129,41 @@ def _made(name: str, what: str, bond: MixedBond, **changed: Any) -> Iterator[Can
         return
 
 
-def driven(bond: MixedBond, driving: Driving, **changed: Any) -> MixedBond:
+def driven(bond: MixedBond, driving: Driving) -> MixedBond:
     """The bond with another damage on first loading, (n,) at openings and slips (n,) of a path."""
 
-    class Changed(MixedBond):
-        def __post_init__(self) -> None:
-            """Whatever its numbers are."""
+    class Changed(_Unchecked):
+        def driving(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
+            return driving(np.asarray(g), np.asarray(s))
 
-        def driving(self, g: np.ndarray, s: np.ndarray) -> np.ndarray:
-            return driving(g, s)
-
-    return Changed(**{field.name: getattr(bond, field.name) for field in fields(MixedBond)} | changed)
+    return Changed(**_numbers(bond))
 
 
-def _brittle(bond: MixedBond, rest: float, changed: dict[str, Any]) -> MixedBond:
-    """Elastic with other numbers; from the onset on the damage is ``rest``, 0 where a formula below 0 is cut off."""
-    soft = driven(bond, bond.driving, **changed)
+class _Unchecked(MixedBond):
+    """A bond with numbers that make no law."""
+
+    def __post_init__(self) -> None:
+        """Whatever they are."""
+
+
+def _numbers(bond: MixedBond) -> dict[str, Any]:
+    return {field.name: getattr(bond, field.name) for field in fields(MixedBond)}
+
+
+def _soft(bond: MixedBond, rest: float, changed: dict[str, Any]) -> MixedBond:
+    """The bond with numbers at which what is stored at the onset exceeds the toughness, at some mode ratios.
+
+    There the damage is ``rest`` from the onset on: 0 where a formula below 0 is cut off, 1 where the bond breaks.
+    """
+    soft = _Unchecked(**_numbers(bond) | changed)
 
     def driving(g: np.ndarray, s: np.ndarray) -> np.ndarray:
-        return np.where(soft.energy_norm(g, s) > soft.onset_norm(soft.mode_ratio(g, s)), rest, 0.0)
+        B = soft.mode_ratio(g, s)
+        onset = soft.onset_norm(B)
+        broken = np.where(soft.energy_norm(g, s) > onset, rest, 0.0)
+        return np.where(onset**2 < 2.0 * soft.critical(B), soft.driving(g, s), broken)
 
-    return driven(bond, driving, **changed)
+    return driven(soft, driving)
 
 
 def _as_if(bond: MixedBond, g: np.ndarray, s: np.ndarray, ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -59,7 +59,22 @@ def defects(
     everywhere = _named(left, square, [way.name for way in ways], search)
     if everywhere:
         return everywhere
-    return _in_parts(left, square, [way.name for way in broken], search)
+    steady = {one: of for one, of in left.items() if _steady(bond, one, of, ways, expected, square, tolerance)}
+    return _in_parts(steady, square, [way.name for way in broken], search)
+
+
+def _steady(
+    bond: MixedBond,
+    one: Candidate,
+    left: Mapping[str, float],
+    ways: Sequence[JumpPath],
+    expected: Mapping[str, Answer],
+    off: Mapping[str, float],
+    tolerance: float,
+) -> bool:
+    """Whether a defect at least halves the deviation on every path on which it would show."""
+    shows = [way.name for way in ways if apart(bond, one.answer(way), expected[way.name]).max() > tolerance]
+    return all(left[name] <= 0.25 * off[name] for name in shows)
 
 
 def _named(
