@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -58,7 +58,7 @@ def defects(
     square = {name: mean_square(distance) for name, distance in off.items()}
     everywhere = _named(left, square, [way.name for way in ways], search)
     if everywhere:
-        return everywhere
+        return (*everywhere, *_left_over(bond, everywhere[0], ways, given, expected, tolerance))
     steady = {one: of for one, of in left.items() if _steady(bond, one, of, ways, expected, square, tolerance)}
     return _in_parts(steady, square, [way.name for way in broken], search)
 
@@ -106,11 +106,30 @@ def _in_parts(
         unexplained += [] if found else [name]
     shown = [max(ones, key=lambda one: one.error_without) for ones in best.values()]
     if unexplained:
-        worst = max(unexplained, key=off.__getitem__)
-        error = _root(off, unexplained)
-        what = "the tractions differ from the definition as no known defect does"
-        shown.append(Defect(UNKNOWN, worst, error, error, what))
+        shown.append(_unknown(unexplained, off))
     return tuple(sorted(shown, key=lambda one: (one.name == UNKNOWN, one.error_with)))
+
+
+def _unknown(names: Sequence[str], off: Mapping[str, float]) -> Defect:
+    """What is left on paths ``names`` with mean square distances ``off``."""
+    error, worst = _root(off, names), max(names, key=off.__getitem__)
+    return Defect(UNKNOWN, worst, error, error, "the tractions differ from the definition as no known defect does")
+
+
+def _left_over(
+    bond: MixedBond,
+    best: Defect,
+    ways: Sequence[JumpPath],
+    given: Answers,
+    expected: Mapping[str, Answer],
+    tolerance: float,
+) -> Iterator[Defect]:
+    """The rest, where the best defect leaves more than the tolerance on a path."""
+    assert best.candidate is not None
+    left = {way.name: _apart(bond, best.candidate, way, given, expected) for way in ways}
+    names = [name for name, distance in left.items() if not distance.max() <= tolerance]
+    if names:
+        yield _unknown(names, {name: mean_square(left[name]) for name in names})
 
 
 def _left(
