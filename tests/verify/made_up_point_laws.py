@@ -6,7 +6,6 @@ Written from the definition alone: nothing of the product is in them but the num
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from math import sqrt
 
 from verify.theory.mixed_law import MixedBond
@@ -47,12 +46,11 @@ def law_of(bond: MixedBond, defect: str = "", amount: float = 1.0) -> Callable:
 
     ``amount`` is the viscosity of a viscous one, and the factor of the stiffness of one in wrong units.
     """
-    if defect == "stiffness-unit":
-        K, Ks = bond.stiffness
-        bond = replace(bond, stiffness=(amount * K, amount * Ks))
-    if defect == "half-area":
-        bond = replace(bond, toughness=(0.5 * bond.toughness[0], 0.5 * bond.toughness[1]))
     (K, Ks), (p_max, t_max), (G1, G2), eta = bond.stiffness, bond.strength, bond.toughness, bond.exponent
+    if defect == "stiffness-unit":
+        K, Ks = amount * K, amount * Ks
+    if defect == "half-area":
+        G1, G2 = 0.5 * G1, 0.5 * G2
 
     def law(g: float, s: float, state: tuple | None, dt: float) -> tuple:
         d, before = state if state else (0.0, 0.0)
