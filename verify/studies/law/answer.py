@@ -138,7 +138,7 @@ def _tangent(value: Any, place: str) -> np.ndarray:
 def _where(error: BaseException) -> str:
     """The last line of the user's code in a traceback; empty where the call itself failed."""
     lines = [line for line in traceback.extract_tb(error.__traceback__) if line.filename != __file__]
-    return f"{lines[-1].filename}:{lines[-1].lineno}: {lines[-1].line}: " if lines else ""
+    return f"{lines[-1].filename}:{lines[-1].lineno}, in {lines[-1].name}: " if lines else ""
 
 
 def _one_line(error: BaseException) -> str:
