@@ -152,11 +152,11 @@ MALFORMED: dict[str, tuple[Change, str]] = {
     "many paths missing": (without("m"), "got none of mode-I, mode-II, mixed-20, mixed-50, mixed-80 and 2 more"),
     "unknown path": (edited(1, 0, "mode-IV"), ":2: must be one of the paths that were written, got 'mode-IV'"),
     "empty path": (edited(1, 0, ""), "must be one of the paths that were written, got ''"),
-    "step missing": (without("mode-I,7,"), "path mode-I must have 42 steps, got 41; step 7 is missing"),
-    "last step missing": (without("mode-I,41,"), "step 41 is missing"),
+    "step missing": (without("mode-I,7,"), "path mode-I must have 43 steps, got 42; step 7 is missing"),
+    "last step missing": (without("mode-I,42,"), "step 42 is missing"),
     "step twice": (edited(3, 1, "1"), ":4: path mode-I, step 1 is there already, in line 3"),
     "row twice": (lambda lines: "\n".join([*lines, lines[-1]]), "is there already"),
-    "step too many": (edited(2, 1, "42"), "step must be an integer from 0 to 41 on path mode-I, got '42'"),
+    "step too many": (edited(2, 1, "43"), "step must be an integer from 0 to 42 on path mode-I, got '43'"),
     "step below 0": (edited(2, 1, "-1"), "step must be an integer from 0"),
     "step and a half": (edited(2, 1, "1.5"), "step must be an integer from 0"),
     "step of words": (edited(2, 1, "one"), "step must be an integer from 0"),
@@ -222,7 +222,7 @@ def test_wrong_options_are_refused_with_one_sentence(
 
 
 def test_a_law_without_a_definition_for_both_modes_is_refused() -> None:
-    scene = load_scene("dcb-czm1", ["interface.law='tabular'", "interface.table=[[0.001,4.0],[0.02,1.0],[0.08,0.0]]",
-                                    "interface.strength=4.0", "interface.toughness=0.0795"])  # fmt: skip
-    with pytest.raises(Refusal, match="interface.law: must be"):
-        subject(scene)
+    scene = load_scene("dcb-czm1")
+    other = scene.interface.model_copy(update={"law": "tabular"})
+    with pytest.raises(Refusal, match="interface.law: must be .* for debond law, got 'tabular'"):
+        subject(scene.model_copy(update={"interface": other}))
