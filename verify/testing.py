@@ -168,9 +168,9 @@ def assert_law(
     """
     __tracebackhide__ = True
     from verify.checks.table import check_table
-    from verify.studies.law.answer import of_function
+    from verify.studies.law.given.answer import of_function
     from verify.studies.law.judge import Tolerances, judge, worst_first
-    from verify.studies.law.paths import paths
+    from verify.studies.law.ways.paths import paths
     from verify.studies.law.wording import sentences
     from verify.theory.mixed_law import MixedBond
 

@@ -37,10 +37,10 @@ from verify.studies.hard import page as hard_page
 from verify.studies.hard.one import run_case
 from verify.studies.hard.suite import Cell
 from verify.studies.law import page as law_page
-from verify.studies.law.answer import of_function
-from verify.studies.law.built_in import built_in
+from verify.studies.law.given.answer import of_function
+from verify.studies.law.given.built_in import built_in
 from verify.studies.law.judge import judge
-from verify.studies.law.paths import paths
+from verify.studies.law.ways.paths import paths
 from verify.studies.scaling import page as scaling_page
 from verify.verdict import Check, Run, SceneReport
 

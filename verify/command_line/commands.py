@@ -320,7 +320,7 @@ def law(options: argparse.Namespace) -> int:
     from verify.command_line import law as work
     from verify.export.point_law import write_paths
     from verify.scene.load import load_scene
-    from verify.studies.law.read import PathColumns
+    from verify.studies.law.given.read import PathColumns
     from verify.studies.law.study import subject
 
     scene = load_scene(options.scene, options.overrides)

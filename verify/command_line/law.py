@@ -8,8 +8,8 @@ from verify.checks.table import check_table
 from verify.runs.folder import write_json
 from verify.scene.schema import Scene
 from verify.studies.law import record
+from verify.studies.law.given.read import PathColumns
 from verify.studies.law.judge import Judgement, worst_first
-from verify.studies.law.read import PathColumns
 from verify.studies.law.study import BUILT_IN, Subject, judge_built_in, judge_given
 from verify.studies.law.wording import sentences
 from verify.support.refusal import Refusal
@@ -17,7 +17,7 @@ from verify.support.say import say, write_page
 from verify.verdict import counted
 
 #: Broken checks that are printed.
-SHOWN = 12
+BROKEN_LINES = 12
 
 
 def judged(of: Subject, given: str | None, columns: PathColumns, tolerance: float | None) -> tuple[Judgement, str]:
@@ -45,9 +45,9 @@ def write(found: Judgement, scene: Scene, law: str, out: Path) -> None:
 def report(found: Judgement, scene: Scene, law: str) -> None:
     """Print broken checks, defects, what was not judged, and a last line that counts."""
     broken = [check for check in worst_first(found.checks) if not check.passed]
-    print("\n".join(check_table(broken[:SHOWN])), end="\n" if broken else "")
-    if len(broken) > SHOWN:
-        print(f"and {len(broken) - SHOWN} more")
+    print("\n".join(check_table(broken[:BROKEN_LINES])), end="\n" if broken else "")
+    if len(broken) > BROKEN_LINES:
+        print(f"and {len(broken) - BROKEN_LINES} more")
     for sentence in sentences(found.defects):
         print(f"defect: {sentence}")
     for remark in found.remarks:

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from verify.studies.law.legs import JumpPath
+from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
 #: Jumps below this part of the largest are written as 0: Abaqus does not read the smallest numbers of all.
 SMALLEST = 1e-30
 #: Pairs of time and amplitude in a line.
-PAIRS = 4
+PAIRS_A_LINE = 4
 
 
 def abaqus_lines(bond: MixedBond, ways: Sequence[JumpPath], scene: str) -> Iterator[str]:
@@ -89,7 +89,7 @@ def _amplitude(name: str, value: np.ndarray) -> Iterator[str]:
     least = SMALLEST * float(np.abs(value).max())
     pairs = [f"{i}., {v:.15g}" for i, v in enumerate(np.where(np.abs(value) > least, value, 0.0).tolist())]
     yield f"*AMPLITUDE, NAME={name}, TIME=TOTAL TIME"
-    yield from (", ".join(pairs[i : i + PAIRS]) for i in range(0, len(pairs), PAIRS))
+    yield from (", ".join(pairs[i : i + PAIRS_A_LINE]) for i in range(0, len(pairs), PAIRS_A_LINE))
 
 
 def collector(ways: Sequence[JumpPath]) -> Iterator[str]:

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from verify.export.one_element import abaqus_lines, collector
-from verify.studies.law.legs import JumpPath
-from verify.studies.law.read import lines
+from verify.studies.law.given.read import lines
 from verify.studies.law.record import PATHS_FILE
+from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
 #: Files of a deck for Abaqus, of the script that reads its results, of a block for MOOSE, of the notes.
-DECK, COLLECTOR, MOOSE, NOTES = "paths.inp", "abaqus_to_csv.py", "moose.i", "README.txt"
+DECK, COLLECTOR, MOOSE_BLOCK, GUIDE = "paths.inp", "abaqus_to_csv.py", "moose.i", "README.txt"
 
 
 def write_paths(bond: MixedBond, ways: Sequence[JumpPath], scene: str, folder: Path) -> list[Path]:
@@ -28,8 +28,8 @@ def write_paths(bond: MixedBond, ways: Sequence[JumpPath], scene: str, folder: P
         folder / PATHS_FILE: lines(ways),
         folder / DECK: abaqus_lines(bond, ways, scene),
         folder / COLLECTOR: collector(ways),
-        folder / MOOSE: _moose(ways),
-        folder / NOTES: _notes(bond, ways, scene),
+        folder / MOOSE_BLOCK: _moose(ways),
+        folder / GUIDE: _notes(bond, ways, scene),
         **{columns / f"{way.name}.csv": _columns(way) for way in ways},
     }
     for path, content in made.items():
@@ -74,7 +74,7 @@ def _notes(bond: MixedBond, ways: Sequence[JumpPath], scene: str) -> Iterator[st
     yield "columns/    the same, a file a path: time,g,s"
     yield f"{DECK}   one COH2D4 a path for Abaqus/Standard, moved by amplitudes"
     yield f"{COLLECTOR}   abaqus python {COLLECTOR} paths.odb: writes tractions.csv"
-    yield f"{MOOSE}     functions for MOOSE, which read columns/"
+    yield f"{MOOSE_BLOCK}     functions for MOOSE, which read columns/"
     yield ""
     yield "Follow each path step by step, with the history of the step before, and write a table with the columns"
     yield "    path,step,g,s,p,t"

@@ -11,7 +11,7 @@ from made_up_point_laws import law_of
 
 from verify.cli import main
 from verify.scene.load import load_scene
-from verify.studies.law.answer import of_function
+from verify.studies.law.given.answer import of_function
 from verify.studies.law.study import subject
 from verify.support.refusal import Refusal
 

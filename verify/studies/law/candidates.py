@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from verify.studies.law.answer import Answer, of_bond
-from verify.studies.law.legs import JumpPath
+from verify.studies.law.given.answer import Answer, of_bond
+from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
 Driving = Callable[[np.ndarray, np.ndarray], np.ndarray]

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from verify.studies.law.answer import Answer, Answers, of_bond
 from verify.studies.law.candidates import Candidate, candidates, viscous
 from verify.studies.law.distance import apart, mean_square
-from verify.studies.law.legs import JumpPath
+from verify.studies.law.given.answer import Answer, Answers, of_bond
+from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
 UNKNOWN = "unknown"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from verify.studies.law.answer import Answer
+from verify.studies.law.given.answer import Answer
 from verify.theory.mixed_law import MixedBond
 
 

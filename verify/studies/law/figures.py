@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from verify.pages.style import HALF, THIRD, Line, Panel, colour, drawing, panel, to_svg
-from verify.pages.text import axis
-from verify.studies.law.answer import Answer
+from verify.pages.text import axis, power_of_ten
 from verify.studies.law.distance import apart, work
+from verify.studies.law.given.answer import Answer
 from verify.studies.law.judge import Judgement
-from verify.studies.law.legs import JumpPath
 from verify.studies.law.tangents import study
+from verify.studies.law.ways.legs import JumpPath
 
 #: Of the normal and the shear traction.
 _INKS = {"p": "nurbs", "t": "lagrange"}
@@ -78,9 +78,10 @@ def tangents(found: Judgement) -> Panel | None:
         figure, axes = panel(HALF, 2.8)
         step, off = np.array(sizes).T
         axes.plot(step, np.maximum(off, 1e-16), "o-", color=colour("accent"), linewidth=1.2, markersize=4)
-        axes.set(
-            xscale="log", yscale="log", xlabel="step over the largest jump", ylabel="median deviation of the tangent"
-        )
+        axes.set(xscale="log", yscale="log", xlabel="step over the largest jump", ylabel="median deviation")
+        for part in (axes.xaxis, axes.yaxis):
+            part.set_major_formatter(lambda value, _: power_of_ten(value))
+            part.set_minor_formatter(NullFormatter())
         svg = to_svg(figure, "tangents", "Deviation of the tangent over the step size of the differences")
     caption = (
         "Tangent against central differences of the law, over the initial stiffness: down to rounding, not further."

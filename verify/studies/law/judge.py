@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from verify.studies.law import tangents
-from verify.studies.law.answer import Answer, Answers, of_bond
 from verify.studies.law.defects import Defect, defects
 from verify.studies.law.distance import apart, work
-from verify.studies.law.legs import JumpPath
+from verify.studies.law.given.answer import Answer, Answers, of_bond
+from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 from verify.verdict import Check, Kind
 

@@ -8,14 +8,14 @@ from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.scene.tables import one_of
-from verify.studies.law.answer import Answer, of_function
-from verify.studies.law.built_in import built_in, modelled, opening_law
 from verify.studies.law.distance import apart
+from verify.studies.law.given.answer import Answer, of_function
+from verify.studies.law.given.built_in import built_in, modelled, opening_law
+from verify.studies.law.given.read import PathColumns
+from verify.studies.law.given.source import answered
 from verify.studies.law.judge import Judgement, Tolerances, judge
-from verify.studies.law.legs import JumpPath
-from verify.studies.law.paths import paths
-from verify.studies.law.read import PathColumns
-from verify.studies.law.source import answered
+from verify.studies.law.ways.legs import JumpPath
+from verify.studies.law.ways.paths import paths
 from verify.support.refusal import Refusal
 from verify.theory.mixed_law import KNOWN_MIXED_LAWS, MixedBond
 from verify.verdict import Check
@@ -73,7 +73,7 @@ def _across(bond: MixedBond, way: JumpPath, given: Answer, other: Answer) -> Che
 
 
 def judge_given(of: Subject, text: str, columns: PathColumns, tolerance: float | None) -> Judgement:
-    """A law that is named on the command line, a file or a function (`verify.studies.law.source`)."""
+    """A law that is named on the command line, a file or a function (`verify.studies.law.given.source`)."""
     ways, given = answered(text, of.ways, columns)
     tolerances = Tolerances() if tolerance is None else replace(Tolerances(), tractions=tolerance)
     return judge(of.bond, ways, given, tolerances)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from verify.studies.law.answer import DIFFERENCES, Answer
-from verify.studies.law.legs import JumpPath
+from verify.studies.law.given.answer import DIFFERENCES, Answer
+from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
 #: Of a path without a function, the part of its steps that is judged: others are next to a kink.

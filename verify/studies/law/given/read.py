@@ -11,15 +11,15 @@ import numpy as np
 
 from verify.curves.read import text_of
 from verify.curves.text_table import Row, Table, read_table
-from verify.studies.law.answer import Answer
-from verify.studies.law.legs import JumpPath
+from verify.studies.law.given.answer import Answer
+from verify.studies.law.ways.legs import JumpPath
 from verify.support.refusal import Refusal
 
-NAMES = ("path", "step")
-JUMPS = ("g", "s")
-TRACTIONS = ("p", "t")
-TANGENT = ("dp_dg", "dp_ds", "dt_dg", "dt_ds")
-COLUMNS = (*NAMES, *JUMPS, *TRACTIONS, *TANGENT)
+PLACE_COLUMNS = ("path", "step")
+JUMP_COLUMNS = ("g", "s")
+TRACTION_COLUMNS = ("p", "t")
+TANGENT_COLUMNS = ("dp_dg", "dp_ds", "dt_dg", "dt_ds")
+FILE_COLUMNS = (*PLACE_COLUMNS, *JUMP_COLUMNS, *TRACTION_COLUMNS, *TANGENT_COLUMNS)
 
 #: Difference of a jump from the one that was written, over the largest of its path: numbers of six digits pass.
 SAME_JUMP = 1e-5
@@ -31,7 +31,7 @@ class PathsError(Refusal):
 
 @dataclass(frozen=True)
 class PathColumns:
-    """What the columns of a file are called, where not as in `COLUMNS`, and what their numbers are multiplied by.
+    """What the columns of a file are called, where not as in `FILE_COLUMNS`, and what their numbers are multiplied by.
 
     Raises
     ------
@@ -42,14 +42,14 @@ class PathColumns:
     scales: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for option, keys, known in (("columns", self.names, COLUMNS), ("scales", self.scales, COLUMNS[2:])):
+        for option, keys, known in (("columns", self.names, FILE_COLUMNS), ("scales", self.scales, FILE_COLUMNS[2:])):
             for key in keys:
                 if key not in known:
                     raise PathsError(f"{option}: must be of {', '.join(known)}, got {key!r}")
         for key, scale in self.scales.items():
             if not math.isfinite(scale) or scale == 0.0:
                 raise PathsError(f"scales: {key} must be a finite number other than 0, got {scale:g}")
-        called = [self.called(key).casefold() for key in COLUMNS]
+        called = [self.called(key).casefold() for key in FILE_COLUMNS]
         twice = [name for name in called if called.count(name) > 1]
         if twice:
             raise PathsError(f"columns: must be different ones, got {twice[0]!r} more than once")
@@ -86,8 +86,8 @@ def read_paths(
 
 def _header(path: Path, table: Table, columns: PathColumns) -> tuple[dict[str, int], int, list[Row]]:
     """Where the columns stand, how many there are, and the rows below."""
-    wanted = {key: columns.called(key).casefold() for key in COLUMNS}
-    needed = [key for key in COLUMNS if key not in TANGENT]
+    wanted = {key: columns.called(key).casefold() for key in FILE_COLUMNS}
+    needed = [key for key in FILE_COLUMNS if key not in TANGENT_COLUMNS]
     for line, cells in (*table.lead, *table.remarks):
         names = [cell.strip(" ,;").casefold() for cell in cells]
         if all(wanted[key] in names for key in needed):
@@ -109,9 +109,9 @@ def _places(place: str, names: Sequence[str], wanted: Mapping[str, str]) -> dict
     if twice:
         raise PathsError(f"{place}: must have one column {twice[0]!r}, got {names.count(twice[0])}")
     at = {key: names.index(name) for key, name in wanted.items() if name in names}
-    given = [key for key in TANGENT if key in at]
-    if given and len(given) < len(TANGENT):
-        missing = " and ".join(wanted[key] for key in TANGENT if key not in at)
+    given = [key for key in TANGENT_COLUMNS if key in at]
+    if given and len(given) < len(TANGENT_COLUMNS):
+        missing = " and ".join(wanted[key] for key in TANGENT_COLUMNS if key not in at)
         raise PathsError(f"{place}: must have all four columns of the tangent or none, got none named {missing}")
     return at
 
@@ -126,9 +126,9 @@ def _below(table: Table, line: int) -> list[Row]:
 def _rows(
     path: Path, table: Table, body: Sequence[Row], at: Mapping[str, int], width: int, ways: Mapping[str, JumpPath]
 ) -> dict[str, dict[int, tuple[int, list[float]]]]:
-    """Path -> step -> line and numbers, those of the columns behind `NAMES`."""
+    """Path -> step -> line and numbers, those of the columns behind `PLACE_COLUMNS`."""
     found: dict[str, dict[int, tuple[int, list[float]]]] = {}
-    keys = [key for key in at if key not in NAMES]
+    keys = [key for key in at if key not in PLACE_COLUMNS]
     for line, cells in body:
         place = f"{path}:{line}"
         if len(cells) != width and (len(cells) > width or not table.dialect.separator):
@@ -182,12 +182,12 @@ def _one(
     at: Mapping[str, int],
 ) -> tuple[JumpPath, Answer]:
     """One path as it stands in the file."""
-    keys = [key for key in at if key not in NAMES]
+    keys = [key for key in at if key not in PLACE_COLUMNS]
     table = np.array([rows[step][1] for step in range(way.g.size)])
     with np.errstate(over="ignore"):
         value = {key: table[:, i] * columns.scales.get(key, 1.0) for i, key in enumerate(keys)}
     largest = max(np.abs(way.g).max(), np.abs(way.s).max())
-    for key, written in zip(JUMPS, (way.g, way.s), strict=True):
+    for key, written in zip(JUMP_COLUMNS, (way.g, way.s), strict=True):
         off = np.abs(value[key] - written) > SAME_JUMP * largest
         if off.any():
             i = int(np.argmax(off))
@@ -196,14 +196,14 @@ def _one(
     if not all(np.isfinite(one).all() for one in value.values()):
         raise PathsError(f"{path}: path {way.name} must hold finite numbers after scaling, got infinity")
     tangent = None
-    if TANGENT[0] in at:
-        tangent = np.stack([value[key] for key in TANGENT], axis=1).reshape(-1, 2, 2)
+    if TANGENT_COLUMNS[0] in at:
+        tangent = np.stack([value[key] for key in TANGENT_COLUMNS], axis=1).reshape(-1, 2, 2)
     return replace(way, g=value["g"], s=value["s"]), Answer(value["p"], value["t"], tangent)
 
 
 def lines(ways: Sequence[JumpPath]) -> Iterator[str]:
     """The content of ``paths.csv``, every number in full."""
-    yield ",".join((*NAMES, *JUMPS))
+    yield ",".join((*PLACE_COLUMNS, *JUMP_COLUMNS))
     for way in ways:
         for step, (g, s) in enumerate(zip(way.g.tolist(), way.s.tolist(), strict=True)):
             yield f"{way.name},{step},{g!r},{s!r}"

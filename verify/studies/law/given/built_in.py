@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.studies.law.answer import PointLaw
+from verify.studies.law.given.answer import PointLaw
 from verify.theory.mixed_law import MixedBond
 
 

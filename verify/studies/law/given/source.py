@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from verify.studies.law.answer import Answer, LawError, PointLaw, of_function
-from verify.studies.law.legs import JumpPath
-from verify.studies.law.read import PathColumns, read_paths
+from verify.studies.law.given.answer import Answer, LawError, PointLaw, of_function
+from verify.studies.law.given.read import PathColumns, read_paths
+from verify.studies.law.ways.legs import JumpPath
 
 
 def is_function(text: str) -> bool:

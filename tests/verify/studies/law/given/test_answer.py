@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from made_up_point_laws import BONDS
 
-from verify.studies.law.answer import LawError, of_function
-from verify.studies.law.legs import JumpPath
-from verify.studies.law.source import function, is_function
+from verify.studies.law.given.answer import LawError, of_function
+from verify.studies.law.given.source import function, is_function
+from verify.studies.law.ways.legs import JumpPath
 
 WAY = JumpPath("short", "", np.array([0.0, 1.0, 2.0]), np.array([0.0, 0.0, 1.0]))
 

@@ -9,9 +9,9 @@ import pytest
 from made_up_point_laws import BONDS
 from verify.theory.mixed_law import MixedBond
 
-from verify.studies.law.answer import of_bond
 from verify.studies.law.distance import work
-from verify.studies.law.paths import paths
+from verify.studies.law.given.answer import of_bond
+from verify.studies.law.ways.paths import paths
 
 each = pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from verify.studies.law.legs import Corner, JumpPath, legs
-from verify.studies.law.milestones import Milestones, jump, milestones
+from verify.studies.law.ways.legs import Corner, JumpPath, legs
+from verify.studies.law.ways.milestones import Milestones, jump, milestones
 from verify.theory.mixed_law import MixedBond
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.studies.law.legs import JumpPath
+from verify.studies.law.ways.legs import JumpPath
 from verify.support.refusal import Refusal
 from verify.theory.mixed_law import MixedBond
 
