@@ -36,6 +36,7 @@ ORDER = (
     "bezier_extraction",
     "t_junctions",
     "verify_your_own_code",
+    "what_a_law_owes_you",
     "what_accuracy_costs",
     "solve_in_python",
     "check_in_python",

@@ -61,8 +61,8 @@ FLOORS = (
     ("verify.report.figures",),
     ("verify.studies", "verify.export"),
     (
-        "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.paper",
-        "verify.studies.plane", "verify.studies.scaling",
+        "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.law",
+        "verify.studies.paper", "verify.studies.plane", "verify.studies.scaling",
     ),
     ("verify.studies.page",),
     ("verify.studies.frame",),

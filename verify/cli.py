@@ -18,7 +18,19 @@ from pathlib import Path  # noqa: E402
 from typing import Any  # noqa: E402
 
 from verify.command_line import commands  # noqa: E402
-from verify.command_line.arguments import accuracy, column, count, fraction, number, numbers, positive, scale, seeds  # noqa: E402
+from verify.command_line.arguments import (  # noqa: E402
+    accuracy,
+    column,
+    count,
+    fraction,
+    names_of,
+    number,
+    numbers,
+    positive,
+    scale,
+    scales_of,
+    seeds,
+)
 from verify.command_line.commands import FAILED  # noqa: E402
 from verify.command_line.spelling import Help, parsed  # noqa: E402
 from verify.support.refusal import Refusal  # noqa: E402
@@ -106,6 +118,8 @@ def _studies(command: Callable[..., Parser]) -> None:
     _scaling_options(command(commands.scaling, text, "scaling dcb-czm1 --out scaling", "read scaling/report.html"))
     text = "The cases on which cohesive codes stop or go wrong."
     _hard_options(command(commands.hard, text, "hard coarse-czm2 --jobs 2", "read debond-hard/report.html"))
+    text = "A traction law at one point, of the solvers or of anybody's code: judged on displacement paths."
+    _law_options(command(commands.law, text, "law dcb-czm1 --out law", "read law/law.html; exit 0: all checks hold"))
     text = "Two load-opening curves: error, peak, energy; of runs, or of anybody's code."
     example = "compare my.csv run --opening-a U2 --load-a RF2 --curve-tol 0.01"
     _compare_options(command(commands.compare, text, example, "a table; exit 1: my.csv is more than 1 % off the run"))
@@ -225,6 +239,23 @@ def _mesh_options(sub: Parser) -> None:
     sub.add_argument("--out", type=Path, metavar="FILE", help=formats)
     sub.add_argument("--json", action="store_true", help="print the facts as JSON")
     sub.add_argument("--control", action="store_true", help="draw the control points too")
+
+
+def _law_options(sub: Parser) -> None:
+    sub._negative_number_matcher = NEGATIVE
+    _scene_argument(sub)
+    _set_option(sub)
+    what = "write the paths there, paths.csv, with input for Abaqus and MOOSE"
+    sub.add_argument("--write", type=Path, metavar="DIR", help=what)
+    what = "judge this law: tractions on the paths in a file, or module:function; default: that of the solvers"
+    sub.add_argument("--with", dest="given", metavar="LAW", help=what)
+    what = "names of columns of the file, like p=S22,t=S12; of path, step, g, s, p, t, dp_dg, dp_ds, dt_dg, dt_ds"
+    sub.add_argument("--columns", type=names_of, default=(), metavar="K=NAME,...", help=what)
+    what = "what multiplies columns of the file: units, and signs, like g=1e3,t=-1"
+    sub.add_argument("--scales", type=scales_of, default=(), metavar="K=X,...", help=what)
+    what = "largest deviation of tractions, in parts of the strengths, and of energies; default: 1e-4"
+    sub.add_argument("--tolerance", type=fraction, metavar="T", help=what)
+    sub.add_argument("--out", type=Path, metavar="DIR", help="write law.json and law.html")
 
 
 def _compare_options(sub: Parser) -> None:

@@ -1,4 +1,4 @@
-"""Load-opening curves in the regression tests of other projects. Needs NumPy only."""
+"""Load-opening curves and traction laws in the regression tests of other projects. Needs NumPy only to be imported."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from numbers import Real
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +15,11 @@ from verify.curves.compare import Points, checks, compare
 from verify.curves.read import CurveError, Reading, columns_of, read_curve, sound
 from verify.curves.wording import complaints, remarks, table
 
-__all__ = ["CurveError", "CurveLike", "Reading", "assert_curves_close"]
+if TYPE_CHECKING:
+    from verify.scene.schema import Scene
+    from verify.theory.mixed_law import MixedBond
+
+__all__ = ["CurveError", "CurveLike", "Reading", "assert_curves_close", "assert_law"]
 
 
 class _Result(Protocol):
@@ -118,6 +122,84 @@ def assert_curves_close(
         broken = "; ".join([*complaints(found, judged), *remarks(found)])
         lines = [f"actual is not close to expected: {broken}", *table(found, (), judged)]
         raise AssertionError("\n".join(lines))
+
+
+def assert_law(
+    law: Any,
+    of: Scene | MixedBond | str | os.PathLike[str],
+    *,
+    tractions: float = 1e-4,
+    tangent: float = 1e-3,
+    ignore: Sequence[str] = (),
+) -> None:
+    """Fail unless a traction law is that of a bond on all displacement paths of `debond law`.
+
+    ``law(g, s, state, dt)`` is called step by step with an opening, a slip, the state that it returned at the step
+    before (None at first) and the time of the step, of which a path takes 1 in all. It returns ``p, t, state``, or
+    ``p, t, state, ((dp_dg, dp_ds), (dt_dg, dt_ds))``; a tangent is held against differences.
+
+    Parameters
+    ----------
+    law : the function
+    of : a scene, its name or file, or a `verify.theory.mixed_law.MixedBond`
+    tractions : largest deviation of tractions, in parts of the strengths, and of energies, relative
+    tangent : largest deviation of the tangent, in parts of the initial stiffness
+    ignore : names of checks that may be broken
+
+    Raises
+    ------
+    AssertionError
+        With the defect that explains the deviation, where one does, and every broken check.
+    ValueError, TypeError
+        A tolerance, scene or law that makes no test: a law that raises or returns no numbers among them.
+
+    Examples
+    --------
+    >>> from verify.testing import assert_law
+    >>> from verify.theory.mixed_law import MixedBond
+    >>> bond = MixedBond("bilinear", (80.0, 100.0), (0.969, 1.719), (1e5, 1e5), 1e5, exponent=2.284)
+    >>> def law(g, s, state, dt):
+    ...     return 1e5 * g, 1e5 * s, state
+    >>> assert_law(law, bond)
+    Traceback (most recent call last):
+        ...
+    AssertionError: the law is not that of the bond: unknown: ...
+    ...
+    """
+    __tracebackhide__ = True
+    from verify.checks.table import check_table
+    from verify.studies.law.given.answer import of_function
+    from verify.studies.law.judge import Tolerances, judge, worst_first
+    from verify.studies.law.ways.paths import paths
+    from verify.studies.law.wording import sentences
+    from verify.theory.mixed_law import MixedBond
+
+    for name, limit in (("tractions", tractions), ("tangent", tangent)):
+        _tolerance(name, limit)
+    if not callable(law):
+        raise TypeError(f"law: must be a function of g, s, state and dt, got {type(law).__name__}")
+    if isinstance(of, MixedBond):
+        bond, ways = of, paths(of)
+    else:
+        bond, ways = _subject(of)
+    given = {way.name: of_function(law, way) for way in ways}
+    found = judge(bond, ways, given, Tolerances(tractions, tangent))
+    broken = [check for check in worst_first(found.checks) if not check.passed and check.name not in ignore]
+    if broken:
+        why = "; ".join(sentences(found.defects)) or f"{len(broken)} checks are broken"
+        raise AssertionError("\n".join([f"the law is not that of the bond: {why}", *check_table(broken)]))
+
+
+def _subject(of: Any) -> tuple[Any, Any]:
+    """The bond of a scene, or of its name or file, and its paths."""
+    from verify.scene.load import load_scene
+    from verify.scene.schema import Scene
+    from verify.studies.law.study import subject
+
+    if not isinstance(of, Scene | str | os.PathLike):
+        raise TypeError(f"of: must be a scene, its name or file, or a MixedBond, got {type(of).__name__}")
+    found = subject(of if isinstance(of, Scene) else load_scene(str(of)))
+    return found.bond, found.ways
 
 
 def _are_numbers(values: Any) -> bool:

@@ -8,6 +8,7 @@ from itertools import product
 from math import nan
 from pathlib import Path
 
+import made_up_point_laws
 import made_up_studies
 import numpy as np
 from iga_files import SMALL
@@ -35,6 +36,11 @@ from verify.studies.found import found_in
 from verify.studies.hard import page as hard_page
 from verify.studies.hard.one import run_case
 from verify.studies.hard.suite import Cell
+from verify.studies.law import page as law_page
+from verify.studies.law.given.answer import of_function
+from verify.studies.law.given.built_in import built_in
+from verify.studies.law.judge import judge
+from verify.studies.law.ways.paths import paths
 from verify.studies.scaling import page as scaling_page
 from verify.verdict import Check, Run, SceneReport
 
@@ -143,6 +149,23 @@ def hard(out: Path) -> Path:
     return out / "report.html"
 
 
+def law(out: Path) -> Path:
+    """A law with a defect and a tangent that is another one's."""
+    bond = made_up_point_laws.BONDS["as4-peek"]
+    wrong, right = made_up_point_laws.law_of(bond, "sqrt2-compressed-shear"), built_in(bond)
+
+    def both(g: float, s: float, state: tuple | None, dt: float) -> tuple:
+        mine, other = state or (None, None)
+        p, t, mine = wrong(g, s, mine, dt)
+        *_, other, tangent = right(g, s, other, dt)
+        return p, t, (mine, other), tangent
+
+    ways = paths(bond)
+    found = judge(bond, ways, {way.name: of_function(both, way) for way in ways})
+    law_page.write(found, SCENE, "a_module_with_a_long_name_of_its_own:and_a_function", out / "law.html")
+    return out / "law.html"
+
+
 def comparison(out: Path) -> Path:
     """Two curves, one with a peak that is off."""
     d = np.linspace(0.0, 3.0, 60)
@@ -171,6 +194,7 @@ PAGES: Mapping[str, Callable[[Path], Path]] = {
     "effects": effects,
     "scaling": scaling,
     "hard": hard,
+    "law": law,
     "compare": comparison,
     "mesh": mesh,
 }

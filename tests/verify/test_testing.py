@@ -11,10 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from made_up_point_laws import BONDS, law_of
+from verify.scene.bond.mixed import mixed_bond
 
 import verify.testing
 from verify.curves.read import Reading
-from verify.testing import assert_curves_close
+from verify.support.refusal import Refusal
+from verify.testing import assert_curves_close, assert_law
 
 PROJECT = Path(__file__).parents[2]
 EXAMPLE = PROJECT / "examples" / "regression_test"
@@ -307,3 +310,52 @@ def test_it_needs_numpy_alone() -> None:
     command = [sys.executable, "-c", ALONE, str(EXAMPLE / "abaqus.csv"), str(EXAMPLE / "expected.csv")]
     run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(PROJECT)})
     assert run.stdout == "told apart\n", run.stderr
+
+
+def test_a_right_law_passes_and_a_wrong_one_is_named() -> None:
+    bond = BONDS["moose"]
+    assert_law(law_of(bond), bond)
+    with pytest.raises(AssertionError) as failed:
+        assert_law(law_of(bond, "sqrt2-compressed-shear"), bond)
+    first, *rest = str(failed.value).splitlines()
+    assert first.startswith("the law is not that of the bond: sqrt2-compressed-shear: where g <= 0")
+    assert any(line.startswith("broken") and "compressed-toughness" in line for line in rest)
+
+
+def test_a_law_is_held_against_a_scene_too() -> None:
+    scene = verify.load_scene("dcb-as4peek")
+    for one in (scene, "dcb-as4peek"):
+        with pytest.raises(AssertionError, match="half-area"):
+            assert_law(law_of(mixed_bond(scene), "half-area"), one)
+
+
+def test_tolerances_and_checks_are_chosen() -> None:
+    bond = BONDS["moose"]
+
+    def near(g: float, s: float, state: tuple | None, dt: float) -> tuple:
+        p, t, state = law_of(bond)(g, s, state, dt)
+        return 1.001 * p, t, state
+
+    with pytest.raises(AssertionError, match="unknown"):
+        assert_law(near, bond)
+    assert_law(near, bond, tractions=0.01)
+    names = ("reference", "toughness", "strength", "contact")
+    assert_law(near, bond, ignore=names)
+    with pytest.raises(AssertionError, match="contact"):
+        assert_law(near, bond, ignore=names[:3])
+
+
+@pytest.mark.parametrize(
+    ("words", "error", "said"),
+    [
+        ((3, BONDS["moose"]), TypeError, "law: must be a function"),
+        ((law_of(BONDS["moose"]), 3), TypeError, "of: must be a scene"),
+        ((law_of(BONDS["moose"]), "no-such-scene"), Refusal, "is neither a packaged scene nor a file"),
+        ((lambda *a: None, BONDS["moose"]), Refusal, "must return p, t, state"),
+    ],
+)
+def test_what_is_no_test_of_a_law_does_not_fail_as_one(words: tuple, error: type, said: str) -> None:
+    with pytest.raises(error, match=said):
+        assert_law(*words)
+    with pytest.raises(ValueError, match="tractions: must be >= 0"):
+        assert_law(law_of(BONDS["moose"]), BONDS["moose"], tractions=-1.0)

@@ -49,6 +49,21 @@ def scale(text: str) -> float:
     return value
 
 
+def names_of(text: str) -> tuple[tuple[str, str], ...]:
+    """Keys and names: ``p=S22,t=S12``."""
+    pairs = tuple((key.strip(), name.strip()) for key, _, name in (one.partition("=") for one in text.split(",")))
+    if not all(key and name for key, name in pairs):
+        raise argparse.ArgumentTypeError(f"must be like p=S22,t=S12, got {text!r}")
+    if len(dict(pairs)) < len(pairs):
+        raise argparse.ArgumentTypeError(f"must name every key once, got {text!r}")
+    return pairs
+
+
+def scales_of(text: str) -> tuple[tuple[str, float], ...]:
+    """Keys and factors: ``g=1e3,t=-1``."""
+    return tuple((key, scale(value)) for key, value in names_of(text))
+
+
 def numbers(text: str) -> list[float]:
     return [number(part) for part in text.split(",")]
 

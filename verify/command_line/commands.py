@@ -319,6 +319,28 @@ def compare(options: argparse.Namespace) -> int:
     return 0 if all(check.passed for check in found) else FAILED
 
 
+def law(options: argparse.Namespace) -> int:
+    from verify.command_line import law as work
+    from verify.export.point_law import write_paths
+    from verify.scene.load import load_scene
+    from verify.studies.law.given.read import PathColumns
+    from verify.studies.law.study import subject
+
+    scene = load_scene(options.scene, options.overrides)
+    of, columns = subject(scene), PathColumns(dict(options.columns), dict(options.scales))
+    if options.write is not None:
+        _folder(options.write, "--write")
+        print("\n".join(f"written: {path}" for path in write_paths(of.bond, of.ways, scene.name, options.write)))
+        if options.given is None and options.out is None:
+            return 0
+    found, name = work.judged(of, options.given, columns, options.tolerance)
+    if options.out is not None:
+        _folder(options.out)
+        work.write(found, scene, name, options.out)
+    work.report(found, scene, name)
+    return 0 if found.passed else FAILED
+
+
 def export(options: argparse.Namespace) -> int:
     from verify.export.command import FORMATS, export
     from verify.methods.given_meshes import refuse_files
@@ -414,14 +436,15 @@ def _known_method(method: str, dofs: int | None, option: str = "--method") -> No
         raise Refusal(f"--dofs: is only for --method {one_of(WITH_DOFS)}, got {dofs} for {method}{other}")
 
 
-def _folder(path: Path) -> None:
+def _folder(path: Path, option: str = "--out") -> None:
     """Create the output folder now, so that a folder without write permission is refused before the work."""
     try:
         path.mkdir(parents=True, exist_ok=True)
         (path / ".writable").touch()
         (path / ".writable").unlink(missing_ok=True)
     except OSError as error:
-        raise Refusal(f"--out: must be a folder that can be written to, got {str(path)!r}: {error.strerror}") from None
+        text = f"must be a folder that can be written to, got {str(path)!r}: {error.strerror}"
+        raise Refusal(f"{option}: {text}") from None
 
 
 def _not_run(error: NotRun) -> int:

@@ -64,6 +64,7 @@ def _known() -> Mapping[str, tuple[str, ...]]:
         "format": tuple(FORMATS),
         "kind": tuple(SPECIMENS),
         "shell": tuple(SHELLS),
+        "given": PATHS,
     }
 
 

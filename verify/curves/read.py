@@ -66,7 +66,7 @@ def read_curve(path: Path | str, reading: Reading | None = None) -> tuple[np.nda
     """
     reading, path = reading or Reading(), Path(path)
     path = path / "curve.csv" if path.is_dir() else path
-    table = read_table(_text(path))
+    table = read_table(text_of(path, "a curve"))
     if not (table.lead or table.body):
         raise CurveError(f"{path}: must hold a curve of at least 2 points, got an empty file")
     header, body = _header(path, table, reading)
@@ -114,12 +114,18 @@ class _Header:
         return f"column {self.names[column]!r}" if self.names else f"column {column + 1}"
 
 
-def _text(path: Path) -> str:
+def text_of(path: Path, what: str) -> str:
+    """The text of a file that should hold ``what``, in UTF-8, UTF-16 or Latin-1.
+
+    Raises
+    ------
+    CurveError : no file, or no text.
+    """
     try:
         raw = path.read_bytes()
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or "a name that no file can have"
-        raise CurveError(f"{path}: must be a file with a curve, got: {why}") from None
+        raise CurveError(f"{path}: must be a file with {what}, got: {why}") from None
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     for encoding in ("utf-16",) if wide else ("utf-8-sig", "latin-1"):
         try:
@@ -128,7 +134,7 @@ def _text(path: Path) -> str:
             continue
         if "\0" not in text:
             return text
-    raise CurveError(f"{path}: must be a file with a curve, got: not a text")
+    raise CurveError(f"{path}: must be a file with {what}, got: not a text")
 
 
 def _header(path: Path, table: Table, reading: Reading) -> tuple[_Header, list[Row]]:

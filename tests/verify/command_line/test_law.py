@@ -1,0 +1,228 @@
+"""`debond law`: files, exit codes, the last line, and the sentence for each malformed input."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from made_up_point_laws import law_of
+
+from verify.cli import main
+from verify.scene.load import load_scene
+from verify.studies.law.given.answer import of_function
+from verify.studies.law.study import subject
+from verify.support.refusal import Refusal
+
+SCENE = "dcb-as4peek"
+HEADER = "path,step,g,s,p,t"
+
+
+@pytest.fixture(scope="module")
+def right(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """Lines of a file with the tractions of a right law."""
+    of = subject(load_scene(SCENE))
+    lines = [HEADER]
+    for way in of.ways:
+        found = of_function(law_of(of.bond), way)
+        columns = zip(way.g.tolist(), way.s.tolist(), found.p.tolist(), found.t.tolist(), strict=True)
+        lines += [f"{way.name},{i},{g!r},{s!r},{p!r},{t!r}" for i, (g, s, p, t) in enumerate(columns)]
+    return lines
+
+
+def law(*words: str) -> int:
+    try:
+        return main(["law", SCENE, *words])
+    except SystemExit as end:  # argparse
+        return int(end.code or 0)
+
+
+def test_the_law_of_the_solvers_holds(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    assert law("--out", str(tmp_path)) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[-1].startswith(f"the law of the solvers on {SCENE}: ") and said[-1].endswith(" hold, 0 broken")
+    found = json.loads((tmp_path / "law.json").read_text())
+    assert found["passed"] is True and found["defects"] == [] and found["scene"] == SCENE
+    assert {"exact", "analytical", "cross-code"} == {check["kind"] for check in found["checks"]}
+    assert found["counts"]["total"] == len(found["checks"]) and found["tangent_study"][2]["deviation"] < 1e-6
+    assert (tmp_path / "law.html").stat().st_size > 50_000
+
+
+@pytest.mark.parametrize("scene", ["dcb-czm1", "peel-60"])
+def test_a_scene_without_shear_is_judged_in_opening(scene: str, capsys: pytest.CaptureFixture) -> None:
+    assert main(["law", scene]) == 0
+    assert "checks on 5 paths" in capsys.readouterr().out
+
+
+def test_paths_are_written_and_nothing_is_judged(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    assert law("--write", str(tmp_path / "paths")) == 0
+    said = capsys.readouterr().out
+    assert "checks" not in said and all(line.startswith("written: ") for line in said.splitlines())
+    assert (tmp_path / "paths" / "paths.csv").read_text().startswith("path,step,g,s\nmode-I,0,0.0,0.0\n")
+
+
+def test_a_right_file_holds_and_a_wrong_one_is_named(
+    right: list[str], tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    file = tmp_path / "mine.csv"
+    file.write_text("\n".join(right))
+    assert law("--with", str(file)) == 0
+    assert capsys.readouterr().out.splitlines()[-1].startswith(f"mine.csv on {SCENE}: ")
+    (tmp_path / "mine.py").write_text(
+        "from made_up_point_laws import law_of\n"
+        "from verify.scene.load import load_scene\nfrom verify.scene.bond.mixed import mixed_bond\n"
+        f'law = law_of(mixed_bond(load_scene("{SCENE}")), "sqrt2-compressed-shear")\n'
+    )
+    assert law("--with", f"{tmp_path}/mine.py:law", "--out", str(tmp_path / "out")) == 1
+    assert "defect: sqrt2-compressed-shear: where g <= 0" in capsys.readouterr().out
+    found = json.loads((tmp_path / "out" / "law.json").read_text())
+    assert found["passed"] is False and found["defects"][0]["name"] == "sqrt2-compressed-shear"
+    assert set(found["defects"][0]) >= {"name", "path", "error_with", "error_without"}
+    assert "sqrt2-compressed-shear" in (tmp_path / "out" / "law.html").read_text()
+
+
+def test_columns_units_order_and_separators_are_the_users(right: list[str], tmp_path: Path) -> None:
+    """Blanks, capitals, another order of rows and columns, kilo and minus signs, a comment, a row of units."""
+    lines = ["# exported", "t12 STEP path x S s22", "kPa - - um mm MPa"]
+    for row in reversed(right[1:]):
+        path, step, g, s, p, t = row.split(",")
+        lines.append(f"{-1e3 * float(t)!r} {step} {path} {1e3 * float(g)!r} {s} {p}")
+    file = tmp_path / "mine.txt"
+    file.write_text("\n".join(lines))
+    columns = ("--columns", "g=x,p=S22,t=T12", "--scales", "g=1e-3,t=-1e-3")
+    assert law("--with", str(file), *columns) == 0
+    assert law("--with", str(file), *columns[:3], "g=1e-3,t=1e-3") == 1
+
+
+def test_six_digits_are_enough_and_the_tolerance_can_be_set(right: list[str], tmp_path: Path) -> None:
+    def rounded(row: str, digits: int) -> str:
+        path, step, *numbers = row.split(",")
+        return ",".join([path, step, *(f"{float(one):.{digits}g}" for one in numbers)])
+
+    file = tmp_path / "mine.csv"
+    file.write_text("\n".join([right[0], *(rounded(row, 7) for row in right[1:])]))
+    assert law("--with", str(file)) == 0
+    assert law("--with", str(file), "--tolerance", "1e-9") == 1
+
+
+Change = Callable[[list[str]], str | bytes]
+
+
+def edited(row: int, column: int, text: str) -> Change:
+    """The file with another cell; row 0 is the header."""
+
+    def change(lines: list[str]) -> str:
+        cells = lines[row].split(",")
+        cells[column] = text
+        return "\n".join([*lines[:row], ",".join(cells), *lines[row + 1 :]])
+
+    return change
+
+
+def without(text: str) -> Change:
+    return lambda lines: "\n".join(line for line in lines if not line.startswith(text))
+
+
+def tangents(names: str, rest: str) -> Change:
+    return lambda lines: "\n".join([f"{HEADER},{names}", *(f"{line},{rest}" for line in lines[1:])])
+
+
+#: What is wrong with a file -> how it gets so, and what the sentence says.
+MALFORMED: dict[str, tuple[Change, str]] = {
+    "empty": (lambda lines: "", "must hold tractions, got an empty file"),
+    "blank": (lambda lines: "\n \n\n", "must hold tractions, got an empty file"),
+    "comments alone": (lambda lines: "# path,step,g,s,p,t\n", "got an empty file"),
+    "header alone": (lambda lines: HEADER, "must hold every path that was written, got none of mode-I"),
+    "no header": (lambda lines: "\n".join(lines[1:]), "must have a header with the columns path, step, g, s, p, t"),
+    "words": (lambda lines: "what a nice day", "the header must name"),
+    "binary": (lambda lines: b"\0\1\2\3" * 99, "not a text"),
+    "half a character": (lambda lines: b"\xff\xfe\x41", "not a text"),
+    "another table": (lambda lines: "opening,load\n0,0\n1,1\n", "the header must name path and step and g and s"),
+    "no column p": (edited(0, 4, "q"), "the header must name p, got path, step, g, s, q, t"),
+    "no column path": (edited(0, 0, "name"), "the header must name path"),
+    "no column step": (edited(0, 1, "i"), "the header must name step"),
+    "column twice": (edited(0, 5, "p"), "the header must name t"),
+    "two of p": (
+        lambda lines: "\n".join([f"{HEADER},p", *(f"{x},0" for x in lines[1:])]), "must have one column 'p', got 2"
+    ),
+    "part of a tangent": (tangents("dp_dg,dp_ds", "1,0"), "all four columns of the tangent or none, got none named"),
+    "tangent of words": (tangents("dp_dg,dp_ds,dt_dg,dt_ds", "1,0,x,1"), "dt_dg must be a finite number, got 'x'"),
+    "path missing": (without("mixed-50,"), "must hold every path that was written, got none of mixed-50"),
+    "many paths missing": (without("m"), "got none of mode-I, mode-II, mixed-20, mixed-50, mixed-80 and 2 more"),
+    "unknown path": (edited(1, 0, "mode-IV"), ":2: must be one of the paths that were written, got 'mode-IV'"),
+    "empty path": (edited(1, 0, ""), "must be one of the paths that were written, got ''"),
+    "step missing": (without("mode-I,7,"), "path mode-I must have 43 steps, got 42; step 7 is missing"),
+    "last step missing": (without("mode-I,42,"), "step 42 is missing"),
+    "step twice": (edited(3, 1, "1"), ":4: path mode-I, step 1 is there already, in line 3"),
+    "row twice": (lambda lines: "\n".join([*lines, lines[-1]]), "is there already"),
+    "step too many": (edited(2, 1, "43"), "step must be an integer from 0 to 42 on path mode-I, got '43'"),
+    "step below 0": (edited(2, 1, "-1"), "step must be an integer from 0"),
+    "step and a half": (edited(2, 1, "1.5"), "step must be an integer from 0"),
+    "step of words": (edited(2, 1, "one"), "step must be an integer from 0"),
+    "step infinite": (edited(2, 1, "inf"), "step must be an integer from 0"),
+    "nan": (edited(5, 4, "nan"), ":6: p must be a finite number, got 'nan'"),
+    "infinity": (edited(5, 5, "-inf"), "t must be a finite number, got '-inf'"),
+    "text": (edited(5, 4, "soft"), "p must be a finite number, got 'soft'"),
+    "hole": (edited(5, 4, ""), "p must be a finite number, got ''"),
+    "row too short": (edited(5, 5, ""), "t must be a finite number, got ''"),
+    "row too long": (edited(5, 5, "1,2"), ":6: must have 6 columns as the header, got 7"),
+    "other opening": (edited(5, 2, "0.5"), "path mode-I, step 4: g must be"),
+    "other slip": (edited(5, 3, "1e-3"), "path mode-I, step 4: s must be 0 as written, got 0.001"),
+    "opening nan": (edited(5, 2, "nan"), "g must be a finite number"),
+    "overflow": (edited(5, 4, "1e999"), "p must be a finite number, got '1e999'"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", MALFORMED)
+def test_malformed_files_are_refused_with_one_sentence(
+    name: str, right: list[str], tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    change, sentence = MALFORMED[name]
+    content = change(right)
+    file = tmp_path / "mine.csv"
+    file.write_bytes(content if isinstance(content, bytes) else content.encode())
+    assert law("--with", str(file), "--out", str(tmp_path / "out")) == 2
+    said = capsys.readouterr()
+    assert sentence in said.err and str(file) in said.err
+    assert said.out == "" and said.err.count("\n") == 1 and not (tmp_path / "out").exists()
+
+
+OPTIONS = {
+    "no file": (["--with", "missing.csv"], "missing.csv: must be a file with tractions, got: No such file"),
+    "a folder": (["--with", "."], "must be a file with tractions, got a folder"),
+    "no module": (["--with", "no_such_module:law"], "no_such_module cannot be imported"),
+    "column of nothing": (["--with", "x.csv", "--columns", "g"], "--columns: must be like p=S22,t=S12, got 'g'"),
+    "unknown column": (["--with", "x.csv", "--columns", "q=1"], "columns: must be of path, step, g, s"),
+    "column for two": (["--with", "x.csv", "--columns", "p=a,t=A"], "columns: must be different ones, got 'a'"),
+    "column named twice": (["--with", "x.csv", "--columns", "p=a,p=b"], "must name every key once"),
+    "scale 0": (["--with", "x.csv", "--scales", "p=0"], "must be a finite number other than 0, got '0'"),
+    "scale of a name": (["--with", "x.csv", "--scales", "path=2"], "scales: must be of g, s, p, t"),
+    "tolerance below 0": (["--with", "x.csv", "--tolerance", "-1"], "--tolerance: must be a number >= 0"),
+    "columns without a file": (["--columns", "p=a"], "--columns: is only for a law that --with names"),
+    "tolerance without a law": (["--tolerance", "1"], "--tolerance: is only for a law that --with names"),
+    "columns of a function": (["--with", "math:cos", "--columns", "p=a"], "must be left out with a function"),
+    "no law": (["--with", "math:cos"], "math:cos: path mode-I, step 0"),
+    "no folder to write to": (["--write", "a-file"], "--write: must be a folder that can be written to"),
+    "no folder for the verdict": (["--out", "a-file"], "--out: must be a folder that can be written to"),
+    "without history": (["--set", "effects.irreversible=false"], "effects.irreversible: must be true for debond law"),
+}
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_wrong_options_are_refused_with_one_sentence(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("a-file").touch()
+    words, sentence = OPTIONS[name]
+    assert law(*words) == 2
+    said = capsys.readouterr()
+    assert sentence in said.err and "Traceback" not in said.err and said.out == ""
+
+
+def test_a_law_without_a_definition_for_both_modes_is_refused() -> None:
+    scene = load_scene("dcb-czm1")
+    other = scene.interface.model_copy(update={"law": "tabular"})
+    with pytest.raises(Refusal, match="interface.law: must be .* for debond law, got 'tabular'"):
+        subject(scene.model_copy(update={"interface": other}))

@@ -1,0 +1,78 @@
+"""Point laws as a user would write them, step by step, right or with one known defect; and the bonds they are made for.
+
+Written from the definition alone: nothing of the product is in them but the numbers of a bond.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import sqrt
+
+from verify.theory.mixed_law import MixedBond
+
+
+def consistent(K: float, toughness: tuple[float, float], strength: tuple[float, float]) -> tuple[float, float]:
+    """(K, Ks) of Turon et al. (2010)."""
+    return K, K * toughness[0] / toughness[1] * (strength[1] / strength[0]) ** 2
+
+
+def _made(strength: tuple[float, float], toughness: tuple[float, float], K: float, exponent: float) -> MixedBond:
+    stiffness = consistent(K, toughness, strength)
+    return MixedBond("bilinear", strength, toughness, stiffness, 10.0 * K, exponent=exponent)
+
+
+#: MOOSE's regression test; AS4/PEEK of Camanho and Davila (2003); CompDam's element tests.
+BONDS = {
+    "moose": _made((1.0, 1.0), (1.0, 2.0), 100.0, 2.0),
+    "as4-peek": _made((80.0, 100.0), (0.969, 1.719), 1e5, 2.284),
+    "compdam": _made((62.3, 92.3), (0.277, 0.788), 1e6, 1.634),
+}
+
+#: Name -> how the law below is changed by it.
+DEFECTS = (
+    "sqrt2-compressed-shear",
+    "lagged-mode-ratio",
+    "displacement-mode-ratio",
+    "onset",
+    "viscosity",
+    "stiffness-unit",
+    "half-area",
+    "damaged-contact",
+)
+
+
+def law_of(bond: MixedBond, defect: str = "", amount: float = 1.0) -> Callable:
+    """A bilinear law with BK's toughness and contact, called step by step.
+
+    ``amount`` is the viscosity of a viscous one, and the factor of the stiffness of one in wrong units.
+    """
+    (K, Ks), (p_max, t_max), (G1, G2), eta = bond.stiffness, bond.strength, bond.toughness, bond.exponent
+    if defect == "stiffness-unit":
+        K, Ks = amount * K, amount * Ks
+    if defect == "half-area":
+        G1, G2 = 0.5 * G1, 0.5 * G2
+
+    def law(g: float, s: float, state: tuple | None, dt: float) -> tuple:
+        d, before = state if state else (0.0, 0.0)
+        opened = max(g, 0.0)
+        size = sqrt(K * opened**2 + Ks * s**2)
+        now = B = Ks * s**2 / size**2 if size > 1e-150 else 0.0
+        if defect == "displacement-mode-ratio" and size > 1e-150:
+            B = s**2 / (opened**2 + s**2)
+        if defect == "lagged-mode-ratio":
+            B = before
+        begin = sqrt(p_max**2 / K + (t_max**2 / Ks - p_max**2 / K) * B**eta)
+        if defect == "onset":
+            begin = 1.0 / sqrt((1.0 - B) * K / p_max**2 + B * Ks / t_max**2)
+        end = 2.0 * (G1 + (G2 - G1) * B**eta) / begin
+        if defect == "sqrt2-compressed-shear" and g <= 0.0:
+            end *= sqrt(2.0)
+        D = min(max(end * (size - begin) / (size * (end - begin)), 0.0), 1.0) if size > begin else 0.0
+        rate = dt / (dt + amount) if defect == "viscosity" else 1.0
+        d = d + rate * max(D - d, 0.0)
+        p = (1.0 - d) * K * g
+        if g < 0.0:
+            p = bond.penalty * g * ((1.0 - d) if defect == "damaged-contact" else 1.0)
+        return p, (1.0 - d) * Ks * s, (d, now)
+
+    return law

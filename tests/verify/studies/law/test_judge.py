@@ -1,0 +1,155 @@
+"""What a law owes: a right one keeps all of it, and each fault breaks the check that is made for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_up_point_laws import BONDS, law_of
+from verify.theory.mixed_law import MixedBond
+
+from verify.studies.law.given.answer import Answer, of_bond, of_function
+from verify.studies.law.given.built_in import built_in, modelled
+from verify.studies.law.judge import Judgement, Tolerances, judge
+from verify.studies.law.ways.paths import paths
+
+BOND = BONDS["as4-peek"]
+VARIANTS = {
+    "bilinear": BOND,
+    "compdam": replace(BONDS["compdam"], friction=0.3, pressure_strength=0.35),
+    "power": replace(BOND, criterion="power"),
+    "quadratic": replace(BOND, onset="quadratic"),
+    "trapezoidal": replace(BOND, law="trapezoidal", plateau=0.3),
+    "exponential": replace(BOND, law="exponential", friction=0.2),
+    "viscous": replace(BOND, viscosity=0.01),
+    "without contact": replace(BOND, contact=False),
+}
+
+
+def judged(bond: MixedBond, law: Callable, tolerances: Tolerances | None = None) -> Judgement:
+    ways = paths(bond)
+    return judge(bond, ways, {way.name: of_function(law, way) for way in ways}, tolerances)
+
+
+def broken(found: Judgement) -> set[str]:
+    return {check.name for check in found.checks if not check.passed}
+
+
+@pytest.mark.parametrize("code", [built_in, modelled])
+@pytest.mark.parametrize("bond", VARIANTS.values(), ids=VARIANTS)
+def test_two_solvers_and_the_definition_agree_to_the_last_digits(bond: MixedBond, code: Callable) -> None:
+    found = judged(bond, code(bond), Tolerances.exact())
+    assert broken(found) == set() and found.passed and found.defects == ()
+    assert "tangent" in {check.name for check in found.checks}
+
+
+def test_a_law_of_a_user_is_right_without_a_tangent() -> None:
+    found = judged(BOND, law_of(BOND))
+    assert found.passed and found.remarks == ("no tangent is given: none is judged",)
+    names = {check.name for check in found.checks}
+    assert names == {
+        "reference", "toughness", "strength", "compressed-toughness", "compressed-strength", "unloading", "dissipation",
+        "continuity", "contact", "rest", "odd-in-slip",
+    }  # fmt: skip
+
+
+def healing(g: float, s: float, state: object, dt: float) -> tuple:
+    """Damage without history."""
+    return (*law_of(BOND)(g, s, None, dt)[:2], None)
+
+
+def lopsided(g: float, s: float, state: tuple, dt: float) -> tuple:
+    """Slip to one side is damaged as if it were 1 % larger."""
+    p, t, state = law_of(BOND)(g, s * (1.01 if s < 0.0 else 1.0), state, dt)
+    return p, t, state
+
+
+def prestressed(g: float, s: float, state: tuple, dt: float) -> tuple:
+    p, t, state = law_of(BOND)(g, s, state, dt)
+    return p + 0.1, t, state
+
+
+def sticky(g: float, s: float, state: tuple, dt: float) -> tuple:
+    """Faces that are open by 1e-9 have lost a per cent of the shear traction."""
+    p, t, state = law_of(BOND)(g, s, state, dt)
+    return p, t * (0.99 if g > 0.0 else 1.0), state
+
+
+def permanent(g: float, s: float, state: tuple | None, dt: float) -> tuple:
+    """Unloads with the initial stiffness and leaves a residual opening."""
+    inner, largest = state or (None, 0.0)
+    p, t, inner = law_of(BOND)(max(g, largest), s, inner, dt)
+    if 0.0 <= g < largest:
+        p = max(p - BOND.stiffness[0] * (largest - g), 0.0)
+    if g < 0.0:
+        p = BOND.penalty * g
+    return p, t, (inner, max(g, largest))
+
+
+FAULTS = {
+    "dissipation": healing,
+    "unloading": permanent,
+    "odd-in-slip": lopsided,
+    "rest": prestressed,
+    "continuity": sticky,
+    "toughness": law_of(BOND, "half-area"),
+    "strength": law_of(BOND, "onset"),
+    "contact": law_of(BOND, "damaged-contact"),
+    "compressed-toughness": law_of(BOND, "sqrt2-compressed-shear"),
+    "compressed-strength": law_of(BOND, "viscosity", 0.1),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_each_fault_breaks_the_check_that_is_made_for_it(name: str) -> None:
+    found = judged(BOND, FAULTS[name])
+    assert {name, "reference"} <= broken(found) and found.defects != ()
+
+
+@pytest.mark.parametrize("i", [0, 1])
+@pytest.mark.parametrize("j", [0, 1])
+def test_a_wrong_entry_of_the_tangent_is_found(i: int, j: int) -> None:
+    right = built_in(BOND)
+
+    def law(g: float, s: float, state: object, dt: float) -> tuple:
+        p, t, state, tangent = right(g, s, state, dt)
+        tangent = np.array(tangent)
+        tangent[i, j] += 0.01 * BOND.stiffness[0]
+        return p, t, state, tangent
+
+    assert broken(judged(BOND, law)) == {"tangent"}
+
+
+def test_a_secant_for_a_tangent_is_found_in_a_file_too() -> None:
+    """Tangents without a function are held against differences along the path."""
+    ways, right = paths(BOND), built_in(BOND)
+    answers = {way.name: replace(of_function(right, way), differences=None, probed=None) for way in ways}
+    assert broken(judge(BOND, ways, answers)) == set()
+    given = dict(answers)
+    known = given["mixed-50"]
+    way = next(way for way in ways if way.name == "mixed-50")
+    size = np.where(way.g > 0.0, way.g, 1.0)
+    secant = np.einsum(
+        "nk,kij->nij", np.stack([known.p / size], 1), np.diag([1.0, BOND.stiffness[1] / BOND.stiffness[0]])[None]
+    )
+    given["mixed-50"] = replace(known, tangent=secant)
+    found = judge(BOND, ways, given)
+    assert [(check.name, check.subject) for check in found.checks if not check.passed] == [("tangent", "mixed-50")]
+
+
+def test_what_is_not_judged_is_said() -> None:
+    found = judged(replace(BOND, viscosity=0.01, friction=0.1), built_in(replace(BOND, viscosity=0.01, friction=0.1)))
+    assert len(found.remarks) == 2 and "viscosity" in found.remarks[0] and "friction" in found.remarks[1]
+    assert "unloading" not in {check.name for check in found.checks}
+
+
+def test_tractions_that_are_no_numbers_break_everything() -> None:
+    ways = paths(BOND)
+    given = {way.name: of_bond(BOND, way) for way in ways}
+    given["mode-I"] = Answer(np.full_like(given["mode-I"].p, np.nan), given["mode-I"].t)
+    found = judge(BOND, ways, given)
+    assert not found.passed and {c.name for c in found.checks if c.subject == "mode-I" and not c.passed} >= {
+        "reference"
+    }

@@ -1,0 +1,174 @@
+"""The definition with one known defect: what the tractions would be.
+
+Defects are changes of the damage on first loading, of the numbers of the bond, or of the contact traction. None of them
+is wrong in a way that a solver would notice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields, replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from verify.studies.law.given.answer import Answer, of_bond
+from verify.studies.law.ways.legs import JumpPath
+from verify.theory.mixed_law import MixedBond
+
+Driving = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A bond with a defect. ``damages_contact``: its tractions in contact fade with damage."""
+
+    name: str
+    what: str  # a sentence that ends "is wrong like this"
+    bond: MixedBond
+    damages_contact: bool = False
+
+    def answer(self, path: JumpPath) -> Answer:
+        """Tractions along a path."""
+        if not self.damages_contact:
+            return of_bond(self.bond, path)
+        found = self.bond.path(path.g, path.s, path.time)
+        return Answer(np.where(path.g < 0.0, (1.0 - found.d) * found.p, found.p), found.t)
+
+
+def candidates(bond: MixedBond) -> tuple[Candidate, ...]:
+    """All defects without a number of their own that this bond can have."""
+    makers = (_compressed, _lagged, _by_displacement, _onset, _stiffness, _half, _contact)
+    return tuple(one for make in makers for one in make(bond))
+
+
+def viscous(bond: MixedBond, viscosity: float) -> Candidate:
+    """The bond with another viscosity."""
+    what = f"damage lags behind as with a viscosity of {viscosity:.3g} of the programme's duration"
+    return Candidate("viscosity", what, replace(bond, viscosity=viscosity))
+
+
+def _compressed(bond: MixedBond) -> Iterator[Candidate]:
+    if bond.law != "exponential":
+        first, second = bond.toughness
+        tougher = replace(bond, toughness=(2.0**0.5 * first, 2.0**0.5 * second))
+
+        def driving(g: np.ndarray, s: np.ndarray) -> np.ndarray:
+            return np.where(g > 0.0, bond.driving(g, s), tougher.driving(g, s))
+
+        what = "where g <= 0, the jump at failure is sqrt(2) times as large, and so is the toughness"
+        yield Candidate("sqrt2-compressed-shear", what, driven(bond, driving))
+
+
+def _lagged(bond: MixedBond) -> Iterator[Candidate]:
+    if bond.law != "exponential":
+
+        def driving(g: np.ndarray, s: np.ndarray) -> np.ndarray:
+            before = np.append(0.0, bond.mode_ratio(g, s)[:-1])
+            return bond.driving(*_as_if(bond, g, s, before))
+
+        def once_moved(g: np.ndarray, s: np.ndarray) -> np.ndarray:
+            now, size = bond.mode_ratio(g, s), bond.energy_norm(g, s)
+            before = np.where(np.append(0.0, size[:-1]) > 0.0, np.append(0.0, now[:-1]), now)
+            return bond.driving(*_as_if(bond, g, s, before))
+
+        for one in (driving, once_moved):
+            yield Candidate("lagged-mode-ratio", "the mode ratio is that of the step before", driven(bond, one))
+
+
+def _by_displacement(bond: MixedBond) -> Iterator[Candidate]:
+    if bond.law != "exponential" and bond.slopes[0] != bond.slopes[1]:
+
+        def driving(g: np.ndarray, s: np.ndarray) -> np.ndarray:
+            square = np.maximum(g, 0.0) ** 2 + s**2
+            ratio = np.where(square > 0.0, s**2 / np.where(square > 0.0, square, 1.0), 0.0)
+            return bond.driving(*_as_if(bond, g, s, ratio))
+
+        what = "the mode ratio is s^2 / (s^2 + g^2), not Ks s^2 / (Ks s^2 + K g^2)"
+        yield Candidate("displacement-mode-ratio", what, driven(bond, driving))
+
+
+def _onset(bond: MixedBond) -> Iterator[Candidate]:
+    other = {"turon": "quadratic", "quadratic": "turon"}[bond.onset_rule]
+    if bond.law != "exponential" and (other == "quadratic" or bond.criterion == "bk"):
+        yield from _made("onset", f'the onset is "{other}", not "{bond.onset_rule}"', bond, onset=other)
+
+
+def _stiffness(bond: MixedBond) -> Iterator[Candidate]:
+    (K, Ks), names = bond.slopes, {(1, 0): "K", (0, 1): "Ks", (1, 1): "K and Ks"}
+    for (of, name), factor, pressed in product(names.items(), (1e3, 1e-3), (False, True)):
+        if bond.law == "exponential" or (pressed and not bond.contact):
+            continue
+        changed: dict[str, Any] = {"stiffness": (K * factor ** of[0], Ks * factor ** of[1])}
+        changed |= {"penalty": factor * bond.penalty} if pressed else {}
+        what = f"{name}{' and the penalty' if pressed else ''} times {factor:g}, as by a mistake in units"
+        made = tuple(_made("stiffness-unit", what, bond, **changed))
+        yield from made
+        for rest in () if made else (0.0, 1.0):
+            yield Candidate("stiffness-unit", what, _soft(bond, rest, changed))
+
+
+def _half(bond: MixedBond) -> Iterator[Candidate]:
+    first, second = bond.toughness
+    what = "half the toughness, as where the area of a triangle is halved twice"
+    yield from _made("half-area", what, bond, toughness=(0.5 * first, 0.5 * second))
+
+
+def _contact(bond: MixedBond) -> Iterator[Candidate]:
+    if bond.contact:
+        yield Candidate("damaged-contact", "the contact traction is (1 - d) penalty g, fading with damage", bond, True)
+
+
+def _made(name: str, what: str, bond: MixedBond, **changed: Any) -> Iterator[Candidate]:
+    """The candidate with other numbers; none where they make no law."""
+    try:
+        yield Candidate(name, what, replace(bond, **changed))
+    except ValueError:
+        return
+
+
+def driven(bond: MixedBond, driving: Driving) -> MixedBond:
+    """The bond with another damage on first loading, (n,) at openings and slips (n,) of a path."""
+
+    class Changed(_Unchecked):
+        def driving(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
+            return driving(np.asarray(g), np.asarray(s))
+
+    return Changed(**_numbers(bond))
+
+
+class _Unchecked(MixedBond):
+    """A bond with numbers that make no law."""
+
+    def __post_init__(self) -> None:
+        """Whatever they are."""
+
+
+def _numbers(bond: MixedBond) -> dict[str, Any]:
+    return {field.name: getattr(bond, field.name) for field in fields(MixedBond)}
+
+
+def _soft(bond: MixedBond, rest: float, changed: dict[str, Any]) -> MixedBond:
+    """The bond with numbers at which what is stored at the onset exceeds the toughness, at some mode ratios.
+
+    There the damage is ``rest`` from the onset on: 0 where a formula below 0 is cut off, 1 where the bond breaks.
+    """
+    soft = _Unchecked(**_numbers(bond) | changed)
+
+    def driving(g: np.ndarray, s: np.ndarray) -> np.ndarray:
+        B = soft.mode_ratio(g, s)
+        onset = soft.onset_norm(B)
+        broken = np.where(soft.energy_norm(g, s) > onset, rest, 0.0)
+        return np.where(onset**2 < 2.0 * soft.critical(B), soft.driving(g, s), broken)
+
+    return driven(soft, driving)
+
+
+def _as_if(bond: MixedBond, g: np.ndarray, s: np.ndarray, ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Jumps of the same size lambda at other mode ratios (n,); what is closed and slides stays under its pressure."""
+    size, (K, Ks) = bond.energy_norm(g, s), bond.slopes
+    opened, slid = size * np.sqrt((1.0 - ratio) / K), size * np.sqrt(ratio / Ks)
+    kept = (g < 0.0) & (bond.pressure_strength > 0.0)
+    return np.where(kept, g, opened), np.where(kept, s, slid)

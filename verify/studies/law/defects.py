@@ -1,0 +1,172 @@
+"""Which known defect explains tractions that are off the definition: found by trying each on the same paths."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from verify.studies.law.candidates import Candidate, candidates, viscous
+from verify.studies.law.distance import apart, mean_square
+from verify.studies.law.given.answer import Answer, Answers, of_bond
+from verify.studies.law.ways.legs import JumpPath
+from verify.theory.mixed_law import MixedBond
+
+UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True)
+class Search:
+    """When a defect is named, and how a viscosity is fitted."""
+
+    share: float = 0.05  # of the deviation that may be left; more names more, and more wrongly
+    most: float = 0.01  # what may be left, in parts of the strengths
+    slowest: float = 10.0  # viscosities are tried from here
+    fastest: float = 1e-6  # to here, in parts of the duration
+    tried: int = 22  # in equal ratios, before the best is refined
+    refined: int = 32  # times that golden section shortens the range
+
+
+@dataclass(frozen=True)
+class Defect:
+    """A defect, and the root mean square distance from the law with it and from the law without it.
+
+    ``path`` is where it shows most. Of `UNKNOWN` both distances are the same.
+    """
+
+    name: str
+    path: str
+    error_with: float
+    error_without: float
+    what: str
+    candidate: Candidate | None = None
+
+
+def defects(
+    bond: MixedBond, ways: Sequence[JumpPath], given: Answers, tolerance: float, search: Search | None = None
+) -> tuple[Defect, ...]:
+    """The defects that explain ``given``, best first; none where no path is off by more than ``tolerance``."""
+    search = search or Search()
+    expected = {way.name: of_bond(bond, way) for way in ways}
+    off = {way.name: apart(bond, given[way.name], expected[way.name]) for way in ways}
+    broken = [way for way in ways if not off[way.name].max() <= tolerance]
+    if not broken:
+        return ()
+    tried = [*candidates(bond), *_viscous(bond, ways, given, broken, search)]
+    left = {one: _left(bond, one, ways, given, expected) for one in tried}
+    square = {name: mean_square(distance) for name, distance in off.items()}
+    everywhere = _named(left, square, [way.name for way in ways], search)
+    if everywhere:
+        return (*everywhere, *_left_over(bond, everywhere[0], ways, given, expected, tolerance))
+    steady = {one: of for one, of in left.items() if _steady(bond, one, of, ways, expected, square, tolerance)}
+    return _in_parts(steady, square, [way.name for way in broken], search)
+
+
+def _steady(
+    bond: MixedBond,
+    one: Candidate,
+    left: Mapping[str, float],
+    ways: Sequence[JumpPath],
+    expected: Mapping[str, Answer],
+    off: Mapping[str, float],
+    tolerance: float,
+) -> bool:
+    """Whether a defect at least halves the deviation on every path on which it would show."""
+    shows = [way.name for way in ways if apart(bond, one.answer(way), expected[way.name]).max() > tolerance]
+    return all(left[name] <= 0.25 * off[name] for name in shows)
+
+
+def _named(
+    left: Mapping[Candidate, Mapping[str, float]], off: Mapping[str, float], names: Sequence[str], search: Search
+) -> tuple[Defect, ...]:
+    """Candidates that explain the deviation on the paths ``names`` together, best first, each name once."""
+    without, worst = _root(off, names), max(names, key=off.__getitem__)
+    found = [
+        Defect(one.name, worst, _root(of, names), without, one.what, one)
+        for one, of in left.items()
+        if _root(of, names) <= min(search.share * without, search.most)
+    ]
+    best: dict[str, Defect] = {}
+    for one in sorted(found, key=lambda one: one.error_with):
+        best.setdefault(one.name, one)
+    return tuple(best.values())
+
+
+def _in_parts(
+    left: Mapping[Candidate, Mapping[str, float]], off: Mapping[str, float], names: Sequence[str], search: Search
+) -> tuple[Defect, ...]:
+    """Several defects at once, each on paths of its own; what no defect explains is unknown."""
+    best: dict[str, list[Defect]] = {}
+    unexplained = []
+    for name in names:
+        found = [one for one in _named(left, off, [name], search) if one.name != "viscosity"]
+        for one in found[:1]:
+            best.setdefault(one.name, []).append(one)
+        unexplained += [] if found else [name]
+    shown = [max(ones, key=lambda one: one.error_without) for ones in best.values()]
+    if unexplained:
+        shown.append(_unknown(unexplained, off))
+    return tuple(sorted(shown, key=lambda one: (one.name == UNKNOWN, one.error_with)))
+
+
+def _unknown(names: Sequence[str], off: Mapping[str, float]) -> Defect:
+    """What is left on paths ``names`` with mean square distances ``off``."""
+    error, worst = _root(off, names), max(names, key=off.__getitem__)
+    return Defect(UNKNOWN, worst, error, error, "the tractions differ from the definition as no known defect does")
+
+
+def _left_over(
+    bond: MixedBond,
+    best: Defect,
+    ways: Sequence[JumpPath],
+    given: Answers,
+    expected: Mapping[str, Answer],
+    tolerance: float,
+) -> Iterator[Defect]:
+    """The rest, where the best defect leaves more than the tolerance on a path."""
+    assert best.candidate is not None
+    left = {way.name: _apart(bond, best.candidate, way, given, expected) for way in ways}
+    names = [name for name, distance in left.items() if not distance.max() <= tolerance]
+    if names:
+        yield _unknown(names, {name: mean_square(left[name]) for name in names})
+
+
+def _left(
+    bond: MixedBond, one: Candidate, ways: Sequence[JumpPath], given: Answers, expected: Mapping[str, Answer]
+) -> dict[str, float]:
+    """Path -> mean square distance from the law with a defect, in the scales of the law without it."""
+    return {way.name: mean_square(_apart(bond, one, way, given, expected)) for way in ways}
+
+
+def _apart(
+    bond: MixedBond, one: Candidate, way: JumpPath, given: Answers, expected: Mapping[str, Answer]
+) -> np.ndarray:
+    found, known, asked = one.answer(way), expected[way.name], given[way.name]
+    shifted = replace(known, p=known.p + asked.p - found.p, t=known.t + asked.t - found.t)
+    return apart(bond, shifted, known)
+
+
+def _root(square: Mapping[str, float], names: Sequence[str]) -> float:
+    return float(np.sqrt(np.mean([square[name] for name in names])))
+
+
+def _viscous(
+    bond: MixedBond, ways: Sequence[JumpPath], given: Answers, broken: Sequence[JumpPath], search: Search
+) -> tuple[Candidate, ...]:
+    """The viscosity that fits best, on mode I and the first two paths that are off."""
+    some = list(dict.fromkeys((ways[0], *broken[:2])))
+    expected = {way.name: of_bond(bond, way) for way in some}
+
+    def error(power: float) -> float:
+        left = _left(bond, viscous(bond, float(10.0**power)), some, given, expected)
+        return sum(left.values())
+
+    powers = np.linspace(np.log10(search.fastest), np.log10(search.slowest), search.tried)
+    best = int(np.argmin([error(power) for power in powers]))
+    low, high = powers[max(best - 1, 0)], powers[min(best + 1, powers.size - 1)]
+    golden = 0.5 * (5.0**0.5 - 1.0)
+    for _ in range(search.refined):
+        a, b = high - golden * (high - low), low + golden * (high - low)
+        low, high = (low, b) if error(a) < error(b) else (a, high)
+    return (viscous(bond, float(10.0 ** (0.5 * (low + high)))),)

@@ -1,0 +1,1 @@
+"""Tractions on the paths: of functions, of the solvers, of files."""

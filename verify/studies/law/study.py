@@ -1,0 +1,79 @@
+"""`debond law`: the paths of a scene, and the verdict on the law of the solvers or on anybody's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from verify.scene.bond.mixed import mixed_bond
+from verify.scene.effects import simulated
+from verify.scene.schema import Scene
+from verify.scene.tables import one_of
+from verify.studies.law.distance import apart
+from verify.studies.law.given.answer import Answer, of_function
+from verify.studies.law.given.built_in import built_in, modelled, opening_law
+from verify.studies.law.given.read import PathColumns
+from verify.studies.law.given.source import answered
+from verify.studies.law.judge import Judgement, Tolerances, judge
+from verify.studies.law.ways.legs import JumpPath
+from verify.studies.law.ways.paths import paths
+from verify.support.refusal import Refusal
+from verify.theory.mixed_law import KNOWN_MIXED_LAWS, MixedBond
+from verify.verdict import Check
+
+#: What the law of the solvers is called.
+BUILT_IN = "the law of the solvers"
+
+
+@dataclass(frozen=True)
+class Subject:
+    """The bond of a scene and its paths; without ``shear`` it only opens, and both modes have the same numbers."""
+
+    bond: MixedBond
+    shear: bool
+    ways: tuple[JumpPath, ...]
+
+
+def subject(scene: Scene) -> Subject:
+    """What is judged of a scene.
+
+    Raises
+    ------
+    Refusal : a law without a definition for both modes, or without history.
+    """
+    i, effects = scene.interface, simulated(scene)
+    if not effects["irreversible"]:
+        raise Refusal("effects.irreversible: must be true for debond law, which judges damage, got false")
+    if i.law not in KNOWN_MIXED_LAWS:
+        raise Refusal(f"interface.law: must be {one_of(KNOWN_MIXED_LAWS)} for debond law, got {i.law!r}")
+    found = mixed_bond(scene)
+    if found is not None:
+        return Subject(found, True, paths(found))
+    stiffness = 0.5 * i.strength**2 * i.ductility / i.toughness
+    pair = ((one, one) for one in (i.strength, i.toughness, stiffness))
+    bond = MixedBond(i.law, *pair, i.penalty, contact=effects["contact"], plateau=getattr(i, "plateau", 0.5))
+    return Subject(bond, False, paths(bond, shear=False))
+
+
+def judge_built_in(of: Subject) -> Judgement:
+    """The law of ``iga``, step by step, against the definition and against the law of ``fem_reference``."""
+    law = built_in(of.bond) if of.shear else opening_law(of.bond)
+    given = {way.name: of_function(law, way, BUILT_IN) for way in of.ways}
+    found = judge(of.bond, of.ways, given, Tolerances.exact())
+    if not of.shear:
+        return found
+    other = modelled(of.bond)
+    across = [_across(of.bond, way, given[way.name], of_function(other, way, "fem_reference")) for way in of.ways]
+    return replace(found, checks=(*found.checks, *across))
+
+
+def _across(bond: MixedBond, way: JumpPath, given: Answer, other: Answer) -> Check:
+    meaning = "Largest distance of the tractions from those of the law of fem_reference, in parts of the strengths."
+    value = float(apart(bond, given, other).max())
+    return Check("other-code", way.name, value, Tolerances.exact().tractions, "cross-code", meaning)
+
+
+def judge_given(of: Subject, text: str, columns: PathColumns, tolerance: float | None) -> Judgement:
+    """A law that is named on the command line, a file or a function (`verify.studies.law.given.source`)."""
+    ways, given = answered(text, of.ways, columns)
+    tolerances = Tolerances() if tolerance is None else replace(Tolerances(), tractions=tolerance)
+    return judge(of.bond, ways, given, tolerances)

@@ -1,0 +1,1 @@
+"""The displacement paths on which a law is judged."""
