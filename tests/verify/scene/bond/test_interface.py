@@ -17,6 +17,7 @@ from iga.interface.mode_ratio import consistent_shear_stiffness
 from verify.checks.mechanics.columns import law_of
 from verify.cli import main
 from verify.methods.problems import common_keys
+from verify.methods.solve import prepare
 from verify.scene.bond.interface import LEFT_OUT, Interface
 from verify.scene.effects import simulated
 from verify.scene.laws import known, mixed
@@ -255,6 +256,7 @@ class Flat(Law):
 
 def test_numbers_of_a_law_reach_solvers_and_checks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(KNOWN_LAWS, "trapezoidal", Flat)
+    monkeypatch.delitem(KNOWN_LAWS, "tabular", raising=False)
     flat = scene_with(OPENING | {"law": "trapezoidal", "plateau": 0.2})
     assert law_of(flat) == Flat(4.0, 0.1, 12.5, 1e5, plateau=0.2)
     corners = scene_with({"law": "tabular", "table": TABLE})
@@ -262,3 +264,5 @@ def test_numbers_of_a_law_reach_solvers_and_checks(monkeypatch: pytest.MonkeyPat
     keys = [common_keys(scene, simulated(scene)) for scene in (flat, corners, scene_with(OPENING))]
     assert keys[0]["plateau"] == 0.2 and keys[1]["table"] == corners.interface.table
     assert {"plateau", "table"}.isdisjoint(keys[2])
+    assert prepare(flat, "dolfinx").problem.plateau == 0.2
+    assert prepare(corners, "dolfinx").problem.table == corners.interface.table
