@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -236,7 +236,9 @@ def law_of(problem: Debonding) -> Law:
     p = problem
     if p.law_name not in MODELLED_LAWS:
         raise ValueError(f"law_name: must be one of {', '.join(MODELLED_LAWS)}, got {p.law_name}")
-    return MODELLED_LAWS[p.law_name](p.strength, p.toughness, p.ductility, p.penalty, p.contact, p.irreversible)
+    law = MODELLED_LAWS[p.law_name]
+    own = {field.name: getattr(p, field.name) for field in fields(law) if field.name in ("plateau", "table")}
+    return law(p.strength, p.toughness, p.ductility, p.penalty, p.contact, p.irreversible, **own)
 
 
 def _vector(blocks: list, weak: WeakForm) -> BlockVector:

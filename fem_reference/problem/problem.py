@@ -20,6 +20,7 @@ class Debonding(ABC):
     strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], g_u / g_max, and the stiffness
         against closing [stress per length].
     law_name : key of `fem_reference.problem.law.MODELLED_LAWS`; not checked here, since a mesh serves every law.
+    plateau, table : numbers of the trapezoidal and of the tabular law.
     contact : if False, the secant of the opening side continues into closing.
     irreversible : if False, damage follows the present gap and nothing is dissipated.
     opening : the prescribed openings in turn, for instance ``(3.0,)`` or ``(1.5, 0.0, 3.0)``; it starts at zero.
@@ -41,6 +42,8 @@ class Debonding(ABC):
     toughness: float
     ductility: float
     law_name: str = "bilinear"
+    plateau: float = 0.5
+    table: tuple[tuple[float, float], ...] = ()
     width: float = 1.0
     plane: str = "stress"
     penalty: float = 1e5

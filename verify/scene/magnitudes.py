@@ -90,7 +90,7 @@ def _sliding(law: Interface, steepness: float) -> Iterator[Range]:
         yield _beside(f"interface.shear_{key}", getattr(law, f"shear_{key}"), 1e-6, 1e6, f"interface.{key}", size)
     other = "the stiffness of the bond"
     yield _beside("interface.shear_stiffness", law.shear_stiffness or 0.0, 1e-12, 1e12, other, steepness)
-    yield "interface.exponent", law.exponent, 1.0, 100.0, "which is steeper than any bond"
+    yield "interface.exponent", law.exponent, 1.0, 20.0, "which is steeper than any bond"
     yield "interface.friction", law.friction, 0.0, 100.0, "which holds more than any face"
     yield "interface.viscosity", law.viscosity, 0.0, 1e6, "durations of the programme"
     yield "interface.pressure_strength", law.pressure_strength, 0.0, 1e6, "strength for a unit of pressure"

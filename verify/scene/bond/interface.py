@@ -229,7 +229,7 @@ class Interface(Section):
     @model_serializer(mode="wrap")
     def _as_given(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Without keys that were left out, of which many must be; the ductility stays unless another key says it."""
-        absent = {key for key in LEFT_OUT if key not in self.model_fields_set}
-        if "stiffness" not in absent or self.law in (EXPONENTIAL, TABULAR):
+        absent = {key for key in LEFT_OUT if key not in self.model_fields_set or getattr(self, key) is None}
+        if self.stiffness is not None or self.law in (EXPONENTIAL, TABULAR):
             absent.add("ductility")
         return {key: value for key, value in write(self).items() if key not in absent}

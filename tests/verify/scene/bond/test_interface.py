@@ -17,6 +17,7 @@ from iga.interface.mode_ratio import consistent_shear_stiffness
 from verify.checks.mechanics.columns import law_of
 from verify.cli import main
 from verify.methods.problems import common_keys
+from verify.methods.solve import prepare
 from verify.scene.bond.interface import LEFT_OUT, Interface
 from verify.scene.effects import simulated
 from verify.scene.laws import known, mixed
@@ -99,11 +100,11 @@ BROKEN: list[tuple[dict[str, Any], tuple[str, ...]]] = [
         ),
     ),
     (
-        OPENING | SHEAR | {"shear_strength": 1e9, "shear_stiffness": 1e-10, "exponent": 101.0},
+        OPENING | SHEAR | {"shear_strength": 1e9, "shear_stiffness": 1e-10, "exponent": 20.1},
         (
             "shear_strength: must be >= 4e-06 and <= 4000000, 1e-06 to 1e+06 times interface.strength, got 1000000000",
             "shear_stiffness: must be >= 1e-09 and <= 1e+15, 1e-12 to 1e+12 times the stiffness of the bond, got 1e-10",
-            "exponent: must be >= 1 and <= 100, which is steeper than any bond, got 101",
+            "exponent: must be >= 1 and <= 20, which is steeper than any bond, got 20.1",
         ),
     ),
     (
@@ -228,6 +229,12 @@ def test_a_bond_is_written_down_as_it_was_given(table: dict[str, Any]) -> None:
     assert ("ductility" in written) == ("stiffness" not in table and table.get("law") not in ("exponential", "tabular"))
 
 
+def test_a_key_of_no_value_is_left_out() -> None:
+    """As a program may give it; a file cannot."""
+    scene = scene_with(OPENING | {"stiffness": None, "ductility": 1.5, "shear_strength": None})
+    assert parse_scene(scene.model_dump()) == scene and "stiffness" not in scene.model_dump()["interface"]
+
+
 def test_an_override_of_what_was_written_down_finds_its_defaults_again() -> None:
     """Studies change keys of scenes that were written down."""
     written = scene_with(OPENING | SHEAR).model_dump()
@@ -255,6 +262,7 @@ class Flat(Law):
 
 def test_numbers_of_a_law_reach_solvers_and_checks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(KNOWN_LAWS, "trapezoidal", Flat)
+    monkeypatch.delitem(KNOWN_LAWS, "tabular", raising=False)
     flat = scene_with(OPENING | {"law": "trapezoidal", "plateau": 0.2})
     assert law_of(flat) == Flat(4.0, 0.1, 12.5, 1e5, plateau=0.2)
     corners = scene_with({"law": "tabular", "table": TABLE})
@@ -262,3 +270,5 @@ def test_numbers_of_a_law_reach_solvers_and_checks(monkeypatch: pytest.MonkeyPat
     keys = [common_keys(scene, simulated(scene)) for scene in (flat, corners, scene_with(OPENING))]
     assert keys[0]["plateau"] == 0.2 and keys[1]["table"] == corners.interface.table
     assert {"plateau", "table"}.isdisjoint(keys[2])
+    assert prepare(flat, "dolfinx").problem.plateau == 0.2
+    assert prepare(corners, "dolfinx").problem.table == corners.interface.table
