@@ -10,7 +10,6 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from verify.theory.mixed_law import MixedBond
 
 from verify.studies.law.distance import work
 from verify.studies.law.given.answer import of_bond, of_function
@@ -18,6 +17,7 @@ from verify.studies.law.judge import judge
 from verify.studies.law.ways.paths import paths
 from verify.studies.law.wording import sentences
 from verify.testing import assert_law
+from verify.theory.mixed_law import MixedBond
 
 K, Ks, G_I, G_II, p_max, t_max, eta = 100.0, 50.0, 1.0, 2.0, 1.0, 1.0, 2.0
 bond = MixedBond("bilinear", (p_max, t_max), (G_I, G_II), (K, Ks), penalty=1e4, criterion="bk", exponent=eta)

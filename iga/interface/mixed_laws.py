@@ -16,7 +16,7 @@ import numpy as np
 from iga.interface.mode_ratio import ModeRatio
 
 #: Points that are evaluated at a time: their arrays stay in the cache.
-POINTS_AT_ONCE = 8192
+POINTS_IN_CACHE = 8192
 #: Least way from the onset to failure, in parts of the onset: pressure may leave none.
 BRITTLE = 1e-14
 #: Smallest squared jump that divides; a jump without one has mode ratio 0.
@@ -119,11 +119,11 @@ class MixedLaw(ABC):
         """
         if self.viscosity and not dt > 0.0:
             raise ValueError(f"a law with viscosity needs the time of a step, dt > 0, got {dt}")
-        if g.size <= POINTS_AT_ONCE:
+        if g.size <= POINTS_IN_CACHE:
             return self._traction(g, s, history, dt)
         whole = np.empty((8 if history.slip is not None else 7, g.size))
-        for first in range(0, g.size, POINTS_AT_ONCE):
-            part = slice(first, first + POINTS_AT_ONCE)
+        for first in range(0, g.size, POINTS_IN_CACHE):
+            part = slice(first, first + POINTS_IN_CACHE)
             before = History(history.d[part], None if history.slip is None else history.slip[part])
             found = self._traction(g[part], s[part], before, dt)
             arrays = (*found[:6], *(one for one in found.history if one is not None))
@@ -219,13 +219,13 @@ class TrapezoidalMixed(MixedLaw):
         d_way = (2.0 * dG - dm) / ((1.0 + flat) * onset) - way * d_onset / onset
         fall = (1.0 - flat) * way
         height = np.clip((onset + way - size) / fall, 0.0, 1.0)
-        ratio = onset / size
+        ratio = np.minimum(onset / size, 1.0)  # below the onset it is not wanted, and may overflow
         d = np.where(size > onset, 1.0 - ratio * height, 0.0)
         falls = height < 1.0
         loads = (size > onset) & (height > 0.0)
         steep = np.where(falls, ratio / fall, 0.0)  # of the traction over lambda, by the height's numerator
         by_size = np.where(loads, ratio * height / size + steep, 0.0)
-        by_onset = height / size + steep
+        by_onset = height * ratio / onset + steep
         by_way = steep * (size - onset) / way
         by_B = np.where(loads, -by_onset * d_onset - by_way * d_way, 0.0)
         # lambda by g is K g / lambda, B by g -2 sliding K g / lambda^4; alike for the slip

@@ -74,10 +74,11 @@ class ModeRatio:
 
     def _power(self, B: np.ndarray) -> OfRatio:
         """``1 / G_c = [((1 - B) / G_I)^a + (B / G_II)^a]^(1 / a)``."""
-        a, (first, second) = self.exponent, self.toughness
+        a, least = self.exponent, min(self.toughness)
+        first, second = (G / least for G in self.toughness)  # powers of numbers below 1 do not overflow
         opening, sliding = (1.0 - B) / first, B / second
         summed = opening**a + sliding**a
-        G = summed ** (-1.0 / a)
+        G = least * summed ** (-1.0 / a)
         change = sliding ** (a - 1.0) / second - opening ** (a - 1.0) / first
         return G, -G * change / summed
 

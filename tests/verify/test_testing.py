@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from made_up_point_laws import BONDS, law_of
-from verify.scene.bond.mixed import mixed_bond
 
 import verify.testing
 from verify.curves.read import Reading
+from verify.scene.bond.mixed import mixed_bond
 from verify.support.refusal import Refusal
 from verify.testing import assert_curves_close, assert_law
 

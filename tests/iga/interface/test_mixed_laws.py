@@ -43,6 +43,7 @@ def every():
                 {"friction": 0.3},
                 {"viscosity": 0.2},
                 {"friction": 0.2, "pressure_strength": 0.4, "rubs": "area"},
+                {"viscosity": 0.2, "pressure_strength": 0.4},
             ):
                 if name == "exponential" and "pressure_strength" in more:
                     continue

@@ -23,11 +23,11 @@ from verify.scene.bond.corners import Corners, numbers_of, stiffness_of, strengt
 from verify.scene.laws import EXPONENTIAL, PLAIN, TABULAR, TRAPEZOIDAL, known, mixed
 from verify.scene.tables import Positive, Section, one_of, refuse
 
-#: Keys that are written down only where a scene gives them: most must be left out without others.
-LEFT_OUT = (
-    "plateau", "table", "stiffness", "shear_strength", "shear_toughness", "criterion", "exponent", "onset",
-    "shear_stiffness", "friction", "viscosity", "pressure_strength",
+#: Keys that must be left out without those of shear, and all that are written down only where a scene gives them.
+ASK_FOR_SHEAR = (
+    "criterion", "exponent", "onset", "shear_stiffness", "friction", "rubs", "viscosity", "pressure_strength",
 )  # fmt: skip
+LEFT_OUT = ("plateau", "table", "stiffness", "shear_strength", "shear_toughness", *ASK_FOR_SHEAR)
 
 #: Criteria of the onset of damage between opening and sliding.
 Onset: TypeAlias = Literal["turon", "quadratic"]
@@ -118,6 +118,9 @@ class Interface(Section):
     onset are in the same ratio for every mode, K (toughness / shear_toughness) (shear_strength / strength)^2."""
     friction: float = Field(default=0.0, ge=0)
     """Coefficient of friction of the damaged part of the bond, on faces that are pressed together."""
+    rubs: Literal["damage", "area"] = "damage"
+    """What friction acts on: the damage (Alfano and Sacco 2006), or the part of the area that has failed, which is the
+    part of the way from onset to separation in pure sliding."""
     viscosity: float = Field(default=0.0, ge=0)
     """Time in which damage follows, as a part of the duration of the programme; 0: at once."""
     pressure_strength: float = Field(default=0.0, ge=0)
@@ -212,7 +215,7 @@ class Interface(Section):
                 raise refuse("left out without interface.shear_strength", ((), value))
         return value
 
-    @field_validator("criterion", "exponent", "onset", "shear_stiffness", "friction", "viscosity", "pressure_strength")
+    @field_validator(*ASK_FOR_SHEAR)
     @classmethod
     def _with_shear(cls, value: object, info: ValidationInfo) -> object:
         data, key = info.data, info.field_name
@@ -220,7 +223,7 @@ class Interface(Section):
             return value
         if data.get("shear_strength", 0) is None and data.get("shear_toughness", 0) is None:
             raise refuse("left out without interface.shear_strength and interface.shear_toughness", ((), value))
-        if data.get("law") == EXPONENTIAL and key not in ("friction", "viscosity"):
+        if data.get("law") == EXPONENTIAL and key not in ("friction", "viscosity") and value != "damage":
             raise refuse(f"left out with the {EXPONENTIAL} law, whose formula says it", ((), value))
         if key == "onset" and value == "turon" and data.get("criterion") == "power":
             raise refuse('"quadratic" with interface.criterion = "power"', ((), value))

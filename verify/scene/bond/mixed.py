@@ -29,6 +29,7 @@ def mixed_bond(scene: Scene) -> MixedBond | None:
         onset=bond.onset,
         contact=effects["contact"],
         friction=bond.friction,
+        rubs=bond.rubs,
         viscosity=bond.viscosity,
         pressure_strength=bond.pressure_strength,
         plateau=bond.plateau,

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_up_point_laws import BONDS, DEFECTS, law_of
-from verify.theory.mixed_law import MixedBond
 
 from verify.studies.law.defects import Defect, defects
 from verify.studies.law.given.answer import Answer, Answers, of_bond, of_function
 from verify.studies.law.ways.legs import JumpPath
 from verify.studies.law.ways.paths import paths
+from verify.theory.mixed_law import MixedBond
 
 TOLERANCE = 1e-4
 AMOUNTS = {"viscosity": (0.003, 0.05), "stiffness-unit": (1e3, 1e-3)}

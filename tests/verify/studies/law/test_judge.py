@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_up_point_laws import BONDS, law_of
-from verify.theory.mixed_law import MixedBond
 
 from verify.studies.law.given.answer import Answer, of_bond, of_function
 from verify.studies.law.given.built_in import built_in, modelled
 from verify.studies.law.judge import Judgement, Tolerances, judge
 from verify.studies.law.ways.paths import paths
+from verify.theory.mixed_law import MixedBond
 
 BOND = BONDS["as4-peek"]
 VARIANTS = {

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_up_point_laws import BONDS
-from verify.theory.mixed_law import MixedBond
 
 from verify.studies.law.distance import work
 from verify.studies.law.given.answer import of_bond
 from verify.studies.law.ways.paths import paths
+from verify.theory.mixed_law import MixedBond
 
 each = pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
 
