@@ -49,8 +49,9 @@ def subject(scene: Scene) -> Subject:
     if found is not None:
         return Subject(found, True, paths(found))
     stiffness = 0.5 * i.strength**2 * i.ductility / i.toughness
-    pair = ((one, one) for one in (i.strength, i.toughness, stiffness))
-    bond = MixedBond(i.law, *pair, i.penalty, contact=effects["contact"], plateau=getattr(i, "plateau", 0.5))
+    strength, toughness, slope = ((one, one) for one in (i.strength, i.toughness, stiffness))
+    both = {"contact": effects["contact"], "plateau": i.plateau}
+    bond = MixedBond(i.law, strength, toughness, slope, i.penalty, **both)
     return Subject(bond, False, paths(bond, shear=False))
 
 

@@ -16,14 +16,15 @@ def built_in(bond: MixedBond) -> PointLaw:
     from iga.interface.mode_ratio import ModeRatio
 
     modes = ModeRatio(bond.toughness, bond.strength, bond.slopes, bond.criterion, bond.exponent, bond.onset_rule)
-    own = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
     settings: dict[str, Any] = {
         "contact": bond.contact,
         "friction": bond.friction,
         "viscosity": bond.viscosity,
         "pressure_strength": bond.pressure_strength,
     }
-    found = MIXED_LAWS[bond.law](modes, bond.penalty, **settings, **own)
+    if bond.law == "trapezoidal":
+        settings["plateau"] = bond.plateau
+    found = MIXED_LAWS[bond.law](modes, bond.penalty, **settings)
 
     def law(g: float, s: float, state: Any, dt: float) -> tuple:
         history = found.start(1) if state is None else state
@@ -52,7 +53,7 @@ def modelled(bond: MixedBond) -> PointLaw:
     """The law of ``fem_reference`` with the numbers of a bond."""
     from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
 
-    own = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
+    own: dict[str, Any] = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
     found = MODELLED_MIXED_LAWS[bond.law](
         strength=bond.strength[0],
         shear_strength=bond.strength[1],

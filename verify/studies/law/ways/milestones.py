@@ -25,7 +25,8 @@ class Milestones:
 def milestones(bond: MixedBond, B: float, pressure: float = 0.0) -> Milestones:
     """Of a bond at the mode ratio ``B`` by energy; under ``pressure`` [stress] B is 1."""
     if bond.law == "exponential":
-        return Milestones(*(_exponential(bond, B, size) for size in (BEFORE, BEHIND, LEFT_NOTHING)), kinks=())
+        onset, half, end = (_exponential(bond, B, size) for size in (BEFORE, BEHIND, LEFT_NOTHING))
+        return Milestones(onset, half, end, kinks=())
     ratio = np.array(B)
     gain = 1.0 + (bond.pressure_strength * pressure / bond.strength[1] if bond.contact else 0.0)
     toughness = float(bond.critical(ratio))
