@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from verify.studies.law.given.answer import PointLaw
+from verify.studies.law.opening_bond import OpeningBond
 from verify.theory.mixed_law import MixedBond
 
 
@@ -21,6 +22,7 @@ def built_in(bond: MixedBond) -> PointLaw:
         "friction": bond.friction,
         "viscosity": bond.viscosity,
         "pressure_strength": bond.pressure_strength,
+        "rubs": bond.rubs,
     }
     if bond.law == "trapezoidal":
         settings["plateau"] = bond.plateau
@@ -40,7 +42,10 @@ def opening_law(bond: MixedBond) -> PointLaw:
     from iga.interface.laws import LAWS
 
     (p, _), (G, _), (K, _) = bond.strength, bond.toughness, bond.slopes
-    found = LAWS[bond.law](p, G, 2.0 * G * K / p**2, bond.penalty, bond.contact)
+    own: dict[str, Any] = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
+    if isinstance(bond, OpeningBond):
+        own = {"table": tuple(map(tuple, bond.envelope.corners.tolist()))}
+    found = LAWS[bond.law](p, G, 2.0 * G * K / p**2, bond.penalty, bond.contact, **own)
 
     def law(g: float, s: float, state: Any, dt: float) -> tuple:
         traction, slope, k = found.traction(np.array([g]), np.zeros(1) if state is None else state)
@@ -69,6 +74,7 @@ def modelled(bond: MixedBond) -> PointLaw:
         friction=bond.friction,
         viscosity=bond.viscosity,
         pressure_strength=bond.pressure_strength,
+        rubs=bond.rubs,
         **own,
     )
 
