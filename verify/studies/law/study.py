@@ -43,7 +43,7 @@ def subject(scene: Scene) -> Subject:
     ------
     Refusal : a law without a definition here, or without history.
     """
-    i, effects = scene.interface, simulated(scene)
+    effects = simulated(scene)
     if not effects["irreversible"]:
         raise Refusal("effects.irreversible: must be true for debond law, which judges damage, got false")
     found = mixed_bond(scene)
