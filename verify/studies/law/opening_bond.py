@@ -32,7 +32,7 @@ class OpeningBond(MixedBond):
     @property
     def kinks(self) -> tuple[float, ...]:
         """Openings at which the slope of the law jumps."""
-        return tuple(self.envelope.corners[:, 0].tolist())
+        return tuple(float(one) for one in self.envelope.corners[:, 0])
 
     def driving(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
         """Damage on first loading to openings g (n,)."""
