@@ -107,10 +107,7 @@ def _stiffness(bond: MixedBond) -> Iterator[Candidate]:
         changed: dict[str, Any] = {"stiffness": (K * factor ** of[0], Ks * factor ** of[1])}
         changed |= {"penalty": factor * bond.penalty} if pressed else {}
         what = f"{name}{' and the penalty' if pressed else ''} times {factor:g}, as by a mistake in units"
-        made = tuple(_made("stiffness-unit", what, bond, **changed))
-        yield from made
-        for rest in () if made else (0.0, 1.0):
-            yield Candidate("stiffness-unit", what, _soft(bond, rest, changed))
+        yield from _made("stiffness-unit", what, bond, **changed)
 
 
 def _half(bond: MixedBond) -> Iterator[Candidate]:
@@ -125,11 +122,12 @@ def _contact(bond: MixedBond) -> Iterator[Candidate]:
 
 
 def _made(name: str, what: str, bond: MixedBond, **changed: Any) -> Iterator[Candidate]:
-    """The candidate with other numbers; none where they make no law."""
+    """The candidate with other numbers; two where they make no law, see `_soft`."""
     try:
         yield Candidate(name, what, replace(bond, **changed))
     except ValueError:
-        return
+        if bond.law != "exponential":
+            yield from (Candidate(name, what, _soft(bond, rest, changed)) for rest in (0.0, 1.0))
 
 
 def driven(bond: MixedBond, driving: Driving) -> MixedBond:

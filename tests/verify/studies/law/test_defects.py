@@ -123,3 +123,9 @@ def test_of_any_bond_the_planted_defect_is_named_if_it_shows(
     found = found_in(bond, law_of(bond, *planted))
     assert found == () or found[0].name == planted[0]
     assert found != () or planted[0] in ("displacement-mode-ratio", "onset")
+
+
+def test_half_a_toughness_below_what_the_onset_stores_is_named_too() -> None:
+    bond = MixedBond("bilinear", (3.16, 4.85), (4.31, 11.6), (2.0, 1.75), 147.0, exponent=3.0)
+    first, *_ = found_in(bond, law_of(bond, "half-area"))
+    assert first.name == "half-area"
