@@ -17,6 +17,11 @@ from verify.support.refusal import Refusal
 
 SCENE = "dcb-as4peek"
 HEADER = "path,step,g,s,p,t"
+SPECIMEN = """
+load = { opening = 1.0 }
+specimen = { kind = "dcb", length = 14.0, arm_thickness = 0.2, precrack = 4.0, width = 1.0, plane = "strain" }
+material = { young = 120e3, poisson = 0.2 }
+"""
 
 
 @pytest.fixture(scope="module")
@@ -221,8 +226,29 @@ def test_wrong_options_are_refused_with_one_sentence(
     assert sentence in said.err and "Traceback" not in said.err and said.out == ""
 
 
-def test_a_law_without_a_definition_for_both_modes_is_refused() -> None:
+OWN = {
+    "exponential": "",
+    "tabular": "table = [[0.001, 4.0], [0.02, 1.0], [0.08, 0.0]]",
+    "trapezoidal": "plateau = 0.3\nductility = 12.5",
+}
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_every_law_that_only_opens_is_judged(name: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    numbers = "" if name == "tabular" else "strength = 4.0\ntoughness = 0.0795"
+    bond = f'[interface]\nlaw = "{name}"\n{numbers}\n{OWN[name]}\n'
+    (tmp_path / "mine.toml").write_text(SPECIMEN + bond)
+    assert main(["law", str(tmp_path / "mine.toml")]) == 0
+    assert "20 checks on 5 paths, 20 hold" in capsys.readouterr().out
+    (tmp_path / "mine.py").write_text(
+        "def law(g, s, d, dt):\n    d = min(1.0, max(d or 0.0, 50.0 * g))\n    return (1 - d) * 4e3 * g, 0.0, d\n"
+    )
+    assert main(["law", str(tmp_path / "mine.toml"), "--with", f"{tmp_path}/mine.py:law"]) == 1
+    assert "defect: unknown: " in capsys.readouterr().out
+
+
+def test_a_law_without_a_definition_is_refused() -> None:
     scene = load_scene("dcb-czm1")
-    other = scene.interface.model_copy(update={"law": "tabular"})
-    with pytest.raises(Refusal, match="interface.law: must be .* for debond law, got 'tabular'"):
+    other = scene.interface.model_copy(update={"law": "my-own"})
+    with pytest.raises(Refusal, match="interface.law: must be .* for debond law, got 'my-own'"):
         subject(scene.model_copy(update={"interface": other}))

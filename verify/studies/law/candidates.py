@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from verify.studies.law.given.answer import Answer, of_bond
+from verify.studies.law.opening_bond import OpeningBond
 from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
@@ -40,7 +41,11 @@ class Candidate:
 
 def candidates(bond: MixedBond) -> tuple[Candidate, ...]:
     """All defects without a number of their own that this bond can have."""
-    makers = (_compressed, _lagged, _by_displacement, _onset, _stiffness, _half, _contact)
+    makers: tuple[Callable[[MixedBond], Iterator[Candidate]], ...] = (_half, _contact)
+    if isinstance(bond, OpeningBond):
+        makers = (_contact,)
+    elif bond.law != "exponential":  # which has neither criterion nor onset, and a stiffness of its own
+        makers = (_compressed, _lagged, _by_displacement, _onset, _stiffness, *makers)
     return tuple(one for make in makers for one in make(bond))
 
 
@@ -51,35 +56,33 @@ def viscous(bond: MixedBond, viscosity: float) -> Candidate:
 
 
 def _compressed(bond: MixedBond) -> Iterator[Candidate]:
-    if bond.law != "exponential":
-        first, second = bond.toughness
-        tougher = replace(bond, toughness=(2.0**0.5 * first, 2.0**0.5 * second))
+    first, second = bond.toughness
+    tougher = replace(bond, toughness=(2.0**0.5 * first, 2.0**0.5 * second))
 
-        def driving(g: np.ndarray, s: np.ndarray) -> np.ndarray:
-            return np.where(g > 0.0, bond.driving(g, s), tougher.driving(g, s))
+    def driving(g: np.ndarray, s: np.ndarray) -> np.ndarray:
+        return np.where(g > 0.0, bond.driving(g, s), tougher.driving(g, s))
 
-        what = "where g <= 0, the jump at failure is sqrt(2) times as large, and so is the toughness"
-        yield Candidate("sqrt2-compressed-shear", what, driven(bond, driving))
+    what = "where g <= 0, the jump at failure is sqrt(2) times as large, and so is the toughness"
+    yield Candidate("sqrt2-compressed-shear", what, driven(bond, driving))
 
 
 def _lagged(bond: MixedBond) -> Iterator[Candidate]:
-    if bond.law != "exponential":
 
-        def driving(g: np.ndarray, s: np.ndarray) -> np.ndarray:
-            before = np.append(0.0, bond.mode_ratio(g, s)[:-1])
-            return bond.driving(*_as_if(bond, g, s, before))
+    def driving(g: np.ndarray, s: np.ndarray) -> np.ndarray:
+        before = np.append(0.0, bond.mode_ratio(g, s)[:-1])
+        return bond.driving(*_as_if(bond, g, s, before))
 
-        def once_moved(g: np.ndarray, s: np.ndarray) -> np.ndarray:
-            now, size = bond.mode_ratio(g, s), bond.energy_norm(g, s)
-            before = np.where(np.append(0.0, size[:-1]) > 0.0, np.append(0.0, now[:-1]), now)
-            return bond.driving(*_as_if(bond, g, s, before))
+    def once_moved(g: np.ndarray, s: np.ndarray) -> np.ndarray:
+        now, size = bond.mode_ratio(g, s), bond.energy_norm(g, s)
+        before = np.where(np.append(0.0, size[:-1]) > 0.0, np.append(0.0, now[:-1]), now)
+        return bond.driving(*_as_if(bond, g, s, before))
 
-        for one in (driving, once_moved):
-            yield Candidate("lagged-mode-ratio", "the mode ratio is that of the step before", driven(bond, one))
+    for one in (driving, once_moved):
+        yield Candidate("lagged-mode-ratio", "the mode ratio is that of the step before", driven(bond, one))
 
 
 def _by_displacement(bond: MixedBond) -> Iterator[Candidate]:
-    if bond.law != "exponential" and bond.slopes[0] != bond.slopes[1]:
+    if bond.slopes[0] != bond.slopes[1]:
 
         def driving(g: np.ndarray, s: np.ndarray) -> np.ndarray:
             square = np.maximum(g, 0.0) ** 2 + s**2
@@ -92,22 +95,19 @@ def _by_displacement(bond: MixedBond) -> Iterator[Candidate]:
 
 def _onset(bond: MixedBond) -> Iterator[Candidate]:
     other = {"turon": "quadratic", "quadratic": "turon"}[bond.onset_rule]
-    if bond.law != "exponential" and (other == "quadratic" or bond.criterion == "bk"):
+    if other == "quadratic" or bond.criterion == "bk":
         yield from _made("onset", f'the onset is "{other}", not "{bond.onset_rule}"', bond, onset=other)
 
 
 def _stiffness(bond: MixedBond) -> Iterator[Candidate]:
     (K, Ks), names = bond.slopes, {(1, 0): "K", (0, 1): "Ks", (1, 1): "K and Ks"}
     for (of, name), factor, pressed in product(names.items(), (1e3, 1e-3), (False, True)):
-        if bond.law == "exponential" or (pressed and not bond.contact):
+        if pressed and not bond.contact:
             continue
         changed: dict[str, Any] = {"stiffness": (K * factor ** of[0], Ks * factor ** of[1])}
         changed |= {"penalty": factor * bond.penalty} if pressed else {}
         what = f"{name}{' and the penalty' if pressed else ''} times {factor:g}, as by a mistake in units"
-        made = tuple(_made("stiffness-unit", what, bond, **changed))
-        yield from made
-        for rest in () if made else (0.0, 1.0):
-            yield Candidate("stiffness-unit", what, _soft(bond, rest, changed))
+        yield from _made("stiffness-unit", what, bond, **changed)
 
 
 def _half(bond: MixedBond) -> Iterator[Candidate]:
@@ -122,11 +122,12 @@ def _contact(bond: MixedBond) -> Iterator[Candidate]:
 
 
 def _made(name: str, what: str, bond: MixedBond, **changed: Any) -> Iterator[Candidate]:
-    """The candidate with other numbers; none where they make no law."""
+    """The candidate with other numbers; two where they make no law, see `_soft`."""
     try:
         yield Candidate(name, what, replace(bond, **changed))
     except ValueError:
-        return
+        if bond.law != "exponential":
+            yield from (Candidate(name, what, _soft(bond, rest, changed)) for rest in (0.0, 1.0))
 
 
 def driven(bond: MixedBond, driving: Driving) -> MixedBond:

@@ -14,6 +14,8 @@ from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
 UNKNOWN = "unknown"
+#: Of a mean square deviation, what a defect of a part of the paths leaves at most on each path on which it would show.
+HALVED = 0.25
 
 
 @dataclass(frozen=True)
@@ -59,22 +61,19 @@ def defects(
     everywhere = _named(left, square, [way.name for way in ways], search)
     if everywhere:
         return (*everywhere, *_left_over(bond, everywhere[0], ways, given, expected, tolerance))
-    steady = {one: of for one, of in left.items() if _steady(bond, one, of, ways, expected, square, tolerance)}
+    steady = {
+        one: of
+        for one, of in left.items()
+        if all(of[name] <= HALVED * square[name] for name in _shows(bond, one, ways, expected, tolerance))
+    }
     return _in_parts(steady, square, [way.name for way in broken], search)
 
 
-def _steady(
-    bond: MixedBond,
-    one: Candidate,
-    left: Mapping[str, float],
-    ways: Sequence[JumpPath],
-    expected: Mapping[str, Answer],
-    off: Mapping[str, float],
-    tolerance: float,
-) -> bool:
-    """Whether a defect at least halves the deviation on every path on which it would show."""
-    shows = [way.name for way in ways if apart(bond, one.answer(way), expected[way.name]).max() > tolerance]
-    return all(left[name] <= 0.25 * off[name] for name in shows)
+def _shows(
+    bond: MixedBond, one: Candidate, ways: Sequence[JumpPath], expected: Mapping[str, Answer], tolerance: float
+) -> list[str]:
+    """The paths on which a defect would show."""
+    return [way.name for way in ways if apart(bond, one.answer(way), expected[way.name]).max() > tolerance]
 
 
 def _named(

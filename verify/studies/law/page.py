@@ -16,7 +16,7 @@ from verify.studies.law.wording import sentences
 from verify.verdict import Check, Counts, counted
 
 #: Kind of evidence -> what stands behind it.
-BEHIND = {
+STANDS_BEHIND = {
     "exact": "holds of any law of this kind",
     "analytical": "the definition, in closed form",
     "cross-code": "the law of another code",
@@ -47,8 +47,8 @@ def write(found: Judgement, scene: Scene, law: str, path: Path) -> None:
         law=law,
         passed=found.passed,
         total=counted(found.checks),
-        kinds={kind: counted([c for c in found.checks if c.kind == kind]) for kind in BEHIND},
-        evidence=BEHIND,
+        kinds={kind: counted([c for c in found.checks if c.kind == kind]) for kind in STANDS_BEHIND},
+        evidence=STANDS_BEHIND,
         rows=rows(found.checks),
         broken=[check for check in worst_first(found.checks) if not check.passed],
         defects=sentences(found.defects),

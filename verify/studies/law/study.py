@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
+from verify.scene.laws import TABULAR
 from verify.scene.schema import Scene
 from verify.scene.tables import one_of
 from verify.studies.law.distance import apart
@@ -14,9 +15,11 @@ from verify.studies.law.given.built_in import built_in, modelled, opening_law
 from verify.studies.law.given.read import PathColumns
 from verify.studies.law.given.source import answered
 from verify.studies.law.judge import Judgement, Tolerances, judge
+from verify.studies.law.opening_bond import opening_bond
 from verify.studies.law.ways.legs import JumpPath
 from verify.studies.law.ways.paths import paths
 from verify.support.refusal import Refusal
+from verify.theory.law import Tabular
 from verify.theory.mixed_law import KNOWN_MIXED_LAWS, MixedBond
 from verify.verdict import Check
 
@@ -38,20 +41,27 @@ def subject(scene: Scene) -> Subject:
 
     Raises
     ------
-    Refusal : a law without a definition for both modes, or without history.
+    Refusal : a law without a definition here, or without history.
     """
-    i, effects = scene.interface, simulated(scene)
+    effects = simulated(scene)
     if not effects["irreversible"]:
         raise Refusal("effects.irreversible: must be true for debond law, which judges damage, got false")
-    if i.law not in KNOWN_MIXED_LAWS:
-        raise Refusal(f"interface.law: must be {one_of(KNOWN_MIXED_LAWS)} for debond law, got {i.law!r}")
     found = mixed_bond(scene)
     if found is not None:
         return Subject(found, True, paths(found))
-    stiffness = 0.5 * i.strength**2 * i.ductility / i.toughness
-    pair = ((one, one) for one in (i.strength, i.toughness, stiffness))
-    bond = MixedBond(i.law, *pair, i.penalty, contact=effects["contact"], plateau=getattr(i, "plateau", 0.5))
+    bond = _opening(scene, effects["contact"])
     return Subject(bond, False, paths(bond, shear=False))
+
+
+def _opening(scene: Scene, contact: bool) -> MixedBond:
+    """The bond of a scene that only opens, with the numbers of opening for both modes."""
+    i = scene.interface
+    if i.law == TABULAR:
+        return opening_bond(Tabular(i.strength, i.toughness, i.ductility, i.penalty, contact, table=i.table))
+    if i.law not in KNOWN_MIXED_LAWS:
+        raise Refusal(f"interface.law: must be {one_of((*KNOWN_MIXED_LAWS, TABULAR))} for debond law, got {i.law!r}")
+    strength, toughness, slope = ((one, one) for one in (i.strength, i.toughness, i.bond_stiffness))
+    return MixedBond(i.law, strength, toughness, slope, i.penalty, contact=contact, plateau=i.plateau)
 
 
 def judge_built_in(of: Subject) -> Judgement:

@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_up_point_laws import BONDS, DEFECTS, law_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from made_up_point_laws import BONDS, DEFECTS, consistent, law_of
 
 from verify.studies.law.defects import Defect, defects
 from verify.studies.law.given.answer import Answer, Answers, of_bond, of_function
@@ -48,12 +50,12 @@ def perturbed(bond: MixedBond, ways: tuple[JumpPath, ...], seed: int, size: floa
     """The definition times 1 + size times a smooth function of the jump, for each traction another one."""
     a = np.random.default_rng(seed).normal(size=(2, 3))
     scale = 2.0 * bond.toughness[0] / bond.strength[0]
-    given = {}
+    answers = {}
     for way in ways:
         known = of_bond(bond, way)
         waves = [1.0 + size * np.sin((k * way.g + m * way.s) / scale + n) for k, m, n in a]
-        given[way.name] = Answer(known.p * waves[0], known.t * waves[1])
-    return given
+        answers[way.name] = Answer(known.p * waves[0], known.t * waves[1])
+    return answers
 
 
 @each
@@ -104,3 +106,26 @@ def test_where_modes_cannot_tell_there_is_no_such_defect() -> None:
     """With equal stiffness the mode ratio by displacement is that by energy."""
     bond = replace(BONDS["moose"], stiffness=(100.0, 100.0))
     assert found_in(bond, law_of(bond, "displacement-mode-ratio")) == ()
+
+
+ratios = st.floats(0.4, 2.5)
+
+
+@given(ratios, ratios, st.floats(1.5, 3.0), st.floats(8.0, 60.0), st.sampled_from(PLANTED))
+@settings(max_examples=12)
+def test_of_any_bond_the_planted_defect_is_named_if_it_shows(
+    tougher: float, stronger: float, exponent: float, ductility: float, planted: tuple[str, float]
+) -> None:
+    """Where K / Ks is such that two modes have one onset or one toughness, a defect may not show at all."""
+    strength, toughness = (1.0, stronger), (1.0, 1.3 * tougher)
+    K = 0.5 * ductility
+    bond = MixedBond("bilinear", strength, toughness, consistent(K, toughness, strength), 10.0 * K, exponent=exponent)
+    found = found_in(bond, law_of(bond, *planted))
+    assert found == () or found[0].name == planted[0]
+    assert found != () or planted[0] in ("displacement-mode-ratio", "onset")
+
+
+def test_half_a_toughness_below_what_the_onset_stores_is_named_too() -> None:
+    bond = MixedBond("bilinear", (3.16, 4.85), (4.31, 11.6), (2.0, 1.75), 147.0, exponent=3.0)
+    first, *_ = found_in(bond, law_of(bond, "half-area"))
+    assert first.name == "half-area"

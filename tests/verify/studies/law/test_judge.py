@@ -19,6 +19,7 @@ BOND = BONDS["as4-peek"]
 VARIANTS = {
     "bilinear": BOND,
     "compdam": replace(BONDS["compdam"], friction=0.3, pressure_strength=0.35),
+    "rubbing area": replace(BONDS["compdam"], friction=0.3, rubs="area"),
     "power": replace(BOND, criterion="power"),
     "quadratic": replace(BOND, onset="quadratic"),
     "trapezoidal": replace(BOND, law="trapezoidal", plateau=0.3),

@@ -66,7 +66,10 @@ def of_function(law: PointLaw, path: JumpPath, name: str = "law") -> Answer:
     ------
     LawError : naming the path, the step, and the line of the law that failed.
     """
-    state, found, given, states = None, [], [], []
+    state: Any = None
+    found: list[list[float]] = []
+    given: list[np.ndarray | None] = []
+    states: list[Any] = []
     for i, (g, s) in enumerate(zip(path.g.tolist(), path.s.tolist(), strict=True)):
         place = f"{name}: path {path.name}, step {i}, g = {g:g}, s = {s:g}"
         states.append(copy.deepcopy(state))

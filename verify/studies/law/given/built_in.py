@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from verify.studies.law.given.answer import PointLaw
+from verify.studies.law.opening_bond import OpeningBond
 from verify.theory.mixed_law import MixedBond
 
 
@@ -16,14 +17,16 @@ def built_in(bond: MixedBond) -> PointLaw:
     from iga.interface.mode_ratio import ModeRatio
 
     modes = ModeRatio(bond.toughness, bond.strength, bond.slopes, bond.criterion, bond.exponent, bond.onset_rule)
-    own = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
     settings: dict[str, Any] = {
         "contact": bond.contact,
         "friction": bond.friction,
         "viscosity": bond.viscosity,
         "pressure_strength": bond.pressure_strength,
+        "rubs": bond.rubs,
     }
-    found = MIXED_LAWS[bond.law](modes, bond.penalty, **settings, **own)
+    if bond.law == "trapezoidal":
+        settings["plateau"] = bond.plateau
+    found = MIXED_LAWS[bond.law](modes, bond.penalty, **settings)
 
     def law(g: float, s: float, state: Any, dt: float) -> tuple:
         history = found.start(1) if state is None else state
@@ -39,7 +42,10 @@ def opening_law(bond: MixedBond) -> PointLaw:
     from iga.interface.laws import LAWS
 
     (p, _), (G, _), (K, _) = bond.strength, bond.toughness, bond.slopes
-    found = LAWS[bond.law](p, G, 2.0 * G * K / p**2, bond.penalty, bond.contact)
+    own: dict[str, Any] = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
+    if isinstance(bond, OpeningBond):
+        own = {"table": tuple(map(tuple, bond.envelope.corners.tolist()))}
+    found = LAWS[bond.law](p, G, 2.0 * G * K / p**2, bond.penalty, bond.contact, **own)
 
     def law(g: float, s: float, state: Any, dt: float) -> tuple:
         traction, slope, k = found.traction(np.array([g]), np.zeros(1) if state is None else state)
@@ -52,7 +58,7 @@ def modelled(bond: MixedBond) -> PointLaw:
     """The law of ``fem_reference`` with the numbers of a bond."""
     from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
 
-    own = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
+    own: dict[str, Any] = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
     found = MODELLED_MIXED_LAWS[bond.law](
         strength=bond.strength[0],
         shear_strength=bond.strength[1],
@@ -68,6 +74,7 @@ def modelled(bond: MixedBond) -> PointLaw:
         friction=bond.friction,
         viscosity=bond.viscosity,
         pressure_strength=bond.pressure_strength,
+        rubs=bond.rubs,
         **own,
     )
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from verify.studies.law.opening_bond import OpeningBond
 from verify.theory.mixed_law import MixedBond
 
 #: Exponents of exp(-x - y^2) of the exponential law: before the peak, behind it, and where 1e-12 is left.
@@ -24,8 +25,13 @@ class Milestones:
 
 def milestones(bond: MixedBond, B: float, pressure: float = 0.0) -> Milestones:
     """Of a bond at the mode ratio ``B`` by energy; under ``pressure`` [stress] B is 1."""
+    if isinstance(bond, OpeningBond):
+        size = bond.slopes[0] ** 0.5
+        kinks = tuple(size * kink for kink in bond.kinks)
+        return Milestones(kinks[0], 0.5 * (kinks[0] + kinks[-1]), kinks[-1], kinks)
     if bond.law == "exponential":
-        return Milestones(*(_exponential(bond, B, size) for size in (BEFORE, BEHIND, LEFT_NOTHING)), kinks=())
+        onset, half, end = (_exponential(bond, B, size) for size in (BEFORE, BEHIND, LEFT_NOTHING))
+        return Milestones(onset, half, end, kinks=())
     ratio = np.array(B)
     gain = 1.0 + (bond.pressure_strength * pressure / bond.strength[1] if bond.contact else 0.0)
     toughness = float(bond.critical(ratio))
