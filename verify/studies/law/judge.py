@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from verify.studies.law import tangents
+from verify.studies.law.consistency import inconsistent
 from verify.studies.law.defects import Defect, defects
 from verify.studies.law.distance import apart, work
 from verify.studies.law.given.answer import Answer, Answers, of_bond
@@ -73,6 +74,7 @@ def judge(bond: MixedBond, ways: Sequence[JumpPath], given: Answers, tolerances:
 
 
 def _remarks(bond: MixedBond, given: Answers) -> Iterator[str]:
+    yield from inconsistent(bond)
     if bond.viscosity:
         yield "energies and peaks are held against the definition with its viscosity, not against the criterion"
     if bond.friction:

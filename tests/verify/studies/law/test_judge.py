@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from made_up_point_laws import BONDS, law_of
 
+from verify.studies.law.consistency import inconsistent
 from verify.studies.law.given.answer import Answer, of_bond, of_function
 from verify.studies.law.given.built_in import built_in, modelled
 from verify.studies.law.judge import Judgement, Tolerances, judge
+from verify.studies.law.ways.legs import JumpPath
 from verify.studies.law.ways.paths import paths
 from verify.theory.mixed_law import MixedBond
 
@@ -154,3 +156,23 @@ def test_tractions_that_are_no_numbers_break_everything() -> None:
     assert not found.passed and {c.name for c in found.checks if c.subject == "mode-I" and not c.passed} >= {
         "reference"
     }
+
+
+def test_another_stiffness_than_the_consistent_one_is_said_with_what_it_costs() -> None:
+    """CompDam's bond with K = Ks: the two energies are those of an own arithmetic, 0.484883 and 0.437269."""
+    bond = BONDS["compdam"]
+    (text,) = inconsistent(replace(bond, stiffness=(1e6, 1e6)))
+    assert "takes up 0.48488" in text and "the consistent one 0.437" in text and "(+10.9%)" in text
+    assert not list(inconsistent(bond))
+
+
+def test_the_bilinear_law_of_neml2_is_right() -> None:
+    """Every fourth row of `neml2_bilinear_monotonic.csv` (MIT); the same with 1 % less is not, and no known defect."""
+    x = np.array([0.0, 0.005, 0.025, 0.045, 0.065, 0.085])
+    t = np.array([0.0, 5.0, 7.3425519759, 6.1699135394, 4.9972751029, 3.8246366664])
+    bond = MixedBond("bilinear", (10.0, 15.0), (1.0, 2.0), (1e3, 1e3), 1e5, onset="quadratic")
+    way = JumpPath("neml2", "Opening and sliding alike.", x, x)
+    found = judge(bond, [way], {"neml2": Answer(t, t)}, Tolerances(1e-9, 1e-6))
+    assert found.passed and not found.defects
+    less = judge(bond, [way], {"neml2": Answer(0.99 * t, 0.99 * t)})
+    assert not less.passed and less.defects[0].name == "unknown"
