@@ -24,19 +24,22 @@ Driving = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A bond with a defect. ``damages_contact``: its tractions in contact fade with damage."""
+    """A bond with a defect. ``damages_contact``: its tractions in contact fade with damage. ``by_step``: every step takes
+    a unit of time, whatever the path, as in a code with a time step of its own."""
 
     name: str
     what: str  # a sentence that ends "is wrong like this"
     bond: MixedBond
     damages_contact: bool = False
+    by_step: bool = False
 
     def answer(self, path: JumpPath) -> Answer:
         """Tractions along a path."""
-        if not self.damages_contact:
+        if not self.damages_contact and not self.by_step:
             return of_bond(self.bond, path)
-        found = self.bond.path(path.g, path.s, path.time)
-        return Answer(np.where(path.g < 0.0, (1.0 - found.d) * found.p, found.p), found.t)
+        found = self.bond.path(path.g, path.s, np.arange(path.g.size) if self.by_step else path.time)
+        fades = (path.g < 0.0) & self.damages_contact
+        return Answer(np.where(fades, (1.0 - found.d) * found.p, found.p), found.t)
 
 
 def candidates(bond: MixedBond) -> tuple[Candidate, ...]:
@@ -49,10 +52,11 @@ def candidates(bond: MixedBond) -> tuple[Candidate, ...]:
     return tuple(one for make in makers for one in make(bond))
 
 
-def viscous(bond: MixedBond, viscosity: float) -> Candidate:
-    """The bond with another viscosity."""
-    what = f"damage lags behind as with a viscosity of {viscosity:.3g} of the programme's duration"
-    return Candidate("viscosity", what, replace(bond, viscosity=viscosity))
+def viscous(bond: MixedBond, viscosity: float, by_step: bool) -> Candidate:
+    """The bond with another viscosity, in parts of the programme's duration or in steps."""
+    unit = "steps" if by_step else "of the programme's duration"
+    what = f"damage lags behind as with a viscosity of {viscosity:.3g} {unit}"
+    return Candidate("viscosity", what, replace(bond, viscosity=viscosity), by_step=by_step)
 
 
 def _compressed(bond: MixedBond) -> Iterator[Candidate]:

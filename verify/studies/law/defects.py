@@ -14,6 +14,8 @@ from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
 UNKNOWN = "unknown"
+#: Steps that a viscosity in steps is counted in.
+STEPS = 1000.0
 #: Of a mean square deviation, what a defect of a part of the paths leaves at most on each path on which it would show.
 HALVED = 0.25
 
@@ -25,7 +27,7 @@ class Search:
     share: float = 0.05  # of the deviation that may be left; more names more, and more wrongly
     most: float = 0.01  # what may be left, in parts of the strengths
     slowest: float = 10.0  # viscosities are tried from here
-    fastest: float = 1e-6  # to here, in parts of the duration
+    fastest: float = 1e-6  # to here, in parts of the duration, or of a thousand steps
     tried: int = 22  # in equal ratios, before the best is refined
     refined: int = 32  # times that golden section shortens the range
 
@@ -55,7 +57,8 @@ def defects(
     broken = [way for way in ways if not off[way.name].max() <= tolerance]
     if not broken:
         return ()
-    tried = [*candidates(bond), *_viscous(bond, ways, given, broken, search)]
+    fitted = (_viscous(bond, ways, given, broken, search, by_step) for by_step in (False, True))
+    tried = [*candidates(bond), *fitted]
     left = {one: _left(bond, one, ways, given, expected) for one in tried}
     square = {name: mean_square(distance) for name, distance in off.items()}
     everywhere = _named(left, square, [way.name for way in ways], search)
@@ -151,14 +154,19 @@ def _root(square: Mapping[str, float], names: Sequence[str]) -> float:
 
 
 def _viscous(
-    bond: MixedBond, ways: Sequence[JumpPath], given: Answers, broken: Sequence[JumpPath], search: Search
-) -> tuple[Candidate, ...]:
+    bond: MixedBond,
+    ways: Sequence[JumpPath],
+    given: Answers,
+    broken: Sequence[JumpPath],
+    search: Search,
+    by_step: bool,
+) -> Candidate:
     """The viscosity that fits best, on mode I and the first two paths that are off."""
-    some = list(dict.fromkeys((ways[0], *broken[:2])))
+    some, unit = list(dict.fromkeys((ways[0], *broken[:2]))), STEPS if by_step else 1.0
     expected = {way.name: of_bond(bond, way) for way in some}
 
     def error(power: float) -> float:
-        left = _left(bond, viscous(bond, float(10.0**power)), some, given, expected)
+        left = _left(bond, viscous(bond, unit * float(10.0**power), by_step), some, given, expected)
         return sum(left.values())
 
     powers = np.linspace(np.log10(search.fastest), np.log10(search.slowest), search.tried)
@@ -168,4 +176,4 @@ def _viscous(
     for _ in range(search.refined):
         a, b = high - golden * (high - low), low + golden * (high - low)
         low, high = (low, b) if error(a) < error(b) else (a, high)
-    return (viscous(bond, float(10.0 ** (0.5 * (low + high)))),)
+    return viscous(bond, unit * float(10.0 ** (0.5 * (low + high))), by_step)

@@ -46,6 +46,13 @@ def test_the_viscosity_is_fitted(bond: MixedBond) -> None:
     assert first.candidate is not None and first.candidate.bond.viscosity == pytest.approx(0.02, rel=1e-4)
 
 
+@each
+def test_the_viscosity_of_a_code_with_a_time_step_of_its_own_is_fitted_in_steps(bond: MixedBond) -> None:
+    law = law_of(bond, "viscosity", 0.7)
+    first, *_ = found_in(bond, lambda g, s, state, dt: law(g, s, state, 1.0))
+    assert first.name == "viscosity" and "0.7 steps" in first.what
+
+
 def perturbed(bond: MixedBond, ways: tuple[JumpPath, ...], seed: int, size: float) -> Answers:
     """The definition times 1 + size times a smooth function of the jump, for each traction another one."""
     a = np.random.default_rng(seed).normal(size=(2, 3))
