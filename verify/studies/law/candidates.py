@@ -24,8 +24,11 @@ Driving = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A bond with a defect. ``damages_contact``: its tractions in contact fade with damage. ``by_step``: every step takes
-    a unit of time, whatever the path, as in a code with a time step of its own."""
+    """A bond with a defect.
+
+    ``damages_contact``: its tractions in contact fade with damage. ``by_step``: every step takes a unit of time,
+    whatever the path, as in a code with a time step of its own.
+    """
 
     name: str
     what: str  # a sentence that ends "is wrong like this"
