@@ -111,6 +111,11 @@ def test_each_fault_breaks_the_check_that_is_made_for_it(name: str) -> None:
     assert {name, "reference"} <= broken(found) and found.defects != ()
 
 
+def test_every_check_has_its_fault() -> None:
+    """`reference` is broken by all of them, `tangent` below."""
+    assert {check.name for check in judged(BOND, built_in(BOND)).checks} == {*FAULTS, "reference", "tangent"}
+
+
 @pytest.mark.parametrize("i", [0, 1])
 @pytest.mark.parametrize("j", [0, 1])
 def test_a_wrong_entry_of_the_tangent_is_found(i: int, j: int) -> None:
