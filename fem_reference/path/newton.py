@@ -96,7 +96,7 @@ def find_equilibrium(model: Model, step: Step, u_n: np.ndarray, load: float) -> 
     """Newton's method from a guess that may violate both equilibrium and control.
 
     First with full steps; if these fail, from the same guess with a line search and with contact that is stiffened in
-    stages. The bordered system [K, -f; c, 0] [du; dP] = [-r; missing] needs one factorisation of K and two
+    stages. The bordered system ``[K, -f; c, 0] [du; dP] = [-r; missing]`` needs one factorisation of K and two
     back-substitutions (Batoz and Dhatt 1979, Int. J. Numer. Methods Eng. 14, 1262-1267).
     """
     plain = _newton(model, step, u_n, load, REFERENCE_NEWTON.full_iterations, full_step)
