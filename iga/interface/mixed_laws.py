@@ -168,10 +168,10 @@ class MixedLaw(ABC):
         t, t_d, t_g, t_s, slip = left * Ks * s, -Ks * s, np.zeros_like(g), left * Ks, history.slip
         if slip is not None:
             held, elastic = self.friction * pressure, Ks * (s - slip)
-            rubs = np.clip(elastic, -held, held)
-            slides, slip = (rubs != elastic) | ~closed, s - rubs / Ks  # open faces slide freely
+            t_f = np.clip(elastic, -held, held)
+            slides, slip = (t_f != elastic) | ~closed, s - t_f / Ks  # open faces slide freely
             area, d_area = self.rubbing(d)
-            t, t_d = t + area * rubs, t_d + d_area * rubs
+            t, t_d = t + area * t_f, t_d + d_area * t_f
             t_g = np.where(slides & closed, -self.friction * self.penalty * np.sign(elastic) * area, 0.0)
             t_s = t_s + np.where(slides, 0.0, Ks * area)
         return Response(p, t, dp_dg, dp_ds, t_g + t_d * d_g, t_s + t_d * d_s, History(d, slip))

@@ -81,14 +81,3 @@ class ModeRatio:
         G = least * summed ** (-1.0 / a)
         change = sliding ** (a - 1.0) / second - opening ** (a - 1.0) / first
         return G, -G * change / summed
-
-
-def consistent_shear_stiffness(
-    stiffness: float, toughness: tuple[float, float], strength: tuple[float, float]
-) -> float:
-    """``K (G_I / G_II) (t_max / p_max)^2``, with which ``lambda0 / lambda_f`` is that of opening (Turon et al. 2010).
-
-    With any other ratio ``lambda0 / lambda_f`` depends on the mode, and the energy that a changing mode costs on its
-    way.
-    """
-    return stiffness * toughness[0] / toughness[1] * (strength[1] / strength[0]) ** 2

@@ -23,10 +23,11 @@ from verify.scene.bond.corners import Corners, numbers_of, stiffness_of, strengt
 from verify.scene.laws import EXPONENTIAL, PLAIN, TABULAR, TRAPEZOIDAL, known, mixed
 from verify.scene.tables import Positive, Section, one_of, refuse
 
-#: Keys that must be left out without those of shear, and all that are written down only where a scene gives them.
+#: Keys that must be left out without shear_strength and shear_toughness.
 ASK_FOR_SHEAR = (
     "criterion", "exponent", "onset", "shear_stiffness", "friction", "rubs", "viscosity", "pressure_strength",
 )  # fmt: skip
+#: Keys that are written down only where a scene gives them.
 LEFT_OUT = ("plateau", "table", "stiffness", "shear_strength", "shear_toughness", *ASK_FOR_SHEAR)
 
 #: Criteria of the onset of damage between opening and sliding.

@@ -31,7 +31,7 @@ class Candidate:
     """
 
     name: str
-    what: str  # a sentence that ends "is wrong like this"
+    what: str  # what is wrong, for the reader of the page
     bond: MixedBond
     damages_contact: bool = False
     by_step: bool = False
