@@ -79,7 +79,7 @@ def run(
     rows: list[dict[str, float]] = []
     snapshots: list[Snapshot] = []
     wanted = sorted(problem.snapshot_openings)
-    first, last, end, most = None, None, End("complete", 0), specimen
+    first, last, end, most, whose = None, None, End("complete", 0), specimen, specimen.system
 
     def renewed(point: Point) -> tuple[System, State] | None:
         nonlocal specimen, most
@@ -100,6 +100,7 @@ def run(
             continue
         first = _condition(system, item, phase) if first is None else first
         last, point = item, item if small is None else small.expanded(item)
+        whose = specimen.system if small is None else system  # a mesh may be renewed behind the last point
         rows.append(row(specimen, point))
         if on_step is not None:
             on_step(rows[-1])
@@ -117,7 +118,7 @@ def run(
         status=end.status,
         snapshots=tuple(snapshots),
         ending=f"separated at opening {last.opening:.6g}" if end.separated else "",
-        condition=max(first, _condition(specimen.system if small is None else system, last, phase)),
+        condition=max(first, _condition(whose, last, phase)),
     )
 
 

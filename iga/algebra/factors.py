@@ -3,14 +3,16 @@
 Under a given opening a specimen is stable where under a given load it is not: behind the peak. So a tangent K is
 factorised together with a spring across the opening, of stiffness ``hold``,
 
-    K + hold f f' ,      K^-1 b = x + hold (f'x) K^-1 f      with  (K + hold f f') x = b
+    K + hold r r' ,      K^-1 b = x + hold (r'x) K^-1 r      with  (K + hold r r') x = b,
 
-(Sherman and Morrison 1950), which is positive definite, and Cholesky does it, but for snap-back.
+where r is the load f itself, or its part in one place (Sherman and Morrison 1950), which is positive definite, and
+Cholesky does it, but for snap-back.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,35 +20,52 @@ from iga.algebra.banded import Band, BandCholesky, BandLU, Skew
 from iga.algebra.dense import Dense, DenseCholesky, DenseLU
 
 
+class Hold(NamedTuple):
+    """A spring on the displacement ``row_d @ u``, row_d (n_dof,), and K^-1 row_d."""
+
+    stiffness: float
+    row_d: np.ndarray
+    under_d: np.ndarray
+
+
 @dataclass(frozen=True)
 class Inverse:
-    """Factors of a tangent, with a spring ``hold`` across the opening; ``under_load_d`` (n_dof,) is K^-1 f."""
+    """Factors of a tangent, with a spring ``hold``; ``under_load_d`` (n_dof,) is K^-1 f."""
 
     factors: BandLU | BandCholesky | DenseLU | DenseCholesky
-    load_d: np.ndarray
     under_load_d: np.ndarray
-    hold: float = 0.0
+    hold: Hold | None = None
 
     def solve(self, b_dm: np.ndarray) -> np.ndarray:
         """Displacements (n_dof, n_m) for forces (n_dof, n_m), zero where fixed."""
-        x_dm = self.factors.solve(b_dm)
-        return x_dm + self.under_load_d[:, None] * (self.hold * (self.load_d @ x_dm)) if self.hold else x_dm
+        x_dm, hold = self.factors.solve(b_dm), self.hold
+        return x_dm if hold is None else x_dm + hold.under_d[:, None] * (hold.stiffness * (hold.row_d @ x_dm))
 
 
-def held_inverse(band: Band | Dense, half: np.ndarray, load_d: np.ndarray, hold: float) -> Inverse | None:
-    """By Cholesky, where the matrix with the lower half (size,), the spring in it, is positive definite; else None."""
-    factors = band.cholesky(half)
+def held_inverse(
+    band: Band | Dense, half: np.ndarray, rows_d: tuple[np.ndarray, np.ndarray], hold: float
+) -> Inverse | None:
+    """By Cholesky, where the matrix with the lower half (size,), the spring in it, is positive definite; else None.
+
+    ``rows_d`` are the load and the row (n_dof,) of the spring.
+    """
+    factors, (load_d, hold_d) = band.cholesky(half), rows_d
     if factors is None:
         return None
-    z_d = factors.solve(load_d[:, None])[:, 0]
-    free = 1.0 - hold * float(load_d @ z_d)
-    return Inverse(factors, load_d, z_d / free, hold) if free != 0.0 else None
+    z_d = factors.solve(hold_d[:, None])[:, 0]
+    free = 1.0 - hold * float(hold_d @ z_d)
+    if free == 0.0:
+        return None
+    found = Inverse(factors, z_d / free, Hold(hold, hold_d, z_d / free))
+    if hold_d is load_d or np.array_equal(hold_d, load_d):
+        return found
+    return replace(found, under_load_d=found.solve(load_d[:, None])[:, 0])
 
 
 def inverse(band: Band | Dense, half: np.ndarray, skew: Skew | None, load_d: np.ndarray) -> Inverse | None:
     """By LU, of any matrix that is not exactly singular."""
     factors = band.lu(half, skew)
-    return None if factors is None else Inverse(factors, load_d, factors.solve(load_d[:, None])[:, 0])
+    return None if factors is None else Inverse(factors, factors.solve(load_d[:, None])[:, 0])
 
 
 @dataclass(frozen=True)

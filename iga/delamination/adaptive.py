@@ -124,8 +124,8 @@ def followed(problem: Debonding, roots: int, specimen: Specimen, point: Point) -
     """The window for a converged point, or None where the mesh at hand goes on beyond the damage front by enough."""
     zone, law, end = zone_length(problem), specimen.system.interface.law, specimen.drawn.path_end
     precrack, length = problem.layout.bonded
-    s_q, k_q = specimen.distance(specimen.system.interface.X_qi), point.state.k_q
-    damaged, broken = s_q[k_q > law.g_max], s_q[k_q >= law.g_u]
+    X_q, k_q, bonded_q = specimen.places[0][:, 0], point.state.k_q, specimen.system.interface.bonded_q
+    damaged, broken = X_q[bonded_q & (k_q > law.begun)], X_q[bonded_q & (k_q >= law.failed)]
     front = float(damaged.max(initial=precrack))
     if end >= length or front < end - ADAPTIVITY.left * zone:
         return None
@@ -147,12 +147,13 @@ def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State |
                 for before, after, body in zip(old.drawn.tmeshes, new.drawn.tmeshes, old.bodies, strict=True)
             ]
         )
-    k_q = _history(old, new, point.state.k_q)
+    past, start = point.state, new.system.start()
+    k_q = _history(old, new, past.k_q, start.k_q)
     if k_q is None:
         return None
     u_d = (u_new @ new.pose.axes_kI).ravel()
-    start = new.system.start()
-    trial = replace(start, u_d=u_d, load=point.state.load, k_q=k_q, scale=point.state.scale)
+    slip_q = None if past.slip_q is None or start.slip_q is None else _beside(old, new, past.slip_q)
+    trial = replace(past, u_d=u_d, k_q=k_q, slip_q=slip_q, closed_q=start.closed_q, pairing=start.pairing)
     goal = Prescribed(opening_control(new.system), point.opening, 1e-3 * point.opening)
     found = equilibrium(Solver(new.system, MANY_DECIDE, phase), trial, goal)
     if found is None:
@@ -160,9 +161,17 @@ def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State |
     return replace(found.state, k_q=found.response.k_q, scale=max(trial.scale, found.response.scale))
 
 
-def _history(old: Specimen, new: Specimen, k_q: np.ndarray) -> np.ndarray | None:
-    """History at the points of the new mesh; None where a point that is being damaged would be lost."""
-    s_old, s_new = (specimen.distance(specimen.system.interface.X_qi) for specimen in (old, new))
+def _beside(old: Specimen, new: Specimen, v_q: np.ndarray) -> np.ndarray:
+    """Values at the points of the new mesh, between those of the old one beside them."""
+    X_old, X_new = (specimen.places[0][:, 0] for specimen in (old, new))
+    order = np.argsort(X_old)
+    return np.interp(X_new, X_old[order], v_q[order])
+
+
+def _history(old: Specimen, new: Specimen, k_q: np.ndarray, free_q: np.ndarray) -> np.ndarray | None:
+    """History at the points of the new mesh, ``free_q`` (n_q,) where there is no bond; None where a point that is being
+    damaged would be lost."""
+    s_old, s_new = (specimen.places[0][:, 0] for specimen in (old, new))
     held_q, holds_q = old.system.interface.bonded_q, new.system.interface.bonded_q
     order = np.flatnonzero(held_q)[np.argsort(s_old[held_q])]
     s, k = s_old[order], k_q[order]
@@ -170,9 +179,9 @@ def _history(old: Specimen, new: Specimen, k_q: np.ndarray) -> np.ndarray | None
     nearest = np.where(s_new - s[right - 1] < s[right] - s_new, right - 1, right)
     same = np.abs(s[nearest] - s_new) < ADAPTIVITY.same * s[-1]
     law = new.system.interface.law
-    active = (k > law.g_max) & (k < law.g_u)
+    active = (k > law.begun) & (k < law.failed)
     kept = np.zeros(len(s), dtype=bool)
     kept[nearest[same]] = True
     if np.any(active & ~kept):
         return None
-    return np.where(holds_q, np.where(same, k[nearest], np.interp(s_new, s, k)), 0.0)
+    return np.where(holds_q, np.where(same, k[nearest], np.interp(s_new, s, k)), free_q)

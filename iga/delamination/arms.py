@@ -12,6 +12,7 @@ from functools import cache
 import numpy as np
 
 from iga.bases.names import find
+from iga.delamination.bent import crack_end
 from iga.mesh.extraction import Mesh
 from iga.specimen.grading import GRADING, elements_within, largest, most_halvings, pieces, unequal
 from iga.specimen.problem import Debonding, presses
@@ -97,7 +98,8 @@ def require_arms(problem: Debonding) -> None:
     """Raise ValueError where the arms are not equally long, opened at X = 0 and bonded up to their far ends."""
     layout = problem.layout
     (precrack, end), lengths = layout.bonded, [body.length for body in layout.bodies]
-    if lengths != [end, end] or layout.loaded_at != 0.0 or not 0.0 < precrack < end:
+    opened = bool(layout.supports) or layout.loaded_at == 0.0
+    if lengths != [end, end] or not opened or not 0.0 < precrack < end:
         raise ValueError(f"arms must end with the bond and be opened at X = 0, got {lengths} and {layout.bonded}")
 
 
@@ -114,6 +116,8 @@ def crack_path(problem: Debonding) -> float:
     springs (Hetenyi 1946).
     """
     (precrack, end), opening = problem.layout.bonded, max(0.0, *problem.opening)
+    if problem.layout.supports:
+        return min(crack_end(problem) + zone_length(problem), end)
     one, other = (body.moduli.axial(problem.plane) * body.thickness**3 for body in problem.layout.bodies)
     mean = one * (2.0 * other / (one + other))
     crack = (1.5 * opening * (mean / (12.0 * problem.toughness)) ** 0.5) ** 0.5
@@ -124,11 +128,19 @@ def crack_path(problem: Debonding) -> float:
 
 def zone_length(problem: Debonding) -> float:
     """Length of the process zone of slender arms, ``(E G / p_max^2)^(1/4) h^(3/4)`` (Williams and Hadavinia 2002); of
-    unequal arms that of the more flexible one, which is at most 2^(1/4) times too short."""
-    return min(
-        (body.moduli.axial(problem.plane) * problem.toughness / problem.strength**2) ** 0.25 * body.thickness**0.75
-        for body in problem.layout.bodies
+    unequal arms that of the more flexible one, which is at most 2^(1/4) times too short.
+
+    Of arms that slide it is ``(E G_IIc h / t_max^2)^(1/2)`` where that is longer (Yang and Cox 2005).
+    """
+    bodies, plane = problem.layout.bodies, problem.plane
+    opening = min(
+        (body.moduli.axial(plane) * problem.toughness / problem.strength**2) ** 0.25 * body.thickness**0.75
+        for body in bodies
     )
+    if problem.mixed is None or not problem.layout.supports:
+        return opening
+    G, t = problem.mixed.modes.toughness[1], problem.mixed.modes.strength[1]
+    return max(opening, min((body.moduli.axial(plane) * G * body.thickness) ** 0.5 / t for body in bodies))
 
 
 def lead(problem: Debonding) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from iga.specimen.layout import Clamp, Layout, Load, Rectangle
+from iga.specimen.layout import Clamp, Layout, Load, Rectangle, Support
 from iga.specimen.problem import Debonding
 
 
@@ -16,8 +16,10 @@ class Problem(Debonding):
     bodies: tuple[Rectangle, Rectangle]
     bonded: tuple[float, float]
     loads: tuple[Load, ...]
-    clamps: tuple[Clamp, ...]
+    clamps: tuple[Clamp, ...] = ()
+    supports: tuple[Support, ...] = ()
+    loaded_at: float | None = None
 
     @cached_property
     def layout(self) -> Layout:
-        return Layout(self.bodies, self.bonded, self.loads, self.clamps)
+        return Layout(self.bodies, self.bonded, self.loads, self.clamps, self.supports, self.loaded_at)

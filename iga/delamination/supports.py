@@ -6,16 +6,38 @@ import numpy as np
 
 from iga.specimen.body import Body, edge_row, mean_row, point_row
 from iga.specimen.bond import control_points
+from iga.specimen.patch import patch_rows
 from iga.specimen.problem import Debonding
 from iga.specimen.specimen import Supports
 
 #: Stiffness of a tie that hardly gives, relative to the modulus times the width: that of the stiffest elements.
 TIE = 10.0
+#: Stiffness of a roller, relative to the same.
+ROLLER = 100.0
 
 
 def supports(problem: Debonding, bodies: tuple[Body, ...]) -> Supports:
     """The supports of a specimen's layout."""
+    if problem.layout.supports:
+        return _on_rollers(problem, bodies)
     return _clamped(problem, bodies) if problem.layout.clamps else _floating(problem, bodies)
+
+
+def _on_rollers(problem: Debonding, arms: tuple[Body, ...]) -> Supports:
+    """Stiff springs on the patches of the supports, and a soft one along the specimen, which carries no force.
+
+    Springs of `ROLLER` times the modulus times the width are as good as rigid: they give way by about a millionth of
+    the deflection.
+    """
+    upper, n_dof, pose = problem.layout.bodies[0], control_points(arms).size, problem.pose
+    rows = tuple(patch_rows(arms, support, pose, n_dof) for support in problem.layout.supports)
+    stiff = ROLLER * upper.moduli.E1 * problem.width
+    lever = sum(body.thickness for body in problem.layout.bodies)
+    spring_r = [stiff * (lever**2 if support.couple else 1.0) for support in problem.layout.supports]
+    along_d = mean_row(arms[-1].ends["right"], pose.axes_kI[0], n_dof)
+    soft = upper.moduli.E1 * problem.width * upper.thickness / upper.length
+    springs_rd = np.array([*(row.mean_d for row in rows), along_d])
+    return Supports(springs_rd, np.array([*spring_r, soft]), np.ones(n_dof, dtype=bool), rows)
 
 
 def _floating(problem: Debonding, arms: tuple[Body, ...]) -> Supports:
@@ -37,7 +59,10 @@ def _floating(problem: Debonding, arms: tuple[Body, ...]) -> Supports:
         return Supports(np.array(along_rd), np.array([soft]), free_d)
     upper_d, lower_d = (mean_row(arm.ends["left"], along_i, P_AI.size) for arm in arms)
     ends_d = [edge_row(arm.ends["right"], lambda X: np.abs(pose.own(X)[..., 1]), along_i, P_AI.size) for arm in arms]
-    rows = [along_rd[1], point_row(at[1], across_i, P_AI.size), upper_d - lower_d, ends_d[0] - ends_d[1]]
+    rows = [along_rd[1], point_row(at[1], across_i, P_AI.size), upper_d - lower_d]
+    if problem.mixed is not None:  # the bond itself keeps the arms from sliding
+        return Supports(np.array(rows), np.full(3, soft), free_d)
+    rows.append(ends_d[0] - ends_d[1])
     return Supports(np.array(rows), np.array([soft, soft, soft, TIE * upper.moduli.E1 * problem.width]), free_d)
 
 

@@ -8,12 +8,12 @@ import numpy as np
 
 
 @cache
-def orthotropic(E1: float, E2: float, G12: float, nu12: float, plane: str) -> np.ndarray:
+def orthotropic(E1: float, E2: float, G12: float, nu12: float, plane: str, nu23: float | None = None) -> np.ndarray:
     """Elasticity matrix D (3, 3), axis 1 along X.
 
     Plane stress inverts the in-plane compliance. Plane strain takes the in-plane block of the inverted 3-D compliance,
-    whose third direction is like the second (E3 = E2, nu13 = nu23 = nu12). With E1 = E2 and G12 = E / (2 (1 + nu)) both
-    are the isotropic matrices (Jones 1999, eqs. 2.15 and 2.60).
+    whose third direction is like the second (E3 = E2, nu13 = nu12, nu23 = nu12 where it is left out). With E1 = E2
+    and G12 = E / (2 (1 + nu)) both are the isotropic matrices (Jones 1999, eqs. 2.15 and 2.60).
 
     Raises
     ------
@@ -22,7 +22,7 @@ def orthotropic(E1: float, E2: float, G12: float, nu12: float, plane: str) -> np
     S = np.zeros((4, 4))  # 11, 22, 33, 12
     S[0, 0], S[1, 1], S[2, 2], S[3, 3] = 1 / E1, 1 / E2, 1 / E2, 1 / G12
     S[0, 1] = S[1, 0] = S[0, 2] = S[2, 0] = -nu12 / E1
-    S[1, 2] = S[2, 1] = -nu12 / E2
+    S[1, 2] = S[2, 1] = -(nu12 if nu23 is None else nu23) / E2
     inside = [0, 1, 3]
     if plane == "stress":
         D = np.linalg.inv(S[np.ix_(inside, inside)])

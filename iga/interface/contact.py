@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from iga.interface.closest_point import Pairing
+
+
+def dofs(conn_qa: np.ndarray) -> np.ndarray:
+    """Degrees of freedom (..., 2 n_a) of control points (..., n_a), numbered 2A + i."""
+    return np.stack([2 * conn_qa, 2 * conn_qa + 1], axis=-1).reshape(*conn_qa.shape[:-1], 2 * conn_qa.shape[-1])
+
+
+def along(N_qa: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
+    """Rows (n_q, 2 n_a) ``N_qa v_qi`` over the degrees of freedom."""
+    rows_qai = np.empty((*N_qa.shape, 2))
+    for i in range(2):  # a product over pairs would take four times as long
+        np.multiply(N_qa, v_qi[:, i : i + 1], out=rows_qai[..., i])
+    return rows_qai.reshape(len(N_qa), -1)
 
 
 @dataclass(frozen=True)
@@ -66,11 +79,28 @@ class DenseRows(Rows):
 
 
 @dataclass(frozen=True)
+class Slip:
+    """Slips s_q (n_q,) along tangents that do not turn, with their first variation ``rows``."""
+
+    s_q: np.ndarray
+    rows: Rows
+
+    def rounding(self, u_d: np.ndarray, slope_q: np.ndarray) -> float:
+        """Norm of the change of forces of slopes slope_q (n_q,) when displacements u_d change by rounding."""
+        return self.rows.rounding(u_d, slope_q)
+
+    def stiffness(self, contact: Contact, f_q: np.ndarray) -> np.ndarray | float:
+        """What the second variation of the slip adds to the tangent (n_q, n_d, n_d) for forces f_q (n_q,)."""
+        return 0.0
+
+
+@dataclass(frozen=True)
 class Contact:
     """Gaps and their variation in one configuration, along normals that do not turn.
 
     ``g_q`` (n_q,) gaps with their first variation ``gap_rows``, ``n_qi`` (n_q, 2) master normals, ``share_q`` (n_q,)
-    part of each point's area that faces the master, ``pairing`` where the points meet it if that was searched for.
+    part of each point's area that faces the master, ``pairing`` where the points meet it if that was searched for,
+    ``slip`` how far they have slid along it where the law asks for that.
     """
 
     pairing: Pairing | None
@@ -78,11 +108,12 @@ class Contact:
     n_qi: np.ndarray
     share_q: np.ndarray
     gap_rows: Rows
+    slip: Slip | None = field(default=None, kw_only=True)
 
     @property
     def dof_qd(self) -> np.ndarray:
         """Unknowns (n_q, n_d) of slave and master side on which each point depends."""
-        return self.gap_rows.dof_qd
+        return self.gap_rows.dof_qd if self.slip is None else self.slip.rows.dof_qd
 
     @cached_property
     def on_q(self) -> np.ndarray:
@@ -101,6 +132,24 @@ class Contact:
     def rows(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
         """Gradients (n_dof, n_m) of the gaps at some points."""
         return self.gap_rows.gradients(q_m, n_dof)
+
+    @property
+    def jump_qc(self) -> np.ndarray:
+        """What the tractions depend on (n_q, n_c): the gap, and the slip where the law asks for it."""
+        parts = [self.g_q] if self.slip is None else [self.g_q, self.slip.s_q]
+        return np.stack(parts, axis=1)
+
+    def jump_rates(self, v_d: np.ndarray, q: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Rates (n_q, n_c, ...) of all or some jumps when the displacements change by v_d (n_dof, ...)."""
+        gaps = self.gap_rows.rates(v_d, q)
+        return gaps[:, None] if self.slip is None else np.stack([gaps, self.slip.rows.rates(v_d, q)], axis=1)
+
+    def jump_rows(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
+        """Gradients (n_dof, n_m n_c) of the jumps at some points, those of one point beside each other."""
+        gaps = self.gap_rows.gradients(q_m, n_dof)
+        if self.slip is None:
+            return gaps
+        return np.stack([gaps, self.slip.rows.gradients(q_m, n_dof)], axis=2).reshape(n_dof, -1)
 
     def row(self, q: int, n_dof: int) -> np.ndarray:
         """Gradient (n_dof,) of the gap at one point."""

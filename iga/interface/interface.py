@@ -12,14 +12,20 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from iga.interface.closest_point import Pairing, closest_points, nearest_samples
-from iga.interface.contact import Contact, Rows, SlidingContact
+from iga.interface.contact import Contact, Rows, SlidingContact, Slip, along, dofs
 from iga.interface.master_point import MasterPoints, master_points
+from iga.interface.mixed_laws import History, MixedLaw, Scaled
+from iga.interface.slip import Home, home_of, slid_slip, walked
 from iga.interface.surface import Surface, normal
 from iga.interface.traction_law import TractionLaw
+
+#: Difference of the mixed slopes of both tractions, in parts of their sum, from which on a tangent is unsymmetric.
+UNSYMMETRIC = 1e-12
 
 #: Part of the model's size within which surfaces count as touching in the reference configuration.
 FACES_TOUCH = 1e-9
@@ -29,18 +35,22 @@ FACES_TOUCH = 1e-9
 class Interface(ABC):
     """Points of the slave and the law that acts there; its kind says where they meet the other surface.
 
-    ``N_qa`` (n_q, n_a) slave functions at the points, on the control points ``conn_qa``; ``dA_q`` (n_q,) reference area
+    ``N_qa`` (n_q, n_a) slave functions at the points, ``dN_qa`` their derivatives by the length of the surface as it is
+    walked, on the control points ``conn_qa``; ``dA_q`` (n_q,) reference area
     (length x width) of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the
-    whole model. ``bonded_q`` (n_q,) is False for points that only touch: they have no cohesion and no history.
+    whole model. ``bonded_q`` (n_q,) is False for points that only touch: they have no cohesion and no history. A slip
+    is positive where the slave moves along ``forward_i`` (2,) in the reference configuration.
     """
 
     N_qa: np.ndarray
+    dN_qa: np.ndarray
     conn_qa: np.ndarray
     dA_q: np.ndarray
     X_qi: np.ndarray
     P_AI: np.ndarray
-    law: TractionLaw
+    law: TractionLaw | MixedLaw
     bonded_q: np.ndarray
+    forward_i: np.ndarray
 
     @property
     @abstractmethod
@@ -60,6 +70,41 @@ class Interface(ABC):
     def points(self) -> int:
         return len(self.dA_q)
 
+    def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, np.ndarray] | None:
+        """Derivatives (n_q,) of gap and slip along the slave, by its reference length along ``forward_i``.
+
+        None where the points have no surface to be walked along.
+        """
+        return None
+
+    @cached_property
+    def walked_q(self) -> np.ndarray:
+        """1 where the slave is walked along ``forward_i``, else -1 (n_q,)."""
+        tangent_qi = (self.dN_qa[:, None] @ self.local_AI.take(self.conn_qa, axis=0))[:, 0]
+        return np.where(tangent_qi @ self.forward_i < 0.0, -1.0, 1.0)
+
+    @cached_property
+    def rubs_q(self) -> np.ndarray:
+        """Points (n_q,) with a traction along the surface, where the law has one: bonded ones, or all with friction."""
+        return self.bonded_q | (isinstance(self.law, MixedLaw) and self.law.friction > 0.0)
+
+    @property
+    def slides(self) -> bool:
+        """Whether the law asks for the slip."""
+        return isinstance(self.law, MixedLaw)
+
+    @property
+    def viscosity(self) -> float:
+        """Time in which damage follows, 0 where it does so at once."""
+        return self.law.viscosity if isinstance(self.law, MixedLaw) and self.law.irreversible else 0.0
+
+    def flat_slip(self, conn_qa: np.ndarray, D_qa: np.ndarray, t_qi: np.ndarray) -> Slip | None:
+        """No slip yet, along tangents t_qi (n_q, 2) that stay; None where the law does not ask for it."""
+        if not self.slides:
+            return None
+        forward_q = np.where(t_qi @ self.forward_i < 0.0, -1.0, 1.0) / np.linalg.norm(t_qi, axis=1)
+        return Slip(np.zeros(self.points), Rows(dofs(conn_qa), along(D_qa, forward_q[:, None] * t_qi)))
+
     @cached_property
     def all_bonded(self) -> bool:
         return bool(self.bonded_q.all())
@@ -68,6 +113,13 @@ class Interface(ABC):
     def local_AI(self) -> np.ndarray:
         """Control points relative to the first one, so that coordinates are no larger than the specimen."""
         return self.P_AI - self.P_AI[0]
+
+    def start(self) -> Histories:
+        """The points before anything moves; of a law that slides those without cohesion have failed already."""
+        if not isinstance(self.law, MixedLaw):
+            return Histories(np.zeros(self.points))
+        d_q, slip_q = self.law.start(self.points)
+        return Histories(np.where(self.bonded_q, d_q, 1.0), slip_q)
 
     def beside(self, X_mi: np.ndarray) -> np.ndarray:
         """The points (n_m,) nearest to some places (n_m, 2)."""
@@ -116,8 +168,14 @@ class SearchedInterface(Interface):
     def rest(self) -> Contact:
         there = self.reference
         conn_qa, D_qa, n_qi = self._pairs(there)
-        g_q, rows = np.sum(self.apart_qi * n_qi, -1), Rows(dofs(conn_qa), _along(D_qa, n_qi))
-        return Contact(self.pairing, g_q, n_qi, there.share_q, rows)
+        g_q, rows = np.sum(self.apart_qi * n_qi, -1), Rows(dofs(conn_qa), along(D_qa, n_qi))
+        slip = self.flat_slip(conn_qa, D_qa, there.t_qi)
+        return Contact(self.pairing, g_q, n_qi, there.share_q, rows, slip=slip)
+
+    @cached_property
+    def home(self) -> Home:
+        """Where the points met the master before anything moved."""
+        return home_of(self.master, self.pairing, self.local_AI, self.forward_i)
 
     def contact(self, u_d: np.ndarray, guess: Pairing | None) -> SlidingContact:
         u_Ai = u_d.reshape(-1, 2)
@@ -126,12 +184,39 @@ class SearchedInterface(Interface):
         pairing = closest_points(self.master, x_qi, y_AI, guess or self.pairing)
         there = master_points(self.master, pairing, x_qi, y_AI)
         conn_qa, D_qa, n_qi = self._pairs(there)
-        g_q = np.sum((self._slid(there) + _jump(D_qa, u_Ai.take(conn_qa, axis=0))) * n_qi, -1)
+        apart_qi = self._slid(there) + _jump(D_qa, u_Ai.take(conn_qa, axis=0))
+        g_q = np.sum(apart_qi * n_qi, -1)
         moving_qa = np.concatenate([np.zeros_like(self.N_qa), there.dM_qb], axis=1)
-        V_qrd = np.stack([_along(D_qa, n_qi), _along(D_qa, there.t_qi), _along(moving_qa, n_qi)], axis=1)
+        V_qrd = np.stack([along(D_qa, n_qi), along(D_qa, there.t_qi), along(moving_qa, n_qi)], axis=1)
         m_q, kappa_q = np.sum(there.t_qi**2, -1), np.sum(n_qi * there.t_xi_qi, -1)
         rows = Rows(dofs(conn_qa), V_qrd[:, 0])
-        return SlidingContact(pairing, g_q, n_qi, there.share_q, rows, V_qrd, m_q, kappa_q, there.fading_q)
+        found = SlidingContact(pairing, g_q, n_qi, there.share_q, rows, V_qrd, m_q, kappa_q, there.fading_q)
+        if not self.slides:
+            return found
+        return replace(found, slip=slid_slip(self.master, self.home, found, there, apart_qi, y_AI))
+
+    @cached_property
+    def rest_slopes(self) -> tuple[Rows, Rows]:
+        """Rows of the derivatives of gap and slip (see `slopes`) in the reference configuration."""
+        there = self.reference
+        conn_qa, _, n_qi = self._pairs(there)
+        size_q = np.linalg.norm(there.t_qi, axis=1)
+        forward_qi = (self.home.forward_q / size_q)[:, None] * there.t_qi
+        by_length = (self.home.forward_q / size_q)[:, None] * there.dM_qb
+        D_qa = np.concatenate([self.walked_q[:, None] * self.dN_qa, -by_length], axis=1)
+        return Rows(dofs(conn_qa), along(D_qa, n_qi)), Rows(dofs(conn_qa), along(D_qa, forward_qi))
+
+    def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, np.ndarray]:
+        """``dg = n.dx`` and ``ds = |t| dxi - |t_home| dxi_home`` with ``(m - g n.y'') dxi = t.dx``."""
+        assert contact.pairing is not None and isinstance(contact, SlidingContact)
+        y_AI, home = self.local_AI + u_d.reshape(-1, 2), self.home
+        dx_qi = self.walked_q[:, None] * (self.dN_qa[:, None] @ y_AI.take(self.conn_qa, axis=0))[:, 0]
+        t_qi = walked(self.master, y_AI, contact.pairing.c_q, contact.pairing.xi_q)
+        stretch_q = np.linalg.norm(walked(self.master, y_AI, home.c_q, home.xi_q), axis=1)
+        stretch_q = stretch_q / np.linalg.norm(self.reference.t_qi, axis=1)
+        along_q = np.sum(t_qi * dx_qi, -1) / (contact.m_q - contact.g_q * contact.kappa_q)
+        ds_q = home.forward_q * contact.m_q**0.5 * along_q - stretch_q
+        return np.sum(contact.n_qi * dx_qi, -1), ds_q
 
     def _pairs(self, there: MasterPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Control points of both sides, their functions (n_q, n_a + n_b), slave minus master, and master normals."""
@@ -155,10 +240,18 @@ class SearchedInterface(Interface):
 class SettledInterface(Interface):
     """Every point keeps its place on the master and the normal there, as is exact in linear kinematics.
 
-    Gaps change in proportion to the displacements, from the contact ``at_rest`` on and with its rows.
+    Gaps change in proportion to the displacements, from the contact ``at_rest`` on and with its rows; ``by_length`` are
+    the rows of their derivatives, where the law asks for slip.
     """
 
     at_rest: Contact
+    by_length: tuple[Rows, Rows] | None = None
+
+    def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, np.ndarray] | None:
+        if self.by_length is None:
+            return None
+        dg, ds = (rows.rates(u_d) for rows in self.by_length)
+        return dg, ds
 
     @property
     def rest(self) -> Contact:
@@ -169,7 +262,9 @@ class SettledInterface(Interface):
         return self.at_rest.pairing
 
     def contact(self, u_d: np.ndarray, guess: Pairing | None = None) -> Contact:
-        return replace(self.at_rest, g_q=self.at_rest.g_q + self.at_rest.rates(u_d))
+        rest = self.at_rest
+        slip = None if rest.slip is None else replace(rest.slip, s_q=rest.slip.rows.rates(u_d))
+        return replace(rest, g_q=rest.g_q + rest.rates(u_d), slip=slip)
 
 
 @dataclass(frozen=True)
@@ -186,8 +281,9 @@ class PairedInterface(Interface):
 
     @cached_property
     def rest(self) -> Contact:
-        n_q, rows = self.points, Rows(dofs(self.both_qa), _along(self.D_qa, self.n_qi))
-        return Contact(None, np.zeros(n_q), self.n_qi, np.ones(n_q), rows)
+        n_q, rows = self.points, Rows(dofs(self.both_qa), along(self.D_qa, self.n_qi))
+        slip = self.flat_slip(self.both_qa, self.D_qa, np.stack([-self.n_qi[:, 1], self.n_qi[:, 0]], -1))
+        return Contact(None, np.zeros(n_q), self.n_qi, np.ones(n_q), rows, slip=slip)
 
     @property
     def pairing(self) -> None:
@@ -195,30 +291,109 @@ class PairedInterface(Interface):
 
     def contact(self, u_d: np.ndarray, guess: Pairing | None = None) -> Contact:
         jump_qi = (self.D_qa[:, None] @ u_d.reshape(-1, 2)[self.both_qa])[:, 0]
-        return replace(self.rest, g_q=np.sum(jump_qi * self.n_qi, -1))
+        rest = self.rest
+        slip = None if rest.slip is None else replace(rest.slip, s_q=rest.slip.rows.rates(u_d))
+        return replace(rest, g_q=np.sum(jump_qi * self.n_qi, -1), slip=slip)
 
 
 def settled(interface: Interface) -> SettledInterface:
     """The same interface with the pairs and normals of the reference configuration."""
     common = {field.name: getattr(interface, field.name) for field in fields(Interface)}
-    return SettledInterface(**common, at_rest=interface.rest)
+    by_length = interface.rest_slopes if interface.slides and isinstance(interface, SearchedInterface) else None
+    return SettledInterface(**common, at_rest=interface.rest, by_length=by_length)
+
+
+@dataclass(frozen=True)
+class Shear:
+    """What sliding adds to the response of the points (n_q,): traction t_q along the master, the slopes of both
+    tractions that opening alone does not have, the history ``slip_q`` of friction, how far damage is on its way
+    (``scaled``), and the law.
+
+    ``driven_q`` is the damage that the jump drives to on first loading.
+    """
+
+    t_q: np.ndarray
+    dp_ds_q: np.ndarray
+    dt_dg_q: np.ndarray
+    dt_ds_q: np.ndarray
+    slip_q: np.ndarray | None
+    driven_q: np.ndarray
+    scaled: Scaled
+    law: MixedLaw
+
+    def along(self, g_q: np.ndarray, s_q: np.ndarray) -> np.ndarray:
+        """Scaled jumps (n_q,) of undamaged points at small gaps and slips, in proportion to these."""
+        return self.law.scaled(g_q, s_q, np.zeros(len(g_q))).x
+
+
+class Tractions(NamedTuple):
+    """Traction p_q, its slope dp_q by the gap, and the new history k_q (n_q,): the largest gap, or with ``shear`` the
+    damage."""
+
+    p_q: np.ndarray
+    dp_q: np.ndarray
+    k_q: np.ndarray
+    shear: Shear | None = None
+
+    @property
+    def force_qc(self) -> np.ndarray:
+        """Tractions (n_q, n_c), as the jumps of a `Contact`."""
+        return np.stack([self.p_q] if self.shear is None else [self.p_q, self.shear.t_q], axis=1)
+
+    @property
+    def slope_qcc(self) -> np.ndarray:
+        """Derivatives (n_q, n_c, n_c) of the tractions by the jumps."""
+        if self.shear is None:
+            return self.dp_q[:, None, None]
+        rows = self.dp_q, self.shear.dp_ds_q, self.shear.dt_dg_q, self.shear.dt_ds_q
+        return np.stack(rows, axis=1).reshape(-1, 2, 2)
+
+
+@dataclass(frozen=True)
+class Histories:
+    """What the points (n_q,) bring along: k_q as in `Tractions`, the slip of friction, the time ``dt`` of the step."""
+
+    k_q: np.ndarray
+    slip_q: np.ndarray | None = None
+    dt: float = 0.0
 
 
 def traction(
-    interface: Interface, contact: Contact, k_q: np.ndarray, closed_q: np.ndarray, g_q: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Traction, its slope and the new history at all points; a point that has left the master is free.
+    interface: Interface, contact: Contact, past: Histories, closed_q: np.ndarray, jump_qc: np.ndarray | None = None
+) -> Tractions:
+    """Tractions, their slopes and the new history at all points; a point that has left the master is free.
 
-    Traction and slope are those of the share of each point that faces the master, over its whole area. ``g_q`` are
-    trial gaps in place of those of the contact.
+    Traction and slope are those of the share of each point that faces the master, over its whole area. ``jump_qc``
+    are trial jumps in place of those of the contact.
     """
-    p, dp, k_new = interface.law.traction(contact.g_q if g_q is None else g_q, k_q, closed_q)
+    law, k_q = interface.law, past.k_q
+    if isinstance(law, MixedLaw):
+        return _sheared(law, interface, contact, past, (closed_q, contact.jump_qc if jump_qc is None else jump_qc))
+    p, dp, k_new = law.traction(contact.g_q if jump_qc is None else jump_qc[:, 0], k_q, closed_q)
     if interface.all_bonded and contact.whole:
-        return p, dp, k_new
+        return Tractions(p, dp, k_new)
     holds_q, carries_q = holding(interface, contact), contact.share_q
     if not interface.all_bonded:
-        carries_q = np.where(holds_q | (closed_q & interface.law.contact), carries_q, 0.0)
-    return carries_q * p, carries_q * dp, np.where(holds_q, k_new, k_q)
+        carries_q = np.where(holds_q | (closed_q & law.contact), carries_q, 0.0)
+    return Tractions(carries_q * p, carries_q * dp, np.where(holds_q, k_new, k_q))
+
+
+def _sheared(
+    law: MixedLaw, interface: Interface, contact: Contact, past: Histories, at: tuple[np.ndarray, np.ndarray]
+) -> Tractions:
+    """The same of a law that slides, ``at`` contact and jumps; points without cohesion have failed from the start, and
+    touch and rub alone."""
+    closed_q, jump_qc = at
+    (g_q, s_q), share_q = jump_qc.T.copy(), contact.share_q
+    found = law.traction(g_q, s_q, History(past.k_q, past.slip_q), past.dt, closed_q)
+    d_q, slip_q = found.history
+    if not contact.whole:
+        d_q = np.where(holding(interface, contact), d_q, past.k_q)
+    scaled = law.scaled(g_q, s_q, d_q)
+    driven_q = law.driven(g_q, s_q)
+    t_q, dp_ds_q, dt_dg_q, dt_ds_q = (share_q * part for part in (found.t, found.dp_ds, found.dt_dg, found.dt_ds))
+    shear = Shear(t_q, dp_ds_q, dt_dg_q, dt_ds_q, slip_q, driven_q, scaled, law)
+    return Tractions(share_q * found.p, share_q * found.dp_dg, d_q, shear)
 
 
 def holding(interface: Interface, contact: Contact) -> np.ndarray:
@@ -226,19 +401,55 @@ def holding(interface: Interface, contact: Contact) -> np.ndarray:
     return contact.on_q & interface.bonded_q
 
 
-def forces(interface: Interface, contact: Contact, p_q: np.ndarray, n_dof: int) -> np.ndarray:
-    """Residual ``R = int p dg/du dGamma`` (n_dof,)."""
-    return contact.gap_rows.forces(p_q * interface.dA_q, n_dof)
+def stored(interface: Interface, contact: Contact, past: Histories) -> tuple[float, float]:
+    """Energies stored in a bond that slides, in cohesion and friction and in contact."""
+    assert contact.slip is not None and isinstance(interface.law, MixedLaw)
+    found = interface.law.stored(contact.g_q, contact.slip.s_q, History(past.k_q, past.slip_q))
+    dA_q = interface.dA_q * contact.share_q
+    return float(dA_q @ (found.cohesion + found.friction)), float(dA_q @ found.contact)
 
 
-def stiffness(interface: Interface, contact: Contact, p_q: np.ndarray, dp_q: np.ndarray) -> np.ndarray:
-    """Complete tangent of each point (n_q, n_d, n_d), ``K = int p' G'G dGamma + int p D(dg) dGamma``."""
-    return contact.stiffness(p_q * interface.dA_q, dp_q * interface.dA_q)
+def forces(interface: Interface, contact: Contact, pull: Tractions, n_dof: int) -> np.ndarray:
+    """Residual ``R = int (p dg/du + t ds/du) dGamma`` (n_dof,)."""
+    R_d = contact.gap_rows.forces(pull.p_q * interface.dA_q, n_dof)
+    if pull.shear is not None and contact.slip is not None:
+        R_d += contact.slip.rows.forces(pull.shear.t_q * interface.dA_q, n_dof)
+    return R_d
 
 
-def dofs(conn_qa: np.ndarray) -> np.ndarray:
-    """Degrees of freedom (..., 2 n_a) of control points (..., n_a), numbered 2A + i."""
-    return np.stack([2 * conn_qa, 2 * conn_qa + 1], axis=-1).reshape(*conn_qa.shape[:-1], -1)
+def stiffness(interface: Interface, contact: Contact, pull: Tractions) -> np.ndarray:
+    """Complete tangent of each point (n_q, n_d, n_d), ``K = int (J' C J + p D(dg) + t D(ds)) dGamma``.
+
+    J are the rows of gap and slip, C the slopes of the tractions.
+    """
+    dA_q, shear, slip = interface.dA_q, pull.shear, contact.slip
+    if shear is None or slip is None:
+        return contact.stiffness(pull.p_q * dA_q, pull.dp_q * dA_q)
+    G_qd, n_d = contact.gap_rows.G_qd, slip.rows.G_qd.shape[1]
+    J_qrd = np.stack([np.pad(G_qd, ((0, 0), (0, n_d - G_qd.shape[1]))), slip.rows.G_qd], axis=1)
+    K_qdd = J_qrd.swapaxes(1, 2) @ (dA_q[:, None, None] * pull.slope_qcc @ J_qrd)
+    n_g = G_qd.shape[1]
+    K_qdd[:, :n_g, :n_g] += contact.stiffness(pull.p_q * dA_q, np.zeros_like(dA_q))
+    return K_qdd + slip.stiffness(contact, shear.t_q * dA_q)
+
+
+def unsymmetric(contact: Contact, pull: Tractions) -> np.ndarray:
+    """Points (n_m,) with an unsymmetric tangent: those that slide off the master, and where the mode ratio changes."""
+    off = contact.unsymmetric(pull.p_q)
+    if pull.shear is None:
+        return off
+    one, other = pull.shear.dp_ds_q, pull.shear.dt_dg_q
+    coupled = np.flatnonzero(np.abs(one - other) > UNSYMMETRIC * (np.abs(one) + np.abs(other)))
+    return np.union1d(np.union1d(off, contact.unsymmetric(pull.shear.t_q)), coupled)
+
+
+def combined(contact: Contact, by_g_q: np.ndarray, by_s_q: np.ndarray) -> Rows:
+    """First variation of a function of gap and slip with these derivatives (n_q,)."""
+    assert contact.slip is not None
+    G_qd, rows = contact.gap_rows.G_qd, contact.slip.rows
+    both_qd = by_s_q[:, None] * rows.G_qd
+    both_qd[:, : G_qd.shape[1]] += by_g_q[:, None] * G_qd
+    return Rows(rows.dof_qd, both_qd)
 
 
 def _jump(D_qa: np.ndarray, u_qai: np.ndarray) -> np.ndarray:
@@ -247,11 +458,3 @@ def _jump(D_qa: np.ndarray, u_qai: np.ndarray) -> np.ndarray:
     A penalty multiplies every bit that is lost. The functions of a row, slave minus master, sum to zero.
     """
     return (D_qa[:, None] @ (u_qai - u_qai[:, -1:]))[:, 0]
-
-
-def _along(N_qa: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
-    """Rows (n_q, 2 n_a) ``N_qa v_qi`` over the degrees of freedom."""
-    rows_qai = np.empty((*N_qa.shape, 2))
-    for i in range(2):  # a product over pairs would take four times as long
-        np.multiply(N_qa, v_qi[:, i : i + 1], out=rows_qai[..., i])
-    return rows_qai.reshape(len(N_qa), -1)

@@ -70,11 +70,13 @@ def lumped(*parts: Interface) -> PairedInterface:
     twins = [_padded(one.twin_qa, n_a) for one in pairs if one.twin_qa is not None]
     return PairedInterface(
         N_qa=N_qa,
+        dN_qa=np.zeros_like(N_qa),
         conn_qa=conn_qa,
         dA_q=np.concatenate([one.dA_q for one in pairs]),
         X_qi=np.concatenate([one.X_qi for one in pairs]),
         P_AI=parts[0].P_AI,
         law=parts[0].law,
+        forward_i=parts[0].forward_i,
         bonded_q=np.repeat([part.all_bonded for part in parts], [len(one.dA_q) for one in pairs]),
         both_qa=np.concatenate([conn_qa, np.concatenate(twins)], axis=1) if twins else conn_qa,
         D_qa=np.concatenate([N_qa, -N_qa], axis=1) if twins else 2.0 * N_qa,

@@ -19,7 +19,8 @@ class MasterPoints:
 
     ``c_q`` sides; ``M_qb`` and ``dM_qb`` (n_q, n_b) functions there and their derivatives; ``t_qi`` and ``t_xi_qi``
     (n_q, 2) derivatives of the position, the second one nothing on a continuation; ``share_q`` (n_q,) part of a point's
-    area that faces the master, ``fading_q`` (n_q,) its logarithmic derivative along the surface.
+    area that faces the master, ``fading_q`` (n_q,) its logarithmic derivative along the surface; ``eta_q`` (n_q,) how
+    far points are beyond the end of their side, by its parameter, and ``straight_q`` (n_q,) those on a continuation.
     """
 
     c_q: np.ndarray
@@ -29,6 +30,8 @@ class MasterPoints:
     t_xi_qi: np.ndarray
     share_q: np.ndarray
     fading_q: np.ndarray
+    eta_q: np.ndarray
+    straight_q: np.ndarray
 
 
 def master_points(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarray) -> MasterPoints:
@@ -43,19 +46,22 @@ def master_points(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.
     r0, r1, r2 = master.coefficients(c_q, xi_q, 2)
     Q_qbi = master.bezier_points(y_AI, c_q)
     t_qi, t_xi_qi = ((r[:, None] @ Q_qbi)[:, 0] for r in (r1, r2))
-    share_q, fading_q = np.ones(len(c_q)), np.zeros(len(c_q))
+    (share_q, fading_q, eta_q), straight_q = np.zeros((3, len(c_q))), np.zeros(len(c_q), dtype=bool)
+    share_q += 1.0
     edge = np.flatnonzero((xi_q == 0.0) | (xi_q == 1.0))
     if edge.size:
         t, way = t_qi[edge], np.where(xi_q[edge] == 1.0, 1.0, -1.0)
         d = x_qi[edge] - (r0[edge][:, None] @ Q_qbi[edge])[:, 0]
         eta = np.sum(d * t, -1) / np.sum(t * t, -1)
+        eta_q[edge] = eta
         r0[edge] += eta[:, None] * r1[edge]
-        t_xi_qi[edge] = np.where((way * eta > AT_END)[:, None], 0.0, t_xi_qi[edge])
+        straight_q[edge] = way * eta > AT_END
+        t_xi_qi[straight_q] = 0.0
         at_end = master.following(c_q[edge], way.astype(int)) == c_q[edge]
         share, rate = _share(np.where(at_end, way * eta, 0.0))
         share_q[edge], fading_q[edge] = share, way * rate
     M_qb, dM_qb = (master.functions(c_q, r) for r in (r0, r1))
-    return MasterPoints(c_q, M_qb, dM_qb, t_qi, t_xi_qi, share_q, fading_q)
+    return MasterPoints(c_q, M_qb, dM_qb, t_qi, t_xi_qi, share_q, fading_q, eta_q, straight_q)
 
 
 def _share(over: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,10 @@ from iga.interface.mode_ratio import ModeRatio
 POINTS_IN_CACHE = 8192
 #: Least way from the onset to failure, in parts of the onset: pressure may leave none.
 BRITTLE = 1e-14
+#: Exponent of the exponential law from which on a point counts as failed, with 3e-4 of its traction.
+EXPONENTS_GONE = 8.0
+#: Least part of the bond that is left where a damage is turned into a jump.
+TINY_PART = 1e-15
 #: Smallest squared jump that divides; a jump without one has mode ratio 0.
 TINY = float(np.finfo(float).tiny)
 
@@ -59,6 +63,17 @@ class Driving(NamedTuple):
     by_strength: np.ndarray | float = 0.0
 
 
+class Scaled(NamedTuple):
+    """The scaled jump (n,) that measures how far each point is on its way, 1 at the onset of damage and 2 at failure,
+    its derivatives by opening and slip, and ``back`` (n,), where along it the damage of a point grows again: the jump
+    itself, and no less, where there is no damage yet and where nothing is left to fail."""
+
+    x: np.ndarray
+    by_g: np.ndarray
+    by_s: np.ndarray
+    back: np.ndarray
+
+
 @dataclass(frozen=True)
 class MixedLaw(ABC):
     """``p = (1 - d) K g`` for openings g and ``penalty g``, free of damage, for g < 0; ``t = (1 - d) Ks s + a t_f``.
@@ -89,12 +104,45 @@ class MixedLaw(ABC):
     pressure_strength: float = 0.0
     rubs: str = "damage"
 
+    #: Scaled jumps at which tractions have a kink, rising; damage of a point that is whole and of one that has failed.
+    kinks: ClassVar[tuple[float, ...]] = (1.0, 2.0)
+    span: ClassVar[float] = 1.0
+    begun: ClassVar[float] = 0.0
+    failed: ClassVar[float] = 1.0
+
     @abstractmethod
     def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
         """Damage on first loading to g (n,) >= 0 and s (n,); zero slopes where there is none, or nothing is left.
 
         ``stronger`` (n,) is the shear strength over that without pressure, None where that is the same.
         """
+
+    @abstractmethod
+    def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
+        """The scaled jump at openings, slips and damages (n,); pressure does not count."""
+
+    @property
+    def g_max(self) -> float:
+        """Opening at the strength."""
+        return self.modes.strength[0] / self.stiffness[0]
+
+    @property
+    def stiffest(self) -> float:
+        """Largest slope of a traction."""
+        return max(self.penalty, *self.stiffness)
+
+    def nudged(self, d: np.ndarray, driven: np.ndarray, grows: np.ndarray, keeps: np.ndarray) -> np.ndarray:
+        """Damages (n,) a rounding smaller than that which the jump drives to where it ``grows``, and larger where it
+        ``keeps``."""
+        return np.where(grows, np.minimum(d, driven) - 1e-12, np.where(keeps, d + 1e-12, d))
+
+    def secant(self, d: np.ndarray) -> np.ndarray:
+        """Secant stiffness (1 - d) K of an opening."""
+        return (1.0 - d) * self.stiffness[0]
+
+    def damage(self, d: np.ndarray) -> np.ndarray:
+        """The history of a point is its damage."""
+        return d
 
     @property
     def stiffness(self) -> tuple[float, float]:
@@ -105,13 +153,16 @@ class MixedLaw(ABC):
         """Undamaged points that have not slid."""
         return History(np.zeros(n), np.zeros(n) if self.friction else None)
 
-    def traction(self, g: np.ndarray, s: np.ndarray, history: History, dt: float = 0.0) -> Response:
+    def traction(
+        self, g: np.ndarray, s: np.ndarray, history: History, dt: float = 0.0, closed: np.ndarray | None = None
+    ) -> Response:
         """Tractions at openings and slips (n,), consistent tangent, new history.
 
         Parameters
         ----------
         history : of all converged steps so far.
         dt : time that the step takes, which `viscosity` alone asks for.
+        closed : which points (n,) are in contact; those with a negative opening if left out.
 
         Raises
         ------
@@ -119,13 +170,14 @@ class MixedLaw(ABC):
         """
         if self.viscosity and not dt > 0.0:
             raise ValueError(f"a law with viscosity needs the time of a step, dt > 0, got {dt}")
+        closed = ((g < 0.0) if closed is None else closed) & self.contact
         if g.size <= POINTS_IN_CACHE:
-            return self._traction(g, s, history, dt)
+            return self._traction(g, s, history, dt, closed)
         whole = np.empty((8 if history.slip is not None else 7, g.size))
         for first in range(0, g.size, POINTS_IN_CACHE):
             part = slice(first, first + POINTS_IN_CACHE)
             before = History(history.d[part], None if history.slip is None else history.slip[part])
-            found = self._traction(g[part], s[part], before, dt)
+            found = self._traction(g[part], s[part], before, dt, closed[part])
             arrays = (*found[:6], *(one for one in found.history if one is not None))
             for to, one in zip(whole, arrays, strict=True):
                 to[part] = one
@@ -155,9 +207,8 @@ class MixedLaw(ABC):
         below = d + (1.0 - d) * slender
         return d / below, slender / below**2
 
-    def _traction(self, g: np.ndarray, s: np.ndarray, history: History, dt: float) -> Response:
+    def _traction(self, g: np.ndarray, s: np.ndarray, history: History, dt: float, closed: np.ndarray) -> Response:
         K, Ks = self.stiffness
-        closed = (g < 0.0) & self.contact
         pressure = np.where(closed, -self.penalty * g, 0.0)
         driven = self._driven(g, s, pressure)
         d, part = self._follows(driven.d, history.d, dt)
@@ -175,6 +226,11 @@ class MixedLaw(ABC):
             t_g = np.where(slides & closed, -self.friction * self.penalty * np.sign(elastic) * area, 0.0)
             t_s = t_s + np.where(slides, 0.0, Ks * area)
         return Response(p, t, dp_dg, dp_ds, t_g + t_d * d_g, t_s + t_d * d_s, History(d, slip))
+
+    def driven(self, g: np.ndarray, s: np.ndarray) -> np.ndarray:
+        """Damage (n,) that the jump drives to on first loading."""
+        pressure = np.where((g < 0.0) & self.contact, -self.penalty * g, 0.0)
+        return self._driven(g, s, pressure).d
 
     def _driven(self, g: np.ndarray, s: np.ndarray, pressure: np.ndarray) -> Driving:
         """`driving` at openings of any sign, with the shear strength that pressure raises."""
@@ -202,6 +258,28 @@ class TrapezoidalMixed(MixedLaw):
     """
 
     plateau: float = 0.5
+
+    def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
+        (K, Ks), flat, g = self.stiffness, self.plateau, np.maximum(g, 0.0)
+        opening, sliding = K * g * g, Ks * s * s
+        square = opening + sliding
+        moved = square > TINY**0.5
+        square = np.where(moved, square, 1.0)
+        B, size = np.where(moved, sliding / square, 0.0), np.where(moved, np.sqrt(square), 0.0)
+        (m, dm), (G, dG) = self.modes.at(B)
+        onset = np.sqrt(m)
+        way, d_onset = (2.0 * G - m) / ((1.0 + flat) * onset), 0.5 * dm / onset
+        d_way = (2.0 * dG - dm) / ((1.0 + flat) * onset) - way * d_onset / onset
+        soft = size > onset
+        by_size, past = 1.0 / np.where(soft, way, onset), (size - onset) / way
+        by_B = np.where(soft, -(d_onset + past * d_way) / way, -size * d_onset / m)
+        along, across = by_size / square**0.5, 2.0 * by_B / square / square
+        fall, back = (1.0 - flat) * way, onset / np.maximum(1.0 - d, TINY_PART)
+        back = np.where(back > onset + flat * way, onset * (onset + way) / ((1.0 - d) * fall + onset), back)
+        x = np.where(soft, 1.0 + past, size / onset)
+        back = np.where(d > 0.0, 1.0 + (back - onset) / way, np.minimum(x, 1.0))
+        back = np.where(d < 1.0, back, np.maximum(x, 2.0))
+        return Scaled(x, K * g * (along - across * sliding), Ks * s * (along + across * opening), back)
 
     def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
         (K, Ks), flat = self.stiffness, self.plateau
@@ -251,8 +329,11 @@ class ExponentialMixed(MixedLaw):
 
     Lengths of ``x = g / g0`` and ``y = s / s0`` follow from strength and toughness in pure modes, ``g0 = G_I / (e
     p_max)``, ``s0 = sqrt(2) G_II / (sqrt(e) t_max)``, and give the stiffnesses: those of `modes` must be these. Damage
-    is ``1 - exp(-x - y^2)``; it begins at once and has no end. The coupling gives the toughness of mixed modes.
+    is ``1 - exp(-x - y^2)``; it begins at once and has no end: a point counts as failed where the exponent is
+    `EXPONENTS_GONE`. The coupling gives the toughness of mixed modes.
     """
+
+    failed: ClassVar[float] = -np.expm1(-EXPONENTS_GONE)
 
     def __post_init__(self) -> None:
         if self.pressure_strength or self.rubs != "damage":
@@ -263,6 +344,18 @@ class ExponentialMixed(MixedLaw):
         """Initial stiffness in opening and sliding, ``e p_max / g0`` and ``sqrt(2 e) t_max / s0``."""
         (first, second), (p, t) = toughness, strength
         return (np.e * p) ** 2 / first, np.e * t**2 / second
+
+    def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
+        """``1 + (x + y^2) / gone``: `failed` is where that is 2."""
+        (g0, s0), g = self.lengths, np.maximum(g, 0.0)
+        y, size = s / s0, 1.0 / EXPONENTS_GONE
+        back = -np.log1p(-np.minimum(d, 1.0 - TINY_PART)) * size
+        return Scaled(
+            x=1.0 + size * (g / g0 + y * y),
+            by_g=np.where(g > 0.0, size / g0, 0.0),
+            by_s=2.0 * size / s0 * y,
+            back=np.where(d > 0.0, 1.0 + back, 0.0),
+        )
 
     @cached_property
     def lengths(self) -> tuple[float, float]:

@@ -57,7 +57,7 @@ class Surface:
         return self.C_cab.take(c_q, axis=0).swapaxes(1, 2) @ x_AI.take(self.conn_ca.take(c_q, axis=0), axis=0)
 
     def coefficients(self, c_q: np.ndarray, xi_q: np.ndarray, orders: int) -> tuple[np.ndarray, ...]:
-        """Rational Bernstein values and derivatives (n_q, p + 1) at xi_q on the sides c_q, up to the order asked for.
+        """Rational Bernstein values and derivatives (n_q, p + 1) at xi_q on the sides c_q, up to an order of 3 at most.
 
         Quotient rule (Piegl and Tiller 1997, eq. 4.8): ``r_k = (B^(k) - sum_{i=1..k} binom(k, i) W^(i) r_{k-i}) / W``.
         """
@@ -70,6 +70,8 @@ class Surface:
             r.append((B[1] - W[1] * r[0]) / W[0])
         if orders > 1:
             r.append((B[2] - 2.0 * W[1] * r[1] - W[2] * r[0]) / W[0])
+        if orders > 2:
+            r.append((B[3] - 3.0 * W[1] * r[2] - 3.0 * W[2] * r[1] - W[3] * r[0]) / W[0])
         return tuple(r)
 
     def following(self, c_q: np.ndarray, number_q: np.ndarray) -> np.ndarray:

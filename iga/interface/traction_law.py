@@ -55,10 +55,35 @@ class TractionLaw(ABC):
         """Openings at which the slope of the envelope jumps, rising, from g_max to g_u, and these where it does not."""
         return self.g_max, self.g_u
 
+    @property
+    def begun(self) -> float:
+        """History beyond which a point is damaged."""
+        return self.g_max
+
+    @property
+    def failed(self) -> float:
+        """History from which on a point holds nothing."""
+        return self.g_u
+
+    @property
+    def span(self) -> float:
+        """The opening over which a point goes from whole to failed."""
+        return self.g_u
+
+    def nudged(self, k: np.ndarray, g: np.ndarray, grows: np.ndarray, keeps: np.ndarray) -> np.ndarray:
+        """Histories (n,) a rounding smaller than the gap where damage ``grows``, and larger where it ``keeps``."""
+        k = np.where(keeps, k * (1.0 + 1e-12), k)
+        return np.where(grows, np.minimum(k, g) * (1.0 - 1e-12), k)
+
     @cached_property
     def stiffness(self) -> float:
         """Initial slope p_max / g_max."""
         return self.strength / self.g_max
+
+    @property
+    def stiffest(self) -> float:
+        """Largest slope of the traction."""
+        return max(self.penalty, self.stiffness)
 
     def jump(self, kink: float) -> float:
         """Change of the slope of the envelope at one of its kinks."""

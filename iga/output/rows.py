@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from iga.interface.interface import Interface
+from iga.output.sliding import sliding
 from iga.path.point import Point
 from iga.specimen.specimen import Specimen
 
@@ -18,6 +19,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
     ``reaction_x`` and ``reaction_y`` are the forces of springs and clamps besides the resultant of the loads.
     """
     system, state, energies, law = specimen.system, point.state, point.energies, specimen.system.interface.law
+    reached_q = point.response.back_q(state)
     spring_Ai = (system.spring_forces(state.u_d) @ system.springs_rd).reshape(-1, 2)
     reaction_x, reaction_y = specimen.pose.components(spring_Ai.sum(0))
     tip, end = openings(specimen, point)
@@ -25,7 +27,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
     return {
         "opening": point.opening,
         "load": state.load,
-        "crack_length": reach(specimen, state.k_q, law.g_u),
+        "crack_length": reach(specimen, reached_q, law.kinks[-1]),
         "stored_energy": energies.stored,
         "dissipated_energy": energies.dissipated,
         "external_work": point.external_work,
@@ -34,11 +36,11 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         "heading": point.heading,
         "tip_opening": tip,
         "end_opening": end,
-        "damage_front": reach(specimen, state.k_q, law.g_max),
+        "damage_front": reach(specimen, reached_q, law.kinks[0]),
         "face_slope_top": slopes[0],
         "face_slope_bottom": slopes[1] if len(slopes) > 1 else -slopes[0],
         "face_energy": specimen.ends.energy(state.u_d),
-        **_balance(specimen, point, spring_Ai),
+        **(sliding(specimen, point) if system.interface.slides else _balance(specimen, point, spring_Ai)),
         "reaction_x": float(reaction_x),
         "reaction_y": float(reaction_y),
         **({} if system.free_d.all() else _clamp(specimen, point, spring_Ai)),

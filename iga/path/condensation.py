@@ -75,7 +75,7 @@ class Condensed:
         u_d, touch = self.U_dr @ state.u_d, replace(self.rest, g_q=found.contact.g_q)
         internal_d = state.load * whole.load_d
         if self.fixed_f.size:
-            on_fixed_d = forces(whole.interface, touch, found.p_q, whole.n_dof)
+            on_fixed_d = forces(whole.interface, touch, found.pull, whole.n_dof)
             internal_d[self.fixed_f] = self.held_fr @ state.u_d + on_fixed_d[self.fixed_f]
         springs = 0.5 * float(whole.spring_r @ (whole.springs_rd @ u_d) ** 2)
         response = replace(found, internal_d=internal_d, bulk_energy=found.bulk_energy - springs, contact=touch)
@@ -88,7 +88,7 @@ def condensed(system: System) -> Condensed | None:
     It pays where a dense LU of the interface takes less work than a banded one of the whole.
     """
     bulk, interface = system.bulk, system.interface
-    if not isinstance(bulk, LinearBulk) or not isinstance(interface, SettledInterface):
+    if not isinstance(bulk, LinearBulk) or not isinstance(interface, SettledInterface) or interface.slides:
         return None
     B_rd, gap_rows = _rows(system)
     n_r = B_rd.shape[0]
@@ -107,6 +107,7 @@ def condensed(system: System) -> Condensed | None:
         x_d=np.zeros(n_r),
         springs_rd=np.zeros((0, n_r)),
         spring_r=np.zeros(0),
+        hold_d=np.append(np.zeros(n_r - 1), 1.0),
     )
     fixed = np.flatnonzero(~system.free_d)
     held_fr = _bulk_forces(bulk, U_dr)[fixed] if fixed.size else np.zeros((0, n_r))

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.interface.interface import forces, holding
+from iga.interface.interface import holding
+from iga.interface.mixed_laws import MixedLaw
 from iga.system.state import Response, State
 from iga.system.system import System
 
@@ -52,10 +53,11 @@ def load_control(system: System) -> Control:
 
 
 def gap_control(system: System, point: int) -> Control:
-    """Gap at one quadrature point of the interface; at the front of a crack, the opening of the cohesive front."""
+    """What drives the damage of one point of the interface (`Response.x_q`); at the front of a crack, how far it is
+    open."""
 
     def control(state: State, response: Response) -> tuple[float, np.ndarray, float]:
-        return float(response.contact.g_q[point]), response.contact.row(point, system.n_dof), 0.0
+        return float(response.x_q[point]), response.x_rows.gradients(np.array([point]), system.n_dof)[:, 0], 0.0
 
     return control
 
@@ -65,16 +67,27 @@ def dissipation_control(system: System) -> Control:
 
     Path following by dissipation after Gutierrez (2004) and Verhoosel, Remmers and Gutierrez (2009), but with the
     dissipation of the law itself instead of ``(P0 dDelta - dP Delta0) / 2``, which holds for secant unloading and
-    linear kinematics alone.
+    linear kinematics alone. Of a bond that slides it is the way that the damaged points have gone (`Scaled`), in
+    proportion to which the bilinear law dissipates.
     """
-    interface = system.interface
+    interface, law = system.interface, system.interface.law
+
+    def gone(state: State, response: Response) -> tuple[float, np.ndarray, float]:
+        x_q, (first, last) = response.x_q, (law.kinks[0], law.kinks[-1])
+        way_q = np.clip(np.maximum(x_q, response.back_q(state)), first, last)
+        growing_q = (x_q >= (1.0 - 1e-9) * way_q) & (x_q < last)  # where that is reached again is rounded
+        held_q = holding(interface, response.contact) & growing_q
+        return float(interface.dA_q @ way_q), response.x_rows.forces(interface.dA_q * held_q, system.n_dof), 0.0
+
+    if isinstance(law, MixedLaw):
+        return gone
 
     def control(state: State, response: Response) -> tuple[float, np.ndarray, float]:
-        g_q, law = response.contact.g_q, interface.law
+        g_q = response.contact.g_q
         dissipated = float(interface.dA_q @ law.energies(g_q, response.k_q)[2])
         growing_q = (g_q >= response.k_q) & (g_q > law.g_max) & (g_q < law.g_u) & holding(interface, response.contact)
         rate_q = np.where(growing_q, law.dissipation_rate(g_q), 0.0)
-        return dissipated, forces(interface, response.contact, rate_q, system.n_dof), 0.0
+        return dissipated, response.x_rows.forces(rate_q * interface.dA_q, system.n_dof), 0.0
 
     return control
 
@@ -85,13 +98,13 @@ def arc_length_control(system: System, start: Response, du_d: np.ndarray) -> Con
     A local arc length (May and Duan 1997): the zone alone counts, and whatever its unit, the load does not.
     """
     interface = system.interface
-    whole_q = (start.k_q < interface.law.g_u) & holding(interface, start.contact)
-    rate_q = np.where(whole_q, start.contact.rates(du_d), 0.0)
+    whole_q = (start.k_q < interface.law.failed) & holding(interface, start.contact)
+    rate_q = np.where(whole_q, start.x_rates(du_d), 0.0)
     rate_q = rate_q / (np.sqrt(interface.dA_q @ rate_q**2 * interface.dA_q.sum()) or 1.0)
-    g0_q = start.contact.g_q
+    x0_q = start.x_q
 
     def control(state: State, response: Response) -> tuple[float, np.ndarray, float]:
-        value = float(interface.dA_q @ (rate_q * (response.contact.g_q - g0_q)))
-        return value, forces(interface, response.contact, rate_q, system.n_dof), 0.0
+        value = float(interface.dA_q @ (rate_q * (response.x_q - x0_q)))
+        return value, response.x_rows.forces(rate_q * interface.dA_q, system.n_dof), 0.0
 
     return control

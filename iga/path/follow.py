@@ -61,7 +61,7 @@ def follow(
     bend : by how much of the peak the load may leave the tangent of a step that the path chooses; how accurate such a
         step is (see `iga.path.polyline`) follows from it.
     """
-    lengths: StepLength = step_length(np.array(programme), steps, bend, solver.system.linear)
+    lengths: StepLength = _lengths(solver.system, programme, steps, bend)
     reach, rejected, largest = float(np.max(np.abs(programme))), 0, Largest()
     direction = float(np.sign(programme[0]))
     departed = _departing(solver, solver.system.start(), direction, 0.0)
@@ -108,6 +108,11 @@ def follow(
     yield End("complete", rejected)
 
 
+def _lengths(system: System, programme: Sequence[float], steps: int | None, bend: float) -> StepLength:
+    """The step length at which a programme begins."""
+    return step_length(np.array(programme), steps, bend, system.linear, system.interface.viscosity)
+
+
 def _tried(
     solver: Solver, point: Point, goal: float, lengths: StepLength, direction: float
 ) -> tuple[Step, float, Point | None]:
@@ -139,7 +144,7 @@ def _separated(system: System, point: Point, reach: float, peak: float, directio
     """
     interface = system.interface
     area_q = interface.dA_q * interface.bonded_q
-    broken = float(area_q @ (point.state.k_q >= interface.law.g_u)) / float(area_q.sum())
+    broken = float(area_q @ (point.state.k_q >= interface.law.failed)) / float(area_q.sum())
     small = PATH.separated * peak
     falling = direction * point.tangent.d_load < 0.0 or abs(point.slope) * reach <= small
     return broken > 0.5 and abs(point.state.load) <= small and falling

@@ -28,8 +28,9 @@ from iga.interface.interface import Interface
 class GapLimits:
     """What this may cost before a new tangent is the better choice, and when it has converged.
 
-    ``corrections`` of the gaps; from number ``damped`` on every other one goes half way as long as more than the part
-    ``large`` of the traction is left, as they may go round in circles on a law that softens. Tractions agree with the
+    ``corrections`` of the gaps, as many of the slips, and ``patience`` times as many where it pays to be patient; from
+    number ``damped`` on every other one goes half way as long as more than the part ``large`` of the traction is left,
+    as they may go round in circles on a law that softens. Tractions agree with the
     law within ``agreed`` of the largest. There are at most ``solutions``, two tangents or so, each of which is worth 25
     to 40 of them; up to ``unknowns`` tangents are so little work that any number may be taken; with more than
     ``entries`` numbers in all solutions these are more work to move about than a tangent; ``sharing`` points share one.
@@ -37,6 +38,7 @@ class GapLimits:
     """
 
     corrections: int = 40
+    patience: int = 10
     damped: int = 6
     large: float = 0.1
     agreed: float = 1e-12
@@ -53,21 +55,24 @@ GAP_NEWTON = GapLimits()
 
 @dataclass(frozen=True)
 class GapLaw:
-    """The law of an interface at a contact: tractions and slopes (n_q,) for gaps (n_q,), and those of the tangent."""
+    """The law of an interface at a contact: tractions (n_q, n_c) and slopes (n_q, n_c, n_c) for jumps (n_q, n_c), and
+    those of the tangent. ``patient``: however many points arrive on another branch."""
 
     interface: Interface
     touch: Contact
     at: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
-    p_q: np.ndarray
-    dp_q: np.ndarray
+    force_qc: np.ndarray
+    slope_qcc: np.ndarray
+    patient: bool = False
 
 
 @dataclass(frozen=True)
 class Pulls:
     """Tractions at some ``points`` as sums of pulls, and the steps that a unit of each causes.
 
-    ``parts_mr`` (n_m, n_r) is the part of each pull in the traction of a point, ``steps_dr`` (n_dof + 1, n_r) the steps
-    and ``felt_mr`` (n_m, n_r) the change of the gaps there. All points and all unknowns are in it where ``every``.
+    ``parts_mr`` (n_p n_c, n_r) is the part of each pull in the tractions of a point, ``steps_dr`` (n_dof + 1, n_r) the
+    steps and ``felt_mr`` (n_p n_c, n_r) the change of the jumps there. All points and all unknowns are in it where
+    ``every``.
     """
 
     law: GapLaw
@@ -85,40 +90,50 @@ class Pulls:
         """The same with more points; None where that would cost more than a new tangent."""
         assert isinstance(self.points, np.ndarray)
         limits, touch, points = GAP_NEWTON, self.law.touch, np.append(self.points, new)
+        n_c = self.law.force_qc.shape[1]
         most = limits.entries // (n_dof + 1)
-        most = most if n_dof <= limits.unknowns else min(limits.solutions, most)
+        most = most if n_dof <= limits.unknowns else min(n_c * limits.solutions, most)
+        most = n_dof if self.law.patient else most
         if points.size > limits.sharing * most:
             return None
-        pulls_dr, more_rm = _spanned(touch.rows(new, n_dof) * self.law.interface.dA_q[new])
+        rows_dm = touch.jump_rows(new, n_dof) * np.repeat(self.law.interface.dA_q[new], n_c)
+        if n_c > 1 and (free := ~self.law.interface.rubs_q[new]).any():
+            rows_dm[:, 1::n_c][:, free] = 0.0
+        pulls_dr, more_rm = _spanned(rows_dm)
         if self.parts_mr.shape[1] + pulls_dr.shape[1] > most:
             return None
         steps_dr = np.concatenate([self.steps_dr, self.tied.solve(pulls_dr)], axis=1)
-        felt_mr, parts_mr = touch.rates(steps_dr[:-1], points), _beside(self.parts_mr, more_rm.T)
+        felt_mr, parts_mr = _felt(touch, steps_dr, points), _beside(self.parts_mr, more_rm.T)
         return replace(self, points=points, parts_mr=parts_mr, steps_dr=steps_dr, felt_mr=felt_mr)
 
-    def sizes(self, w: np.ndarray, slope: np.ndarray, way: np.ndarray) -> np.ndarray | None:
+    def sizes(self, w_pc: np.ndarray, slope_pcc: np.ndarray, way_pc: np.ndarray) -> np.ndarray | None:
         """Sizes z (n_r,) of the pulls with which all tractions are on their slopes; None where there are none.
 
-        Only what the pulls feel of the tractions (n_m,) is unknown: ``z = P w``. ``way`` is how far the gaps of the
-        linear step are from those at which ``w`` and ``slope`` are.
+        Only what the pulls feel of the tractions w_pc (n_p, n_c) is unknown: ``z = P w``. ``way_pc`` is how far the
+        jumps of the linear step are from those at which ``w_pc`` and ``slope_pcc`` are.
         """
-        bent = slope.nonzero()[0]
-        felt, parts = (v_mr.take(bent, axis=0) for v_mr in (self.felt_mr, self.parts_mr))  # twice as fast as indexing
-        transposed_rr = felt.T @ (slope[bent, None] * parts)
+        n_c = w_pc.shape[1]
+        bent = slope_pcc[:, 0, 0].nonzero()[0] if n_c == 1 else np.flatnonzero(slope_pcc.any(axis=(1, 2)))
+        places = bent if n_c == 1 else (n_c * bent[:, None] + np.arange(n_c)).ravel()
+        felt, parts = (v_mr.take(places, axis=0) for v_mr in (self.felt_mr, self.parts_mr))  # faster than indexing
+        sloped = _sloped(slope_pcc[bent].swapaxes(1, 2), parts.reshape(len(bent), n_c, parts.shape[1]))
+        transposed_rr = felt.T @ sloped.reshape(parts.shape)
         if not len(transposed_rr):  # a guess may have all points on their tangents
             return np.zeros(0)
         transposed_rr.flat[:: len(transposed_rr) + 1] += 1.0
-        pull_r = (w + slope * way) @ self.parts_mr
+        pull_r = (w_pc + _sloped(slope_pcc, way_pc[..., None])[..., 0]).ravel() @ self.parts_mr
         _, _, z_r, failed = dgesv(transposed_rr.T, pull_r, overwrite_a=True, overwrite_b=True)
         return None if failed else z_r  # just as soft as the specimen is stiff
 
     def change(self, z_r: np.ndarray) -> np.ndarray:
-        """Change of all gaps (n_q,) by pulls of these sizes."""
-        return self.felt_mr @ z_r if self.every else self.law.touch.rates(self.steps_dr[:-1] @ z_r)
+        """Change of all jumps (n_q, n_c) by pulls of these sizes."""
+        if self.every:
+            return (self.felt_mr @ z_r).reshape(self.law.force_qc.shape)
+        return self.law.touch.jump_rates(self.steps_dr[:-1] @ z_r)
 
 
 def settled_step(
-    law: GapLaw, linear_d: np.ndarray, tied: Bordered, guess_q: np.ndarray | None = None
+    law: GapLaw, linear_d: np.ndarray, tied: Bordered, guess_qc: np.ndarray | None = None
 ) -> np.ndarray | None:
     """The step (n_dof + 1,) of displacements and load with all tractions on the law; None where none is found.
 
@@ -127,16 +142,19 @@ def settled_step(
     law : at the contact where the step begins.
     linear_d : the step (n_dof + 1,) with all points on their tangents.
     tied : the tangent and the control.
-    guess_q : gaps (n_q,) to begin with, those of the linear step if left out.
+    guess_qc : jumps (n_q, n_c) to begin with, those of the linear step if left out.
     """
     touch, n_dof = law.touch, linear_d.size - 1
-    g0_q, pulls = touch.g_q + touch.rates(linear_d[:-1]), _first_pulls(law, tied, n_dof)
-    known_q, z_r = np.zeros(g0_q.size), np.zeros(pulls.parts_mr.shape[1])
-    g_q, guessed = (g0_q, False) if guess_q is None else (guess_q, True)
-    for correction in range(1, GAP_NEWTON.corrections + 1):
-        p_q, dp_q = law.at(g_q)
-        w_q, slope_q = p_q - law.p_q - law.dp_q * (g_q - touch.g_q), dp_q - law.dp_q
-        left_q, largest = np.abs(w_q - known_q), np.abs(p_q).max()
+    start_qc = touch.jump_qc
+    j0_qc, pulls = start_qc + touch.jump_rates(linear_d[:-1]), _first_pulls(law, tied, n_dof)
+    known_qc, z_r = np.zeros(j0_qc.shape), np.zeros(pulls.parts_mr.shape[1])
+    j_qc, guessed = (j0_qc, False) if guess_qc is None else (guess_qc, True)
+    most = GAP_NEWTON.corrections * (GAP_NEWTON.patience if law.patient else start_qc.shape[1])
+    for correction in range(1, most + 1):
+        force_qc, slope_qcc = law.at(j_qc)
+        w_qc = force_qc - law.force_qc - _sloped(law.slope_qcc, (j_qc - start_qc)[..., None])[..., 0]
+        slope_qcc = slope_qcc - law.slope_qcc
+        left_q, largest = np.abs(w_qc - known_qc).max(axis=1), np.abs(force_qc).max()
         left = left_q.max()
         if not guessed and left <= GAP_NEWTON.agreed * largest:
             return linear_d - pulls.steps_dr @ z_r
@@ -148,13 +166,13 @@ def settled_step(
                 return None
             pulls = more
         at = pulls.points
-        found_r = pulls.sizes(w_q[at], slope_q[at], (g0_q - g_q)[at])
+        found_r = pulls.sizes(w_qc[at], slope_qcc[at], (j0_qc - j_qc)[at])
         if found_r is None:
             return None
-        z_r, next_q = found_r, g0_q - pulls.change(found_r)
-        known_q[at] = w_q[at] + slope_q[at] * (next_q - g_q)[at]
+        z_r, next_qc = found_r, j0_qc - pulls.change(found_r)
+        known_qc[at] = w_qc[at] + _sloped(slope_qcc[at], (next_qc - j_qc)[at][..., None])[..., 0]
         guessed = not guessed and correction >= GAP_NEWTON.damped and left > GAP_NEWTON.large * largest
-        g_q = 0.5 * (g_q + next_q) if guessed else next_q
+        j_qc = 0.5 * (j_qc + next_qc) if guessed else next_qc
     return None
 
 
@@ -162,9 +180,20 @@ def _first_pulls(law: GapLaw, tied: Bordered, n_dof: int) -> Pulls:
     """No points, or all of them where there are only a few unknowns."""
     if n_dof > GAP_NEWTON.solutions:
         return Pulls(law, tied, np.arange(0), np.zeros((0, 0)), np.zeros((n_dof + 1, 0)), np.zeros((0, 0)))
-    every, dA_q = np.arange(law.touch.g_q.size), law.interface.dA_q
-    parts_mr, steps_dr = law.touch.rows(every, n_dof).T * dA_q[:, None], tied.solve(np.eye(n_dof))
-    return Pulls(law, tied, slice(None), parts_mr, steps_dr, law.touch.rates(steps_dr[:-1]))
+    every, dA_m = np.arange(law.touch.g_q.size), np.repeat(law.interface.dA_q, law.force_qc.shape[1])
+    parts_mr, steps_dr = law.touch.jump_rows(every, n_dof).T * dA_m[:, None], tied.solve(np.eye(n_dof))
+    return Pulls(law, tied, slice(None), parts_mr, steps_dr, _felt(law.touch, steps_dr, slice(None)))
+
+
+def _felt(touch: Contact, steps_dr: np.ndarray, points: np.ndarray | slice) -> np.ndarray:
+    """Changes (n_p n_c, n_r) of the jumps at some points by steps."""
+    felt_pcr = touch.jump_rates(steps_dr[:-1], points)
+    return felt_pcr.reshape(-1, felt_pcr.shape[-1])
+
+
+def _sloped(slope_pcc: np.ndarray, v_pcr: np.ndarray) -> np.ndarray:
+    """``slope v`` at every point (n_p, n_c, n_r)."""
+    return slope_pcc * v_pcr if slope_pcc.shape[-1] == 1 else slope_pcc @ v_pcr
 
 
 def _spanned(rows_dm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -17,8 +17,7 @@ import numpy as np
 
 from iga.interface.contact import Contact
 from iga.interface.interface import Interface, holding
-from iga.interface.traction_law import TractionLaw
-from iga.system.state import State
+from iga.system.state import Response, State
 from iga.system.system import System
 
 
@@ -45,7 +44,7 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class Kink:
-    """Point ``q`` of the interface at the ``gap`` where the slope of its traction jumps."""
+    """Point ``q`` of the interface at the ``gap``, of `Response.x_q`, where the slope of its traction jumps."""
 
     q: int
     gap: float
@@ -66,19 +65,20 @@ def on_kink(kink: Kink) -> StepEnd:
 
 
 def first_kink(
-    law: TractionLaw, g_q: np.ndarray, k_q: np.ndarray, change_q: np.ndarray, reloading: bool = True
+    kinks: np.ndarray, g_q: np.ndarray, k_q: np.ndarray, change_q: np.ndarray, reloading: bool = True
 ) -> tuple[Kink, float] | None:
-    """The first kink that a point reaches while the gaps g_q (n_q,) open by ``change_q``, and the part of the change.
+    """The first of the ``kinks`` of a law that a point reaches while the gaps g_q (n_q,) open by ``change_q``, and the
+    part of the change.
 
     Kinks of the envelope are ahead of points on it. With ``reloading`` points off it have one where they return to it,
     at their history k_q (n_q,).
     """
-    kinks = np.array(law.kinks)
+    begins, ends = kinks[0], kinks[-1]
     kink_q = kinks[np.minimum(np.searchsorted(kinks, k_q, side="right"), kinks.size - 1)]
     if reloading:
-        soft_q = (k_q > law.g_max) & (g_q >= (1.0 - 1e-9) * k_q)
-        kink_q = np.where(soft_q, kink_q, np.maximum(k_q, law.g_max))
-    coming_q = (k_q < law.g_u) & (change_q > 0.0)
+        soft_q = (k_q > begins) & (g_q >= (1.0 - 1e-9) * k_q)
+        kink_q = np.where(soft_q, kink_q, np.maximum(k_q, begins))
+    coming_q = (k_q < ends) & (change_q > 0.0)
     if not np.any(coming_q):
         return None
     part_q = np.where(coming_q, (kink_q - g_q) / np.where(coming_q, change_q, 1.0), np.inf)
@@ -86,35 +86,35 @@ def first_kink(
     return Kink(q, float(kink_q[q])), float(part_q[q])
 
 
-def first_end(system: System, old: State, start: Contact, touch: Contact, g_q: np.ndarray) -> StepEnd | None:
+def first_end(system: System, old: State, start: Response, touch: Contact, g_q: np.ndarray) -> StepEnd | None:
     """A step's end on the first kink of the envelope between the gaps at its ``start`` and g_q (n_q,), if there is one.
 
     ``old`` is the state before the step, and ``touch`` says which points face the master.
     """
-    change_q = np.where(holding(system.interface, touch), g_q - start.g_q, 0.0)
-    found = first_kink(system.interface.law, start.g_q, old.k_q, change_q, reloading=False)
+    change_q = np.where(holding(system.interface, touch), g_q - start.x_q, 0.0)
+    found = first_kink(np.array(system.interface.law.kinks), start.x_q, start.back_q(old), change_q, reloading=False)
     return on_kink(found[0]) if found is not None and found[1] <= 1.0 else None
 
 
 def nearest_end(
-    system: System, old: State, touch: Contact, g_q: np.ndarray, follows_on: bool = False
+    system: System, k_q: np.ndarray, touch: Contact, g_q: np.ndarray, follows_on: bool = False
 ) -> StepEnd | None:
     """A step's end at the kink nearest to the gaps g_q (n_q,): where a point breaks or, before any has, softens.
 
-    ``old`` and ``touch`` as for `first_end`. None where there is no such kink. A step over several arcs that
-    ``follows_on`` one on which points broke, too, ends half an arc on from there.
+    ``k_q`` (n_q,) is the history at the start; ``touch`` as for `first_end`. None where there is no such kink. A step
+    over several arcs that ``follows_on`` one on which points broke, too, ends half an arc on from there.
     """
-    law = system.interface.law
+    begins, *_, ends = system.interface.law.kinks
     g_q = np.where(holding(system.interface, touch), g_q, 0.0)
-    broken = bool(np.any(g_q >= law.g_u))
-    gap = law.g_u if broken else law.g_max
-    q = int(np.argmin(np.where(g_q > old.k_q, np.abs(g_q - gap), np.inf)))
-    passed_q = (g_q >= g_q[q]) & (old.k_q < gap)
+    broken = bool(np.any(g_q >= ends))
+    gap = ends if broken else begins
+    q = int(np.argmin(np.where(g_q > k_q, np.abs(g_q - gap), np.inf)))
+    passed_q = (g_q >= g_q[q]) & (k_q < gap)
     ahead_q = g_q[g_q > g_q[q]]
     end = on_kink(Kink(q, gap))
     if follows_on and broken and np.count_nonzero(passed_q) >= SEVERAL and ahead_q.size > 0:
         end = StepEnd(end.kink, gap + 0.5 * (np.min(ahead_q) - g_q[q]), on=False)
-    return end if np.any(g_q >= gap) and old.k_q[q] < gap and g_q[q] != end.target else None
+    return end if np.any(g_q >= gap) and k_q[q] < gap and g_q[q] != end.target else None
 
 
 def travelled(interface: Interface, g_q: np.ndarray, q: int, target: float) -> np.ndarray | None:
@@ -139,8 +139,8 @@ def travelled(interface: Interface, g_q: np.ndarray, q: int, target: float) -> n
 
 def broken_between(system: System, old: State, new: State) -> int:
     """How many points have broken from one state to another."""
-    g_u = system.interface.law.g_u
-    return int(np.count_nonzero((new.k_q >= g_u) & (old.k_q < g_u)))
+    failed = system.interface.law.failed
+    return int(np.count_nonzero((new.k_q >= failed) & (old.k_q < failed)))
 
 
 def slope_over_arcs(first: Place, middle: Place, last: Place) -> float | None:

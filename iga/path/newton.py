@@ -87,8 +87,8 @@ def _iterate(
     advance: Callable[[Line, Newton], Iterate],
 ) -> tuple[Iterate | None, tuple[float, ...]]:
     """The converged iterate, or None, and the residual norms on the way."""
-    now = _evaluated(solver, trial, True)
-    residuals, factorised, on_gaps = [now.norm], False, advance is _full
+    now, slides = _evaluated(solver, trial, True), solver.system.interface.slides
+    residuals, factorised, on_gaps = [now.norm], False, advance is _full or slides
     while True:
         met, norm = prescribed.met(now.state, now.response), now.norm
         if met and norm <= newton.tolerance:
@@ -104,12 +104,13 @@ def _iterate(
             return None, tuple(residuals)
         factorised = True
         decide = not met or norm > max(newton.settle, 10.0 * floor)
-        tried = on_gaps and decide and norm > newton.rough and not stale
+        tried = on_gaps and decide and norm > (newton.settle if slides else newton.rough) and not stale
         found = correction(solver, now.state, now.response, prescribed, tried)
         if found is None:
             return None, tuple(residuals)
         step_d, settled = found
-        on_gaps = on_gaps and (settled or not tried)  # where that does not converge once, it will not the next time
+        # where that does not converge once, it will not the next time; many points that touch sort themselves out later
+        on_gaps = on_gaps and (settled or slides or not tried)
         now = advance(Line(solver, now, step_d, decide), newton)
         residuals.append(now.norm)
 
@@ -161,12 +162,12 @@ def correction(
     response: Response,
     prescribed: Prescribed,
     on_gaps: bool,
-    guess_q: np.ndarray | None = None,
+    guess_qc: np.ndarray | None = None,
 ) -> tuple[np.ndarray, bool] | None:
     """Step (n_dof + 1,) of displacements and load with the factors at hand; None where the control feels no load.
 
-    With ``on_gaps`` Newton on the gaps alone puts all tractions on the law, starting from the gaps ``guess_q`` (n_q,)
-    where these are given; the second value is True where it has converged.
+    With ``on_gaps`` Newton on the gaps alone puts all tractions on the law, starting from the jumps ``guess_qc`` (n_q,
+    n_c) where these are given; the second value is True where it has converged.
     """
     system = solver.system
     with solver.phase("solve"):
@@ -180,11 +181,12 @@ def correction(
             return linear_d, False
         interface, touch = system.interface, response.contact
 
-        def tractions(g_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            return traction(interface, touch, trial.k_q, g_q < 0.0, g_q)[:2]
+        def tractions(jump_qc: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            found = traction(interface, touch, trial.past, jump_qc[:, 0] < 0.0, jump_qc)
+            return found.force_qc, found.slope_qcc
 
-        law = GapLaw(interface, touch, tractions, response.p_q, response.dp_q)
-        found = settled_step(law, linear_d, tied, guess_q)
+        law = GapLaw(interface, touch, tractions, response.pull.force_qc, response.pull.slope_qcc)
+        found = settled_step(law, linear_d, tied, guess_qc)
         return (linear_d, False) if found is None else (found, True)
 
 

@@ -40,7 +40,7 @@ class Point:
     @property
     def front(self) -> int:
         """Of the points whose damage grows along the path the one that has opened furthest."""
-        return int(np.argmax(np.where(self.tangent.growing_q, self.response.contact.g_q, -np.inf)))
+        return int(np.argmax(np.where(self.tangent.growing_q, self.response.x_q, -np.inf)))
 
     @property
     def iterations(self) -> int:

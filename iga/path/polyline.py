@@ -103,8 +103,8 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
     leak = abs(work - spent) / (ACCURACY.ledger * abs(work)) if open_ and work != 0.0 else 0.0
     excess = max(away / length / (ACCURACY.within * bend), over / (ACCURACY.peak * bend), leak)
     part = 1.0 if excess <= 1.0 else float(np.clip(ACCURACY.safely * excess**-0.5, ACCURACY.shortest, ACCURACY.longest))
-    g_max = system.interface.law.g_max
-    begun = np.count_nonzero((end.state.k_q > g_max) & (start.state.k_q <= g_max))
+    whole = system.interface.law.begun
+    begun = np.count_nonzero((end.state.k_q > whole) & (start.state.k_q <= whole))
     broken = broken_between(system, start.state, end.state)
     return Kept(part, away / length / bend, bool(max(begun, broken) < SEVERAL), broken > 0)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from iga.interface.contact import Contact
 from iga.path.control import Prescribed, gap_control
-from iga.path.energy import slid_off, step_work, straight_work
+from iga.path.energy import by_chords, slid_off, spending, step_work, straight_work
 from iga.path.kinks import (
     SEVERAL,
     Kink,
@@ -22,7 +22,7 @@ from iga.path.kinks import (
 from iga.path.newton import Equilibrium, correction, equilibrium
 from iga.path.point import Point
 from iga.path.solver import Solver
-from iga.path.step_length import Step
+from iga.path.step_length import Step, grows
 from iga.path.tangent import Tangent, tangent
 from iga.system.state import Response, State
 from iga.system.system import System, energies
@@ -52,26 +52,29 @@ def predicted(solver: Solver, point: Point, asked: Step) -> Prediction:
 
     The factors are dropped.
     """
-    system, old, path, known = solver.system, point.state, point.tangent, solver.linearised
+    system, path, known = solver.system, point.tangent, solver.linearised
+    old = replace(point.state, dt=asked.dt)
     along_d = asked.away * np.append(path.du_d, path.d_load)
     if known is None:
         return Prediction(old.moved(along_d))
     response, touch, lands = known.response, known.response.contact, asked.lands
     value, a_d, a_load = asked.control(old, response)
     target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
-    goal, end, guess_q = Prescribed(asked.control, target, target - value), None, _leaping(system, point, asked, touch)
+    goal, end, guess_q = Prescribed(asked.control, target, target - value), None, _leaping(system, point, asked)
     # one kink is as good as the next one; of a linear bulk the step onto it is exact, and no other is made
-    ahead_q = touch.g_q + asked.away * path.rate_q if guess_q is None and system.linear else guess_q
+    ahead_q = response.x_q + asked.away * path.rate_q if guess_q is None and system.linear else guess_q
     if lands and ahead_q is not None:
         end = _end(system, point, asked, touch, ahead_q)
     if end is not None:
         goal = _onto(system, point, end)
-    found = correction(solver, old, response, goal, True, guess_q)
+    guess_qc = None if guess_q is None else guess_q[:, None]  # of a bond that slides there is none
+    found = correction(solver, old, response, goal, True, guess_qc)
     if found is not None and found[1] and lands and end is None:
-        guess_q = touch.g_q + touch.rates(found[0][:-1])
+        guess_q = response.x_q + response.x_rates(found[0][:-1])
         end = _end(system, point, asked, touch, guess_q)
         if end is not None and system.linear:  # this is exact then; else Newton is needed anyway
-            onto = correction(solver, old, response, _onto(system, point, end), True, guess_q)
+            guess_qc = touch.jump_qc + touch.jump_rates(found[0][:-1])
+            onto = correction(solver, old, response, _onto(system, point, end), True, guess_qc)
             found = onto if onto is not None and onto[1] else found
     solver.drop()
     if found is None or not found[1]:
@@ -95,10 +98,17 @@ def advance(solver: Solver, point: Point, asked: Step, direction: float) -> Poin
         return None
     found, kink = converged
     state, response = _committed(solver, point, asked, found)
-    leaving = tangent(solver, state, response, direction, kink=kink)
+    if grows(old, state) > asked.growth:
+        return None
+    if asked.dt:
+        leaving = _in_time(solver, state, asked.dt, direction)
+    else:
+        leaving = tangent(solver, state, response, direction, kink=kink)
     if leaving is None:
         return None
     opening = float(system.load_d @ state.u_d)
+    if asked.dt:  # the tangent is that of one step, and no slope of the curve
+        leaving = replace(leaving, slope=(state.load - old.load) / (opening - point.opening))
     broken = broken_between(system, old, state) if asked.by_kinks else 0
     leaving = _smoothed(point, asked, leaving, broken, (opening, state.load))
     before = (point.opening, old.load) if broken else None
@@ -109,11 +119,13 @@ def advance(solver: Solver, point: Point, asked: Step, direction: float) -> Poin
     if end_rate == 0.0:
         return None
     away, back = (there - value) / rate, (there - value) / end_rate
-    if asked.by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
+    if by_chords(system):
+        work = 0.5 * (point.state.load + state.load) * (opening - point.opening)
+    elif asked.by_kinks and point.heading == leaving.heading == np.sign(opening - point.opening):
         work = straight_work(point, reached, broken >= SEVERAL)
     else:
         work = step_work(system, point, reached, away, back)
-    slid = slid_off(system, point, reached, away, back)
+    slid = 0.0 if system.interface.slides else slid_off(system, point, reached, away, back)
     if slid:
         spent = replace(spent, dissipated=spent.dissipated + slid)
         reached = replace(reached, state=replace(state, slid=old.slid + slid), energies=spent)
@@ -128,7 +140,8 @@ def _converged(solver: Solver, point: Point, asked: Step, goal: Prescribed) -> t
         if nearly is None:
             return None
         touch = nearly.response.contact
-        ahead = Prediction(nearly.state, True, _end(solver.system, point, asked, touch, touch.g_q), nearly.residuals)
+        end = _end(solver.system, point, asked, touch, nearly.response.x_q)
+        ahead = Prediction(nearly.state, True, end, nearly.residuals)
     found, kink = None, None
     if ahead.end is not None:
         found = _at_kink(solver, point, ahead.state, ahead.end)
@@ -141,27 +154,28 @@ def _converged(solver: Solver, point: Point, asked: Step, goal: Prescribed) -> t
 def _at_kink(solver: Solver, point: Point, trial: State, end: StepEnd) -> Equilibrium | None:
     """Equilibrium at the end of a step; None where there is none, or where it has not reached the kink."""
     found = equilibrium(solver, trial, _onto(solver.system, point, end))
-    return None if found is None or found.response.contact.g_q[end.kink.q] < end.kink.gap else found
+    return None if found is None or found.response.x_q[end.kink.q] < end.kink.gap else found
 
 
 def _onto(system: System, point: Point, end: StepEnd) -> Prescribed:
     """The gap at the kink as the control of a step from a point."""
-    change = end.target - float(point.response.contact.g_q[end.kink.q])
+    change = end.target - float(point.response.x_q[end.kink.q])
     return Prescribed(gap_control(system, end.kink.q), end.target, change)
 
 
 def _end(system: System, point: Point, asked: Step, touch: Contact, g_q: np.ndarray) -> StepEnd | None:
     """The kink at which a step from a point to the gaps g_q (n_q,) is to end."""
     if asked.every_kink:
-        return first_end(system, point.state, point.response.contact, touch, g_q)
-    return nearest_end(system, point.state, touch, g_q, follows_on=point.before is not None)
+        return first_end(system, point.state, point.response, touch, g_q)
+    history_q = point.response.back_q(point.state)
+    return nearest_end(system, history_q, touch, g_q, follows_on=point.before is not None)
 
 
-def _leaping(system: System, point: Point, asked: Step, touch: Contact) -> np.ndarray | None:
-    """Gaps (n_q,) after a leap of the front; None where it does not leap."""
-    q, path = point.front, point.tangent
+def _leaping(system: System, point: Point, asked: Step) -> np.ndarray | None:
+    """Gaps (n_q,) after a leap of the front; None where it does not leap, or slides as well."""
+    q, path, touch = point.front, point.tangent, point.response.contact
     opens = asked.away * path.rate_q[q] if path.growing_q[q] else 0.0
-    if opens <= LEAP * system.interface.law.g_u:
+    if opens <= LEAP * system.interface.law.span or system.interface.slides:
         return None
     return travelled(system.interface, touch.g_q, q, touch.g_q[q] + opens)
 
@@ -173,7 +187,42 @@ def _committed(solver: Solver, point: Point, asked: Step, found: Equilibrium) ->
         # nothing has a gap here whose sign means anything: contact is what it was on the way
         state = replace(state, closed_q=old.closed_q)
         response = solver.respond(replace(state, k_q=old.k_q), decide=False)
-    return replace(state, k_q=response.k_q, scale=max(old.scale, response.scale)), response
+    shear, scale = response.pull.shear, max(old.scale, response.scale)
+    if shear is None:
+        return replace(state, k_q=response.k_q, scale=scale), response
+    state = replace(state, k_q=response.k_q, slip_q=shear.slip_q, scale=scale)
+    return replace(spending(solver.system.interface, point, state, response), dt=0.0), response
+
+
+def _in_time(solver: Solver, state: State, dt: float, direction: float) -> Tangent | None:
+    """How a converged state goes on in a step of the time ``dt``; None where the matrix is singular.
+
+    The next step starts from the factors that this leaves. Damage that lags behind goes on growing whatever the jumps
+    do, so that no point has to be sorted, and forward is where the programme goes.
+    """
+    system = solver.system
+    if solver.factorise(solver.respond(replace(state, dt=dt), decide=False)) is None:
+        return None
+    assert solver.linearised is not None
+    response, z_d = solver.linearised.response, solver.inverse.under_load_d
+    compliance = float(system.load_d @ z_d)
+    if compliance == 0.0:
+        return None
+    sign, slope = direction * float(np.sign(compliance)), 1.0 / compliance
+    growing_q = response.k_q > state.k_q
+    return Tangent(
+        du_d=sign * z_d,
+        d_load=sign,
+        slope=slope,
+        heading=direction,
+        rate_q=sign * response.x_rates(z_d),
+        growing_q=growing_q,
+        closed_q=response.closed_q,
+        arrival=slope,
+        departure=slope,
+        came=direction,
+        agreed=True,
+    )
 
 
 def _smoothed(point: Point, asked: Step, leaving: Tangent, broken: int, end: tuple[float, float]) -> Tangent:

@@ -20,6 +20,7 @@ from iga.path.kinks import DISTANCES, first_kink
 from iga.path.point import Point
 from iga.path.polyline import Kept
 from iga.path.tangent import away_from_zero
+from iga.system.state import State
 from iga.system.system import System
 
 
@@ -63,7 +64,7 @@ class Step:
     """What is asked of a step: the control, the length of the tangent it goes, and where it ends.
 
     ``exact``: on the goal. ``by_kinks``: any other step, where a point breaks; ``every_kink``: at the first kink of any
-    kind.
+    kind. With viscosity it takes the time ``dt``, and damage may grow by ``growth``.
     """
 
     control: Control
@@ -71,6 +72,8 @@ class Step:
     exact: bool = False
     by_kinks: bool = False
     every_kink: bool = False
+    dt: float = 0.0
+    growth: float = np.inf
 
     @property
     def lands(self) -> bool:
@@ -190,16 +193,68 @@ class Careful:
         return Careful(usual, self.halvings - 1) if self.halvings else usual
 
 
-StepLength = Counted | ByAccuracy | Careful
+@dataclass(frozen=True)
+class Pace:
+    """How fast time may go: the implicit Euler method has an error in proportion to what a step adds to the damage.
+
+    ``growth`` is the most that damage grows by at any point in a step, for the ``bend`` that a path is drawn with if
+    nothing else is asked for, and in proportion to it; steps ``aim`` at a part of that. They are no longer than the
+    programme over ``fewest``, and no shorter than the part ``smallest`` of it or of the viscosity: by then damage
+    cannot grow by more, and it is equilibrium that is missing.
+    """
+
+    growth: float = 0.1
+    bend: float = 0.005
+    aim: float = 0.8
+    fewest: int = 40
+    smallest: float = 1e-3
+
+
+PACE = Pace()
+
+
+@dataclass(frozen=True)
+class InTime:
+    """Steps with viscosity, led by the opening as time is, of a ``length`` up to ``largest``; damage grows by no more
+    than ``growth`` on one. The programme is ``whole`` long, and ``shortest`` is where they end in failure."""
+
+    whole: float
+    largest: float
+    length: float
+    shortest: float
+    growth: float
+    bend: None = None
+    cuts: int = 0
+
+    def failed(self) -> InTime | None:
+        return replace(self, length=0.5 * self.length) if self.length > self.shortest else None
+
+    def cut(self, kept: Kept, moved: float) -> InTime | None:
+        return self.failed()
+
+    def after(self, start: Point, end: Point, peak: float, kept: Kept) -> InTime:
+        grown = PACE.aim * self.growth / max(grows(start.state, end.state), 0.5 * PACE.aim * self.growth)
+        # the last step before a goal is short for another reason
+        return replace(self, length=min(max(grown * abs(end.opening - start.opening), self.length / 2.0), self.largest))
+
+
+StepLength = Counted | ByAccuracy | Careful | InTime
 
 
 def step_length(
-    programme: np.ndarray, steps: int | None, bend: float = LENGTHS.bend, linear: bool = False
-) -> Counted | ByAccuracy:
+    programme: np.ndarray,
+    steps: int | None,
+    bend: float = LENGTHS.bend,
+    linear: bool = False,
+    viscosity: float = 0.0,
+) -> Counted | ByAccuracy | InTime:
     """The step length at which a programme begins; ``steps`` and ``bend`` as in `iga.path.follow.follow`.
 
-    Where kinematics and bulk are ``linear`` nothing bends before damage begins, and the first step goes that far.
+    Where kinematics and bulk are ``linear`` nothing bends before damage begins, and the first step goes that far. With
+    ``viscosity`` steps follow damage in time.
     """
+    if viscosity:
+        return _in_time(programme, steps, bend, viscosity)
     whole = float(np.sum(np.abs(np.diff(programme, prepend=0.0))))
     asked = whole / steps if steps else np.inf
     if steps and steps >= LENGTHS.fewest:
@@ -207,6 +262,19 @@ def step_length(
     largest, safe = min(LENGTHS.largest * whole, asked), whole / LENGTHS.safe
     first = largest if linear else min(LENGTHS.first * whole, asked)
     return ByAccuracy(largest, first, Counted(safe, safe, bend), bend)
+
+
+def _in_time(programme: np.ndarray, steps: int | None, bend: float, viscosity: float) -> InTime:
+    """The step length at which a programme (n,) begins; ``steps`` and ``bend`` as in `iga.path.follow.follow`."""
+    whole = float(np.sum(np.abs(np.diff(programme, prepend=0.0))))
+    largest = whole / max(steps or 0, PACE.fewest)
+    growth = PACE.growth * min(bend / PACE.bend, 1.0)
+    return InTime(whole, largest, largest, PACE.smallest * whole * min(growth * viscosity, 1.0), growth)
+
+
+def grows(before: State, after: State) -> float:
+    """By how much the damage of a point has grown at most."""
+    return float(np.max(after.k_q - before.k_q, initial=0.0))
 
 
 def next_step(system: System, point: Point, goal: float, lengths: StepLength, direction: float) -> Step:
@@ -217,6 +285,11 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
     """
     law, path, careful = system.interface.law, point.tangent, isinstance(lengths, Careful)
     left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
+    if isinstance(lengths, InTime):
+        exact = abs(left) < 1.001 * lengths.length
+        move = left if exact else float(np.copysign(lengths.length, left))
+        dt = abs(move) / lengths.whole
+        return Step(opening_control(system), move / opening_rate, exact, dt=dt, growth=lengths.growth)
     by_kinks = isinstance(lengths, ByAccuracy)
     every_kink = isinstance(lengths, ByAccuracy) and lengths.at_kinks > 0
     grows, q, past = bool(path.growing_q.any()), point.front, None
@@ -230,7 +303,7 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
         return Step(opening_control(system), away, exact, by_kinks, every_kink)
     if 0.0 < direction * left < lengths.length and not careful and path.heading == direction:
         return Step(opening_control(system), left / opening_rate, True, by_kinks)
-    away = min(lengths.front * law.g_u / abs(path.rate_q[q]), lengths.length / abs(opening_rate))
+    away = min(lengths.front * law.span / abs(path.rate_q[q]), lengths.length / abs(opening_rate))
     if past is not None and past[1] < away:
         q, _, away = past
     name = CONTROLS[lengths.number] if isinstance(lengths, Careful) else CONTROLS[0]
@@ -244,11 +317,11 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
 
 def _past_kink(system: System, point: Point) -> tuple[int, float, float] | None:
     """The point that reaches a kink first along the tangent, and the lengths that lead onto the kink and past it."""
-    law, touch, rate_q = system.interface.law, point.response.contact, point.tangent.rate_q
-    k_q = np.where(holding(system.interface, touch), point.state.k_q, law.g_u)  # no kink for the others
-    found = first_kink(law, touch.g_q, k_q, rate_q)
+    response, rate_q, kinks = point.response, point.tangent.rate_q, np.array(system.interface.law.kinks)
+    k_q = np.where(holding(system.interface, response.contact), response.back_q(point.state), kinks[-1])  # else no kink
+    found = first_kink(kinks, response.x_q, k_q, rate_q)
     if found is None:
         return None
     kink, away = found
-    shortest = float(np.min(np.diff(np.array(law.kinks), prepend=0.0)))
+    shortest = float(np.min(np.diff(kinks, prepend=0.0)))
     return kink.q, away, float(away + DISTANCES.past * shortest / rate_q[kink.q])

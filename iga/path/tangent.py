@@ -12,7 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.algebra.factors import Bordered
-from iga.interface.interface import holding
+from iga.interface.contact import Contact
+from iga.interface.interface import Interface, holding
+from iga.interface.mixed_laws import History
+from iga.interface.traction_law import TractionLaw
 from iga.path.gap_newton import GapLaw, settled_step
 from iga.path.kinks import Kink
 from iga.path.solver import Solver
@@ -71,10 +74,14 @@ def away_from_zero(direction: float, opening: float) -> bool:
     return direction * opening >= 0.0
 
 
-def on_envelope(system: System, state: State, g_q: np.ndarray) -> np.ndarray:
-    """Points that soften: their damage grows as soon as they open any further."""
+def on_envelope(system: System, state: State, response: Response) -> np.ndarray:
+    """Points that soften: their damage grows as soon as they go any further; ``response`` is that of the state."""
     law, k_q = system.interface.law, state.k_q
-    return (k_q > law.g_max) & (k_q < law.g_u) & (g_q >= (1.0 - 1e-9) * k_q)
+    active_q = (k_q > law.begun) & (k_q < law.failed)
+    shear = response.pull.shear
+    if shear is not None:
+        return active_q & (shear.driven_q >= (1.0 - 1e-9) * k_q)
+    return active_q & (response.contact.g_q >= (1.0 - 1e-9) * k_q)
 
 
 def tangent(
@@ -99,66 +106,85 @@ def tangent(
     kink : the one that the state stands on; ``slope`` is the mean of both sides where these have one sign.
     """
     system, law, g_q = solver.system, solver.system.interface.law, response.contact.g_q
+    driving_q = g_q if response.pull.shear is None else response.pull.shear.driven_q
     onward = away_from_zero(direction, float(system.load_d @ state.u_d))
-    soft_q = on_envelope(system, state, g_q) & holding(system.interface, response.contact)
+    soft_q = on_envelope(system, state, response) & holding(system.interface, response.contact)
     growing_q = soft_q if onward or not law.irreversible else np.zeros_like(soft_q)
     flat_q = law.contact & (np.abs(g_q) <= SORTING.closed * law.g_max)
     closed_q, found = state.closed_q, None
     for attempt in range(SORTING.attempts):
         if attempt > 0 or turning:
             # a history larger by a rounding is enough to be on the secant, a smaller one to be on the envelope
-            k_q = np.where(soft_q & ~growing_q, state.k_q * (1.0 + 1e-12), state.k_q)
-            k_q = np.where(growing_q, np.minimum(k_q, g_q) * (1.0 - 1e-12), k_q)
+            k_q = law.nudged(state.k_q, driving_q, growing_q, soft_q & ~growing_q)
             response = solver.respond(replace(state, k_q=k_q, closed_q=closed_q), decide=False)
         if solver.factorise(response) is None:
             return None
         found = _along(solver, direction, onward, growing_q, kink)
         least = SORTING.still * float(np.abs(found.rate_q).max(initial=0.0))
         agreeing_q = soft_q & (found.rate_q > np.where(growing_q, -least, least)) if law.irreversible else soft_q
-        touching_q = np.where(flat_q & turning, found.rate_q < 0.0, closed_q)
+        closing_q = found.rate_q if not system.interface.slides else response.contact.rates(found.du_d)
+        touching_q = np.where(flat_q & turning, closing_q < 0.0, closed_q)
         if (agreeing_q == growing_q).all() and (touching_q == closed_q).all():
             return replace(found, agreed=True)
         if attempt == 0 and turning:
-            sorted_ = _sorted(solver, state, direction, soft_q, flat_q)
+            sorted_ = _sorted(solver, state, direction, (soft_q, growing_q, flat_q))
             agreeing_q, touching_q = sorted_ or (agreeing_q, touching_q)
         growing_q, closed_q = agreeing_q, touching_q
     return found
 
 
 def _sorted(
-    solver: Solver, state: State, direction: float, soft_q: np.ndarray, flat_q: np.ndarray
+    solver: Solver, state: State, direction: float, sets: tuple[np.ndarray, np.ndarray, np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Points that grow and points that touch, under a load that changes in a direction; None where that is not found.
 
-    As a rate has a slope where it opens and another where it closes, rates are gaps of a law with a kink at zero.
+    ``sets`` are the points (n_q,) that soften, those of them that are thought to grow, and those without a gap. As a
+    rate has a slope where it opens and another where it closes, rates are gaps of a law with a kink at zero.
     """
     assert solver.linearised is not None
+    soft_q, growing_q, flat_q = sets
     response, inverse = solver.linearised.response, solver.linearised.inverse
     interface, law = solver.system.interface, solver.system.interface.law
-    touch = replace(response.contact, g_q=np.zeros(interface.points))
+    touch = still(response.contact)
     held_q = np.where(holding(interface, touch), touch.share_q, 0.0)
-    secant_q, falling = held_q * law.secant(state.k_q), law.softening(state.k_q)
+    secant_q = held_q * law.secant(state.k_q)
+    falling = (
+        law.softening(state.k_q) if isinstance(law, TractionLaw) else np.where(response.closed_q, 0.0, response.dp_q)
+    )
     pressed_q = touch.share_q * law.penalty
 
     def growing(rate_q: np.ndarray) -> np.ndarray:
+        if interface.slides:  # what grows does not follow from gaps alone
+            return growing_q
         return soft_q & (rate_q > 0.0) if law.irreversible else soft_q
 
     def touching(rate_q: np.ndarray) -> np.ndarray:
         return np.where(flat_q, rate_q < 0.0, response.closed_q)
 
-    def tractions(rate_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        slope_q = np.where(touching(rate_q), pressed_q, np.where(growing(rate_q), held_q * falling, secant_q))
-        return slope_q * rate_q, slope_q
+    def tractions(rate_qc: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        rate_q, slope_qcc = rate_qc[:, 0], response.pull.slope_qcc.copy()
+        closes_q = touching(rate_q)
+        slope_qcc[:, 0, 0] = np.where(closes_q, pressed_q, np.where(growing(rate_q), held_q * falling, secant_q))
+        slope_qcc[closes_q, 0, 1:] = 0.0
+        return (slope_qcc @ rate_qc[..., None])[..., 0], slope_qcc
 
     with solver.phase("solve"):
         load = Bordered(inverse, np.zeros(solver.system.n_dof), 1.0)
         linear_d = direction * np.append(inverse.under_load_d, 1.0)
-        rates = GapLaw(interface, touch, tractions, np.zeros(interface.points), response.dp_q)
+        rates = GapLaw(
+            interface, touch, tractions, np.zeros_like(touch.jump_qc), response.pull.slope_qcc, interface.slides
+        )
         step_d = settled_step(rates, linear_d, load)
     if step_d is None:
         return None
     rate_q = touch.rates(step_d[:-1])
     return growing(rate_q), touching(rate_q)
+
+
+def still(touch: Contact) -> Contact:
+    """A contact in which nothing has moved."""
+    slip = None if touch.slip is None else replace(touch.slip, s_q=np.zeros_like(touch.g_q))
+    return replace(touch, g_q=np.zeros_like(touch.g_q), slip=slip)
 
 
 def _along(solver: Solver, direction: float, onward: bool, growing_q: np.ndarray, kink: Kink | None) -> Tangent:
@@ -169,7 +195,7 @@ def _along(solver: Solver, direction: float, onward: bool, growing_q: np.ndarray
     compliance, before = float(system.load_d @ z_d), float(system.load_d @ before_d)
     arrival, departure = 1.0 / before if before != 0.0 else np.inf, 1.0 / compliance
     slope = 0.5 * (departure + arrival) if before * compliance > 0.0 else departure
-    rate_q = response.contact.rates(z_d)
+    rate_q = response.x_rates(z_d)
     onto_envelope = onward or not system.interface.law.irreversible
 
     def forward(rate_q: np.ndarray, compliance: float) -> float:
@@ -179,7 +205,7 @@ def _along(solver: Solver, direction: float, onward: bool, growing_q: np.ndarray
         return direction * float(np.sign(compliance))
 
     sign = forward(rate_q, compliance)
-    came = sign if kink is None else forward(response.contact.rates(before_d), before)
+    came = sign if kink is None else forward(response.x_rates(before_d), before)
     return Tangent(
         du_d=sign * z_d,
         d_load=sign,
@@ -195,10 +221,28 @@ def _along(solver: Solver, direction: float, onward: bool, growing_q: np.ndarray
 
 
 def _before(solver: Solver, response: Response, kink: Kink) -> np.ndarray:
-    """Solution with the tangent just before a kink: one point less stiff by its jump (Sherman and Morrison 1950)."""
-    interface = solver.system.interface
-    g_d = response.contact.row(kink.q, solver.system.n_dof)
+    """Solution with the tangent just before a kink: one point has other slopes there (Sherman and Morrison 1950)."""
+    system, q = solver.system, np.array([kink.q])
+    touch, change = response.contact, slopes_before(system.interface, response, kink) * system.interface.dA_q[kink.q]
+    rows = [touch.gap_rows] if touch.slip is None else [touch.gap_rows, touch.slip.rows]
+    V_dr = np.concatenate([row.gradients(q, system.n_dof) for row in rows], axis=1)
     with solver.phase("solve"):
-        y_d, z_d = solver.inverse.solve(g_d[:, None])[:, 0], solver.inverse.under_load_d
-    weight = -interface.law.jump(kink.gap) * interface.dA_q[kink.q]
-    return z_d - y_d * (weight * float(g_d @ z_d) / (1.0 + weight * float(g_d @ y_d)))
+        Y_dr, z_d = solver.inverse.solve(V_dr), solver.inverse.under_load_d
+    small_rr = np.eye(len(rows)) + change @ (V_dr.T @ Y_dr)
+    return z_d - Y_dr @ np.linalg.solve(small_rr, change @ (V_dr.T @ z_d))
+
+
+def slopes_before(interface: Interface, response: Response, kink: Kink) -> np.ndarray:
+    """Slopes of the tractions at a point just before a kink, less those behind it: (1, 1), or (2, 2) if it slides."""
+    law, q = interface.law, [kink.q]
+    if isinstance(law, TractionLaw):
+        return np.array([[-law.jump(kink.gap)]])
+    assert response.contact.slip is not None and response.pull.shear is not None
+    g, s, d = response.contact.g_q[q], response.contact.slip.s_q[q], response.k_q[q]
+    slips, less = response.pull.shear.slip_q, np.zeros(1) if kink.gap <= law.kinks[0] else law.driven(g, s) * 0.5
+    found = []
+    for part, damage in ((1.0 - 1e-6, np.minimum(less, d)), (1.0 + 1e-6, np.minimum(less, d))):
+        past = History(damage, None if slips is None else slips[q])
+        now = law.traction(part * g, part * s, past)
+        found.append(np.array([[now.dp_dg, now.dp_ds], [now.dt_dg, now.dt_ds]])[..., 0])
+    return found[0] - found[1]

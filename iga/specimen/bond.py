@@ -10,6 +10,7 @@ import numpy as np
 
 from iga.interface.interface import Interface, PairedInterface, SearchedInterface, settled
 from iga.interface.lumping import lumped
+from iga.interface.mixed_laws import MixedLaw
 from iga.interface.surface import Surface
 from iga.interface.traction_law import TractionLaw
 from iga.mesh.quadrature import QUADRATURE, Rule, gauss
@@ -33,20 +34,23 @@ SLIVER = 1e-6
 class Joint:
     """The surfaces by which the bodies meet, ``slave`` and ``master``; one body alone meets its mirror image.
 
-    ``P_AI`` (n_A, 2) control points of the whole model, in which both surfaces are numbered.
+    ``P_AI`` (n_A, 2) control points of the whole model, in which both surfaces are numbered; ``forward_i`` (2,) is the
+    direction in which the slave slides where the upper body moves away from X = 0.
     """
 
     problem: Debonding
     slave: Surface
     master: Surface | None
     P_AI: np.ndarray
+    forward_i: np.ndarray
 
     @staticmethod
     def of(problem: Debonding, bodies: tuple[Body, ...]) -> Joint:
         number = slave_number(problem, bodies)
+        forward_i = problem.pose.axes_kI[0] * (1.0 if number == 0 else -1.0)
         surfaces = [body.surface(name) for body, name in zip(bodies, FACING, strict=False)]
         master = surfaces[1 - number] if len(bodies) > 1 else None
-        return Joint(problem, surfaces[number], master, control_points(bodies))
+        return Joint(problem, surfaces[number], master, control_points(bodies), forward_i)
 
     @cached_property
     def ends_ck(self) -> np.ndarray:
@@ -74,7 +78,8 @@ class Joint:
         """The interface with points at these places."""
         problem = self.problem
         if self.master is not None:
-            return between(self.slave, self.master, self.P_AI, problem.law, places, problem.width)
+            found = between(self.slave, self.master, self.P_AI, problem.law, places, problem.width)
+            return replace(found, forward_i=self.forward_i)
         points = _points(self.slave, self.P_AI, places, problem.width)
         n_qi = np.broadcast_to(problem.pose.axes_kI[1], points["X_qi"].shape)
         pairs = {"both_qa": points["conn_qa"], "D_qa": 2.0 * points["N_qa"], "n_qi": n_qi}
@@ -132,7 +137,7 @@ def faces(joint: Joint, extent: tuple[float, float]) -> Interface | None:
 
 
 def between(
-    slave: Surface, master: Surface, P_AI: np.ndarray, law: TractionLaw, places: Places, width: float = 1.0
+    slave: Surface, master: Surface, P_AI: np.ndarray, law: TractionLaw | MixedLaw, places: Places, width: float = 1.0
 ) -> SearchedInterface:
     """Interface between any two surfaces, each a chain of element sides.
 
@@ -151,11 +156,13 @@ def _points(slave: Surface, P_AI: np.ndarray, places: Places, width: float) -> d
     X_qi, tangent_qi = (np.einsum("qb,qbi->qi", r, slave.bezier_points(P_AI, c_q)) for r in (r0, r1))
     return {
         "N_qa": slave.functions(c_q, r0),
+        "dN_qa": slave.functions(c_q, r1 / np.linalg.norm(tangent_qi, axis=1)[:, None]),
         "conn_qa": slave.conn_ca[c_q],
         "dA_q": np.linalg.norm(tangent_qi, axis=1) * w_q * width,
         "X_qi": X_qi,
         "P_AI": P_AI,
         "bonded_q": np.ones(len(c_q), dtype=bool),
+        "forward_i": np.array([1.0, 0.0]),
     }
 
 

@@ -13,7 +13,8 @@ from iga.specimen.ranges import require_positive
 
 @dataclass(frozen=True, kw_only=True)
 class Moduli:
-    """Elastic constants, axis 1 along the specimen; isotropic where ``E2`` and ``G12`` are left out.
+    """Elastic constants, axis 1 along the specimen; isotropic where ``E2`` and ``G12`` are left out;
+    ``nu23``, which plane strain alone needs, is nu12 where it is left out.
 
     Raises
     ------
@@ -24,6 +25,7 @@ class Moduli:
     nu12: float
     E2: float | None = None
     G12: float | None = None
+    nu23: float | None = None
 
     def __post_init__(self) -> None:
         require_positive(self, "E1", "E2", "G12")
@@ -32,7 +34,7 @@ class Moduli:
         """Elasticity matrix (3, 3), stress = D (E11, E22, 2 E12); raises as `orthotropic` does."""
         E2 = self.E1 if self.E2 is None else self.E2
         G12 = self.E1 / (2.0 * (1.0 + self.nu12)) if self.G12 is None else self.G12
-        return orthotropic(self.E1, E2, G12, self.nu12, plane)
+        return orthotropic(self.E1, E2, G12, self.nu12, plane, self.nu23)
 
     def axial(self, plane: str) -> float:
         """Modulus of an arm that is bent or stretched: E1, and ``E1 / (1 - nu12^2 E2 / E1)`` in plane strain."""
@@ -49,12 +51,33 @@ class Rectangle:
     moduli: Moduli
 
 
-class Load(NamedTuple):
-    """A share of the load, upwards, on the end face of a body (0 upper, 1 lower): "left" or "right"."""
+#: A range of X.
+Extent = tuple[float, float]
 
-    body: int
-    end: str
+
+class Load(NamedTuple):
+    """A part of the load on a side of a body (0 upper, 1 lower, None: the end faces of both as one): "left", "right",
+    "top" or "bottom".
+
+    It is a uniform dead traction on the ``extent`` of the side, all of it where left out: ``share`` times the load,
+    upwards. A ``couple`` is a traction along X on an end face, linear in Y about the middle of its height: ``share``
+    times the load is its moment, anticlockwise.
+    """
+
+    body: int | None
+    side: str
     share: float
+    extent: Extent | None = None
+    couple: bool = False
+
+
+class Support(NamedTuple):
+    """A patch, as of a `Load`, whose mean displacement along Y is zero; of a ``couple`` the mean rotation is."""
+
+    body: int | None
+    side: str
+    extent: Extent | None = None
+    couple: bool = False
 
 
 class Clamp(NamedTuple):
@@ -76,14 +99,17 @@ class Layout:
     ----------
     bodies : the upper and the lower one.
     bonded : X of the tip of the bond, next to the load, and of its far end.
-    loads : all on one end of the specimen.
-    clamps : none if the loads balance each other.
+    loads : what the load consists of.
+    clamps, supports : neither if the loads balance each other.
+    from_x : X from where distances are counted; that of the first load, on an end face, where left out.
     """
 
     bodies: tuple[Rectangle, Rectangle]
     bonded: tuple[float, float]
     loads: tuple[Load, ...] = OPENED
     clamps: tuple[Clamp, ...] = ()
+    supports: tuple[Support, ...] = ()
+    from_x: float | None = None
 
     @property
     def facing(self) -> tuple[float, float]:
@@ -94,8 +120,10 @@ class Layout:
     @property
     def loaded_at(self) -> float:
         """X of the loaded end, from where distances are counted."""
-        body, end, _ = self.loads[0]
-        return 0.0 if end == "left" else self.bodies[body].length
+        body, side = self.loads[0][:2]
+        if self.from_x is not None:
+            return self.from_x
+        return 0.0 if side == "left" else self.bodies[body or 0].length
 
     @property
     def free_length(self) -> float:
@@ -103,5 +131,6 @@ class Layout:
         return abs(self.bonded[0] - self.loaded_at)
 
     def load_on(self, body: int) -> Load | None:
-        """The load on a body, None without one."""
-        return next((load for load in self.loads if load.body == body), None)
+        """The load on the end face of a body, None without one."""
+        on_ends = (load for load in self.loads if load.side in ("left", "right") and not load.couple)
+        return next((load for load in on_ends if load.body == body), None)

@@ -11,6 +11,7 @@ import numpy as np
 from iga.bases.names import BASES, find
 from iga.elements.kinematics import KINEMATICS
 from iga.interface.laws import LAWS
+from iga.interface.mixed_laws import MixedLaw
 from iga.interface.traction_law import TractionLaw
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import QUADRATURE
@@ -69,6 +70,7 @@ class Debonding(ABC):
     law_name: str = "bilinear"
     plateau: float = 0.5
     table: tuple[tuple[float, float], ...] = ()
+    mixed: MixedLaw | None = None
     opening: tuple[float, ...]
     load_at: str = "face"
     width: float = 1.0
@@ -117,8 +119,10 @@ class Debonding(ABC):
         """Bodies, bond, loads and clamps."""
 
     @property
-    def law(self) -> TractionLaw:
+    def law(self) -> TractionLaw | MixedLaw:
         """The traction law."""
+        if self.mixed is not None:
+            return self.mixed
         shape, stiffness = LAWS[self.law_name], 0.5 * self.strength**2 * self.ductility / self.toughness
         penalty = CONTACT_RATIO * stiffness if self.penalty is None else self.penalty
         own = {field.name: getattr(self, field.name) for field in fields(shape) if field.name in ("plateau", "table")}
@@ -135,11 +139,16 @@ def smooth(problem: Debonding) -> bool:
 
 
 def presses(problem: Debonding) -> bool:
-    """Whether faces beyond the bond can meet: the programme goes below zero.
+    """Whether the programme presses faces beyond the bond together, next to the load: it goes below zero.
 
     Unloading alone does not close them: along the secants of the damage they come together at no opening, all at once.
     """
     return problem.contact and min(problem.opening) < 0.0
+
+
+def touches(problem: Debonding) -> bool:
+    """Whether faces beyond the bond can meet: where they are pressed, or the specimen is bent between supports."""
+    return presses(problem) or (problem.contact and bool(problem.layout.supports))
 
 
 def unloads(problem: Debonding) -> bool:

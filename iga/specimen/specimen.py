@@ -13,10 +13,11 @@ from iga.interface.interface import Interface
 from iga.mesh.extraction import Mesh
 from iga.specimen.body import Body, bodies, slope_row
 from iga.specimen.bond import FACING, Joint, bond, faces, probe, slave_number
-from iga.specimen.layout import Layout
+from iga.specimen.layout import Layout, Load
 from iga.specimen.load import pulled_row
+from iga.specimen.patch import PatchRows, patch_rows
 from iga.specimen.pose import Pose
-from iga.specimen.problem import Debonding, presses, smooth
+from iga.specimen.problem import Debonding, smooth, touches
 from iga.system.bulk import BULKS, ElementBulk
 from iga.system.system import System
 from iga.tsplines.tmesh import TMesh
@@ -38,12 +39,14 @@ class Drawn:
 class Supports:
     """What holds a specimen: springs of stiffness spring_r (n_r,) on the displacements ``springs_rd @ u``, and clamps.
 
-    ``free_d`` (n_dof,) is False where a degree of freedom is fixed.
+    ``free_d`` (n_dof,) is False where a degree of freedom is fixed. ``rollers`` are the supports of the layout, whose
+    springs come first.
     """
 
     springs_rd: np.ndarray
     spring_r: np.ndarray
     free_d: np.ndarray
+    rollers: tuple[PatchRows, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -53,7 +56,8 @@ class Specimen:
     ``copies`` is 2 where one body stands for both. ``load_at`` is where on its end the load acts (see
     `iga.specimen.load`). ``probe`` has two points, on the tip of the bond and on its far end. ``faces`` are samples of
     the whole faces that are opposite to each other, bonded or not, where the programme may close them. ``ends`` are the
-    end faces as a bulk of elements, with the sign of their strain energy in the J-integral.
+    end faces as a bulk of elements, with the sign of their strain energy in the J-integral. ``loads`` and ``rollers``
+    are the rows of the layout's loads and supports, where the bond slides.
     """
 
     system: System
@@ -62,11 +66,14 @@ class Specimen:
     layout: Layout
     drawn: Drawn
     copies: float
+    width: float
     load_at: str
     upper_is_slave: bool
     probe: Interface
     faces: Interface | None
     ends: ElementBulk
+    loads: tuple[PatchRows, ...] = ()
+    rollers: tuple[PatchRows, ...] = ()
 
     @property
     def meshes(self) -> tuple[Mesh, ...]:
@@ -78,7 +85,7 @@ class Specimen:
         n, axes_kI = self.system.n_dof, self.pose.axes_kI
         loads = (self.layout.load_on(number) for number in range(len(self.bodies)))
         return tuple(
-            np.zeros(n) if load is None else slope_row(body.ends[load.end], axes_kI[0], axes_kI[1], n)
+            np.zeros(n) if load is None else slope_row(body.ends[load.side], axes_kI[0], axes_kI[1], n)
             for body, load in zip(self.bodies, loads, strict=True)
         )
 
@@ -95,8 +102,8 @@ class Specimen:
     @cached_property
     def face_row(self) -> np.ndarray:
         """Row (n_dof,) of the displacement along the specimen at the load on the upper body."""
-        body, end, _ = self.layout.loads[0]
-        return pulled_row(self.bodies[body], end, self.load_at, self.pose, 0, self.system.n_dof)
+        load = self.layout.loads[0]
+        return pulled_row(self.bodies[load.body or 0], load.side, self.load_at, self.pose, 0, self.system.n_dof)
 
     @cached_property
     def beside_probe(self) -> np.ndarray:
@@ -117,8 +124,9 @@ class Specimen:
         return self.pose.own(interface.X_qi), self.pose.own(interface.P_AI[self.bodies[0].points])
 
     def distance(self, X: np.ndarray) -> np.ndarray:
-        """Distance (...,) of places (..., 2) from the loaded end, along the specimen."""
-        return np.abs(self.pose.own(X)[..., 0] - self.layout.loaded_at)
+        """Distance (...,) of places (..., 2) from the loaded end, along the specimen; negative in an overhang."""
+        X_own = self.pose.own(X)[..., 0]
+        return np.abs(X_own - self.layout.loaded_at) if self.layout.from_x is None else X_own - self.layout.from_x
 
 
 def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body, ...]], Supports]) -> Specimen:
@@ -127,17 +135,19 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
     # the width counts a mirror image that is not modelled: forces and energies are those of both
     parts = bodies(drawn.meshes, _elasticity(problem, drawn), pose, copies * problem.width, smooth(problem))
     joint, held = Joint.of(problem, parts), supports(parts)
-    pulled = [
-        copies * share * pulled_row(parts[body], end, problem.load_at, pose, 1, joint.P_AI.size)
-        for body, end, share in layout.loads
-        if body < len(parts)
+    loads = [load for load in layout.loads if load.body is None or load.body < len(parts)]
+    pulled = [copies * load.share * _load_row(problem, parts, load, joint.P_AI.size) for load in loads]
+    first = loads[0]
+    beside = [
+        row for load, row in zip(loads, pulled, strict=True) if load.side == first.side and load.extent == first.extent
     ]
-    touching = layout.facing if presses(problem) and layout.facing != layout.bonded else None
+    touching = layout.facing if touches(problem) and layout.facing != layout.bonded else None
     bulk = BULKS[problem.kinematics]
     system = System(
         bulk=bulk(joined([solid for body in parts for solid in body.solids])),
         interface=bond(joint, layout.bonded, touching),
         load_d=np.sum(pulled, axis=0),
+        hold_d=np.sum(beside, axis=0),
         free_d=held.free_d,
         x_d=np.repeat(pose.own(joint.P_AI)[:, 0], 2),
         springs_rd=held.springs_rd,
@@ -150,12 +160,22 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
         layout=layout,
         drawn=drawn,
         copies=copies,
+        width=problem.width,
         load_at=problem.load_at,
         upper_is_slave=slave_number(problem, parts) == 0,
         probe=probe(joint, layout.bonded, system.interface),
         faces=faces(joint, layout.facing),
         ends=bulk(_ends(parts, layout, copies)),
+        loads=tuple(patch_rows(parts, load, pose, joint.P_AI.size) for load in loads) if problem.mixed else (),
+        rollers=held.rollers,
     )
+
+
+def _load_row(problem: Debonding, parts: tuple[Body, ...], load: Load, n_dof: int) -> np.ndarray:
+    """Row (n_dof,) of what is conjugate to a load."""
+    if load.body is None or load.couple or load.side in ("top", "bottom"):
+        return patch_rows(parts, load, problem.pose, n_dof).mean_d
+    return pulled_row(parts[load.body], load.side, problem.load_at, problem.pose, 1, n_dof)
 
 
 def _elasticity(problem: Debonding, drawn: Drawn) -> tuple[np.ndarray, ...]:

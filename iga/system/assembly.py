@@ -12,7 +12,7 @@ from scipy.sparse import coo_array, csr_array
 from iga.algebra.banded import Band, Skew
 from iga.algebra.dense import Dense
 from iga.elements.bulk import half_entries, half_places
-from iga.interface.interface import Interface, stiffness
+from iga.interface.interface import Interface, stiffness, unsymmetric
 from iga.system.state import Response
 
 #: Rows and columns of entries, as degrees of freedom.
@@ -54,7 +54,9 @@ class Pattern:
 
     ``band`` is the numbering of the equations, ``held`` the places of the spring that holds the opening. ``bulk`` makes
     the lower half of the stiffness of the bulk from its displacement gradients; ``positions`` are the places of
-    interface and springs, and ``values`` the entries of the springs.
+    interface and springs, and ``values`` the entries of the springs. ``twice`` are the entries of the interface that
+    stand for two: off the diagonal of a point's own matrix but on that of the whole, as an unknown that two sides of a
+    way share is named by both.
     """
 
     dof_qd: np.ndarray
@@ -63,6 +65,7 @@ class Pattern:
     bulk: Callable[[Gradients], np.ndarray]
     positions: np.ndarray
     values: np.ndarray
+    twice: np.ndarray
 
     @staticmethod
     def of(
@@ -83,16 +86,20 @@ class Pattern:
         band = numbering.reaching(*touching)
         bulk = kept.bulk if isinstance(kept, Pattern) and kept.band.size == band.size else assembler(band)
         positions = _positions(band, touching, (springs.row, springs.column))
-        return Pattern(dof_qd, band, springs.held(band), bulk, positions, springs.value)
+        i, j = _tril(dof_qd.shape[1])
+        twice = np.flatnonzero((touching[0] == touching[1]) & (i != j))
+        return Pattern(dof_qd, band, springs.held(band), bulk, positions, springs.value, twice)
 
     def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, Skew | None]:
         """The lower half (band.size,) of the tangent at a response, and the upper half minus the lower one."""
         touch = response.contact
-        K_qdd = stiffness(interface, touch, response.p_q, response.dp_q)
+        K_qdd = stiffness(interface, touch, response.pull)
         i, j = _tril(K_qdd.shape[1])
-        half = np.bincount(self.positions, np.concatenate([K_qdd[:, i, j].ravel(), self.values]), self.band.size)
+        entries = np.concatenate([K_qdd[:, i, j].ravel(), self.values])
+        entries[self.twice] *= 2.0
+        half = np.bincount(self.positions, entries, self.band.size)
         half += self.bulk(response.gradients)
-        q = touch.unsymmetric(response.p_q)
+        q = unsymmetric(touch, response.pull)
         return half, skew_part(touch.dof_qd[q], K_qdd[q]) if q.size else None
 
 

@@ -18,7 +18,7 @@ from iga.algebra.banded import Band, number
 from iga.algebra.dense import Dense
 from iga.elements.bulk import Solid, element_forces, element_stiffness, energy, full_matrices, gradient, relative
 from iga.elements.kinematics import FINITE, LINEAR, Kinematics
-from iga.interface.interface import dofs
+from iga.interface.contact import dofs
 from iga.system.assembly import DensePattern, Gradients, Pattern, Springs, TangentPattern, element_sums, element_values
 
 

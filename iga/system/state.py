@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from iga.interface.closest_point import Pairing
-from iga.interface.contact import Contact
+from iga.interface.contact import Contact, Rows
+from iga.interface.interface import Histories, Tractions, combined
+
+#: Time between two steps: none, but laws with viscosity divide by it.
+INSTANT = float(np.finfo(float).tiny)
+
+#: Scaled jumps below this are rounding.
+STILL = 1e-9
 
 
 @dataclass(frozen=True)
@@ -17,7 +25,9 @@ class State:
     ``scale`` is the largest force scale (see `Response`) of all converged states so far. ``closed_q`` (n_q,), the
     points in contact, and ``pairing``, where they met the master, are where the next search starts, not history.
     ``slid`` is history: energy lost with points that slid off the master, beyond their part of the dissipation that
-    `iga.system.system.energies` counts.
+    `iga.system.system.energies` counts. Where the bond slides the history k_q is its damage, ``slip_q`` (n_q,) that of
+    friction, ``spent`` the work that it has done and does not store, ``rubbed`` what friction has taken of that, and
+    ``dt`` the time of the step that leads here; 0 of a committed state, whose damage stays as it is.
     """
 
     u_d: np.ndarray
@@ -27,6 +37,15 @@ class State:
     pairing: Pairing | None
     scale: float = 0.0
     slid: float = 0.0
+    slip_q: np.ndarray | None = None
+    spent: float = 0.0
+    rubbed: float = 0.0
+    dt: float = 0.0
+
+    @property
+    def past(self) -> Histories:
+        """What the points bring along into the next step."""
+        return Histories(self.k_q, self.slip_q, self.dt or INSTANT)
 
     def moved(self, step_d: np.ndarray) -> State:
         """The state after a step (n_dof + 1,) of displacements and load, the load last."""
@@ -59,16 +78,54 @@ class Response:
     """Forces, energies and contact in a configuration.
 
     ``internal_d`` (n_dof,) forces of bulk, springs and interface; ``scale`` the norm of the forces that the elements
-    exert on each other, by which a residual is judged; ``bulk_energy`` without that of springs; the interface with
-    traction p_q, slope dp_q and new history k_q; displacement ``gradients`` from which the bulk makes its tangent.
+    exert on each other, by which a residual is judged; ``bulk_energy`` without that of springs; the interface with its
+    tractions and new history (``pull``); displacement ``gradients`` from which the bulk makes its tangent.
     """
 
     internal_d: np.ndarray
     scale: float
     bulk_energy: float
     contact: Contact
-    p_q: np.ndarray
-    dp_q: np.ndarray
-    k_q: np.ndarray
+    pull: Tractions
     closed_q: np.ndarray
     gradients: tuple[np.ndarray, ...]
+
+    @property
+    def p_q(self) -> np.ndarray:
+        return self.pull.p_q
+
+    @property
+    def dp_q(self) -> np.ndarray:
+        return self.pull.dp_q
+
+    @property
+    def k_q(self) -> np.ndarray:
+        return self.pull.k_q
+
+    @property
+    def x_q(self) -> np.ndarray:
+        """What drives the damage of each point (n_q,): its gap, or where the bond slides its scaled jump."""
+        return self.contact.g_q if self.pull.shear is None else self.pull.shear.scaled.x
+
+    @cached_property
+    def x_rows(self) -> Rows:
+        """First variation of x_q."""
+        shear = self.pull.shear
+        if shear is None:
+            return self.contact.gap_rows
+        return combined(self.contact, shear.scaled.by_g, shear.scaled.by_s)
+
+    def x_rates(self, v_d: np.ndarray) -> np.ndarray:
+        """Rates (n_q,) of x_q when the displacements change by v_d (n_dof,).
+
+        The scaled jump is a norm: where nothing has moved yet its rate is that of the jumps' rates.
+        """
+        rates_q, shear, slip = self.x_rows.rates(v_d), self.pull.shear, self.contact.slip
+        still_q = self.x_q < STILL
+        if shear is None or slip is None or not still_q.any():
+            return rates_q
+        return np.where(still_q, shear.along(self.contact.rates(v_d), slip.rows.rates(v_d)), rates_q)
+
+    def back_q(self, state: State) -> np.ndarray:
+        """What x_q has to reach again (n_q,) before damage grows; ``state`` is the one of this response."""
+        return state.k_q if self.pull.shear is None else self.pull.shear.scaled.back

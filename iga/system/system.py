@@ -13,7 +13,8 @@ from iga.algebra.banded import Band, Skew
 from iga.algebra.dense import Dense
 from iga.algebra.factors import Inverse, held_inverse, inverse
 from iga.interface.contact import Contact
-from iga.interface.interface import Interface, forces, holding, traction
+from iga.interface.interface import Interface, forces, holding, stored, traction
+from iga.interface.mixed_laws import MixedLaw
 from iga.system.assembly import Springs, TangentPattern, lower_half
 from iga.system.bulk import Bulk
 from iga.system.state import Energies, Response, State
@@ -53,7 +54,8 @@ class System:
 
     Rigid motions that nothing else resists are held by springs of stiffness ``spring_r`` (n_r,) on the displacements
     ``springs_rd @ u`` (n_r,), in any direction and of any group of points; where there are as many as rigid motions of
-    the whole, they carry no force, by balance. ``free_d`` is False where a degree of freedom is fixed.
+    the whole, they carry no force, by balance. ``free_d`` is False where a degree of freedom is fixed. ``hold_d``
+    (n_dof,) is the part of ``load_d`` in one place, which is held while a tangent is factorised.
     """
 
     bulk: Bulk
@@ -63,6 +65,7 @@ class System:
     x_d: np.ndarray
     springs_rd: np.ndarray
     spring_r: np.ndarray
+    hold_d: np.ndarray
 
     @property
     def n_dof(self) -> int:
@@ -75,8 +78,9 @@ class System:
 
     def start(self) -> State:
         """The unloaded state."""
-        n_q = self.interface.points
-        return State(np.zeros(self.n_dof), 0.0, np.zeros(n_q), np.zeros(n_q, dtype=bool), self.interface.pairing)
+        interface = self.interface
+        past, open_q = interface.start(), np.zeros(interface.points, dtype=bool)
+        return State(np.zeros(self.n_dof), 0.0, past.k_q, open_q, interface.pairing, slip_q=past.slip_q)
 
     def spring_forces(self, u_d: np.ndarray) -> np.ndarray:
         """Forces (n_r,) of the springs on the bodies, along their own displacements."""
@@ -85,13 +89,13 @@ class System:
     @cached_property
     def springs(self) -> Springs:
         """Entries of the springs in the tangent."""
-        return Springs.of(self.springs_rd, self.spring_r, np.flatnonzero(self.load_d))
+        return Springs.of(self.springs_rd, self.spring_r, np.flatnonzero(self.hold_d))
 
     @cached_property
     def loads_squared(self) -> np.ndarray:
-        """Lower half of ``f f'`` over the degrees of freedom of the load f."""
+        """Lower half of ``f f'`` over the degrees of freedom of the load f in one place."""
         row, column = lower_half(self.springs.loaded)
-        return self.load_d[row] * self.load_d[column]
+        return self.hold_d[row] * self.hold_d[column]
 
     @cached_property
     def band(self) -> Band | Dense:
@@ -115,6 +119,10 @@ class System:
         if touched_qd is rest_qd:  # no point has moved along the master
             return self.rest_pattern
         carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
+        if (shear := response.pull.shear) is not None:
+            carries_q = carries_q | (shear.t_q != 0.0) | (shear.dt_ds_q != 0.0)
+            if touched_qd.shape != rest_qd.shape:  # ways over several sides
+                rest_qd = np.pad(rest_qd, ((0, 0), (0, touched_qd.shape[1] - rest_qd.shape[1])), mode="edge")
         dof_qd = np.where(carries_q[:, None], touched_qd, rest_qd)
         known = kept or self.rest_pattern
         if np.array_equal(known.dof_qd, dof_qd):
@@ -125,7 +133,8 @@ class System:
     def hold(self) -> float:
         """Stiffness of the spring that holds the opening while a tangent is factorised; 0 for a singular system."""
         found = inverse(*tangent_matrix(self, respond(self, self.start(), decide=False)), self.load_d)
-        compliance = 0.0 if found is None else abs(float(self.load_d @ found.under_load_d))
+        held_d = None if found is None else found.solve(self.hold_d[:, None])[:, 0]
+        compliance = 0.0 if held_d is None else abs(float(self.hold_d @ held_d))
         return SCALES.hold / compliance if compliance > 0.0 else 0.0
 
 
@@ -138,34 +147,41 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     touch = interface.contact(trial.u_d, trial.pairing)
     scale = max(bulk.scale, SCALES.unloaded * trial.scale)
     closed_q = _closed(system, touch, trial, scale) if decide else trial.closed_q
-    p_q, dp_q, k_q = traction(interface, touch, trial.k_q, closed_q)
-    internal_d = bulk.internal_d + forces(interface, touch, p_q, system.n_dof)
+    pull = traction(interface, touch, trial.past, closed_q)
+    internal_d = bulk.internal_d + forces(interface, touch, pull, system.n_dof)
     internal_d -= system.spring_forces(trial.u_d) @ system.springs_rd
-    return Response(internal_d, scale, bulk.energy, touch, p_q, dp_q, k_q, closed_q, bulk.gradients)
+    return Response(internal_d, scale, bulk.energy, touch, pull, closed_q, bulk.gradients)
 
 
 def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.ndarray:
     """Points in contact, by the sign of the gap; unchanged where the gap is rounding and worth no force."""
     interface = system.interface
-    stiffest = max(interface.law.penalty, interface.law.stiffness)
-    nothing_q = np.abs(touch.g_q) * stiffest * interface.dA_q <= SCALES.still * scale
+    nothing_q = np.abs(touch.g_q) * interface.law.stiffest * interface.dA_q <= SCALES.still * scale
     return np.where(nothing_q, trial.closed_q, touch.g_q < 0.0)
 
 
 def energies(system: System, state: State, response: Response) -> Energies:
     """Stored and dissipated energies at a state with its history."""
-    interface, touch = system.interface, response.contact
-    cohesive_q, contact_q, dissipated_q = interface.law.energies(touch.g_q, state.k_q)
+    interface, touch, law = system.interface, response.contact, system.interface.law
+    elastic = response.bulk_energy + 0.5 * float(system.spring_r @ (system.springs_rd @ state.u_d) ** 2)
+    if isinstance(law, MixedLaw):
+        cohesive, contact_energy = stored(interface, touch, state.past)
+        if not law.irreversible:
+            return Energies(elastic, cohesive + state.spent, contact_energy, 0.0)
+        return Energies(elastic, cohesive, contact_energy, state.spent)
+    cohesive_q, contact_q, dissipated_q = law.energies(touch.g_q, state.k_q)
     cohesive = float(interface.dA_q @ (np.where(holding(interface, touch), touch.share_q, 0.0) * cohesive_q))
     contact_energy = float(interface.dA_q @ (touch.share_q * contact_q))
-    elastic = response.bulk_energy + 0.5 * float(system.spring_r @ (system.springs_rd @ state.u_d) ** 2)
     return Energies(elastic, cohesive, contact_energy, float(interface.dA_q @ dissipated_q) + state.slid)
 
 
 def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
     """Norm of the change of the forces when the displacements change by rounding; contact is stiff, too."""
-    slope_q = np.abs(response.dp_q) * system.interface.dA_q
-    return float(np.hypot(system.bulk.rounding(u_d), response.contact.gap_rows.rounding(u_d, slope_q)))
+    dA_q, touch, shear = system.interface.dA_q, response.contact, response.pull.shear
+    found = np.hypot(system.bulk.rounding(u_d), touch.gap_rows.rounding(u_d, np.abs(response.dp_q) * dA_q))
+    if shear is not None and touch.slip is not None:
+        found = np.hypot(found, touch.slip.rounding(u_d, np.abs(shear.dt_ds_q) * dA_q))
+    return float(found)
 
 
 def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np.ndarray, Skew | None]:
@@ -183,5 +199,5 @@ def factorise(system: System, response: Response, pattern: TangentPattern, phase
         if skew is None and system.hold > 0.0:
             held = half.copy()
             held[pattern.held] += system.hold * system.loads_squared
-            found = held_inverse(pattern.band, held, system.load_d, system.hold)
+            found = held_inverse(pattern.band, held, (system.load_d, system.hold_d), system.hold)
         return inverse(pattern.band, half, skew, system.load_d) if found is None else found

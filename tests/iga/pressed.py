@@ -10,7 +10,7 @@ from scipy.sparse.linalg import splu
 from iga.elements.plane_elasticity import Fixed
 from iga.elements.plane_elasticity import stiffness as bulk_stiffness
 from iga.interface.contact import Contact
-from iga.interface.interface import Interface, forces, settled, stiffness, traction
+from iga.interface.interface import Interface, Tractions, forces, settled, stiffness, traction
 from iga.interface.laws import BilinearLaw
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
@@ -57,29 +57,29 @@ def press(
     K = block_diag([bulk_stiffness(mesh, D_) for mesh, D_ in zip(meshes, D, strict=True)]).tocsc()
     u_d = np.zeros(f_d.size) if start_d is None else start_d.copy()
     u_d[fixed.dof_d] = fixed.value_d
-    k_q, pairing = np.zeros(interface.points), interface.pairing
+    past, pairing = interface.start(), interface.pairing
     is_free = np.ones(f_d.size, dtype=bool)
     is_free[fixed.dof_d] = False
     free = np.flatnonzero(is_free)
 
-    def respond(u_d: np.ndarray) -> tuple[np.ndarray, np.ndarray, Contact, np.ndarray, np.ndarray]:
+    def respond(u_d: np.ndarray) -> tuple[np.ndarray, np.ndarray, Contact, Tractions]:
         touch = interface.contact(u_d, pairing)
-        p_q, dp_q, _ = traction(interface, touch, k_q, touch.g_q <= 0.0)
-        held_d = forces(interface, touch, p_q, u_d.size)
-        return np.where(is_free, K @ u_d + held_d - f_d, 0.0), held_d, touch, p_q, dp_q
+        pull = traction(interface, touch, past, touch.g_q <= 0.0)
+        held_d = forces(interface, touch, pull, u_d.size)
+        return np.where(is_free, K @ u_d + held_d - f_d, 0.0), held_d, touch, pull
 
-    residual_d, held_d, touch, p_q, dp_q = respond(u_d)
+    residual_d, held_d, touch, pull = respond(u_d)
     for iteration in range(ITERATIONS):
         if iteration and np.linalg.norm(residual_d) < 1e-10 * np.linalg.norm(held_d):
-            return Pressed(interface, u_d, touch, -p_q, iteration)
-        d_qd, K_qdd = touch.dof_qd, stiffness(interface, touch, p_q, dp_q)
+            return Pressed(interface, u_d, touch, -pull.p_q, iteration)
+        d_qd, K_qdd = touch.dof_qd, stiffness(interface, touch, pull)
         row, column = np.broadcast_arrays(d_qd[:, :, None], d_qd[:, None, :])
         tangent = K + coo_array((K_qdd.ravel(), (row.ravel(), column.ravel())), shape=K.shape).tocsc()
         step_d = np.zeros(u_d.size)
         step_d[free] = -splu(tangent[free][:, free].tocsc()).solve(residual_d[free])
         work = abs(step_d @ residual_d)
         for part in 0.5 ** np.arange(6):  # until less work is left along the step than there was
-            residual_d, held_d, touch, p_q, dp_q = respond(u_d + part * step_d)
+            residual_d, held_d, touch, pull = respond(u_d + part * step_d)
             if abs(step_d @ residual_d) < 0.9 * work:
                 break
         u_d, pairing = u_d + part * step_d, touch.pairing

@@ -8,7 +8,7 @@ from iga.elements.bulk import all_values, element_forces, element_stiffness, ful
 from iga.elements.elasticity import isotropic, orthotropic
 from iga.elements.kinematics import KINEMATICS, PAIRS, finite_cauchy, finite_moduli, finite_stress, small_moduli
 from iga.elements.shape_functions import block_basis
-from iga.interface.interface import dofs
+from iga.interface.contact import dofs
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss, square
 from iga.specimen.tmesh_strip import Strip, strip_tmesh

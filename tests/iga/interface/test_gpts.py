@@ -14,7 +14,7 @@ from iga.bases.nurbs import nurbs_rectangle
 from iga.files.cad_body import body_mesh
 from iga.files.iga_format import write_iga
 from iga.interface.closest_point import PROJECTION
-from iga.interface.interface import Interface, forces, stiffness, traction
+from iga.interface.interface import Histories, Interface, forces, stiffness, traction
 from iga.interface.laws import BilinearLaw
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
@@ -98,7 +98,7 @@ def certain(smooth: bool) -> None:
 
 def residual_at(interface: Interface, u_d: np.ndarray, start, k_q, closed_q) -> np.ndarray:
     touch = interface.contact(u_d, start)
-    return forces(interface, touch, traction(interface, touch, k_q, closed_q)[0], u_d.size)
+    return forces(interface, touch, traction(interface, touch, Histories(k_q), closed_q), u_d.size)
 
 
 def tangent_error(
@@ -117,8 +117,8 @@ def tangent_error(
         require(np.array_equal(near.pairing.on_q, touch.pairing.on_q))
         kinks = np.array([0.0, LAW.g_max, LAW.g_u]), k_q
         require(all(np.array_equal(near.g_q > kink, touch.g_q > kink) for kink in (*kinks[0], kinks[1])))
-    p_q, dp_q, _ = traction(interface, touch, k_q, closed_q)
-    K_qdd, d_qd = stiffness(interface, touch, p_q, dp_q), touch.dof_qd
+    pull = traction(interface, touch, Histories(k_q), closed_q)
+    K_qdd, d_qd = stiffness(interface, touch, pull), touch.dof_qd
     product = np.zeros(u_d.size)
     np.add.at(product, d_qd, (K_qdd @ v[d_qd][..., None])[..., 0])
     plus, minus = (residual_at(interface, u_d + sign * h * v, start, k_q, closed_q) for sign in (1.0, -1.0))
@@ -205,7 +205,7 @@ def test_forces_do_not_jump_where_a_point_slides_off_the_end(gap, slave, rng):
     """Small steps over the end: the largest change of the forces falls with the length of a step."""
     one = rig(nurbs(9, 3, UPPER), nurbs(6, 3, LOWER), slave, points=1)
     interface, changes = one.interface, {}
-    k_q, seed = np.zeros(interface.points), rng.integers(2**31)
+    seed = rng.integers(2**31)
     for steps in (40, 200):
         pairing, before, change = interface.pairing, None, 0.0
         for slide in np.linspace(0.0, 1.0, steps):
@@ -214,7 +214,7 @@ def test_forces_do_not_jump_where_a_point_slides_off_the_end(gap, slave, rng):
             )
             touch = interface.contact(u_d, pairing)
             pairing = touch.pairing
-            R_d = forces(interface, touch, traction(interface, touch, k_q, touch.g_q < 0.0)[0], u_d.size)
+            R_d = forces(interface, touch, traction(interface, touch, interface.start(), touch.g_q < 0.0), u_d.size)
             change = max(change, 0.0 if before is None else float(np.abs(R_d - before).max()))
             before = R_d
         changes[steps] = change
@@ -231,8 +231,8 @@ def test_forces_and_moments_are_in_balance_past_the_end(slave, rng):
         u_d = bent(one, 0.6 * LAW.g_max, slide if slave == "upper" else -slide, 0.25, 70.0, rng)
         touch = one.interface.contact(u_d, one.interface.pairing)
         assert np.any(~touch.pairing.on_q & touch.on_q), "a point is held beyond the end"
-        p_q = traction(one.interface, touch, np.zeros(one.interface.points), touch.g_q < 0.0)[0]
-        R, x = forces(one.interface, touch, p_q, u_d.size).reshape(-1, 2), one.interface.P_AI + u_d.reshape(-1, 2)
+        pull = traction(one.interface, touch, one.interface.start(), touch.g_q < 0.0)
+        R, x = forces(one.interface, touch, pull, u_d.size).reshape(-1, 2), one.interface.P_AI + u_d.reshape(-1, 2)
         assert np.all(np.abs(R.sum(0)) < 1e-12 * np.abs(R).sum())
         assert abs(np.sum(x[:, 0] * R[:, 1] - x[:, 1] * R[:, 0])) < 1e-11 * np.abs(R).sum()
 

@@ -11,7 +11,7 @@ from iga.bases.lagrange import lagrange_rectangle
 from iga.dcb import Problem, build
 from iga.interface.closest_point import PROJECTION, closest_points, nearest_samples
 from iga.interface.contact import DenseRows, Rows
-from iga.interface.interface import SettledInterface, forces, settled, stiffness, traction
+from iga.interface.interface import Histories, SettledInterface, Tractions, forces, settled, stiffness, traction
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
 from tests.iga.bases.test_splines import quarter_annulus
@@ -121,10 +121,10 @@ def test_tangent_on_a_curved_sliding_interface(state, basis, slave, rng):
 
     def residual(u):
         touch = interface.contact(u, start)
-        return forces(interface, touch, traction(interface, touch, k, closed)[0], system.n_dof)
+        return forces(interface, touch, traction(interface, touch, Histories(k), closed), system.n_dof)
 
-    p, dp, _ = traction(interface, touch, k, closed)
-    K, d = stiffness(interface, touch, p, dp), touch.dof_qd
+    pull = traction(interface, touch, Histories(k), closed)
+    K, d = stiffness(interface, touch, pull), touch.dof_qd
     whole = K[(touch.share_q == 0.0) | (touch.share_q == 1.0)]  # a point that fades has no potential
     assert np.allclose(whole, whole.transpose(0, 2, 1), rtol=0, atol=1e-12 * max(np.abs(K).max(), 1e-300))
     matrix = np.zeros((system.n_dof, system.n_dof))
@@ -185,7 +185,8 @@ def test_interface_forces_are_in_balance_when_meshes_do_not_match(rng):
     interface = system.interface
     u = deformed(system, 0.04, 0.3, rng)
     touch = interface.contact(u, system.start().pairing)
-    R = forces(interface, touch, touch.on_q * rng.standard_normal(interface.points), system.n_dof).reshape(-1, 2)
+    p_q, none_q = touch.on_q * rng.standard_normal(interface.points), np.zeros(interface.points)
+    R = forces(interface, touch, Tractions(p_q, none_q, none_q), system.n_dof).reshape(-1, 2)
     x = interface.P_AI + u.reshape(-1, 2)
     scale = np.abs(R).sum()
     assert np.all(np.abs(R.sum(0)) < 1e-12 * scale)
@@ -203,7 +204,7 @@ def test_a_point_off_the_master_is_free():
     gone = beyond > PROJECTION.free * (X[-1] - X[0])
     assert np.array_equal(~touch.on_q, gone) and gone.any()
     assert np.array_equal(~touch.pairing.on_q, beyond > 0.0)
-    p, dp, k = traction(interface, touch, np.zeros(interface.points), touch.g_q < 0)
+    p, dp, k, _ = traction(interface, touch, interface.start(), touch.g_q < 0)
     assert np.all(p[gone] == 0) and np.all(dp[gone] == 0) and np.all(k[gone] == 0)
 
 

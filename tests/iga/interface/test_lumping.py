@@ -8,7 +8,7 @@ import pytest
 from iga.bases.lagrange import lagrange_rectangle
 from iga.dcb import Problem, build, solve
 from iga.delamination.meshes import drawn
-from iga.interface.interface import Interface, SearchedInterface, forces, stiffness, traction
+from iga.interface.interface import Histories, Interface, SearchedInterface, forces, stiffness, traction
 from iga.interface.lumping import lumped
 from iga.interface.surface import surface
 
@@ -73,9 +73,9 @@ def test_a_uniform_gap_gives_the_forces_of_gauss_point_for_point(basis, degree, 
     u = lifted(by_nodes, np.broadcast_to([0.0, 0.7 * law.g_max], by_nodes.P_AI.shape), symmetry)
     for interface in (by_points, by_nodes):
         touch = interface.contact(u, interface.pairing)
-        p, _, _ = traction(interface, touch, np.zeros(interface.points), touch.g_q < 0)
+        pull = traction(interface, touch, interface.start(), touch.g_q < 0)
         assert np.allclose(touch.g_q, 0.7 * law.g_max, rtol=1e-12)
-        R.append(forces(interface, touch, p, u.size))
+        R.append(forces(interface, touch, pull, u.size))
     assert np.allclose(R[0], R[1], rtol=0, atol=1e-12 * np.abs(R[0]).max())
     assert np.abs(R[1]).sum() / 2.0 == pytest.approx(0.7 * law.strength * BONDED, rel=1e-12)
 
@@ -104,12 +104,12 @@ def test_tangent_against_a_central_difference(degree, basis, symmetry, rng):
 
     def residual(u):
         touch = interface.contact(u, None)
-        return forces(interface, touch, traction(interface, touch, k, closed)[0], system.n_dof)
+        return forces(interface, touch, traction(interface, touch, Histories(k), closed), system.n_dof)
 
     touch = interface.contact(u, None)
-    p, dp, _ = traction(interface, touch, k, closed)
+    pull = traction(interface, touch, Histories(k), closed)
     d, matrix = touch.dof_qd, np.zeros((system.n_dof, system.n_dof))
-    np.add.at(matrix, (d[:, :, None], d[:, None, :]), stiffness(interface, touch, p, dp))
+    np.add.at(matrix, (d[:, :, None], d[:, None, :]), stiffness(interface, touch, pull))
     v = rng.standard_normal(system.n_dof)
     difference = (residual(u + h * v) - residual(u - h * v)) / (2 * h)
     assert np.allclose(matrix @ v, difference, rtol=0, atol=1e-6 * np.abs(difference).max())
@@ -140,7 +140,16 @@ def test_meshes_that_do_not_match_are_refused():
     with pytest.raises(ValueError, match='"gauss" or "lobatto" .* .4 control points on .*"lumped"'):
         lumped(
             SearchedInterface(
-                N_qa, slave.conn_ca, np.ones(slave.sides), X_qi, P_AI, law, np.ones(slave.sides, dtype=bool), master
+                N_qa=N_qa,
+                dN_qa=np.zeros_like(N_qa),
+                conn_qa=slave.conn_ca,
+                dA_q=np.ones(slave.sides),
+                X_qi=X_qi,
+                P_AI=P_AI,
+                law=law,
+                bonded_q=np.ones(slave.sides, dtype=bool),
+                forward_i=np.array([1.0, 0.0]),
+                master=master,
             )
         )
 

@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bent_specimens import bond, mixed_bending
 from specimens import PAPER, E
 
+import iga.delamination.solution
 from iga.dcb import build
 from iga.path.control import (
     Prescribed,
@@ -26,8 +28,8 @@ NAMES = ("opening", "load", "gap", "dissipation", "arc length")
 
 
 def front(point):
-    """The most open point that still softens."""
-    return int(np.argmax(np.where(point.tangent.growing_q, point.response.contact.g_q, -np.inf)))
+    """The point that has gone furthest of those that still soften."""
+    return int(np.argmax(np.where(point.tangent.growing_q, point.response.x_q, -np.inf)))
 
 
 def control(name, system, start):
@@ -84,6 +86,36 @@ def test_gradients_are_those_of_the_values(branch, name, rng):
         assert difference == pytest.approx(a_d @ v_d + a_load * v_load, abs=1e-6 * scale), name
 
 
+@pytest.fixture(scope="module", params=[("linear", 0.0), ("finite", 0.0), ("finite", 0.4)])
+def sliding_branch(request):
+    """The same of a bond that opens and slides, with and without friction."""
+    kinematics, friction = request.param
+    problem = mixed_bending(kinematics=kinematics, mixed=bond(friction=friction), opening=(5.8,), dofs=600)
+    system = iga.delamination.solution.build(problem).system
+    points = [p for p in follow(Solver(system), problem.opening, 40) if isinstance(p, Point)]
+    return next(
+        (system, a, b)
+        for a, b in zip(points[-2::-1], points[:0:-1], strict=True)
+        if np.count_nonzero(b.state.k_q > a.state.k_q) >= 2
+    )
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_gradients_are_those_of_the_values_where_the_bond_slides(sliding_branch, name, rng):
+    system, start, end = sliding_branch
+    trial = replace(end.state, k_q=start.state.k_q, slip_q=start.state.slip_q)
+    asked, response = control(name, system, start), respond(system, trial, decide=False)
+    _, a_d, a_load = asked(trial, response)
+    for v_load in 1e6 * rng.standard_normal(5):  # forces are that much larger than displacements
+        v_d, s = rng.standard_normal(system.n_dof), 1e-9
+        ahead, behind = (replace(trial, u_d=trial.u_d + h * v_d, load=trial.load + h * v_load) for h in (s, -s))
+        values = [asked(moved, respond(system, moved, decide=False))[0] for moved in (ahead, behind)]
+        scale = np.abs(a_d) @ np.abs(v_d) + abs(a_load * v_load)
+        rounding = np.spacing(np.max(np.abs(values))) / s  # an opening of 5 is known to 1e-15
+        slope, expected = (values[0] - values[1]) / (2.0 * s), a_d @ v_d + a_load * v_load
+        assert slope == pytest.approx(expected, abs=1e-6 * scale + rounding), name
+
+
 #: How far apart two solutions may lie: in finite kinematics the last step is quadratic and leaves nothing; in linear
 #: kinematics the predictor is a solution as it is, and what the tolerance on the residual allows remains.
 SAME = {"linear": 1e-8, "finite": 1e-9}
@@ -122,7 +154,8 @@ def test_arc_length_counts_no_point_that_is_broken(branch):
     """Half of the points taken for broken: the value is blind to their gaps, and only to theirs."""
     system, start, end = branch
     touch, broken_q = end.response.contact, np.arange(system.interface.points) < system.interface.points // 2
-    half = replace(start.response, k_q=np.where(broken_q, 2.0 * system.interface.law.g_u, start.state.k_q))
+    k_q = np.where(broken_q, 2.0 * system.interface.law.g_u, start.state.k_q)
+    half = replace(start.response, pull=start.response.pull._replace(k_q=k_q))
     asked = arc_length_control(system, half, start.tangent.du_d)
 
     def value(opened_q):

@@ -98,7 +98,7 @@ def test_what_has_come_apart_carries_nothing_and_will_not(broken, load, d_load, 
     bonded_q, area_q = np.ones(10, dtype=bool), np.ones(10)
     if bonded:  # as many points that only touch count for nothing
         k_q, area_q, bonded_q = np.append(k_q, np.zeros(10)), np.ones(20), np.arange(20) < 10
-    interface = SimpleNamespace(dA_q=area_q, bonded_q=bonded_q, law=SimpleNamespace(g_u=2.0))
+    interface = SimpleNamespace(dA_q=area_q, bonded_q=bonded_q, law=SimpleNamespace(failed=2.0))
     for way in (1.0, -1.0):  # by pulling, or by pressing
         state, tangent = SimpleNamespace(k_q=k_q, load=way * load), SimpleNamespace(d_load=way * d_load)
         point = SimpleNamespace(state=state, tangent=tangent, slope=slope)

@@ -14,7 +14,7 @@ LAW = BilinearLaw(strength=4.0, toughness=0.1, ductility=12.5, penalty=1e5)  # g
 
 def event(*points):
     """`first_kink` for points given as (gap, history, rate)."""
-    return first_kink(LAW, *np.array(points, dtype=float).T)
+    return first_kink(np.array(LAW.kinks), *np.array(points, dtype=float).T)
 
 
 @pytest.mark.parametrize(
@@ -64,7 +64,7 @@ def test_what_is_past_a_kink_is_little_against_both_branches():
         touch = SimpleNamespace(g_q=one, share_q=one + 1.0, on_q=one == 0.0)
         system = SimpleNamespace(interface=SimpleNamespace(law=law, bonded_q=one == 0.0))
         point = SimpleNamespace(
-            response=SimpleNamespace(contact=touch),
+            response=SimpleNamespace(contact=touch, x_q=one, back_q=lambda state: state.k_q),
             state=SimpleNamespace(k_q=one),
             tangent=SimpleNamespace(rate_q=one + 2.0),
         )
@@ -77,7 +77,7 @@ def test_on_a_way_from_gaps_to_gaps_points_off_the_envelope_have_the_kinks_ahead
     """A way that ends before them has none; where points reach several kinks the first one counts."""
     start = np.array([0.01, 0.0, 0.0])
     history, way = np.array([0.02, 0.0, LAW.g_u]), np.array([0.1, 0.008, 1.0])
-    found, part = first_kink(LAW, start, history, way, reloading=False)
+    found, part = first_kink(np.array(LAW.kinks), start, history, way, reloading=False)
     assert found == Kink(0, LAW.g_u) and part == pytest.approx(0.4)
-    found, part = first_kink(LAW, start, history, np.array([0.01, 0.008, 1.0]), reloading=False)
+    found, part = first_kink(np.array(LAW.kinks), start, history, np.array([0.01, 0.008, 1.0]), reloading=False)
     assert found == Kink(1, LAW.g_max) and part == pytest.approx(0.5)

@@ -97,7 +97,7 @@ def test_the_gradient_of_the_dissipation_is_that_of_its_value(table, name, rng):
 )
 def test_every_kink_on_the_way_is_found(gap, history, kink):
     law = TrapezoidalLaw(4.0, 0.1, 12.5, 1e5)  # kinks at 0.004, 0.01933 and 0.03467
-    found, away = first_kink(law, np.array([gap]), np.array([history]), np.array([2.0]))
+    found, away = first_kink(np.array(law.kinks), np.array([gap]), np.array([history]), np.array([2.0]))
     assert found.gap == (history if kink is None else law.kinks[kink])
     assert away == pytest.approx((found.gap - gap) / 2.0)
 
@@ -109,5 +109,5 @@ def test_a_step_ends_on_the_nearest_kink(table, name):
     touch = respond(system, start, decide=False).contact
     for kink in (law.g_max, law.g_u):
         g_q = np.linspace(0.0, 1.001 * kink, system.interface.points)
-        found = nearest_end(system, start, touch, g_q)
+        found = nearest_end(system, start.k_q, touch, g_q)
         assert found.on and found.kink == Kink(int(np.argmin(np.abs(g_q - kink))), kink)

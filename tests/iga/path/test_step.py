@@ -126,7 +126,6 @@ def test_what_slides_off_is_spent(asked, monkeypatch):
 def test_a_landing_short_of_its_kink_is_none(asked, gap, lands, monkeypatch):
     system, point, *_ = asked
     end = StepEnd(Kink(3, 1.0), 1.05)
-    contact = SimpleNamespace(g_q=np.full(system.interface.points, gap))
-    found = SimpleNamespace(response=SimpleNamespace(contact=contact))
+    found = SimpleNamespace(response=SimpleNamespace(x_q=np.full(system.interface.points, gap)))
     monkeypatch.setattr(iga.path.step, "equilibrium", lambda *given: found)
     assert iga.path.step._at_kink(Solver(system), point, point.state, end) == (found if lands else None)

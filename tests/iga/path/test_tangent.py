@@ -117,7 +117,7 @@ def test_points_whose_rates_disagree_go_down_their_secants():
     points, turned = growing(points_of(system, (1.0,))), 0
     for point in points:
         path, least = point.tangent, 1e-9 * np.max(np.abs(point.tangent.rate_q))
-        soft_q = on_envelope(system, point.state, point.response.contact.g_q)
+        soft_q = on_envelope(system, point.state, point.response)
         assert path.agreed
         assert np.all(path.rate_q[path.growing_q] > 0.0) and np.all(path.rate_q[soft_q & ~path.growing_q] <= least)
         assert not np.any(path.growing_q & ~soft_q)

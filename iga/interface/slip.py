@@ -1,0 +1,232 @@
+"""How far every point has slid along the master, with its first and second variation.
+
+The slip is the length along the present master from a point's home, where it met the master before anything moved, to
+where it meets the master now: an objective scalar of the present positions, as the gap is. Its variations give forces
+in balance and the complete tangent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from iga.interface.closest_point import Pairing
+from iga.interface.contact import Contact, Rows, SlidingContact, Slip, along, dofs
+from iga.interface.master_point import MasterPoints
+from iga.interface.surface import Surface
+from iga.mesh.quadrature import gauss
+
+#: Gauss points on the part of a way that lies on one side of the master.
+ON_A_PART = 6
+
+#: Rounding of a place on a side of the master, in parts of the side: of parameter, length and way.
+PLACE_ROUNDED = 4.0 * float(np.finfo(float).eps)
+
+#: Rows of `SlidSlip.V_qrd`.
+T, G, NB, TB, NC = range(5)
+
+
+@dataclass(frozen=True)
+class Home:
+    """Where the points met the master before anything moved: sides c_q, parameters xi_q (n_q,).
+
+    ``forward_q`` is 1 where a positive slip leads to larger parameters, else -1.
+    """
+
+    c_q: np.ndarray
+    xi_q: np.ndarray
+    forward_q: np.ndarray
+
+
+@dataclass(frozen=True)
+class Way:
+    """Nodes on the ways from home to the closest points, the last one of each at the closest point.
+
+    ``c_qk`` sides, ``xi_qk`` parameters, ``w_qk`` (n_q, n_k) weights, negative on a way to smaller parameters.
+    """
+
+    c_qk: np.ndarray
+    xi_qk: np.ndarray
+    w_qk: np.ndarray
+
+
+@dataclass(frozen=True)
+class SlidSlip(Slip):
+    """Slip along the present master.
+
+    ``V_qrd`` (n_q, 5, n_d) are the rows T = t.(dx - dy), G = n.(dx - dy), Nb = n.dy', Tb = t.dy' and Nc = n.dy'' at the
+    closest points; ``across_qkd`` (n_q, n_k, n_d) the rates n.dy' at the nodes of the way, of weights ``bent_qk``;
+    ``jet_kq`` (5, n_q) are t.t, |t|, t.y'', n.y'' and n.y''' at the closest points, with t = y'.
+    """
+
+    forward_q: np.ndarray
+    V_qrd: np.ndarray
+    across_qkd: np.ndarray
+    bent_qk: np.ndarray
+    jet_kq: np.ndarray
+
+    def rounding(self, u_d: np.ndarray, slope_q: np.ndarray) -> float:
+        """A place on a side of the master is rounded in parts of the side."""
+        of_place = PLACE_ROUNDED * float(np.linalg.norm(slope_q * self.jet_kq[1]))
+        return float(np.hypot(super().rounding(u_d, slope_q), of_place))
+
+    def stiffness(self, contact: Contact, f_q: np.ndarray) -> np.ndarray:
+        """``f D(ds)`` by the parameter xi of the closest point, at which ``F = (x - y).y' = 0``:
+
+            a dxi = T + g Nb,      a = m - g n.y'',      m = t.t
+            a D(dxi) = F_uu + 2 sym(F_u,xi dxi) + F_xi,xi dxi dxi
+            F_uu = 2 sym(G Nb + T Tb / m),      F_u,xi = -2 Tb + G n.y'' + T t.y'' / m + g Nc
+            F_xi,xi = -3 t.y'' + g n.y'''
+            D(ds) = |t| D(dxi) + (t.y'' / |t|) dxi dxi + 2 sym(Tb dxi) / |t| + int (n.dy') (n.dy') / |y'| dxi
+
+        The traction of a point that slides off the master fades with its share (see `SlidingContact.share_rates`).
+        """
+        assert isinstance(contact, SlidingContact)
+        m, size, ty, ny, nyy = self.jet_kq
+        g = contact.g_q
+        xi_qr = _rate_of_place(self.jet_kq, g)
+        c_qrs = np.zeros((len(m), 5, 5))
+        c_qrs[:, G, NB] = c_qrs[:, NB, G] = 1.0
+        c_qrs[:, T, TB] = c_qrs[:, TB, T] = 1.0 / m
+        F_qr = np.zeros_like(xi_qr)
+        F_qr[:, TB], F_qr[:, G], F_qr[:, T], F_qr[:, NC] = -2.0, ny, ty / m, g
+        square, both = xi_qr[:, :, None] * xi_qr[:, None], F_qr[:, :, None] * xi_qr[:, None]
+        c_qrs += both + both.swapaxes(1, 2) + (g * nyy - 3.0 * ty)[:, None, None] * square
+        c_qrs *= (size * xi_qr[:, T])[:, None, None]
+        c_qrs += (ty / size)[:, None, None] * square
+        c_qrs[:, TB] += xi_qr / size[:, None]
+        c_qrs[:, :, TB] += xi_qr / size[:, None]
+        V, W, f_q11 = self.V_qrd, self.across_qkd, (f_q * self.forward_q)[:, None, None]
+        K_qdd = V.swapaxes(1, 2) @ ((f_q11 * c_qrs) @ V) + W.swapaxes(1, 2) @ (f_q11 * self.bent_qk[:, :, None] * W)
+        q = np.flatnonzero(contact.fading_q * f_q)
+        fades_qd = (f_q * contact.fading_q)[q, None] * (xi_qr[q, None] @ V[q])[:, 0]
+        K_qdd[q] += self.rows.G_qd[q, :, None] * fades_qd[:, None]
+        return K_qdd
+
+
+def home_of(master: Surface, pairing: Pairing, x_AI: np.ndarray, forward_i: np.ndarray) -> Home:
+    """The home of points with this pairing at control points x_AI (n_A, 2); slips count along ``forward_i`` (2,)."""
+    t_qi = walked(master, x_AI, pairing.c_q, pairing.xi_q)
+    return Home(pairing.c_q, pairing.xi_q, np.where(t_qi @ forward_i < 0.0, -1.0, 1.0))
+
+
+def slid_slip(
+    master: Surface, home: Home, contact: SlidingContact, there: MasterPoints, apart_qi: np.ndarray, y_AI: np.ndarray
+) -> SlidSlip:
+    """The slips of points that are ``apart_qi`` (n_q, 2) from ``there``, in a contact at control points y_AI (n_A, 2).
+
+    The rows are over its unknowns and, behind these, over those of the sides between the closest points and home.
+    """
+    pairing, g_q, n_qi = contact.pairing, contact.g_q, contact.n_qi
+    assert pairing is not None
+    _, t_qi, _, ttt_qi = _jet(master, y_AI, pairing.c_q, pairing.xi_q)
+    tt_qi, ttt_qi = there.t_xi_qi, np.where(there.straight_q[:, None], 0.0, ttt_qi)
+    m_q = np.sum(t_qi**2, -1)
+    curves = (np.sum(a * b, -1) for a, b in ((t_qi, tt_qi), (n_qi, tt_qi), (n_qi, ttt_qi)))
+    jet_kq = np.stack([m_q, m_q**0.5, *curves])
+    beyond_q = there.eta_q + np.sum(apart_qi * t_qi, -1) / (
+        m_q - g_q * jet_kq[3]
+    )  # exactly zero where nothing has moved
+    way = _way(master, home, pairing, beyond_q)
+    row = Unknowns.of(master, way, contact.dof_qd)
+    r2 = master.coefficients(pairing.c_q, pairing.xi_q, 2)[2]
+    d2M_qb = np.where(there.straight_q[:, None], 0.0, master.functions(pairing.c_q, r2))
+    turns = [row.at(0, N_qb, v_qi) for N_qb, v_qi in ((there.dM_qb, n_qi), (there.dM_qb, t_qi), (d2M_qb, n_qi))]
+    V_qrd = np.stack([row.first(contact.V_qrd[:, 1]), row.first(contact.gap_rows.G_qd), *turns], axis=1)
+    s_q, stretch_qd, across_qkd, size_qk = _along_way(master, way, row, y_AI)
+    ahead_qr = jet_kq[1][:, None] * _rate_of_place(jet_kq, g_q)
+    G_qd = home.forward_q[:, None] * (stretch_qd + (ahead_qr[:, None] @ V_qrd)[:, 0])
+    forward_q, bent_qk = home.forward_q, way.w_qk / size_qk
+    return SlidSlip(forward_q * s_q, Rows(row.dof_qd, G_qd), forward_q, V_qrd, across_qkd, bent_qk, jet_kq)
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """Unknowns dof_qd (n_q, n_d) of slips: ``own`` ones of the contact, the last ``side`` of which are those of the
+    side that is met, and behind them as many for each further side of the way."""
+
+    dof_qd: np.ndarray
+    own: int
+    side: int
+
+    @staticmethod
+    def of(master: Surface, way: Way, dof_qd: np.ndarray) -> Unknowns:
+        conn_qsb = master.conn_ca[way.c_qk[:, ON_A_PART + 1 :: ON_A_PART]]
+        further_qd = dofs(conn_qsb).reshape(len(dof_qd), 2 * conn_qsb.shape[1] * conn_qsb.shape[2])
+        return Unknowns(np.concatenate([dof_qd, further_qd], axis=1), dof_qd.shape[1], 2 * master.conn_ca.shape[1])
+
+    def first(self, row_qd: np.ndarray) -> np.ndarray:
+        """A row over the unknowns of the contact over all of them."""
+        return np.pad(row_qd, ((0, 0), (0, self.dof_qd.shape[1] - row_qd.shape[1])))
+
+    def at(self, part: int, N_qb: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
+        """Rows ``v . N`` of functions N_qb on a part of the way, the one that is met first."""
+        row_qd, start = np.zeros(self.dof_qd.shape), self.own + self.side * (part - 1)
+        row_qd[:, start : start + self.side] = along(N_qb, v_qi)
+        return row_qd
+
+
+def _rate_of_place(jet_kq: np.ndarray, g_q: np.ndarray) -> np.ndarray:
+    """Factors (n_q, 5) of the rows in ``dxi``."""
+    m, _, _, ny, _ = jet_kq
+    a = m - g_q * ny
+    a = np.where(np.abs(a) > 1e-12 * m, a, m)
+    xi_qr = np.zeros((len(m), 5))
+    xi_qr[:, T], xi_qr[:, NB] = 1.0 / a, g_q / a
+    return xi_qr
+
+
+def _way(master: Surface, home: Home, pairing: Pairing, beyond_q: np.ndarray) -> Way:
+    """The ways to the closest points, which are ``beyond_q`` (n_q,) further than the pairing says.
+
+    The first part is on the side that is met; node number `ON_A_PART` is the closest point with the rest of the way.
+    """
+    over_q = pairing.c_q - home.c_q
+    if master.closed:
+        over_q = (over_q + master.sides // 2) % master.sides - master.sides // 2
+    sign_q, x, w = np.sign(over_q), *gauss(ON_A_PART)
+    c, xi, weight = [], [], []
+    for part in range(int(np.abs(over_q).max(initial=0)) + 1):
+        left_q = np.abs(over_q) - part  # sides to home
+        start_q = np.where(left_q > 0, np.where(sign_q > 0, 0.0, 1.0), home.xi_q)
+        end_q = pairing.xi_q if part == 0 else np.where(sign_q > 0, 1.0, 0.0)
+        length_q = np.where(left_q >= 0, end_q - start_q, 0.0)
+        c_q = master.following(pairing.c_q, -sign_q * np.minimum(part, np.abs(over_q)))
+        xi.append(np.where(left_q >= 0, start_q, 0.0)[:, None] + length_q[:, None] * x)
+        weight.append(length_q[:, None] * w)
+        c.append(np.repeat(c_q[:, None], ON_A_PART, axis=1))
+        if part == 0:
+            c[0], xi[0] = np.append(c[0], c_q[:, None], axis=1), np.append(xi[0], pairing.xi_q[:, None], axis=1)
+            weight[0] = np.append(weight[0], beyond_q[:, None], axis=1)
+    return Way(*(np.concatenate(parts, axis=1) for parts in (c, xi, weight)))
+
+
+def _along_way(
+    master: Surface, way: Way, row: Unknowns, y_AI: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Lengths s_q (n_q,), the rows (n_q, n_d) of their stretch, rows n.dy' and lengths |y'| (n_q, n_k, ...) by node."""
+    s_q, stretch_qd = np.zeros(len(way.c_qk)), np.zeros(row.dof_qd.shape)
+    across, sizes = [], []
+    for k, (c_q, xi_q, w_q) in enumerate(zip(way.c_qk.T, way.xi_qk.T, way.w_qk.T, strict=True)):
+        part = 0 if k <= ON_A_PART else 1 + (k - ON_A_PART - 1) // ON_A_PART
+        _, r1 = master.coefficients(c_q, xi_q, 1)
+        t_qi, dM_qb = np.sum(r1[..., None] * master.bezier_points(y_AI, c_q), axis=1), master.functions(c_q, r1)
+        size_q = np.sqrt(np.sum(t_qi**2, -1))
+        unit_qi = t_qi / size_q[:, None]
+        s_q += w_q * size_q
+        stretch_qd += row.at(part, dM_qb, w_q[:, None] * unit_qi)
+        across.append(row.at(part, dM_qb, np.stack([-unit_qi[:, 1], unit_qi[:, 0]], -1)))
+        sizes.append(size_q)
+    return s_q, stretch_qd, np.stack(across, axis=1), np.stack(sizes, axis=1)
+
+
+def walked(master: Surface, x_AI: np.ndarray, c_q: np.ndarray, xi_q: np.ndarray) -> np.ndarray:
+    """Derivatives (n_q, 2) of the places on the master by its parameter, at control points x_AI (n_A, 2)."""
+    return _jet(master, x_AI, c_q, xi_q)[1]
+
+
+def _jet(master: Surface, y_AI: np.ndarray, c_q: np.ndarray, xi_q: np.ndarray) -> list[np.ndarray]:
+    """Places and their derivatives (n_q, 2) up to the third at xi_q on the sides c_q."""
+    Q_qbi = master.bezier_points(y_AI, c_q)
+    return [np.sum(r[..., None] * Q_qbi, axis=1) for r in master.coefficients(c_q, xi_q, 3)]

@@ -1,0 +1,25 @@
+"""How far a crack is expected to run in arms that are bent."""
+
+import pytest
+from bent_specimens import ARM, MODES, flexure
+
+from iga.delamination.bent import BENT, crack_end
+from iga.specimen.layout import Load, Support
+
+GUIDED = Support(None, "right"), Support(None, "right", couple=True)
+OPENING = 0.8
+
+
+@pytest.mark.parametrize(("lower", "mode", "released", "turned"), [(1.0, 0, 2.0, 2.0), (-1.0, 1, 1.5, 1.5)])
+def test_a_crack_under_end_moments_runs_at_the_toughness_of_its_mode(
+    lower: float, mode: int, released: float, turned: float
+) -> None:
+    """``2 w G = n M^2 / EI``: in opening of two arms, in sliding less that of both as one, 4 EI of 8. The rotation that
+    the moments work on grows by as much along the crack."""
+    loads = Load(0, "left", -1.0, couple=True), Load(1, "left", lower, couple=True)
+    problem = flexure(loads=loads, supports=GUIDED, bonded=(20.0, 102.0), opening=(OPENING,))
+    EI = 25.4 * ARM.moduli.axial("strain") * ARM.thickness**3 / 12.0
+    moment = (2.0 * 25.4 * MODES.toughness[mode] * EI / released) ** 0.5
+    as_one = (2.0 - turned) * 102.0 * moment / EI
+    expected = max((BENT.slack * OPENING - as_one) * EI / (turned * moment), 20.0)
+    assert crack_end(problem) == pytest.approx(expected, abs=102.0 / BENT.places)
