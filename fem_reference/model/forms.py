@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import basix.ufl
 import numpy as np
@@ -40,6 +41,21 @@ class WeakForm:
     weight: ufl.Form
     position: ufl.Form
     maps: object
+
+
+class JumpForms(NamedTuple):
+    """Functionals of the displacements at the points of the interface, for `fem_reference.model.jumps`.
+
+    ``functionals`` (one row of blocks, bilinear) is the jump from the lower to the upper face and, where kinematics is
+    finite, the X-derivative of the mean of both faces; ``slopes`` their X-derivatives. ``weight`` and ``position`` are
+    integrals of 1 and of X. Test functions are 1 at one point for one of its ``per_point`` functionals, and else 0.
+    """
+
+    functionals: list
+    slopes: list
+    weight: ufl.Form
+    position: ufl.Form
+    per_point: int
 
 
 def bulk_points(degree: int) -> int:
@@ -103,6 +119,39 @@ def weak_form(
         weight=q * dS(BOND),
         position=ufl.SpatialCoordinate(domain)("+")[0] * q * dS(BOND),
         maps=entity_maps(domain, (*bodies.pair, bodies.bond), bodies.interface_quads),
+    )
+
+
+def jump_forms(problem: Debonding, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function]) -> JumpForms:
+    """The forms of jump and mean tangent: two functionals a point in linear kinematics, four in finite kinematics."""
+    count = 4 if problem.kinematics == "finite" else 2
+    degree = 2 * bond_points(problem.degree) - 1
+    point = basix.ufl.quadrature_element("interval", value_shape=(count,), degree=degree)
+    q = ufl.TestFunction(fem.functionspace(bodies.bond.mesh, point))("+")
+    _, _, dS = _measures(bodies, problem.degree)
+
+    def at_points(v: ufl.core.expr.Expr, side: str, sign: float) -> list[ufl.core.expr.Expr]:
+        """Forms of the functionals and of their derivatives, the part of one body."""
+        jump = [sign * v[i](side) for i in range(2)]
+        parts = [v.dx(0), v.dx(0).dx(0)]
+        slope, bend = ([part[i](side) for i in range(2)] for part in parts)
+        mean, mean_slope = ([0.5 * a for a in part] if count == 4 else [] for part in (slope, bend))
+        jump_slope = [sign * a for a in slope]
+        vectors = ufl.as_vector(jump + mean), ufl.as_vector(jump_slope + mean_slope)
+        return [ufl.inner(vector, q) * dS(BOND) for vector in vectors]
+
+    spaces = [u.function_space for u in displacement]
+    above, below = (
+        at_points(ufl.TrialFunction(V), side, sign) for V, side, sign in zip(spaces, "+-", (1.0, -1.0), strict=True)
+    )
+    ones = ufl.as_vector([1.0] * count)
+    X = ufl.SpatialCoordinate(bodies.parent)("+")[0]
+    return JumpForms(
+        functionals=[above[0], below[0]],
+        slopes=[above[1], below[1]],
+        weight=ufl.inner(ones, q) * dS(BOND),
+        position=X * ufl.inner(ones, q) * dS(BOND),
+        per_point=count,
     )
 
 

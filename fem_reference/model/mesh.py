@@ -18,6 +18,7 @@ class TwoBodies:
 
     ``pair`` are the submeshes of the bodies, upper first, ``bond`` is that of the interface. ``cells`` are the parent's
     cells of each body that this rank owns, ``faces`` the owned facets (n, 2) of every end face as (cell, local facet),
+    ``patches`` those of every patch of every load and support in turn,
     ``interface_quads`` (n, 4) the owned facets of the interface as (upper cell, local facet, lower cell, local facet).
     """
 
@@ -26,6 +27,7 @@ class TwoBodies:
     bond: Submesh
     cells: tuple[np.ndarray, np.ndarray]
     faces: tuple[np.ndarray, ...]
+    patches: tuple[np.ndarray, ...]
     interface_quads: np.ndarray
 
 
@@ -39,15 +41,19 @@ def two_bodies(specimen: Specimen, comm: MPI.Intracomm) -> TwoBodies:
     low, high = sorted(specimen.interface)
     bonded = entities_on(parent, 1, ((low, high), (0.0, 0.0)), near)
     belongs = [_marked(parent, tdim, cells) for cells in (upper, lower)]
-    faces = (_owned(parent, 1, entities_on(parent, 1, _side(specimen, face), near)) for face in specimen.faces)
+    faces = [(face.body, _side(specimen, face)) for face in specimen.faces]
+    patches = [(patch.body, patch.place) for action in specimen.actions for patch in action.patches]
+
+    def facets_of(body: int, place: Region) -> np.ndarray:
+        return _seen_from(parent, _owned(parent, 1, entities_on(parent, 1, place, near)), belongs[body])
+
     return TwoBodies(
         parent=parent,
         pair=(create_submesh(parent, tdim, upper), create_submesh(parent, tdim, lower)),
         bond=create_submesh(parent, 1, bonded),
         cells=(_owned(parent, tdim, upper), _owned(parent, tdim, lower)),
-        faces=tuple(
-            _seen_from(parent, facets, belongs[face.body]) for facets, face in zip(faces, specimen.faces, strict=True)
-        ),
+        faces=tuple(facets_of(*face) for face in faces),
+        patches=tuple(facets_of(*patch) for patch in patches),
         interface_quads=np.hstack([_seen_from(parent, _owned(parent, 1, bonded), inside) for inside in belongs]),
     )
 

@@ -16,21 +16,21 @@ def frame(model: Model, sample: Sampler, state: State) -> dict[str, Any] | None:
     """Fields of the bodies and of the interface; None on all ranks but the first.
 
     Keys: opening, load; ``bond`` with X_qi, u_qi (n_q, 2) of the upper face and s_q, gap_q, traction_q, damage_q,
-    history_q, bonded_q (n_q,), ordered along the specimen; ``cells``, one entry a body: body, degrees; at the evenly
-    spaced nodes b of every element, those along X fastest, X_ebI, u_ebi (n_e, n_b, 2), the Cauchy stress stress_eqv
-    (n_e, n_b, 3) in Voigt order and the second Piola-Kirchhoff stress over det F along_eqk (n_e, n_b, 2); w_eb None.
+    history_q, bonded_q (n_q,), with shear also slip_q and shear_q, ordered along the specimen; ``cells``, one entry a
+    body: body, degrees; at the evenly spaced nodes b of every element, those along X fastest, X_ebI, u_ebi
+    (n_e, n_b, 2), the Cauchy stress stress_eqv (n_e, n_b, 3) in Voigt order and the second Piola-Kirchhoff stress over
+    det F along_eqk (n_e, n_b, 2); w_eb None.
 
     DOLFINx places the nodes of degree 3 and 4 differently and numbers them in its own order: all values are evaluated
     from the displacement, at the places and in the order that drawing programs use.
     """
     values_euvc = sample(state)
-    p_q, _ = model.traction(state.g_q, state.k_q)
-    of_bond = state.g_q, p_q, model.damage(state.k_q), state.k_q
-    s_q, X_q, bonded_q, *values = ordered_along(model, model.X_q, model.bonded_q, *of_bond)
+    of_bond = model.bond_fields(state.g_q, state.k_q)
+    s_q, X_q, bonded_q, *values = ordered_along(model, model.X_q, model.bonded_q, *of_bond.values())
     if values_euvc is None:
         return None
     cells = [_cells(number, values_euvc) for number in range(len(model.specimen.bodies))]
-    named = dict(zip(("gap_q", "traction_q", "damage_q", "history_q"), values, strict=True))
+    named = dict(zip(of_bond, values, strict=True))
     places = {"X_qi": np.stack([X_q, np.zeros_like(X_q)], -1), "u_qi": _on_upper_face(values_euvc, X_q)}
     bond = {**places, "s_q": s_q, **named, "bonded_q": bonded_q}
     return {"opening": state.opening, "load": state.load, "cells": cells, "bond": bond}

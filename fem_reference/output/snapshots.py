@@ -83,6 +83,6 @@ def _owned_values(e: fem.Expression, domain: mesh.Mesh) -> np.ndarray:
 
 
 def _bond_fields(model: Model, state: State) -> Snapshot:
-    p_q, _ = model.traction(state.g_q, state.k_q)
-    names = ("s_q", "gap_q", "traction_q", "damage_q")
-    return dict(zip(names, ordered_along(model, state.g_q, p_q, model.damage(state.k_q)), strict=True))
+    fields = model.bond_fields(state.g_q, state.k_q)
+    del fields["history_q"]
+    return dict(zip(("s_q", *fields), ordered_along(model, *fields.values()), strict=True))

@@ -20,8 +20,8 @@ from fem_reference.path.state import State
 class FrontSettings:
     """Steps that are controlled by the gap of one point.
 
-    step : largest change of that gap in one step, in units of g_u: smaller steps take longer, larger ones pass kinks of
-        more points at once.
+    step : largest change of that gap in one step, in units of g_u, or of the scaled jump itself: smaller steps take
+        longer, larger ones pass kinks of more points at once.
     lookahead : damage counts as growing at a point that would reach it within this many steps.
     """
 
@@ -52,26 +52,29 @@ def opening_control(model: Model, opening: float) -> Control:
 class Front:
     """The most open point of the bond whose damage grows, or soon will.
 
-    ``gap`` is its gap, ``missing`` the increase of it before damage grows, ``rate`` d gap / d opening.
+    ``gap`` is its gap, or with shear its scaled jump, ``missing`` the increase of it before damage grows, ``rate``
+    d gap / d opening. ``row_n`` is its change as a functional of the displacements, whose present value is ``level``.
     """
 
     place: PointOfBond
     gap: float
     missing: float
     rate: float
+    row_n: np.ndarray
+    level: float
 
     def change(self, model: Model, reach: float, part: float) -> float:
         """Change of the gap in a step of ``reach`` in the opening; at most ``part`` of the front's largest step."""
-        most = self.missing + part * REFERENCE_FRONT.step * model.law.g_open
+        most = self.missing + part * REFERENCE_FRONT.step * model.unit
         return float(np.copysign(min(abs(self.rate) * reach, most), self.rate))
 
     def calm(self, model: Model, reach: float, part: float) -> bool:
         """Whether damage grows so slowly that the opening can be prescribed instead."""
-        return self.missing == 0.0 and abs(self.rate) * reach < part * REFERENCE_FRONT.step * model.law.g_open
+        return self.missing == 0.0 and abs(self.rate) * reach < part * REFERENCE_FRONT.step * model.unit
 
     def control(self, model: Model, reach: float, part: float) -> Control:
         """Control by the gap of the front, which grows steadily even where the opening has to decrease (snap-back)."""
-        return Control(gap_row(model, self.place), self.gap + self.change(model, reach, part))
+        return Control(self.row_n, self.level + self.change(model, reach, part))
 
 
 def front_of(model: Model, state: State, reach: float) -> Front | None:
@@ -79,13 +82,17 @@ def front_of(model: Model, state: State, reach: float) -> Front | None:
 
     In a reversible bond, damage may also decrease.
     """
-    law, g_q, k_q = model.law, state.g_q, state.k_q
-    rate_q = state.heading * model.bond.gap(state.rate_n)
-    missing_q = np.maximum(k_q, law.g_peak) - g_q
-    grows_q = (k_q < law.g_open) & (rate_q * REFERENCE_FRONT.lookahead * reach >= missing_q) & (rate_q > 0)
-    heals_q = (g_q < law.g_open) & (g_q > law.g_peak) & (not law.irreversible)
-    place = most_open(model, np.where((grows_q | heals_q) & model.bonded_q, g_q, -np.inf))
-    return None if place is None else Front(place, *(at(model, place, a_q) for a_q in (g_q, missing_q, rate_q)))
+    gap_q, held_q = model.measure(state.g_q), model.held(state.k_q)
+    rate_q = state.heading * model.rates(state.u_n, state.rate_n)
+    missing_q = np.maximum(held_q, model.onset) - gap_q
+    grows_q = (held_q < model.failure) & (rate_q * REFERENCE_FRONT.lookahead * reach >= missing_q) & (rate_q > 0)
+    heals_q = (gap_q < model.failure) & (gap_q > model.onset) & (not model.law.irreversible)
+    place = most_open(model, np.where((grows_q | heals_q) & model.bonded_q, gap_q, -np.inf))
+    if place is None:
+        return None
+    gap, missing, rate = (at(model, place, a_q) for a_q in (gap_q, missing_q, rate_q))
+    row_n = front_row(model, place, state.u_n)
+    return Front(place, gap, missing, rate, row_n, model.level(gap, row_n, state.u_n))
 
 
 def most_open(model: Model, g_q: np.ndarray) -> PointOfBond | None:
@@ -102,9 +109,12 @@ def at(model: Model, place: PointOfBond, a_q: np.ndarray) -> float:
     return model.comm.bcast(float(a_q[q]) if model.comm.rank == rank else None, root=rank)
 
 
-def gap_row(model: Model, place: PointOfBond) -> np.ndarray:
-    """The gap at a point as a functional (n,) of the displacements that this rank owns."""
+def front_row(model: Model, place: PointOfBond, u_n: np.ndarray) -> np.ndarray:
+    """The change of the gap or scaled jump at a point as a functional (n,) of the displacements of this rank.
+
+    With shear it is that at the displacements ``u_n``: a step needs a quantity that grows along it, no exact one.
+    """
     unit_q = np.zeros_like(model.X_q)
     if model.comm.rank == place[0]:
         unit_q[place[1]] = 1.0
-    return model.bond.spread(unit_q)
+    return model.measure_row(u_n, unit_q)

@@ -6,13 +6,14 @@ from collections.abc import Generator, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from mpi4py import MPI
 
-from fem_reference.model.model import Model
+from fem_reference.model.model import BondEnergies, Model
 from fem_reference.path.control import REFERENCE_FRONT, Control, Front, at, front_of, opening_control
 from fem_reference.path.newton import Step, bordered_step, find_equilibrium
+from fem_reference.path.programme import NEAR_THE_GOAL, branches, next_line
 from fem_reference.path.state import State
-from fem_reference.path.work import work_along
-from fem_reference.problem.problem import Debonding
+from fem_reference.path.work import chord, work_along
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,6 @@ class PathSettings:
     halvings : how often a step is halved before the run stops.
     steps : steps towards one goal after which the run stops.
     separated : load, as a part of the peak, below which a specimen whose damage grew has separated.
-    near : a step that ends within this part of an increment of its goal is extended to the goal.
     leap : part of the energy, or of the largest load times the change of the opening, by which work and energy of a
         step may differ; one that ends on another branch of equilibrium was seen to miss by a quarter of the energy, one
         along the path misses by 1e-6.
@@ -33,12 +33,14 @@ class PathSettings:
     halvings: int = 12
     steps: int = 20_000
     separated: float = 1e-3
-    near: float = 0.01
     leap: float = 0.05
     ahead: float = 1e-6
 
 
 REFERENCE_PATH = PathSettings()
+
+#: Why a step of a viscous bond is repeated.
+TOO_FAST = "damage grows too much in one step"
 
 #: Advice for a path that cannot go on, and for bodies that are pressed together.
 FINER = "use more elements along the specimen or a higher degree"
@@ -58,20 +60,6 @@ class Separation:
     """The end of a path: the bond no longer carries load."""
 
     opening: float
-
-
-def branches(problem: Debonding) -> list[np.ndarray]:
-    """Ends of equal increments of the opening, about ``steps`` over the whole programme, one array per branch.
-
-    A branch also ends where the programme passes through zero: there all gaps of an unloaded bond open or close.
-    """
-    goals = np.concatenate([[0.0], problem.opening])
-    crossed = np.flatnonzero(goals[1:] * goals[:-1] < 0.0)
-    corners = np.insert(goals, crossed + 1, 0.0)
-    ways = np.abs(np.diff(corners))
-    counts = np.maximum(1, np.rint(problem.steps * ways / ways.sum()).astype(int))
-    parts = zip(corners[:-1], corners[1:], counts, ways, strict=True)
-    return [np.linspace(start, end, n + 1) for start, end, n, way in parts if way > 0]
 
 
 def path(model: Model) -> Iterator[State | Failure | Separation]:
@@ -122,33 +110,39 @@ def advance(model: Model, state: State, lines: np.ndarray, part: float) -> State
     """One step: to the next end of an increment, or controlled by the front where damage grows fast.
 
     Two states before and after a snap-back can have the same opening. If the front has moved much further than its
-    largest step, the step has missed the path between them and is repeated with control by the front.
+    largest step, the step has missed the path between them and is repeated with control by the front. Where a bond that
+    keeps its damage is unloaded, no step is: the front would lead back along the path of loading.
     """
     goal, reach = float(lines[-1]), part * abs(lines[1] - lines[0])
-    front, ahead = front_of(model, state, reach), goal > state.opening
+    front = None if model.timed else front_of(model, state, reach)
+    ahead = goal > state.opening
     if front is None:
         state = departing(model, state, goal)
-        return step(model, state, opening_control(model, next_line(state.opening, lines, reach)))
+        reached = step(model, state, opening_control(model, next_line(state.opening, lines, reach)))
+        return Failure(TOO_FAST) if model.timed and hastens(model, state, reached, part) else reached
     front_control = front.control(model, reach, part)
     if (state.heading > 0) == ahead and front.calm(model, reach, part):
         control = opening_control(model, next_line(state.opening, lines, reach))
+        if model.law.irreversible and abs(goal) < abs(state.opening):
+            return step(model, state, control)
         reached = step(model, state, control, along_n=front_control.row_n)
         if isinstance(reached, State) and not skipped(model, front, reached, part):
             return reached
     return lead(model, state, front_control, lines)
 
 
-def next_line(opening: float, lines: np.ndarray, reach: float) -> float:
-    """Opening at the end of the next increment, or as far towards it as a step may reach."""
-    way = (lines - opening) / (lines[1] - lines[0])
-    line = float(lines[np.argmax(way > REFERENCE_PATH.near)]) if way[-1] > REFERENCE_PATH.near else float(lines[-1])
-    left = line - opening
-    return line if abs(left) <= reach * (1 + REFERENCE_PATH.near) else opening + float(np.copysign(reach, left))
-
-
 def skipped(model: Model, front: Front, reached: State, part: float) -> bool:
     """Whether the gap of the front has changed by more than twice its largest step."""
-    return abs(at(model, front.place, reached.g_q) - front.gap) > 2 * part * REFERENCE_FRONT.step * model.law.g_open
+    change = at(model, front.place, model.measure(reached.g_q)) - front.gap
+    return abs(change) > 2 * part * REFERENCE_FRONT.step * model.unit
+
+
+def hastens(model: Model, before: State, reached: State | Failure, part: float) -> bool:
+    """Whether the damage of a viscous bond grows by more in a step than follows its time; not of the shortest steps."""
+    if isinstance(reached, Failure) or part <= 0.5 ** (REFERENCE_PATH.halvings - 1):
+        return False
+    grows_q = model.damage(reached.k_q) - model.damage(before.k_q)
+    return model.comm.allreduce(float(np.max(grows_q, initial=0.0)), MPI.MAX) > REFERENCE_FRONT.step
 
 
 def lead(model: Model, state: State, control: Control, lines: np.ndarray) -> State | Failure:
@@ -158,7 +152,7 @@ def lead(model: Model, state: State, control: Control, lines: np.ndarray) -> Sta
     if isinstance(reached, State) and reached.opening * goal < 0.0 <= state.opening * goal:
         # the gap of the front can be met on both sides of zero, by pulling and by pressing
         return Failure(f"the path leaps from opening {state.opening:.6g} to {reached.opening:.6g}; {LESS} or {FINER}")
-    if isinstance(reached, Failure) or (goal - reached.opening) / increment > REFERENCE_PATH.near:
+    if isinstance(reached, Failure) or (goal - reached.opening) / increment > NEAR_THE_GOAL:
         return reached
     share = (goal - state.opening) / (reached.opening - state.opening)
     between = state.u_n + share * (reached.u_n - state.u_n), state.load + share * (reached.load - state.load)
@@ -181,6 +175,8 @@ def step(
     guess : displacements and load to start from; default: extrapolated along the tangent of the path.
     along_n : a functional that changes monotonically along the step; default: the prescribed one.
     """
+    if control.row_n is model.load_n:
+        model = model.in_time(control.value - state.opening)
     if guess is None:
         move = (control.value - model.dot(control.row_n, state.u_n)) / model.dot(control.row_n, state.rate_n)
         guess = state.u_n + move * state.rate_n, state.load + move * state.slope
@@ -200,8 +196,11 @@ def step(
     change = model.dot(row_n, u_n - state.u_n)
     rates = change / model.dot(row_n, state.rate_n), change / model.dot(row_n, rate_n)
     opening = control.value if control.row_n is model.load_n else model.dot(model.load_n, u_n)
-    g_q = model.bond.gap(u_n)
-    work = work_along((state.opening, opening), (state.load, load), (state.slope, slope), rates)
+    g_q = model.jump(u_n)
+    slopes = state.slope, slope
+    if model.timed:  # the tangents are those of frozen time
+        slopes, rates = chord((state.opening, opening), (state.load, load))
+    work = work_along((state.opening, opening), (state.load, load), slopes, rates)
     k_q = model.history(g_q, state.k_q)
     reached = State(
         u_n=u_n,
@@ -215,7 +214,7 @@ def step(
         peak=max(state.peak, abs(load)),
         work=state.work + work,
         bulk=model.bulk_energy(u_n),
-        bond=model.bond_energies(g_q, k_q),
+        bond=model.energies_after((state.g_q, state.k_q, state.bond), g_q, k_q),
         iterations=attempt.iterations + 1,
     )
     if leaps(state, reached):
@@ -254,10 +253,10 @@ def tangent_of_path(model: Model) -> tuple[np.ndarray, float]:
 
 def unloaded(model: Model) -> State:
     """The unloaded specimen; its ``heading`` is 0."""
-    u_n, k_q = np.zeros_like(model.load_n), np.zeros_like(model.X_q)
+    u_n, k_q = np.zeros_like(model.load_n), model.intact()
     model.factorise(u_n, k_q)
     rate_n, slope = tangent_of_path(model)
-    return State(u_n, 0.0, 0.0, k_q, np.zeros_like(k_q), rate_n, slope, 0.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0), 0)
+    return State(u_n, 0.0, 0.0, k_q, model.jump(u_n), rate_n, slope, 0.0, 0.0, 0.0, 0.0, BondEnergies(), 0)
 
 
 def departing(model: Model, state: State, goal: float) -> State:
@@ -283,7 +282,7 @@ def separated(model: Model, before: State, state: State, goal: float) -> bool:
 
     Unloading to zero is no separation: no damage grows, and the load returns along the secants.
     """
-    grew_q = state.k_q > np.maximum(before.k_q, model.law.g_peak)
+    grew_q = model.held(state.k_q) > np.maximum(model.held(before.k_q), model.onset)
     way = float(np.sign(goal))
     gain = max(0.0, way * state.heading * state.slope) * abs(goal - state.opening)
     carried = abs(state.load) + gain

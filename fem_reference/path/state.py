@@ -9,7 +9,8 @@ from dolfinx import fem
 from mpi4py import MPI
 
 from fem_reference.model.assembled import owned
-from fem_reference.model.model import Model
+from fem_reference.model.model import BondEnergies, Model
+from fem_reference.model.opening import OpeningModel
 from fem_reference.model.supports import dofs_on
 from fem_reference.problem.specimen import point
 
@@ -21,7 +22,7 @@ class State:
     ``k_q`` and ``g_q`` are history and gap at the points of the interface; ``rate_n`` = du/d(opening) and ``slope`` =
     d load/d(opening) of the path that arrives here, ``heading`` the sign of the change of the opening on it; ``peak``
     is the largest load so far, ``work`` the external work, ``bulk`` the strain energy of the bodies, and ``bond`` the
-    energies recoverable from cohesion, stored in contact, and dissipated.
+    energies of the bond.
     """
 
     u_n: np.ndarray
@@ -35,16 +36,16 @@ class State:
     peak: float
     work: float
     bulk: float
-    bond: tuple[float, float, float]
+    bond: BondEnergies
     iterations: int
 
     @property
     def energy(self) -> float:
         """All that the external work has been turned into."""
-        return self.bulk + sum(self.bond)
+        return self.bulk + self.bond.total
 
 
-def row_of(model: Model, state: State) -> dict[str, float]:
+def row_of(model: OpeningModel, state: State) -> dict[str, float]:
     """Row of the curve for a converged point; forces and energies for the whole width; the same on every rank.
 
     ``reaction_x`` and ``reaction_y`` are the resultants of support forces and loads.
@@ -54,7 +55,7 @@ def row_of(model: Model, state: State) -> dict[str, float]:
     load_n = state.load * model.load_n
     reaction_n = (1 - model.free_n) * (model.bulk_force(state.u_n) + bond_force_n - load_n)
     face = model.comm.allreduce(fem.assemble_scalar(model.face_energy))
-    bulk, (cohesive, contact, dissipated) = state.bulk, state.bond
+    bulk, (cohesive, contact, dissipated, *_) = state.bulk, state.bond
     on_upper_n = model.upper_n
     return {
         "opening": state.opening,
@@ -84,7 +85,7 @@ def row_of(model: Model, state: State) -> dict[str, float]:
     }
 
 
-def _of_contact(model: Model, state: State, p_q: np.ndarray) -> dict[str, float]:
+def _of_contact(model: OpeningModel, state: State, p_q: np.ndarray) -> dict[str, float]:
     """Largest penetration at the nodes of the surfaces, largest contact pressure, and the gap at the loaded end."""
     pressure = model.comm.allreduce(float(np.max(-p_q, initial=0.0)), MPI.MAX)
     depth = float(np.max(-face_gaps(model, state), initial=0.0))
@@ -132,7 +133,7 @@ def opening_at(model: Model, X: float) -> float:
 
 def foremost(model: Model, state: State, gap: float) -> float:
     """Distance from the loaded end to the foremost place whose history has reached ``gap``, linear between points."""
-    s_q, k_q = ordered_along(model, state.k_q)
+    s_q, k_q = ordered_along(model, model.held(state.k_q))
     tip, end = (float(model.specimen.distance(X)) for X in model.specimen.bond)
     open_q = np.flatnonzero(k_q >= gap)
     if not open_q.size:

@@ -24,3 +24,9 @@ def work_along(
     opening_slopes = np.array(rates)
     load_slopes = opening_slopes * slopes
     return float(np.concatenate([loads, load_slopes]) @ HERMITE @ np.concatenate([openings, opening_slopes]))
+
+
+def chord(openings: tuple[float, float], loads: tuple[float, float]) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Slopes and rates for `work_along` of a straight step, where those of the path are not known."""
+    way = openings[1] - openings[0]
+    return ((loads[1] - loads[0]) / way,) * 2, (way, way)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_reference.problem.delamination import Rectangle, free_arms
-from fem_reference.problem.material import Moduli
+from fem_reference.problem.delamination import free_arms
+from fem_reference.problem.material import Moduli, Rectangle
 from fem_reference.problem.problem import Debonding
 from fem_reference.problem.specimen import Specimen
 

@@ -1,4 +1,4 @@
-"""Any delamination specimen: two free arms that are pulled apart, or a strip on a substrate whose base is clamped."""
+"""Any delamination specimen: arms that are pulled apart, a strip on a clamped base, or arms on supports."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_reference.problem.material import Moduli
+from fem_reference.problem.arms import Outline, arms_on_supports
+from fem_reference.problem.loads import Load, Support
+from fem_reference.problem.material import Rectangle, Rectangles
 from fem_reference.problem.problem import Debonding
 from fem_reference.problem.specimen import (
     LOWER,
@@ -21,19 +23,6 @@ from fem_reference.problem.specimen import (
 )
 
 
-@dataclass(frozen=True)
-class Rectangle:
-    """A body 0 <= X <= length, above or below Y = 0."""
-
-    length: float
-    thickness: float
-    moduli: Moduli
-
-
-#: The upper and the lower body.
-Rectangles = tuple[Rectangle, Rectangle]
-
-
 @dataclass(frozen=True, kw_only=True)
 class Problem(Debonding):
     """A specimen by its bodies.
@@ -44,17 +33,24 @@ class Problem(Debonding):
     bonded : X of the tip of the bond, next to the load, and of its far end.
     on_base : whether the base of the lower body is clamped, and the upper one is pulled up at its right end; else both
         are pulled apart at X = 0.
+    loads, supports, loaded_at : where there are loads, they act with the supports on patches of two arms of one length,
+        whose bond begins on the left, and ``loaded_at`` is the X from which a crack is measured.
     """
 
     bodies: Rectangles
     bonded: tuple[float, float]
-    on_base: bool
+    on_base: bool = False
+    loads: tuple[Load, ...] = ()
+    supports: tuple[Support, ...] = ()
+    loaded_at: float = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         self.specimen()
 
     def specimen(self) -> Specimen:
+        if self.loads:
+            return arms_on_supports(self, self.bodies, self.bonded, Outline(self.loads, self.supports, self.loaded_at))
         return (strip_on_base if self.on_base else free_arms)(self, self.bodies, self.bonded)
 
 

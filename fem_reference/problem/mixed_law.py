@@ -79,6 +79,15 @@ class MixedLaw(ABC):
         """Initial stiffness (2,): K, Ks."""
         return np.array([self.stiffness, self.shear_stiffness])
 
+    @property
+    def K0(self) -> float:
+        """Initial stiffness against opening [stress per length]."""
+        return float(self.slope_j[0])
+
+    @abstractmethod
+    def reach(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The scaled jump r (n_q,), 1 at the onset and 2 at failure, and its derivative (n_q, 2) at constant B."""
+
     @abstractmethod
     def driving(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The damage that the jumps ask for, D (n_q,), and dD_qj (n_q, 2)."""

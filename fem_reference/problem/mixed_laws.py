@@ -30,6 +30,21 @@ class ByCriterion(MixedLaw):
         shear = self.shear_strength, self.shear_toughness, self.shear_stiffness
         return Criterion(normal, shear, self.criterion, self.onset or ONSET_WITH[self.criterion][0], self.exponent)
 
+    def reach(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `MixedLaw.reach`: lambda / lambda0, beyond the onset 1 + (lambda - lambda0) / (lambda_f - lambda0)."""
+        mix = mix_of(g_q, s_q, self.slope_j)
+        rise_q = 1.0 + self.pressure_strength / self.shear_strength * self._pressure(g_q)
+        G_q = self.by_mode.critical(mix.B_q)[0]
+        onset_q = np.minimum(rise_q * self.by_mode.begins(mix.B_q)[0], (1.0 - 1e-6) * np.sqrt(2.0 * G_q))
+        beyond_q = mix.norm_q > onset_q
+        per_norm_q = np.where(beyond_q, 1.0 / self.softening_way(onset_q, G_q), 1.0 / onset_q)
+        r_q = np.where(beyond_q, 1.0, 0.0) + (mix.norm_q - np.where(beyond_q, onset_q, 0.0)) * per_norm_q
+        return r_q, per_norm_q[:, None] * mix.dnorm_qj
+
+    def softening_way(self, onset_q: np.ndarray, G_q: np.ndarray) -> np.ndarray:
+        """Lambda_f - lambda0 (n_q,)."""
+        return 2.0 * G_q / onset_q - onset_q
+
     def driving(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See `MixedLaw.driving`."""
         mix, by_mode = mix_of(g_q, s_q, self.slope_j), self.by_mode
@@ -92,9 +107,13 @@ class MixedTrapezoidal(ByCriterion):
         if not 0.0 <= self.plateau < 1.0:
             raise ValueError(f"plateau: must be in [0, 1), got {self.plateau}")
 
+    def softening_way(self, onset_q: np.ndarray, G_q: np.ndarray) -> np.ndarray:
+        """Lambda_f - lambda0 (n_q,)."""
+        return (2.0 * G_q - onset_q**2) / ((1.0 + self.plateau) * onset_q)
+
     def softening(self, norm_q: np.ndarray, onset_q: np.ndarray, G_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See `ByCriterion.softening`."""
-        way_q = (2.0 * G_q - onset_q**2) / ((1.0 + self.plateau) * onset_q)
+        way_q = self.softening_way(onset_q, G_q)
         fall_q = (1.0 - self.plateau) * way_q
         share_q = (onset_q + way_q - norm_q) / fall_q
         level_q, open_q = share_q >= 1.0, share_q <= 0.0
@@ -139,6 +158,20 @@ class MixedExponential(MixedLaw):
         return np.array(
             [np.e**2 * self.strength**2 / self.toughness, np.e * self.shear_strength**2 / self.shear_toughness]
         )
+
+    def reach(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `MixedLaw.reach`; the onset stands for the largest traction, failure for seven times its jump.
+
+        Up to the onset r^2 = x^2 + 2 y^2.
+        """
+        g_0 = self.toughness / (np.e * self.strength)
+        s_0 = np.sqrt(2.0 / np.e) * self.shear_toughness / self.shear_strength
+        x_q, y_q = np.maximum(g_q, 0.0) / g_0, s_q / s_0
+        near_q = np.sqrt(x_q**2 + 2.0 * y_q**2)
+        share_q = np.where(near_q > 1.0, 1.0 / 6.0, 1.0)
+        per_near_q = share_q * np.divide(1.0, near_q, out=np.zeros_like(near_q), where=near_q > 0.0)
+        r_q = np.where(near_q > 1.0, 1.0 + (near_q - 1.0) / 6.0, near_q)
+        return r_q, np.stack([x_q / g_0, 2.0 * y_q / s_0], -1) * per_near_q[:, None]
 
     def driving(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See `MixedLaw.driving`."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fem_reference.problem.delamination import Rectangle, strip_on_base
-from fem_reference.problem.material import Moduli
+from fem_reference.problem.delamination import strip_on_base
+from fem_reference.problem.material import Moduli, Rectangle
 from fem_reference.problem.problem import Debonding
 from fem_reference.problem.specimen import Specimen
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem_reference.problem.mixed_law import MixedLaw
 from fem_reference.problem.specimen import Specimen
 
 
@@ -20,6 +21,7 @@ class Debonding(ABC):
     strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], g_u / g_max, and the stiffness
         against closing [stress per length].
     law_name : key of `fem_reference.problem.law.MODELLED_LAWS`; not checked here, since a mesh serves every law.
+    mixed_law : the law of opening and sliding; with it the bond carries shear, and the law in mode I is not used.
     plateau, table : numbers of the trapezoidal and of the tabular law.
     contact : if False, the secant of the opening side continues into closing.
     irreversible : if False, damage follows the present gap and nothing is dissipated.
@@ -42,6 +44,7 @@ class Debonding(ABC):
     toughness: float
     ductility: float
     law_name: str = "bilinear"
+    mixed_law: MixedLaw | None = None
     plateau: float = 0.5
     table: tuple[tuple[float, float], ...] = ()
     width: float = 1.0

@@ -65,6 +65,29 @@ class Hook:
 
 
 @dataclass(frozen=True)
+class Patch:
+    """A part of the outline of a body."""
+
+    body: int
+    place: Region
+
+
+@dataclass(frozen=True)
+class Action:
+    """A load or a support on patches: the traction (turn (middle - Y), push) of a unit force or moment.
+
+    Its work is the mean upward displacement of the patches, or the mean anticlockwise rotation of an end face.
+    ``factor`` is the part of the load, or the stiffness of the support [force per length, or times length].
+    """
+
+    patches: tuple[Patch, ...]
+    push: float
+    turn: float
+    middle: float
+    factor: float
+
+
+@dataclass(frozen=True)
 class Specimen:
     """A specimen in its own frame.
 
@@ -76,7 +99,9 @@ class Specimen:
     facing : ends in X of the surfaces opposite each other, bonded or not, in the same order.
     touching : whether these surfaces can carry contact beyond the bond.
     loads : part of the load, upwards, on the end faces of the upper and the lower body at the loaded end.
-    loaded_at : X of the loaded faces: 0 or the length of the upper body.
+    loaded_at : X of the loaded faces: 0 or the length of the upper body; X from which a crack is measured.
+    pulls, rests : loads on patches, and supports of patches.
+    keeps : springs that hold the rigid motions which nothing else resists.
     """
 
     bodies: tuple[Body, Body]
@@ -88,16 +113,29 @@ class Specimen:
     held: tuple[Held, ...]
     hooks: tuple[Hook, ...]
     loaded_at: float
+    pulls: tuple[Action, ...] = ()
+    rests: tuple[Action, ...] = ()
+    keeps: tuple[Action, ...] = ()
+
+    @property
+    def actions(self) -> tuple[Action, ...]:
+        """Loads, supports and springs on patches."""
+        return (*self.pulls, *self.rests, *self.keeps)
 
     @property
     def faces(self) -> tuple[Face, ...]:
         """The end faces of both bodies, upper first: those at the loaded end, then those at the other end."""
-        loaded = [0.0 if self.loaded_at == 0.0 else body.length for body in self.bodies]
+        loaded = [0.0 if self.direction > 0.0 else body.length for body in self.bodies]
         other = [body.length - X for body, X in zip(self.bodies, loaded, strict=True)]
         return (
             *(Face(body, loaded[body], self.loads[body], energy=1.0) for body in (UPPER, LOWER)),
             *(Face(body, other[body], load=0.0, energy=-1.0) for body in (UPPER, LOWER)),
         )
+
+    @property
+    def direction(self) -> float:
+        """1 if the crack grows along X, -1 against it."""
+        return 1.0 if self.bond[0] <= self.bond[1] else -1.0
 
     @property
     def near(self) -> float:
@@ -116,8 +154,8 @@ class Specimen:
         return np.diff(X[(X > low - self.near) & (X < high + self.near)])
 
     def distance(self, X: np.ndarray | float) -> np.ndarray | float:
-        """Distance of X from the loaded end."""
-        return np.abs(X - self.loaded_at)
+        """Distance of X from the loaded end, in the direction of growth."""
+        return self.direction * (X - self.loaded_at)
 
 
 def point(X: float, Y: float) -> Region:

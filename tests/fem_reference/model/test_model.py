@@ -10,7 +10,7 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 from dolfinx import fem
 from mpi4py import MPI
 
-from fem_reference.model.model import build_model
+from fem_reference.model.build import build_model
 from fem_reference.problem import peel
 from fem_reference.problem.dcb import Problem
 from fem_reference.problem.material import Moduli

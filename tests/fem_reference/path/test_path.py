@@ -12,10 +12,10 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 from mpi4py import MPI
 from scipy.interpolate import CubicHermiteSpline
 
-from fem_reference.model.model import build_model
+from fem_reference.model.build import build_model
 from fem_reference.path import newton
 from fem_reference.path import path as following
-from fem_reference.path.control import front_of, gap_row
+from fem_reference.path.control import front_of
 from fem_reference.path.path import Failure, departing, leaps, path
 from fem_reference.path.state import State
 from fem_reference.path.work import work_along
@@ -190,7 +190,7 @@ def test_the_front_is_the_most_open_point_that_softens():
     front = front_of(model, last, 0.02)
     softens_q = (last.g_q > model.law.g_peak) & (last.g_q < model.law.g_open)
     assert front.gap == np.max(last.g_q[softens_q])
-    assert gap_row(model, front.place) @ last.u_n == pytest.approx(front.gap, rel=1e-12)
+    assert front.row_n @ last.u_n == pytest.approx(front.gap, rel=1e-12)
     unloading = departing(model, last, 0.0)
     assert unloading.heading == -1
     assert front_of(model, unloading, 0.02) is None

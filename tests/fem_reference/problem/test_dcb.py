@@ -12,7 +12,7 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 from mpi4py import MPI
 
-from fem_reference.model.model import build_model
+from fem_reference.model.build import build_model
 from fem_reference.path.control import opening_control
 from fem_reference.path.newton import Step, find_equilibrium
 from fem_reference.path.path import path

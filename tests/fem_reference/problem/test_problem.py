@@ -58,12 +58,13 @@ def test_orthotropic_sheet_answers_a_pull_along_its_fibres():
     assert D @ [0.0, 0.0, 2.0] == pytest.approx([0.0, 0.0, 2 * G12], rel=1e-13)
 
 
-def test_plane_strain_takes_the_third_direction_for_transverse():
-    E1, E2, G12, nu = 130.0, 9.0, 5.0, 0.3
-    S = np.array([[1 / E1, -nu / E1, -nu / E1], [-nu / E1, 1 / E2, -nu / E2], [-nu / E1, -nu / E2, 1 / E2]])
+@pytest.mark.parametrize("nu23", [None, 0.45])
+def test_plane_strain_takes_the_third_direction_for_transverse(nu23):
+    E1, E2, G12, nu, across = 130.0, 9.0, 5.0, 0.3, nu23 or 0.3
+    S = np.array([[1 / E1, -nu / E1, -nu / E1], [-nu / E1, 1 / E2, -across / E2], [-nu / E1, -across / E2, 1 / E2]])
     strain = np.array([1e-3, -2e-3, 0.0])
     stress = np.linalg.solve(S, strain)
-    D = in_plane_stiffness(E1, E2, G12, nu, "strain")
+    D = in_plane_stiffness(E1, E2, G12, nu, "strain", nu23)
     assert D[:2, :2] @ strain[:2] == pytest.approx(stress[:2], rel=1e-12)
 
 

@@ -1,0 +1,178 @@
+"""A problem as a model: mesh, spaces, compiled forms and matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from dolfinx import fem
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from fem_reference.dolfinx_api import add_block_matrix, compile_forms, create_block_matrix
+from fem_reference.model.assembled import BlockVector, owned
+from fem_reference.model.bond import Bond
+from fem_reference.model.forms import WeakForm, displacements, jump_forms, weak_form
+from fem_reference.model.jumps import Jumps
+from fem_reference.model.linear import Factorisation, outer, widened, without_zeros
+from fem_reference.model.mesh import TwoBodies, two_bodies
+from fem_reference.model.mixed import MixedModel
+from fem_reference.model.model import Model, Phase
+from fem_reference.model.opening import OpeningModel
+from fem_reference.model.outline import action_rows
+from fem_reference.model.supports import Displacement, point_load, supports, tie
+from fem_reference.problem.law import MODELLED_LAWS, Law
+from fem_reference.problem.problem import Debonding
+
+#: The mesh, and the displacements on its bodies.
+Meshed = tuple[TwoBodies, Displacement]
+
+
+def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
+    """Mesh, spaces, compiled forms and matrices of a problem.
+
+    Raises
+    ------
+    ValueError : an unknown traction law, or a point load without a node.
+    """
+    specimen = problem.specimen()
+    with phase("mesh"):
+        bodies = two_bodies(specimen, comm)
+    with phase("basis"):
+        displacement = displacements(bodies, problem.degree)
+        weak = weak_form(problem, specimen, bodies, displacement)
+    with phase("compile"):
+        bulk = compile_forms(weak.bulk, weak.maps)
+        internal, load, slope = (_vector(blocks, weak) for blocks in (weak.internal, weak.load, weak.slope))
+        energy, face_energy = compile_forms([weak.energy, weak.face_energy], weak.maps)
+        actions = action_rows(specimen, bodies, displacement, problem.degree, weak.maps)
+    bcs, free_n = supports(specimen, displacement)
+    X_nI = np.concatenate([_node_positions(u) for u in displacement])
+    at_nodes = problem.load_at != "face"
+    tie_n, springs_kn = tie(specimen, displacement), actions.springs_kn
+    with phase("assembly"):
+        bond, X_q = _interface(problem, weak, (bodies, displacement), free_n, phase)
+        bulk_matrix, tie_matrix = _bulk_and_springs(bulk, bcs, bond, (tie_n, *springs_kn))
+        tangent_matrix = bulk_matrix.copy()
+    end_load_n = point_load(specimen, problem.load_at, displacement, X_nI, comm) if at_nodes else load.assemble()
+    kind: type[Model] = MixedModel if problem.mixed_law else OpeningModel
+    return kind(
+        problem=problem,
+        specimen=specimen,
+        bodies=bodies,
+        displacement=displacement,
+        law=problem.mixed_law or law_of(problem),
+        bond=bond,
+        internal=internal,
+        bulk=bulk,
+        energy=energy,
+        face_energy=face_energy,
+        bcs=bcs,
+        free_n=free_n,
+        tie_n=tie_n,
+        actions=actions,
+        springs_kn=springs_kn,
+        load_n=actions.load_n if specimen.pulls else end_load_n,
+        slope_n=slope.assemble(),
+        X_nI=X_nI,
+        X_q=X_q,
+        bonded_q=(X_q > min(specimen.bond)) & (X_q < max(specimen.bond)),
+        tie_matrix=tie_matrix,
+        bulk_matrix=bulk_matrix,
+        tangent_matrix=tangent_matrix,
+        factorisation=Factorisation(tangent_matrix),
+        largest_stiffness=_largest(bulk_matrix, free_n, comm),
+        phase=phase,
+    )
+
+
+def _bulk_and_springs(
+    bulk: Any, bcs: Sequence[fem.DirichletBC], bond: Bond | Jumps, springs_n: Sequence[np.ndarray]
+) -> tuple[PETSc.Mat, ...]:
+    """Stiffness of the unloaded bodies with the springs, in the pattern of the whole tangent, and that of the springs.
+
+    A spring is a row: its elongation times the square root of its stiffness.
+    """
+    narrow = create_block_matrix(bulk)
+    add_block_matrix(narrow, bulk, bcs)
+    spring_matrix = outer(springs_n[0], narrow)
+    for spring_n in springs_n[1:]:
+        spring_matrix.axpy(1.0, outer(spring_n, narrow), PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    bulk_matrix = widened(widened(narrow, bond.product), spring_matrix)
+    add_block_matrix(bulk_matrix, bulk, bcs)
+    bulk_matrix.axpy(1.0, spring_matrix, PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
+    return bulk_matrix, spring_matrix
+
+
+def _largest(matrix: PETSc.Mat, free_n: np.ndarray, comm: MPI.Intracomm) -> float:
+    """Largest diagonal entry of the free unknowns; that of a supported unknown is 1 and no stiffness."""
+    diagonal_n = matrix.getDiagonal().array_r * free_n
+    return comm.allreduce(float(np.max(diagonal_n, initial=0.0)), MPI.MAX)
+
+
+def law_of(problem: Debonding) -> Law:
+    """The traction law of a problem; raises ValueError for an unknown name."""
+    p = problem
+    if p.law_name not in MODELLED_LAWS:
+        raise ValueError(f"law_name: must be one of {', '.join(MODELLED_LAWS)}, got {p.law_name}")
+    law = MODELLED_LAWS[p.law_name]
+    own = {field.name: getattr(p, field.name) for field in fields(law) if field.name in ("plateau", "table")}
+    return law(p.strength, p.toughness, p.ductility, p.penalty, p.contact, p.irreversible, **own)
+
+
+def _vector(blocks: list, weak: WeakForm) -> BlockVector:
+    return BlockVector(compile_forms(blocks, weak.maps))
+
+
+def _interface(
+    problem: Debonding, weak: WeakForm, meshed: Meshed, free_n: np.ndarray, phase: Phase
+) -> tuple[Bond | Jumps, np.ndarray]:
+    """Matrices of the interface, and the X of its points."""
+    if problem.mixed_law:
+        return _jumps(problem, weak, meshed, free_n, phase)
+    return _bond(problem, weak, free_n, phase)
+
+
+def _bond(problem: Debonding, weak: WeakForm, free_n: np.ndarray, phase: Phase) -> tuple[Bond, np.ndarray]:
+    """Matrices of the interface, and the X of its points; G and X are integrals divided by the weight of the point."""
+    with phase("compile"):
+        gap = [compile_forms(weak.gap, weak.maps)]
+        weight, position = (_vector([form], weak) for form in (weak.weight, weak.position))
+    weight_q = weight.assemble()
+    G = create_block_matrix(gap)
+    add_block_matrix(G, gap, ())
+    share = G.createVecLeft()
+    share.array[:] = 1.0 / weight_q
+    G.diagonalScale(L=share)
+    X_q = position.assemble() / weight_q
+    return Bond(without_zeros(G), problem.width * weight_q, free_n), X_q
+
+
+def _jumps(
+    problem: Debonding, weak: WeakForm, meshed: Meshed, free_n: np.ndarray, phase: Phase
+) -> tuple[Jumps, np.ndarray]:
+    """Matrix of the interface, and the X of its points; both are integrals divided by the weight of the point."""
+    forms = jump_forms(problem, *meshed)
+    with phase("compile"):
+        weight, position = (_vector([form], weak) for form in (forms.weight, forms.position))
+        functionals, slopes = ([compile_forms(row, weak.maps)] for row in (forms.functionals, forms.slopes))
+    weight_r = weight.assemble()
+
+    def at_points(blocks: list) -> PETSc.Mat:
+        Z = create_block_matrix(blocks)
+        add_block_matrix(Z, blocks, ())
+        share = Z.createVecLeft()
+        share.array[:] = 1.0 / weight_r
+        Z.diagonalScale(L=share)
+        return without_zeros(Z)
+
+    X_q = (position.assemble() / weight_r)[:: forms.per_point]
+    weight_q = problem.width * weight_r[:: forms.per_point]
+    return Jumps(at_points(functionals), at_points(slopes), weight_q, free_n), X_q
+
+
+def _node_positions(u: fem.Function) -> np.ndarray:
+    n_nodes = owned(u) // 2
+    return np.repeat(u.function_space.tabulate_dof_coordinates()[:n_nodes, :2], 2, axis=0)
