@@ -21,6 +21,8 @@ _ALTERNATIVES: Mapping[str, Mapping[str, type[Section]]] = {
     "specimen": SPECIMENS,
     **dict.fromkeys(("material", "strip", "substrate"), _MATERIALS),
 }
+#: The tag of a list of two materials in an error.
+_PAIR = "pair"
 _BOUNDS = (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))
 _KINDS = {float: "a number", int: "an integer", bool: "true or false", str: "a text"}
 
@@ -80,7 +82,11 @@ def _place(loc: tuple[str | int, ...]) -> tuple[type[Section], FieldInfo | None,
     field: FieldInfo | None = None
     path: list[str | int] = []
     for part in loc:
-        if len(path) == 1 and part in _ALTERNATIVES.get(str(path[0]), ()):
+        if part == _PAIR and len(path) == 1:
+            continue
+        if all(isinstance(step, int) for step in path[1:]) and part in _ALTERNATIVES.get(
+            "".join(map(str, path[:1])), ()
+        ):
             here = _ALTERNATIVES[str(path[0])][str(part)]
             continue
         path.append(part)
@@ -123,7 +129,8 @@ def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) 
         if "mesh" in path:
             return "a file name" if isinstance(path[-1], int) else "a file name, or a list of two"
         how_many = "at least one number" if get_args(annotation)[-1] is ... else "two"
-        return "a number" if isinstance(path[-1], int) else f"a number, or a list of {how_many}"
+        one = " ".join(["a number", *_each(annotation)])
+        return one if isinstance(path[-1], int) else f"{one}, or a list of {how_many}"
     if annotation not in _KINDS:
         table = _table(annotation)
         tables = [table] if table is not None else list(_ALTERNATIVES[str(path[0])].values())
@@ -138,6 +145,13 @@ def _without_none(annotation: object) -> object:
     """The kind of a number that may be left out."""
     kinds = [kind for kind in get_args(annotation) if kind in _KINDS]
     return kinds[0] if type(None) in get_args(annotation) and kinds else annotation
+
+
+def _each(annotation: object) -> list[str]:
+    """The range of each number of a tuple."""
+    inner = getattr(get_args(annotation)[0], "__metadata__", ())
+    limits = [limit for field in inner if isinstance(field, FieldInfo) for limit in _bounds(field)]
+    return [" and ".join(f"{sign} {limit:g}" for limit, sign in limits)] if limits else []
 
 
 def _bounds(field: FieldInfo) -> list[tuple[float, str]]:

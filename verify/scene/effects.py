@@ -13,6 +13,7 @@ from typing import Any
 
 from verify.scene.materials import Isotropic, Material
 from verify.scene.schema import Scene
+from verify.scene.specimens import bending
 
 FINITE_ABOVE_DEGREES = 5.0
 
@@ -47,7 +48,8 @@ class Decision:
 
 def simulated(scene: Scene, fixed: Mapping[str, Any] = NO_FIXED_EFFECTS) -> dict[str, Any]:
     """The effects as they are simulated: ``auto`` replaced by what it stands for, and those that a method has fixed."""
-    found = {**scene.effects.model_dump(), **{one.key: one.value for one in decided(scene)}, **fixed}
+    chosen = {one.key: one.value for one in decided(scene)}
+    found = {**scene.effects.model_dump(), **({} if scene.interface.slides else {"shear": False}), **chosen, **fixed}
     return found if searches(found) else found | {"search": False}
 
 
@@ -64,18 +66,27 @@ def decided(scene: Scene, fixed: Mapping[str, Any] = NO_FIXED_EFFECTS) -> tuple[
         "irreversible": _irreversible,
         "symmetry": _symmetry,
         "search": _search,
+        "shear": _shear,
     }
-    chosen = (key for key, value in scene.effects if value == "auto" and key not in fixed)
+    chosen = (key for key, value in scene.effects if value == "auto" and key not in fixed and _matters(scene, key))
     return tuple(Decision(key, *rules[key](scene)) for key in chosen)
+
+
+def _matters(scene: Scene, key: str) -> bool:
+    """Whether there is something to choose: not without a law of sliding."""
+    return key != "shear" or scene.interface.slides
 
 
 def end_rotation(scene: Scene) -> float:
     """Largest rotation of a loaded end face over the programme, in radians, by simple beam theory.
 
     An arm of bending stiffness E I, bent to the deflection d over a free length a, turns by theta = 3 d / (2 a). The
-    free length is that before any growth or, if larger, that at the end.
+    free length is that before any growth or, if larger, that at the end. Arms that slide on each other are solved as
+    beams on their supports, and any of their rotations counts.
     """
     specimen = scene.specimen
+    if specimen.slides:
+        return bending.rotation(scene)
     free = min(max(specimen.free_length, specimen.loaded_thickness, crack_at_the_end(scene)), specimen.extent)
     return 1.5 * _deflection(scene) / free
 
@@ -84,8 +95,10 @@ def crack_at_the_end(scene: Scene) -> float:
     """Free length that holds the largest opening in equilibrium, by simple beam theory, however long the specimen is.
 
     d = a^2/3 sqrt(2 s w G / (E I)) of the more flexible arm, which takes the share s of the opening, and of G: half of
-    both in a dcb, all of a strip, which is peeled alone.
+    both in a dcb, all of a strip, which is peeled alone. Arms that slide: `verify.scene.specimens.bending.grown`.
     """
+    if scene.specimen.slides:
+        return bending.grown(scene)
     released = 2.0 * opening_share(scene) * scene.specimen.width * scene.interface.toughness
     return sqrt(3 * _deflection(scene) * sqrt(_bending(scene) / released))
 
@@ -131,13 +144,17 @@ def stiffer(ratio: float) -> float:
 
 def _kinematics(scene: Scene) -> tuple[str, str]:
     theta = end_rotation(scene)
-    turn = f"the loaded end turns by {degrees(theta):.2g} degrees"
+    turn = f"the {'specimen' if scene.specimen.slides else 'loaded end'} turns by {degrees(theta):.2g} degrees"
     if degrees(theta) > FINITE_ABOVE_DEGREES:
         return "finite", f"{turn}, more than {FINITE_ABOVE_DEGREES:g}"
+    if scene.specimen.slides:
+        return "linear", f"{turn}, not more than {FINITE_ABOVE_DEGREES:g}"
     return "linear", f"{turn}, which changes the load by no more than {STANDING * theta**2:.2g} of it"
 
 
 def _contact(scene: Scene) -> tuple[bool, str]:
+    if scene.specimen.slides:
+        return True, "arms that slide are pressed together somewhere"
     lowest, change = min(scene.load.opening), load_of_squeezing(scene)
     if lowest < 0.0:
         return True, f"the programme closes the faces, to {lowest:g}"
@@ -150,6 +167,8 @@ def _contact(scene: Scene) -> tuple[bool, str]:
 def _irreversible(scene: Scene) -> tuple[bool, str]:
     programme = scene.load.opening
     falls = [(before, after) for before, after in zip((0.0, *programme), programme, strict=False) if after < before]
+    if not falls and scene.interface.viscosity:
+        return True, "the damage follows in time"
     if not falls:
         return False, "the programme only opens"
     return True, "the programme goes from {:g} down to {:g}".format(*falls[0])
@@ -161,6 +180,8 @@ def _symmetry(scene: Scene) -> tuple[bool, str]:
         return False, f"{' and '.join(specimen.bodies)} differ"
     if len(specimen.mesh) == 2:
         return False, "each arm has a mesh of its own"
+    if scene.effects.shear is True or scene.interface.viscosity:
+        return False, "a law of sliding acts between two arms"
     if mesh.mismatch != 1.0 or mesh.slave != "upper":
         return False, "the arms are meshed differently, or the lower one carries the interface"
     return True, "the arms are alike"
@@ -169,6 +190,14 @@ def _symmetry(scene: Scene) -> tuple[bool, str]:
 def _search(scene: Scene) -> tuple[bool, str]:
     alike, why = _symmetry(scene)
     return not alike, f"{why} and turn alike" if alike else why
+
+
+def _shear(scene: Scene) -> tuple[bool, str]:
+    if scene.interface.viscosity:
+        return True, "the law of opening and sliding has the viscosity"
+    if scene.specimen.symmetric:
+        return False, "two equal arms open and do not slide"
+    return True, f"the bond of the kind {scene.specimen.kind} slides"
 
 
 def opening_share(scene: Scene) -> float:

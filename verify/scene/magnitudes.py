@@ -50,7 +50,9 @@ def _beside(key: str, value: float, low: float, high: float, other: str, size: f
 def _lengths(scene: Scene) -> Iterator[Range]:
     body = scene.specimen
     for key, low, high, other in body.ratios:
-        yield _beside(f"specimen.{key}", getattr(body, key), low, high, f"specimen.{other}", getattr(body, other))
+        value = getattr(body, key)
+        for one in dict.fromkeys(value) if isinstance(value, tuple) else (value,):
+            yield _beside(f"specimen.{key}", one, low, high, f"specimen.{other}", getattr(body, other))
 
 
 def _stiffnesses(scene: Scene) -> Iterator[Range]:
@@ -108,7 +110,7 @@ def _paths(scene: Scene) -> Iterator[Range]:
 
 
 def _materials(scene: Scene) -> list[tuple[str, Material]]:
-    return [(key, getattr(scene, key)) for key in scene.specimen.materials]
+    return list(scene.named_materials.items())
 
 
 def _modulus(material: Material) -> float:

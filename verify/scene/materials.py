@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, TypeAlias
 
-from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
 from verify.scene.tables import Positive, Section, refuse
 
@@ -28,6 +28,8 @@ class Orthotropic(Section):
     """Shear modulus [stress]."""
     nu12: float
     """Contraction along 2 for a pull along 1; |nu12| < sqrt(E1/E2)."""
+    nu23: float | None = Field(default=None, gt=-1, lt=1, examples=[0.45])
+    """Contraction out of the plane for a pull along 2, which plane strain asks for; left out: nu12."""
 
     @field_validator("nu12")
     @classmethod
@@ -40,7 +42,9 @@ class Orthotropic(Section):
 
 
 def material_kind(value: object) -> str:
-    """Whether a material is isotropic or orthotropic, by its keys."""
+    """Whether a material is isotropic or orthotropic, by its keys; "pair" for a list of two."""
+    if isinstance(value, list | tuple):
+        return "pair"
     keys = set(value) if isinstance(value, Mapping) else {value.__class__.__name__}
     return "orthotropic" if keys & {*Orthotropic.model_fields, "Orthotropic"} else "isotropic"
 
@@ -50,23 +54,44 @@ Material: TypeAlias = Annotated[
 ]
 
 
-def definite(material: Material, plane: str) -> Material:
-    """In plane strain, the third direction like the second (E3 = E2, nu13 = nu12): 1 - nu12 - 2 nu12^2 E2/E1 > 0."""
+def _two(value: object) -> object:
+    if isinstance(value, list | tuple) and len(value) != 2:
+        raise refuse("a table, or a list of two, of the upper and the lower arm", ((), value))
+    return tuple(value) if isinstance(value, list) else value
+
+
+#: One material of both arms, or that of the upper and that of the lower one.
+MaterialOrTwo: TypeAlias = Annotated[
+    Annotated[Isotropic, Tag("isotropic")]
+    | Annotated[Orthotropic, Tag("orthotropic")]
+    | Annotated[tuple[Material, Material], BeforeValidator(_two), Tag("pair")],
+    Discriminator(material_kind),
+]
+
+
+def definite(material: Material, plane: str, *place: int) -> Material:
+    """In plane strain, the third direction like the second (E3 = E2, nu13 = nu12): 1 - nu23 - 2 nu12^2 E2/E1 > 0, with
+    nu23 = nu12 where it is left out. ``place`` is that in a list of materials."""
     if isinstance(material, Isotropic) or plane == "stress":
         return material
     ratio = material.E2 / material.E1
+    if material.nu23 is not None:
+        most = 1 - 2 * material.nu12**2 * ratio
+        if not -1 < material.nu23 < most:
+            raise refuse(f"> -1 and < {most:.6g} in plane strain", ((*place, "nu23"), material.nu23))
+        return material
     low, high = (max((sign * (1 + 8 * ratio) ** 0.5 - 1) / (4 * ratio), -1) for sign in (-1, 1))
     if not low < material.nu12 < high:
-        raise refuse(f"> {low:.6g} and < {high:.6g} in plane strain", (("nu12",), material.nu12))
+        raise refuse(f"> {low:.6g} and < {high:.6g} in plane strain", ((*place, "nu12"), material.nu12))
     return material
 
 
 def elastic_constants(material: Material) -> dict[str, float]:
-    """E1, E2, G12 and nu12, of an isotropic material as well."""
+    """E1, E2, G12 and nu12, of an isotropic material as well; nu23 where it is given."""
     if isinstance(material, Isotropic):
         young, poisson = material.young, material.poisson
         return {"E1": young, "E2": young, "G12": young / (2 * (1 + poisson)), "nu12": poisson}
-    return material.model_dump()
+    return material.model_dump(exclude_none=True)
 
 
 def axial_modulus(material: Material, plane: str) -> float:

@@ -8,9 +8,15 @@ to 1, Turon et al. 2007, table 1). In a *slender* one the arms bend out of the w
 yields in both ways, and its zone is shorter than either: 0.52 mm where they are 1.43 and 1.08 in alfano-crisfield.
 ``1 / l = 1 / l_slender + 1 / l_bulky`` is no more than a choice that comes to both limits; the zones that were measured
 are 0.84 to 1.16 of it, but 0.48 to 1.14 of the smaller limit.
+
+A bond that slides has ``l = E'_II G_IIc / t_max^2`` in a bulky body, and ``(E' h G_IIc / t_max^2)^(1/2)`` times a
+number in a slender one (Yang and Cox 2005; Harper and Hallett 2008, Eng. Fract. Mech. 75). Between the modes each limit
+is taken on the line from opening to sliding, by the mode ratio that beams expect.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 from numpy import cos, cosh, sin, sinh
@@ -18,18 +24,72 @@ from scipy.optimize import brentq
 
 from verify.scene.materials import Material, elastic_constants
 from verify.scene.schema import Scene
+from verify.scene.specimens.bending import mode_ratio
 
 #: First root of cosh(x) cos(x) = -1, that of a cantilever's first mode.
 CANTILEVER = 1.8751040687119611
 
 
 def bulk_length(scene: Scene) -> float:
-    """``E' G_Ic / p_max^2`` of the softer body."""
-    law, specimen = scene.interface, scene.specimen
-    return min(crack_modulus(body, specimen.plane) for body, _ in _bodies(scene)) * law.toughness / law.strength**2
+    """``E' G_c / strength^2`` of the softer body, in the mode that is expected."""
+    law, plane = scene.interface, scene.specimen.plane
+    opening = min(crack_modulus(body, plane) for body, _ in _bodies(scene)) * law.toughness / law.strength**2
+    return _of_mode(scene, opening, _bulk_sliding)
 
 
 def slender_length(scene: Scene) -> float:
+    """`opening_length`, or where the bond slides what is between it and `sliding_length`."""
+    return _of_mode(scene, opening_length(scene), sliding_length)
+
+
+def _of_mode(scene: Scene, opening: float, sliding: Callable[[Scene], float]) -> float:
+    """A length between that of opening and that of sliding, by the expected mode ratio."""
+    if not scene.specimen.slides:
+        return opening
+    B = mode_ratio(scene)
+    return (1.0 - B) * opening + B * sliding(scene)
+
+
+def _bulk_sliding(scene: Scene) -> float:
+    toughness, strength = _shear(scene)
+    softer = min(crack_modulus(body, scene.specimen.plane, sliding=True) for body, _ in _bodies(scene))
+    return softer * toughness / strength**2
+
+
+def sliding_length(scene: Scene) -> float:
+    """``l = atan((d - 1)^(1/2)) / w`` with ``w^2 = b t_max / (s_u - s_0)`` and ``d = s_u / s_0``, all per unit width.
+
+    Two arms that a shear traction t bends and stretches slide by ``s'' = b t``, ``b = 4/(E_1 h_1) + 4/(E_2 h_2)``. On
+    the line from t_max at s_0 to 0 at s_u this is ``phi'' = -w^2 phi`` for ``phi = s_u - s``, which begins where the
+    decaying solution on the elastic part ends. For a drop from the start (d without bound) and equal arms it is
+    ``pi/4 (E h G_IIc / t_max^2)^(1/2)``.
+    """
+    law = scene.interface
+    toughness, strength = _shear(scene)
+    s_u, s_0 = 2.0 * toughness / strength, strength / (law.shear_stiffness or 1.0)
+    drop = max(s_u - s_0, np.finfo(float).eps * s_u)
+    return float(np.arctan(np.sqrt(drop / s_0)) * np.sqrt(drop / (_softness(scene) * strength)))
+
+
+def fading_length(scene: Scene) -> float:
+    """Length over which the slip on an intact bond falls to 1 / e: ``(b K_s)^(-1/2)``, see `sliding_length`."""
+    return float((_softness(scene) * (scene.interface.shear_stiffness or 1.0)) ** -0.5)
+
+
+def _softness(scene: Scene) -> float:
+    """``b = 4/(E_1 h_1) + 4/(E_2 h_2)`` of arms that slide by ``s'' = b t``."""
+    plane = scene.specimen.plane
+    return sum(4.0 / (bending_modulus(body, plane) * height) for body, height in _bodies(scene))
+
+
+def _shear(scene: Scene) -> tuple[float, float]:
+    """Toughness and strength on sliding, which a specimen that slides has."""
+    law = scene.interface
+    assert law.shear_toughness is not None and law.shear_strength is not None
+    return law.shear_toughness, law.shear_strength
+
+
+def opening_length(scene: Scene) -> float:
     """``l = x (E I (g_u - g_max) / p_max)^(1/4)`` with x of `slender_factor`, all per unit width.
 
     ``1 / E I`` is the sum over the bodies that bend: both arms of a dcb, the strip of a peel. For a traction that drops
@@ -78,11 +138,12 @@ def poisson(material: Material, plane: str) -> float:
     return -float(a[0, 1] / a[0, 0])
 
 
-def crack_modulus(material: Material, plane: str) -> float:
-    """E' of G = K^2 / E' for a crack along axis 1 of an orthotropic solid (Sih, Paris, Irwin 1965)."""
+def crack_modulus(material: Material, plane: str, sliding: bool = False) -> float:
+    """E' of G = K^2 / E' for a crack along axis 1 of an orthotropic solid, in mode I or II (Sih, Paris, Irwin 1965)."""
     a = _compliance(material, plane)
     bracket = (a[1, 1] / a[0, 0]) ** 0.5 + (2.0 * a[0, 1] + a[2, 2]) / (2.0 * a[0, 0])
-    return 1.0 / float((0.5 * a[0, 0] * a[1, 1]) ** 0.5 * bracket**0.5)
+    across = a[0, 0] if sliding else a[1, 1]
+    return 1.0 / float((0.5 * a[0, 0] * across) ** 0.5 * bracket**0.5)
 
 
 def _bodies(scene: Scene) -> tuple[tuple[Material, float], ...]:
@@ -94,4 +155,10 @@ def _compliance(material: Material, plane: str) -> np.ndarray:
     """In-plane compliance (3, 3), Voigt order."""
     from iga.elements.elasticity import orthotropic
 
-    return np.linalg.inv(orthotropic(**elastic_constants(material), plane=plane))
+    constants = elastic_constants(material)
+    nu12, nu23 = constants["nu12"], constants.pop("nu23", None)
+    if nu23 is None or plane == "stress":
+        return np.linalg.inv(orthotropic(**constants, plane=plane))
+    E1, E2 = constants["E1"], constants["E2"]  # without strain in the third direction, whose stress goes
+    a11, a12, a22 = 1.0 / E1 - E2 * (nu12 / E1) ** 2, -nu12 * (1.0 + nu23) / E1, (1.0 - nu23**2) / E2
+    return np.array([[a11, a12, 0.0], [a12, a22, 0.0], [0.0, 0.0, 1.0 / constants["G12"]]])

@@ -6,13 +6,15 @@ user reads about a broken one are made in ``verify.scene.complaints``.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, ValidationInfo, ValidatorFunctionWrapHandler, field_validator
 from pydantic_core import PydanticCustomError
 
 from verify.scene.bond.interface import Interface
-from verify.scene.materials import Material, definite
+from verify.scene.bond.shear import require_shear
+from verify.scene.materials import Material, MaterialOrTwo, definite
 from verify.scene.published import Published
 from verify.scene.specimens import Specimen
 from verify.scene.tables import Section, refuse
@@ -57,7 +59,11 @@ class Effects(Section):
     """Whether points look for the place on the other face that they are opposite to now, or keep the first one and the
     normal there, which two arms that are alike allow; linear kinematics always keeps them."""
 
-    @field_validator("contact", "irreversible", "symmetry", "search", mode="before")
+    shear: bool | Literal["auto"] = "auto"
+    """Whether the bond slides as well, by its shear_strength and shear_toughness; without them, and between two equal
+    arms that are pulled apart, it does not."""
+
+    @field_validator("contact", "irreversible", "symmetry", "search", "shear", mode="before")
     @classmethod
     def _switched_or_chosen(cls, effect: object) -> object:
         if not isinstance(effect, bool) and effect != "auto":
@@ -158,7 +164,7 @@ class Scene(Section):
     units: str = "consistent units"
     """Label of your own consistent set of units, which is only printed."""
     specimen: Specimen
-    material: Material | None = Field(default=None, validate_default=True)
+    material: MaterialOrTwo | None = Field(default=None, validate_default=True)
     strip: Material | None = Field(default=None, validate_default=True)
     substrate: Material | None = Field(default=None, validate_default=True)
     interface: Interface
@@ -172,8 +178,17 @@ class Scene(Section):
     @property
     def materials(self) -> tuple[Material, ...]:
         """Of the upper and the lower body."""
-        upper, *lower = (getattr(self, name) for name in self.specimen.materials)
+        upper, *lower = self.named_materials.values()
         return (upper, *lower) if lower else (upper, upper)
+
+    @property
+    def named_materials(self) -> Mapping[str, Material]:
+        """Each by the path of its table, the one of the upper body first."""
+        found: dict[str, Material] = {}
+        for name in self.specimen.materials:
+            value = getattr(self, name)
+            found |= {f"{name}[{i}]": one for i, one in enumerate(value)} if isinstance(value, tuple) else {name: value}
+        return found
 
     @field_validator("material", "strip", "substrate", mode="wrap")
     @classmethod
@@ -186,7 +201,7 @@ class Scene(Section):
         if info.field_name in wanted:
             if value is None:
                 raise PydanticCustomError("missing", "missing")
-            return definite(validate(value), specimen.plane)
+            return _definite(validate(value), specimen)
         if value is not None:
             raise refuse(f"left out: the materials of a {specimen.kind} are {' and '.join(wanted)}", ((), value))
         return None
@@ -198,12 +213,38 @@ class Scene(Section):
         specimen = info.data.get("specimen")
         if specimen is None:
             return load
-        times, why = specimen.pressed
-        low, high = -times * specimen.loaded_thickness, 2 * specimen.extent
+        (low, why_low), (high, why_high) = specimen.most
         outside = [(("opening", i), opening) for i, opening in enumerate(load.opening) if not low <= opening <= high]
         if outside:
-            raise refuse(f">= {low:g} ({why}) and <= {high:g} (2 {specimen.length_keys[0]})", *outside)
+            raise refuse(f">= {low:g} ({why_low}) and <= {high:g} ({why_high})", *outside)
         return load
+
+    @field_validator("load")
+    @classmethod
+    def _on_end_faces(cls, load: Load, info: ValidationInfo) -> Load:
+        """Rollers and couples have a traction of their own."""
+        specimen = info.data.get("specimen")
+        if specimen is not None and specimen.slides and load.at != "face":
+            raise refuse(f'"face" for the kind {specimen.kind}', (("at",), load.at))
+        return load
+
+    @field_validator("interface")
+    @classmethod
+    def _slides_where_it_must(cls, interface: Interface, info: ValidationInfo) -> Interface:
+        specimen = info.data.get("specimen")
+        if specimen is not None and specimen.slides and not interface.slides:
+            text = f"one with shear_strength and shear_toughness for the kind {specimen.kind}, whose bond slides"
+            raise refuse(text, ((), sorted(interface.model_fields_set)))
+        return interface
+
+    @field_validator("effects")
+    @classmethod
+    def _sliding(cls, effects: Effects, info: ValidationInfo) -> Effects:
+        """What needs a bond that slides, and what such a bond excludes."""
+        specimen, bond = info.data.get("specimen"), info.data.get("interface")
+        if specimen is not None and bond is not None:
+            require_shear(specimen, bond, effects.shear, effects.symmetry)
+        return effects
 
     @field_validator("effects")
     @classmethod
@@ -258,6 +299,15 @@ class Scene(Section):
                 rule = f">= {low:g} and <= {high:g}, leg {value.leg} of load.opening"
                 raise refuse(rule, ((i, "opening"), value.opening))
         return published
+
+
+def _definite(found: Material | tuple[Material, Material], specimen: Specimen) -> Material | tuple[Material, ...]:
+    """Materials that store energy; two of them for a specimen whose arms may differ."""
+    if not isinstance(found, tuple):
+        return definite(found, specimen.plane)
+    if not specimen.slides:
+        raise refuse(f"one table for the kind {specimen.kind}", ((), "a list of two"))
+    return tuple(definite(one, specimen.plane, i) for i, one in enumerate(found))
 
 
 #: Steps where the path does not choose them.

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -91,14 +91,25 @@ class Branch:
     face_slope: np.ndarray
 
 
-def chi(problem: LefmProblem) -> float:
+class Moduli(Protocol):
+    """Moduli of an arm along it, across it, and in shear."""
+
+    @property
+    def young(self) -> float: ...
+    @property
+    def transverse(self) -> float: ...
+    @property
+    def shear(self) -> float: ...
+
+
+def chi(arm: Moduli) -> float:
     """Correction of the crack length, in arm thicknesses.
 
     chi^2 = E1 / (11 G12) [3 - 2 (Gamma / (1 + Gamma))^2], Gamma = 1.18 sqrt(E1 E2) / G12
     (Williams 1989, Compos. Sci. Technol. 35, 367-376; Hashemi, Kinloch, Williams 1990, Proc. R. Soc. A 427, 173-199).
     """
-    gamma = 1.18 * np.sqrt(problem.young * problem.transverse) / problem.shear
-    return float(np.sqrt(problem.young / (11.0 * problem.shear) * (3.0 - 2.0 * (gamma / (1.0 + gamma)) ** 2)))
+    gamma = 1.18 * np.sqrt(arm.young * arm.transverse) / arm.shear
+    return float(np.sqrt(arm.young / (11.0 * arm.shear) * (3.0 - 2.0 * (gamma / (1.0 + gamma)) ** 2)))
 
 
 def solve(problem: LefmProblem, on_step: Callable[[Mapping[str, float]], None] | None = None) -> Solution:

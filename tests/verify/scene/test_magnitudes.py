@@ -121,7 +121,14 @@ def test_what_is_not_given_is_as_it_is_written() -> None:
         "degree": 3, "dofs": 1956, "interface_rule": "gauss", "interface_points": 2, "mismatch": 1.0,
         "adaptive": False, "slave": "upper", "steps": 150, "bend": 0.005,
     }  # fmt: skip
-    effects = {"kinematics": "finite", "contact": True, "irreversible": True, "symmetry": False, "search": True}
+    effects = {
+        "kinematics": "finite",
+        "contact": True,
+        "irreversible": True,
+        "symmetry": False,
+        "search": True,
+        "shear": "auto",
+    }
     found = scene.model_dump()
     assert found["discretization"] == mesh and found["effects"] == effects
     assert (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import reduce
 from importlib import import_module
 from operator import or_
@@ -17,7 +17,20 @@ from verify.scene.specimens.delamination import Delamination
 def _found() -> dict[str, type[Delamination]]:
     for module in iter_modules(__path__):
         import_module(f"{__name__}.{module.name}")
-    return {get_args(one.model_fields["kind"].annotation)[0]: one for one in Delamination.__subclasses__()}
+    found = {kind: one for one in _all_of(Delamination) for kind in _kinds(one)}
+    return dict(sorted(found.items(), key=lambda pair: (pair[1].slides, pair[0])))
+
+
+def _all_of(specimen: type[Delamination]) -> Iterator[type[Delamination]]:
+    """Its subclasses and theirs."""
+    for one in specimen.__subclasses__():
+        yield from (one, *_all_of(one))
+
+
+def _kinds(specimen: type[Delamination]) -> tuple[str, ...]:
+    """The name that a scene calls it by; none for what several specimens share."""
+    found = specimen.model_fields.get("kind")
+    return get_args(found.annotation) if found is not None else ()
 
 
 #: The specimens by their kind.

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from verify.scene.specimens.delamination import Delamination, Files, Plane, Ratio
+from verify.scene.specimens.delamination import PULLED_APART, Delamination, Files, Load, Plane, Ratio, Support
 from verify.scene.tables import Positive, refuse
 
 
@@ -17,6 +17,8 @@ class Dcb(Delamination):
     image.
     """
 
+    loads: ClassVar[tuple[Load, ...]] = PULLED_APART
+    supports: ClassVar[tuple[Support, ...]] = ()
     length_keys, thickness_keys = ("length", "length"), ("arm_thickness", "arm_thickness")
     tip_key, bond_key = "precrack", "length"
     pressed = 1, "-arm_thickness, at which both loaded faces would be in one place"

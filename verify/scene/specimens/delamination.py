@@ -1,4 +1,4 @@
-"""What all specimens share: two bodies, bonded along a part of a straight interface, loaded at one end."""
+"""What all specimens share: two bodies, bonded along a part of a straight interface, loads and supports."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ def _as_names(value: object) -> object:
 
 Files: TypeAlias = Annotated[tuple[Annotated[str, Field(min_length=1)], ...], BeforeValidator(_as_names)]
 Plane: TypeAlias = Literal["stress", "strain"]
+Side: TypeAlias = Literal["left", "right", "top", "bottom"]
 
 
 class Ratio(NamedTuple):
@@ -28,18 +29,38 @@ class Ratio(NamedTuple):
 
 
 class Load(NamedTuple):
-    """A share of the load, upwards, on the end face of a body (0 upper, 1 lower)."""
+    """A part of the load as an even dead traction: ``share`` of it upwards, on a side of a body (0 upper, 1 lower).
 
-    body: int
-    end: Literal["left", "right"]
+    ``extent`` is the range of X of a patch on the top or the bottom, None for the whole side. A ``couple`` is a
+    traction along X on an end face, linear across it, with ``share`` of the load as its moment, anticlockwise. Without
+    a body it is on the end faces of both as one.
+    """
+
+    body: int | None
+    side: Side
     share: float
+    extent: tuple[float, float] | None = None
+    couple: bool = False
+
+
+class Support(NamedTuple):
+    """A patch, as of a `Load`, whose mean vertical displacement is zero; a couple: an end face, its mean rotation."""
+
+    body: int | None
+    side: Side
+    extent: tuple[float, float] | None = None
+    couple: bool = False
 
 
 class Clamp(NamedTuple):
     """A side of a body that cannot move."""
 
     body: int
-    side: Literal["left", "right", "bottom", "top"]
+    side: Side
+
+
+#: The loads that pull two arms apart at X = 0.
+PULLED_APART = Load(0, "left", 1.0), Load(1, "left", -1.0)
 
 
 class Delamination(Section):
@@ -54,8 +75,8 @@ class Delamination(Section):
     ``length_keys``, ``thickness_keys`` : keys of the lengths and thicknesses of the bodies
     ``tip_key`` : key of X of the end of the bond next to the load; the far end is the far end of the upper body
     ``bond_key`` : the key to increase for a longer bond
-    ``loads`` : loads on end faces, all at the same X
-    ``clamps`` : sides that are clamped; none if the loads balance each other
+    ``loads``, ``supports``, ``clamps`` : what it is loaded and held by; without supports and clamps the loads balance
+    ``slides`` : whether its bond slides, so that it asks for the keys of shear
     ``pressed`` : largest negative opening, in thicknesses of the loaded body, and its reason in words
     ``ratios`` : limits of the proportions
     ``sentence`` : the test in words, with the keys of its lengths in braces
@@ -70,8 +91,8 @@ class Delamination(Section):
     thickness_keys: ClassVar[tuple[str, str]]
     tip_key: ClassVar[str]
     bond_key: ClassVar[str]
-    loads: ClassVar[tuple[Load, ...]] = (Load(0, "left", 1.0), Load(1, "left", -1.0))
     clamps: ClassVar[tuple[Clamp, ...]] = ()
+    slides: ClassVar[bool] = False
     pressed: ClassVar[tuple[int, str]]
     ratios: ClassVar[tuple[Ratio, ...]]
     sentence: ClassVar[str]
@@ -83,6 +104,14 @@ class Delamination(Section):
         plane: Plane
         mesh: Files
 
+        @property
+        def loads(self) -> tuple[Load, ...]:
+            """Parts of the load."""
+
+        @property
+        def supports(self) -> tuple[Support, ...]:
+            """What holds it; none where the loads balance each other, or a clamp does."""
+
     @property
     def arms(self) -> int:
         """How many bodies the load bends: those that no clamp holds all along."""
@@ -92,7 +121,7 @@ class Delamination(Section):
     def symmetric(self) -> bool:
         """Whether one body can stand for both."""
         sizes = set(zip(self.lengths, self.thicknesses, strict=True))
-        return self.arms == 2 and len(sizes) == len(self.materials) == 1
+        return not self.slides and self.arms == 2 and len(sizes) == len(self.materials) == 1
 
     @property
     def clamped(self) -> bool:
@@ -124,13 +153,19 @@ class Delamination(Section):
     @property
     def loaded_at(self) -> float:
         """Coordinate X of the loaded end."""
-        body, end, _ = self.loads[0]
-        return 0.0 if end == "left" else self.lengths[body]
+        load = self.loads[0]
+        return 0.0 if load.side == "left" else self.lengths[load.body or 0]
 
     @property
     def extent(self) -> float:
         """Distance from the loaded end to the far end of the bond."""
         return self.lengths[0]
+
+    @property
+    def most(self) -> tuple[tuple[float, str], tuple[float, str]]:
+        """The smallest and the largest opening of a programme, each with its reason in words."""
+        times, why = self.pressed
+        return (-times * self.loaded_thickness, why), (2.0 * self.extent, f"2 {self.length_keys[0]}")
 
     @property
     def free_length(self) -> float:

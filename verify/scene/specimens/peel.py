@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import ValidationInfo, field_validator
 
-from verify.scene.specimens.delamination import Clamp, Delamination, Files, Load, Plane, Ratio
+from verify.scene.specimens.delamination import Clamp, Delamination, Files, Load, Plane, Ratio, Support
 from verify.scene.tables import Positive, refuse
 
 
@@ -20,7 +20,8 @@ class Peel(Delamination):
     length_keys = ("strip_length", "substrate_length")
     thickness_keys = ("strip_thickness", "substrate_thickness")
     tip_key, bond_key = "bond_length", "bond_length"
-    loads = (Load(0, "right", 1.0),)
+    loads: ClassVar[tuple[Load, ...]] = (Load(0, "right", 1.0),)
+    supports: ClassVar[tuple[Support, ...]] = ()
     clamps = (Clamp(1, "bottom"),)
     pressed = 2, "-2 strip_thickness"
     ratios = (

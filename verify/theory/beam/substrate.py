@@ -36,16 +36,23 @@ class Layer:
 
     @classmethod
     def of(
-        cls, size: tuple[float, float], E1: float, E2: float, G12: float, nu12: float, plane: str = "stress"
+        cls,
+        size: tuple[float, float],
+        E1: float,
+        E2: float,
+        G12: float,
+        nu12: float,
+        plane: str = "stress",
+        nu23: float | None = None,
     ) -> Layer:
-        """From (length, thickness) and elastic constants; in plane strain E3 = E2, nu13 = nu23 = nu12.
+        """From (length, thickness) and elastic constants; in plane strain E3 = E2, nu13 = nu12, as nu23 if left out.
 
         Plane strain reduces the compliances 1 / E1, -nu12 / E1 and 1 / E2 by the effect of the stress across the plane.
         """
-        across = E2 if plane == "strain" else 0.0
+        nu23, across = nu12 if nu23 is None else nu23, E2 if plane == "strain" else 0.0
         s11 = 1.0 / E1 - across * (nu12 / E1) ** 2
-        s12 = -nu12 / E1 - across * nu12**2 / (E1 * E2)
-        s22 = 1.0 / E2 - across * (nu12 / E2) ** 2
+        s12 = -nu12 / E1 - across * nu12 * nu23 / (E1 * E2)
+        s22 = 1.0 / E2 - across * (nu23 / E2) ** 2
         rest = s11 * s22 - s12**2
         return cls(*size, s22 / rest, -s12 / rest, s11 / rest, G12)
 

@@ -1,0 +1,221 @@
+"""Fracture mechanics of two arms in mixed mode: the brittle limit of the beam on a bond, for any loads and supports.
+
+With a crack tip at X the arms are bonded beyond it, stiffly but for what they give themselves, which is in
+`verify.theory.arms.root`, and touch before it. What that foundation stores at the tip is released as the crack grows:
+
+    G_I = c_n p^2 / 2, none where p presses,   G_II = c_t t^2 / 2,   dC/da = 2 b (G_I + G_II) / P^2
+
+with the compliance C, conjugate deflection over load. For equal arms this is beam theory with the effective crack
+lengths a + D_I and a + D_II. For unequal arms beam theory alone parts G into modes in no unique way; here the elastic
+foundation does (Bennati, Fisicaro, Valvo 2013, Meccanica 48). The sum depends on no partition.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from verify.theory.arms.equations import Bordered
+from verify.theory.arms.equilibrium import Model
+from verify.theory.arms.interface import Interface
+from verify.theory.arms.problem import ArmsProblem
+from verify.theory.arms.root import compliances, extra_lengths
+from verify.theory.arms.structure import Structure
+
+#: Iterations of the zones of contact of arms with a crack.
+MOST_CONTACTS = 40
+
+#: Depth to which faces enter each other and are still apart, as a part of the largest motion: arms that bend alike lie
+#: on each other without a force.
+CONTACT_DEPTH = 1e-8
+
+#: Elements of even length at most: where arms are so thin that these are longer than D_II, the last digits suffer.
+MOST_ELEMENTS = 1000
+
+#: Part of the largest G beyond which a crack is taken to stop.
+SMALLEST_RELEASE = 1e-9
+
+
+@dataclass(frozen=True)
+class Releases:
+    """Cracks with their tips at X ``tip`` (n,), under a load of 1: conjugate deflection C, G_I, G_II (n,)."""
+
+    tip: np.ndarray
+    compliance: np.ndarray
+    G_I: np.ndarray
+    G_II: np.ndarray
+
+    @property
+    def mode_ratio(self) -> np.ndarray:
+        """G_II / G, 0 where nothing is released."""
+        total = self.G_I + self.G_II
+        return np.divide(self.G_II, total, out=np.zeros_like(total), where=total > 0.0)
+
+
+@dataclass(frozen=True)
+class Growth:
+    """The curve along which a crack grows: tips X, conjugate deflection, load, mode ratio, toughness (n,)."""
+
+    tip: np.ndarray
+    opening: np.ndarray
+    load: np.ndarray
+    mode_ratio: np.ndarray
+    toughness: np.ndarray
+    release: np.ndarray
+
+    def turns(self, loaded_at: float = 0.0) -> np.ndarray:
+        """Lengths of the crack at which a test at prescribed deflection changes between stable and not: there the
+        deflection along the curve is least or largest."""
+        return CubicSpline(self.tip, self.opening).derivative().roots(extrapolate=False) - loaded_at
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Rows of the curve, and how the run ended."""
+
+    rows: tuple[Mapping[str, float], ...]
+    status: str = "complete"
+    ending: str = ""
+
+
+def releases(problem: ArmsProblem, first: float | None = None) -> Releases:
+    """Cracks with tips from X = ``first``, by default the end of the precrack, to next to the end of the bond.
+
+    Raises
+    ------
+    Refusal : loads that nothing takes
+    """
+    tip, far = problem.bonded[0] if first is None else first, problem.bonded[1]
+    lengths = np.array([extra_lengths(arm) for arm in problem.arms])
+    one = Structure.of(problem, max(float(lengths[:, 1].min()), problem.length / MOST_ELEMENTS), (tip,))
+    ends = one.mesh.ends
+    tips = ends[(ends >= tip - 1e-9 * far) & (ends < far - lengths[:, 0].max())]
+    tips = tips[np.unique(np.linspace(0, len(tips) - 1, problem.points).astype(int))] if len(tips) else tips
+    give = np.array(compliances(problem.arms))
+    model = Model(one, Interface(problem.law, np.zeros((len(ends) - 1, len(one.points.at)), dtype=bool), (0.0, 0.0)))
+    pressed, found = np.zeros_like(model.interface.bonded), []
+    for place in tips:
+        beyond = ends[:-1] >= place - 1e-9 * far
+        jump, C, pressed = _cracked(model, beyond, give, pressed)
+        g, s = jump[int(np.argmax(beyond)), 0]
+        found.append((C, 0.5 * max(g, 0.0) ** 2 / give[0], 0.5 * s**2 / give[1]))
+    return Releases(tips, *np.array(found).reshape(-1, 3).T)
+
+
+def _cracked(
+    model: Model, beyond: np.ndarray, give: np.ndarray, pressed: np.ndarray
+) -> tuple[np.ndarray, float, np.ndarray]:
+    """Jump (E, q, 2), compliance, and where the faces touch (E, q), with a crack up to the elements ``beyond`` (E,);
+    ``pressed`` is a guess of where they do."""
+    one = model.structure
+    for _ in range(MOST_CONTACTS):
+        stiff = np.zeros((*pressed.shape, 2, 2))
+        stiff[..., 0, 0] = np.where(beyond[:, None] | pressed, 1.0 / give[0], 0.0)
+        stiff[..., 1, 1] = np.where(beyond[:, None], 1.0 / give[1], 0.0)
+        equations = Bordered(one, model.stiffness(stiff))
+        nothing = np.zeros(one.mesh.count)
+        x, _, _ = equations.solve(nothing, np.zeros(len(one.held)), nothing, 1.0, 1.0)
+        jump = model.beam_jump(x)
+        touching = (jump[..., 0] < -CONTACT_DEPTH * np.abs(x).max()) & ~beyond[:, None]
+        if np.array_equal(touching, pressed & ~beyond[:, None]):
+            break
+        pressed = touching
+    return jump, float(one.load @ x), pressed
+
+
+class Stability(NamedTuple):
+    """Whether the crack begins to grow stably at a prescribed deflection, and the lengths at which that changes."""
+
+    stable: bool
+    changes: tuple[float, ...]
+
+
+def stability(problem: ArmsProblem) -> Stability:
+    """Of cracks from a tenth of the precrack on; a test is stable where growth takes more deflection."""
+    tip, start = problem.bonded[0], problem.loaded_at
+    curve = growth(problem, releases(problem, start + 0.1 * (tip - start)))
+    rate = CubicSpline(curve.tip, curve.opening)(tip, 1)
+    return Stability(bool(rate > 0.0), tuple(map(float, curve.turns(start))))
+
+
+def growth(problem: ArmsProblem, found: Releases) -> Growth:
+    """The equilibrium curve of the growing crack: G P^2 = G_c at the mode ratio of the tip, snap-backs included.
+
+    It ends where nothing is released any more.
+    """
+    total = found.G_I + found.G_II
+    ends = np.flatnonzero(total <= SMALLEST_RELEASE * total.max())
+    n = int(ends[0]) if len(ends) else len(total)
+    B = found.mode_ratio[:n]
+    G_c = problem.law.critical(B)
+    load = np.sqrt(G_c / total[:n])
+    return Growth(found.tip[:n], found.compliance[:n] * load, load, B, G_c, total[:n])
+
+
+def solve(problem: ArmsProblem, on_step: Callable[[Mapping[str, float]], None] | None = None) -> Solution:
+    """Load curve: the arms bend with the crack at the precrack, then it grows to the end of the programme or the bond.
+
+    Stored and dissipated energy together are the work of the load; ``load_slope`` at the onset is that before it.
+
+    Raises
+    ------
+    ValueError : the programme unloads, or the loads grow no crack
+    """
+    end, found = problem.end, releases(problem)
+    curve = growth(problem, found)
+    C = float(found.compliance[0])
+    onset = curve.opening[0] if len(curve.tip) else np.inf
+    before = np.linspace(0.0, min(onset, end), max(2, problem.points // 3))
+    G, B = float(found.G_I[0] + found.G_II[0]), float(found.mode_ratio[0])
+    rows = [_row(problem, (problem.bonded[0], d, d / C), 1.0 / C, (G * (d / C) ** 2, B), 0.0) for d in before]
+    ending = ""
+    if end > onset:
+        more, ending = _growing(problem, curve, end)
+        rows += more
+    for row in rows if on_step else ():
+        on_step(row)  # type: ignore[misc]
+    return Solution(tuple(rows), ending=ending)
+
+
+def _growing(problem: ArmsProblem, curve: Growth, end: float) -> tuple[list[dict[str, float]], str]:
+    """Rows of the growing crack after its onset, to the opening ``end``, and a sentence where it does not get there."""
+    reached = np.flatnonzero(curve.opening >= end)
+    opening, load = CubicSpline(curve.tip, curve.opening), CubicSpline(curve.tip, curve.load)
+    last, ending = curve.tip[-1], f"separated at opening {curve.opening[-1]:.6g}"
+    if len(reached):
+        inside = opening.solve(end, extrapolate=False)
+        last, ending = min(inside[inside > curve.tip[reached[0] - 1]], default=last), ""
+    tips = np.linspace(curve.tip[0], last, max(3, problem.points - problem.points // 3))[1:]
+    toughness, ratio = CubicSpline(curve.tip, curve.toughness), CubicSpline(curve.tip, curve.mode_ratio)
+    taken = toughness.antiderivative()
+    rows = []
+    for a in tips:
+        d, P = float(opening(a)), float(load(a))
+        slope = float(load(a, 1) / opening(a, 1))
+        lost = problem.width * float(taken(a) - taken(problem.bonded[0]))
+        rows.append(_row(problem, (a, d, P), slope, (float(toughness(a)), float(ratio(a))), lost))
+    return rows, ending
+
+
+def _row(
+    problem: ArmsProblem, at: tuple[float, float, float], slope: float, J: tuple[float, float], lost: float
+) -> dict[str, float]:
+    """Columns of a point ``at`` (tip, opening, load) of the curve; ``J`` is G and the mode ratio."""
+    tip, opening, load = (float(value) for value in at)
+    stored = 0.5 * opening * load
+    return {
+        "opening": opening,
+        "load": load,
+        "crack_length": tip - problem.loaded_at,
+        "stored_energy": stored,
+        "dissipated_energy": lost,
+        "external_work": stored + lost,
+        "newton_iterations": 0.0,
+        "load_slope": slope,
+        "J_loads": J[0],
+        "mode_ratio": J[1],
+    }
