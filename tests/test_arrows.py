@@ -60,6 +60,7 @@ FLOORS = (
     ("verify.report.studies",),
     ("verify.report.figures",),
     ("verify.studies", "verify.export"),
+    ("verify.studies.viscosity",),
     (
         "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.law",
         "verify.studies.paper", "verify.studies.plane", "verify.studies.scaling",
@@ -76,6 +77,7 @@ FLOORS = (
     ("verify.verdict",),
     ("verify.scene",),
     ("verify.result",),
+    ("verify.theory.arms",),
     ("verify.theory.beam",),
     ("verify.theory",),
     ("verify.support",),

@@ -114,6 +114,9 @@ def _studies(command: Callable[..., Parser]) -> None:
     _cost_options(command(commands.cost, text, "cost dcb-czm1 --out cost", "read cost/report.html"))
     text = "What each effect changes and costs: on and off, everything else as the scene says."
     _effects_options(command(commands.effects, text, "effects dcb-czm1 --out effects", "read effects/report.html"))
+    text = "What viscosity changes in a bond that slides, and what time it saves."
+    example = "viscosity enf-as4peek --out viscosity"
+    _viscosity_options(command(commands.viscosity, text, example, "read viscosity/report.html"))
     text = "How time and memory grow up to 100,000 unknowns, what more ranks gain, what to expect of many."
     _scaling_options(command(commands.scaling, text, "scaling dcb-czm1 --out scaling", "read scaling/report.html"))
     text = "The cases on which cohesive codes stop or go wrong."
@@ -205,6 +208,14 @@ def _effects_options(sub: Parser) -> None:
     sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
     _set_option(sub)
     _out_option(sub, "debond-effects")
+    _sweep_options(sub)
+
+
+def _viscosity_options(sub: Parser) -> None:
+    _scene_argument(sub)
+    sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx")
+    _set_option(sub)
+    _out_option(sub, "debond-viscosity")
     _sweep_options(sub)
 
 

@@ -6,7 +6,7 @@ All forces are for the whole specimen (width included); lengths, forces and ener
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from html import escape
 from math import nan
@@ -54,7 +54,23 @@ EVIDENCE_COLUMNS = (
     "penetration",  # how deep the faces are in each other, sampled all along them; where the programme goes down
     "contact_pressure",  # largest traction with which they push each other apart
     "mouth_opening",  # gap at the end of the faces next to the load, where they may touch beyond the bond
+    # where the bond slides, and then beside them `support_columns`:
+    "tip_slip",  # slip at the end of the precrack
+    "J_loads",  # J of loads and supports: w J = sum of F mean(du/dX), with the energy of strained end faces
+    "J_bond",  # J of the bond and of faces that touch: - integral of p dg/dX + t ds/dX
+    "J_shear",  # its part of t ds/dX
+    "mode_ratio",  # B of the foremost point whose damage grows; before damage where the scaled jump is largest
+    "friction_energy",  # the part of the dissipated energy that friction took
+    "arm_force_x",  # sums of all forces on the upper arm, and of their moments, current configuration
+    "arm_force_y",
+    "arm_moment",
 )
+
+
+def support_columns(row: Collection[str]) -> tuple[str, ...]:
+    """The reactions of supports that a row has, in their order: upwards, couples anticlockwise, on the specimen."""
+    found = [name for name in row if name.startswith("support_") and name[8:].isdigit()]
+    return tuple(sorted(found, key=lambda name: int(name[8:])))
 
 
 @dataclass(frozen=True)
@@ -76,6 +92,8 @@ class Snapshot:
     stress_euv: np.ndarray  # (n_e, k+1, k+1) Cauchy stress sigma_xx
     line_nki: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 2)))  # edges of the T-mesh, where there is one
     junction_ni: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))  # T-junctions
+    slip_q: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_q,) slip, where the bond slides
+    shear_q: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_q,) traction along the faces, there as well
 
 
 @dataclass(frozen=True)

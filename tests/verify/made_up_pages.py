@@ -42,6 +42,9 @@ from verify.studies.law.given.built_in import built_in
 from verify.studies.law.judge import judge
 from verify.studies.law.ways.paths import paths
 from verify.studies.scaling import page as scaling_page
+from verify.studies.viscosity import page as viscosity_page
+from verify.studies.viscosity.row import Row as ViscosityRow
+from verify.studies.viscosity.study import Study as ViscosityStudy
 from verify.verdict import Check, Run, SceneReport
 
 
@@ -130,6 +133,26 @@ def effects(out: Path) -> Path:
     return out / "report.html"
 
 
+def viscosity(out: Path) -> Path:
+    """The scene without viscosity, with some, and a run that stopped."""
+    row = ViscosityRow(0.0, 0.0, 0.0, 0.0, 50, 80, 9, 2.0, 1.0, 1.0, 1.0, 1.1, 2, "complete")
+    more = [
+        replace(
+            row,
+            viscosity=v,
+            curve_error=10 * v,
+            peak_error=5 * v,
+            work_error=4 * v,
+            steps=int(1 / v),
+            time_ratio=1e-3 / v,
+        )
+        for v in (1e-4, 1e-3, 1e-2)
+    ]
+    stopped = replace(row, viscosity=0.1, status="stopped: Newton did not converge")
+    viscosity_page.write(ViscosityStudy(SCENE, (row, *more, stopped), (), "nurbs"), out / "report.html")
+    return out / "report.html"
+
+
 def scaling(out: Path) -> Path:
     """Two methods of many sizes, on one rank and on two."""
     scaling_page.write(made_up_studies.scaling_study(), out / "report.html")
@@ -193,6 +216,7 @@ PAGES: Mapping[str, Callable[[Path], Path]] = {
     "cost": cost,
     "effects": effects,
     "scaling": scaling,
+    "viscosity": viscosity,
     "hard": hard,
     "law": law,
     "compare": comparison,

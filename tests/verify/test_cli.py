@@ -223,7 +223,7 @@ def test_compare_takes_the_folder_of_a_run(folder: Path) -> None:
 
 def test_scenes_and_doctor_tell_what_there_is(capsys: pytest.CaptureFixture) -> None:
     assert main(["scenes"]) == 0
-    assert capsys.readouterr().out.count("dcb-czm") == 4
+    assert capsys.readouterr().out.count("\ndcb-czm") == 4
     assert main(["doctor"]) == 0
     said = capsys.readouterr().out
     assert "numpy" in said and "dolfinx" in said

@@ -47,12 +47,15 @@ THEORY_ERROR_FIT = TheoryErrorFit()
 
 
 def tolerance(scene: Scene) -> float | None:
-    """Allowed distance of a curve from the beam's (relative L2); None where the beam cannot judge the scene.
+    """Allowed distance of a curve from the beam's (relative L2); None where the beam cannot judge the scene, or nobody
+    has measured its error: where the bond slides.
 
     The additional error of finite kinematics on slender arms counts on stocky arms as well.
     """
     if scene.specimen.clamped:
         return ON_SUBSTRATE
+    if scene.specimen.slides:
+        return None
     error, slender = theory_error(scene), SLENDER_TOLERANCE[simulated(scene)["kinematics"]]
     return None if error > NO_JUDGE else max(slender, error + slender - SLENDER_TOLERANCE["linear"])
 

@@ -12,9 +12,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from verify.checks.mechanics import balance
+from verify.checks.mechanics import balance, mixed
 from verify.checks.mechanics import unresolved as resolution
-from verify.checks.mechanics.columns import Steps, far_from_end, has, peak, scale, worst
+from verify.checks.mechanics.columns import Steps, far_from_end, has, integral, peak, scale, worst
 from verify.checks.mechanics.j_integral import (
     J_TOLERANCE,
     beyond_far_end,
@@ -125,7 +125,11 @@ def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
     """Why a check above its tolerance gives no verdict; empty where it does."""
     if not IDENTITIES[check.name].of_zone or not abs(check.value) > check.tolerance:
         return ""
-    return resolution.too_coarse(prepared, result, check) or end_cannot_judge(prepared, result, check)
+    return (
+        mixed.stocky_arms(prepared.scene, check)
+        or resolution.too_coarse(prepared, result, check)
+        or end_cannot_judge(prepared, result, check)
+    )
 
 
 def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
@@ -207,7 +211,7 @@ def energy_gap(scene: Scene, steps: Steps) -> float | None:
 @identity("interface-force", balance.force_tolerance, "The interface tractions carry the load.")
 def interface_gap(scene: Scene, steps: Steps) -> float | None:
     """Largest difference of load and interface force over the peak load; absolute values, as they act on either arm."""
-    if not has(steps, "interface_force"):
+    if scene.specimen.supports or simulated(scene)["shear"] or not has(steps, "interface_force"):
         return None
     return worst((np.abs(steps["load"]) - np.abs(steps["interface_force"])) / scale(peak(steps["load"])))
 
@@ -215,7 +219,7 @@ def interface_gap(scene: Scene, steps: Steps) -> float | None:
 @identity("moment-balance", balance.moment_tolerance, "Load and interface tractions have equal moments.")
 def moment_gap(scene: Scene, steps: Steps) -> float | None:
     """Largest sum of the moments on the upper arm over the moment of the peak load about the tip of the precrack."""
-    if not has(steps, "load_moment", "interface_moment"):
+    if scene.specimen.supports or simulated(scene)["shear"] or not has(steps, "load_moment", "interface_moment"):
         return None
     lever = scene.specimen.free_length
     return worst((steps["load_moment"] + steps["interface_moment"]) / scale(lever * peak(steps["load"])))
@@ -232,20 +236,31 @@ def clamp_gap(scene: Scene, steps: Steps) -> float | None:
 @identity("lengthwise", balance.force_tolerance, "The anchor carries the axial resultant of tilted tractions.")
 def lengthwise_gap(scene: Scene, steps: Steps) -> float | None:
     """Largest sum of the axial forces on a strip over the peak load: tractions on a tilted master, and the anchor."""
-    if not has(steps, "interface_pull", "anchor_pull"):
+    if simulated(scene)["shear"] or not has(steps, "interface_pull", "anchor_pull"):
         return None
     return worst((steps["interface_pull"] + steps["anchor_pull"]) / scale(peak(steps["load"])))
 
 
 @identity("reactions", balance.force_tolerance, "The supports carry the load and nothing else.")
 def support_forces(scene: Scene, steps: Steps) -> float | None:
-    """Largest resultant of the support reactions beyond those that balance the load, over the peak load."""
+    """Largest resultant of the support reactions beyond those that balance the load, over the peak load.
+
+    On supports that carry the load it is the part along the specimen; `supports` judges the rest.
+    """
     if not has(steps, "reaction_x", "reaction_y"):
         return None
+    if scene.specimen.supports:
+        return worst(steps["reaction_x"] / scale(mixed.size(scene.specimen) * peak(steps["load"])))
     return worst(np.hypot(steps["reaction_x"], steps["reaction_y"]) / scale(peak(steps["load"])))
 
 
-@identity("dissipation", DISSIPATION_TOLERANCE, "A new length of crack costs G_Ic times the width.", element=True)
+def _dissipation_meaning(scene: Scene) -> str:
+    """Of a bond that slides it is the toughness of a pure mode, and J between the modes."""
+    cost = "G_c or, between the modes, J" if simulated(scene)["shear"] else "G_Ic"
+    return f"A new length of crack costs {cost} times the width."
+
+
+@identity("dissipation", DISSIPATION_TOLERANCE, _dissipation_meaning, element=True)
 def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: nan) -> float | None:
     """|slope of the dissipated energy over the crack length / (G_Ic w) - 1|; None for less than five thicknesses or
     three elements of new crack.
@@ -255,22 +270,55 @@ def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = l
     zone's length. The slope is fitted by least squares over the crack length: a difference of the first and the last
     step would contain the energy dissipated between integration points, a few percent on a coarse mesh.
 
-    ``element`` returns the longest element of the bond; it builds a mesh and is called last.
+    ``element`` returns the longest element of the bond; it builds a mesh and is called last. Where the bond slides,
+    between the modes a new length costs J (`mixed.cost_of_growth`), the crack must be several zones long, and what
+    friction takes does not count.
     """
     if not has(steps, "crack_length", "dissipated_energy"):
         return None
-    crack = np.maximum.accumulate(steps["crack_length"])
-    counted = far_from_end(scene, steps) & (crack > scene.specimen.free_length)
+    crack, slides = np.maximum.accumulate(steps["crack_length"]), simulated(scene)["shear"]
+    counted = mixed.zone_is_free(scene, steps) if slides else far_from_end(scene, steps)
+    counted &= crack > scene.specimen.free_length
     if not simulated(scene)["irreversible"] or not counted.any():
         return None
-    crack, dissipated = crack[counted], steps["dissipated_energy"][counted]
+    cost = np.full(crack.size, scene.interface.toughness)
+    if slides:
+        found = mixed.cost_of_growth(scene, steps, counted)
+        if found is None or not mixed.zone_has_moved(steps, counted):
+            return None
+        cost = found
+    crack, cost = crack[counted], cost[counted]
+    dissipated = (steps["dissipated_energy"] - steps.get("friction_energy", 0.0))[counted]
     new_crack = crack[-1] - crack[0]
     if new_crack < 5 * scene.specimen.loaded_thickness or new_crack < 3 * element():
         return None
     weight = np.gradient(crack)  # crack length per step, so that dense steps count no more than others
-    from_mean = crack - np.average(crack, weights=weight)
+    spent = crack if np.ptp(cost) == 0.0 else integral(crack, cost) / cost[0]
+    from_mean = spent - np.average(spent, weights=weight)
     slope = np.sum(weight * from_mean * dissipated) / np.sum(weight * from_mean**2)
-    return float(abs(slope / (scene.interface.toughness * scene.specimen.width) - 1))
+    return float(abs(slope / (cost[0] * scene.specimen.width) - 1))
+
+
+identity("j-loads", mixed.j_tolerance, "The J-integral of loads and supports is that of the bond.", of_zone=True)(
+    mixed.j_loads
+)
+identity("supports", balance.moment_tolerance, "Each support carries what statics gives it.")(mixed.support_gap)
+identity("arm-balance", balance.moment_tolerance, "Forces and moments on the upper arm add up to nothing.")(
+    mixed.arm_gap
+)
+identity("mode-ratio", 0.01, "The part of sliding in J is that of the closed form.", kind="analytical", of_zone=True)(
+    mixed.mode_gap
+)
+identity("moments", 0.003, "J is that of the end moments.", kind="analytical", of_zone=True)(mixed.moments_gap)
+identity("moments-elastic", 1e-6, "Before any damage J is that of the end moments.", kind="analytical")(
+    mixed.elastic_moments_gap
+)
+identity("growth-toughness", 0.003, "While a crack grows J is the toughness.", kind="analytical", of_zone=True)(
+    mixed.growth_gap
+)
+identity("plateau", 0.005, "Between two loads a crack grows at one load.", kind="analytical", of_zone=True)(
+    mixed.plateau_gap
+)
 
 
 #: Checks that hold as well as the mesh resolves the process zone.

@@ -81,7 +81,7 @@ def matters(scene: Scene) -> bool:
 
 def sentence(scene: Scene) -> str:
     """A warning for codes with a point load that are compared with this scene; empty where the scene has one itself."""
-    if scene.load.at != "face":
+    if scene.load.at != "face" or scene.specimen.supports:
         return ""
     solved = matters(scene) and not scene.specimen.clamped and max(scene.load.opening) > 0.0
     found = _measured(scene.model_dump_json()) if solved else estimate(scene)
@@ -94,7 +94,8 @@ def sentence(scene: Scene) -> str:
 
 def remarks(scene: Scene) -> tuple[str, ...]:
     """The sentence in the report; empty where the effect is negligible."""
-    return (sentence(scene),) if scene.load.at == "face" and matters(scene) else ()
+    of_faces = scene.load.at == "face" and not scene.specimen.supports
+    return (sentence(scene),) if of_faces and matters(scene) else ()
 
 
 @lru_cache(maxsize=8)

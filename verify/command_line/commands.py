@@ -254,6 +254,23 @@ def effects(options: argparse.Namespace) -> int:
     return 0 if effects(plan, options.out, options.jobs, options.scheduler).complete else FAILED
 
 
+def viscosity(options: argparse.Namespace) -> int:
+    from verify.methods.method import NotRun
+    from verify.studies.viscosity.plan import planned
+    from verify.studies.viscosity.study import viscosity, would_run
+
+    _known_method(options.method, None)
+    scene = _studied(options, "viscosity")
+    try:
+        plan = planned(options.scene, scene, options.method, options.overrides)
+    except NotRun as error:
+        return _not_run(error)
+    if options.dry_run:
+        return _listed(would_run(plan, options.out))
+    _folder(options.out)
+    return 0 if viscosity(plan, options.out, options.jobs, options.scheduler).complete else FAILED
+
+
 def scaling(options: argparse.Namespace) -> int:
     from verify.studies.scaling.study import scaling, would_run
 

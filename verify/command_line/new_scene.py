@@ -41,6 +41,9 @@ def allowed(raw: Mapping[str, Any], key: Key) -> str:
 
 _LINE_WIDTH = 100
 
+#: Keys that the bond of a specimen that slides needs.
+SHEAR_KEYS = ("shear_strength", "shear_toughness")
+
 #: Names of dimensions in the schema, and how they are written in the units of the specimens' examples.
 UNITS: Mapping[str, str] = {
     "length": "mm",
@@ -52,10 +55,12 @@ UNITS: Mapping[str, str] = {
 }
 
 #: Example values of alternative and optional keys.
-ORTHOTROPIC = {"E1": 120e3, "E2": 10e3, "G12": 5e3, "nu12": 0.3}
+ISOTROPIC = {"young": 120e3, "poisson": 0.2}
+ORTHOTROPIC = {"E1": 120e3, "E2": 10e3, "G12": 5e3, "nu12": 0.3, "nu23": 0.4}
+PUBLISHED_AT = 2.0
 PUBLISHED = {
     "quantity": "load_at",
-    "opening": 2.0,
+    "opening": PUBLISHED_AT,
     "leg": 1,
     "value": 1.0,
     "tolerance": 0.03,
@@ -88,7 +93,14 @@ def new_scene(kind: str) -> str:
             lines += ["", f"[{table}]"]
         lines += [*_comment(raw, key), *_assigned(raw, key)]
     lines += ["", "# What others have found, as often as there are values; `debond verify` holds every method to them."]
-    return "\n".join([*lines, *_commented("[[published]]", raw, keys_of("published", Published), PUBLISHED)]) + "\n"
+    return (
+        "\n".join([*lines, *_commented("[[published]]", raw, keys_of("published", Published), published(raw))]) + "\n"
+    )
+
+
+def published(raw: Mapping[str, Any]) -> dict[str, Any]:
+    """An example of a published value, on the way of a scene."""
+    return PUBLISHED | {"opening": min(PUBLISHED_AT, *raw["load"]["opening"])}
 
 
 def _least(kind: str) -> dict[str, Any]:
@@ -99,9 +111,15 @@ def _least(kind: str) -> dict[str, Any]:
     tables: dict[str, dict[str, Any]] = {}
     for key in keys(kind):
         if key.table and key.field.is_required():
-            tables.setdefault(key.table, {})[key.name] = example[key.table][key.name]
+            value = example[key.table].get(key.name, ISOTROPIC.get(key.name))
+            tables.setdefault(key.table, {})[key.name] = value
+    if SPECIMENS[kind].slides:
+        tables["interface"] |= {key: example["interface"][key] for key in SHEAR_KEYS}
     scene = parse_scene({"name": f"my-{kind}", "units": example["units"], **tables})
-    return scene.model_dump(exclude_none=True)
+    raw = scene.model_dump(exclude_none=True)
+    if SPECIMENS[kind].slides:  # a value that goes with the others
+        raw["interface"]["shear_stiffness"] = scene.interface.shear_stiffness
+    return raw
 
 
 def _assigned(raw: Mapping[str, Any], key: Key) -> list[str]:
@@ -145,6 +163,8 @@ def _comment(raw: Mapping[str, Any], key: Key, width: int = _LINE_WIDTH) -> Iter
 def _toml(value: object) -> str:
     if isinstance(value, list | tuple):
         return "[" + ", ".join(_toml(one) for one in value) + "]" if len(value) != 1 else _toml(value[0])
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{key} = {_toml(one)}" for key, one in value.items()) + " }"
     if isinstance(value, bool | str):
         return json.dumps(value)
     return repr(value)

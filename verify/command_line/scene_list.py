@@ -31,7 +31,7 @@ def page(scene: Scene, width: int) -> str:
     law, mesh, other = scene.interface, scene.discretization, reference_mesh(scene)
     facts = {
         "specimen": f"{scene.specimen.kind}, plane {scene.specimen.plane}, width {scene.specimen.width:g}",
-        **{name: _material(getattr(scene, name)) for name in scene.specimen.materials},
+        **{name: _material(material) for name, material in scene.named_materials.items()},
         "interface": f"{law.law}, strength {law.strength:g}, toughness {law.toughness:g}, ductility {law.ductility:g}",
         "sliding": _sliding(law),
         "opening": " -> ".join(f"{opening:g}" for opening in scene.load.opening),
@@ -43,7 +43,7 @@ def page(scene: Scene, width: int) -> str:
     whole_words = textwrap.TextWrapper(
         min(width, 100), subsequent_indent=" " * 11, break_long_words=False, break_on_hyphens=False
     )
-    body = [part for name, text in facts.items() if text for part in whole_words.wrap(f"{name:11}{text}")]
+    body = [part for name, text in facts.items() if text for part in whole_words.wrap(f"{name:10} {text}")]
     return "\n".join([f"{scene.name} ({scene.units})", "", *sketch(scene, width), "", *body])
 
 
@@ -60,7 +60,7 @@ def _sliding(law: Interface) -> str:
 
 def _material(material: Material) -> str:
     kind = "isotropic" if isinstance(material, Isotropic) else "orthotropic"
-    return f"{kind}, " + ", ".join(f"{key} {value:g}" for key, value in material)
+    return f"{kind}, " + ", ".join(f"{key} {value:g}" for key, value in material if value is not None)
 
 
 def _effect(name: str, value: bool | str) -> str:

@@ -144,7 +144,7 @@ def _elastic(material: Material, plane: str) -> Iterator[str]:
         yield ", ".join(map(_number, (E1, E2, nu12, G12, G12, G12)))
     else:
         yield "*ELASTIC, TYPE=ENGINEERING CONSTANTS"
-        yield ", ".join(map(_number, (E1, E2, E2, nu12, nu12, nu12, G12, G12)))
+        yield ", ".join(map(_number, (E1, E2, E2, nu12, nu12, c.get("nu23", nu12), G12, G12)))
         yield f"{_number(G12)},"
 
 

@@ -33,6 +33,8 @@ def export(scene: Scene, kind: str, folder: Path, layers: int | None = None) -> 
     """
     if scene.interface.law not in LAW_NOTES:
         raise Refusal(f"interface.law: must be {one_of(LAW_NOTES)} for an export, got {scene.interface.law!r}")
+    if scene.specimen.slides:
+        raise Refusal(f'specimen.kind: must be "dcb" or "peel" for an export, got {scene.specimen.kind!r}')
     mesh = scene_mesh(scene, layers)
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -137,7 +137,9 @@ def interface_grid(bond: Mapping[str, np.ndarray], whole: Mapping[str, float]) -
     n = len(bond["s_q"])
     names = ("distance", "gap", "traction", "damage", "history", "bonded")
     keys = ("s_q", "gap_q", "traction_q", "damage_q", "history_q", "bonded_q")
-    values = {name: bond[key].astype(float) for name, key in zip(names, keys, strict=True)}
+    sliding = {"slip": "slip_q", "shear traction": "shear_q"}  # where the bond slides
+    known = {**dict(zip(names, keys, strict=True)), **{name: key for name, key in sliding.items() if key in bond}}
+    values = {name: bond[key].astype(float) for name, key in known.items()}
     flat = np.zeros((n, 1))
     return Grid(
         points=np.hstack([bond["X_qi"], flat]),
@@ -152,12 +154,13 @@ def interface_grid(bond: Mapping[str, np.ndarray], whole: Mapping[str, float]) -
 def through_thickness(scene: Scene) -> np.ndarray:
     """S_33 in parts of S_11 and S_22 along the axes of the material, for each body (2, 2); nothing in plane stress.
 
-    In plane strain E_33 = 0: ``S_33 = nu12 E2 / E1 S_11 + nu12 S_22`` with E3 = E2 and nu13 = nu23 = nu12.
+    In plane strain E_33 = 0: ``S_33 = nu12 E2 / E1 S_11 + nu23 S_22`` with E3 = E2, nu13 = nu12, and nu23 = nu12
+    where it is left out.
     """
     if scene.specimen.plane == "stress":
         return np.zeros((2, 2))
     constants = [elastic_constants(material) for material in scene.materials]
-    return np.array([[c["nu12"] * c["E2"] / c["E1"], c["nu12"]] for c in constants])
+    return np.array([[c["nu12"] * c["E2"] / c["E1"], c.get("nu23", c["nu12"])] for c in constants])
 
 
 def _bernstein(degrees: tuple[int, int], points_q: np.ndarray) -> np.ndarray:

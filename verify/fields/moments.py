@@ -47,7 +47,8 @@ def snapshot(made: Mapping[str, Any]) -> Snapshot:
     """What is drawn of a frame as `iga.output.frames` tells it, in single precision."""
     parts = [_sampled(part) for part in made["cells"]]
     X, u, stress = (np.concatenate([part[i] for part in parts]).astype(np.float32) for i in range(3))
-    bond = {name: made["bond"][name] for name in ("s_q", "gap_q", "traction_q", "damage_q")}
+    names = ("s_q", "gap_q", "traction_q", "damage_q", "slip_q", "shear_q")
+    bond = {name: made["bond"][name] for name in names if name in made["bond"]}
     return Snapshot(opening=made["opening"], load=made["load"], **bond, X_euvi=X, u_euvi=u, stress_euv=stress)
 
 

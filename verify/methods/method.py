@@ -130,7 +130,8 @@ class Method:
     is_limit : whether it is a limit that codes approach, and is held against none
     mesh_error : error of the load curve that its mesh leaves at the unknowns of a packaged scene; 0 where that is less
         than the tolerances between codes
-    equal_arms : whether two arms must be equal
+    equal_arms : whether two arms must be equal, where their bond opens alone
+    slides : whether it solves a bond that opens and slides
     place : among the methods in messages; equal ones are sorted by name
     besides, per_step : seconds of a run besides its steps, and a step and a thousand unknowns, see
         `verify.runs.estimate`
@@ -154,6 +155,7 @@ class Method:
     is_limit: bool = False
     mesh_error: float = 0.0
     equal_arms: bool = False
+    slides: bool = False
     place: int = 1000
     besides: float = 2.0
     per_step: float = 0.03
@@ -213,6 +215,17 @@ def require_growing(prepared: Prepared) -> None:
     if any(b <= a for a, b in zip((0.0, *programme), programme, strict=False)):
         name = prepared.method.name
         raise Unsuitable(f"load.opening: must only increase for the method {name}, got {list(programme)}")
+
+
+def require_beams(prepared: Prepared) -> None:
+    """Raise Unsuitable where two beams do not solve a scene: it unloads, or its law or its arms are not theirs."""
+    require_growing(prepared)
+    scene, name = prepared.scene, prepared.method.name
+    sizes = set(zip(scene.specimen.thicknesses, scene.materials, strict=False))
+    if scene.specimen.slides and not prepared.effects["shear"] and len(sizes) > 1:
+        raise Unsuitable(f"effects.shear: must be true for {name}, with arms that differ, got false")
+    if prepared.effects["shear"] and scene.interface.viscosity:
+        raise Unsuitable(f"interface.viscosity: must be 0 for {name}, got {scene.interface.viscosity:g}")
 
 
 def result_of(name: str, solution: Any, watch: Stopwatch) -> Result:

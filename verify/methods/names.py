@@ -34,18 +34,20 @@ def refuse_law(scene: Scene, who: str, has: Sequence[str]) -> None:
     """Raise Unsuitable where ``who`` does not have the law of a scene, naming the built-in methods that do."""
     law = scene.interface.law
     if law not in has:
-        able = _have_it(name for name, other in METHODS.items() if law in other.laws())
+        able = have_it(name for name, other in METHODS.items() if law in other.laws())
         raise Unsuitable(f"interface.law: must be {one_of(has)} for {who}, got {law!r}; {able}")
 
 
 def refuse_arms(scene: Scene, method: Method) -> None:
     """Raise Unsuitable where the arms of a scene differ and the method needs equal ones."""
     specimen = scene.specimen
-    if method.equal_arms and specimen.arms == 2 and not specimen.symmetric:
-        able = _have_it(name for name, other in METHODS.items() if not other.equal_arms)
+    slides = method.slides and specimen.slides  # which it refuses itself, where the arms differ
+    if method.equal_arms and specimen.arms == 2 and not specimen.symmetric and not slides:
+        able = have_it(name for name, other in METHODS.items() if not other.equal_arms)
         raise Unsuitable(f"specimen: must have equal arms for {method.name}, got kind {specimen.kind!r}; {able}")
 
 
-def _have_it(names: Iterable[str]) -> str:
+def have_it(names: Iterable[str]) -> str:
+    """Which methods have what another one lacks."""
     *head, last = names
     return f"{', '.join(head)} and {last} have it" if head else f"{last} has it"

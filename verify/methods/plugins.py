@@ -128,7 +128,15 @@ def _method(name: str, plugin: Plugin) -> Method:
 
     what = f"plug-in of {plugin.package}"
     return Method(
-        name=name, label=name, what=what, solve=solve, require=require, laws=laws, code=name, takes_files=True
+        name=name,
+        label=name,
+        what=what,
+        solve=solve,
+        require=require,
+        laws=laws,
+        code=name,
+        takes_files=True,
+        slides=True,
     )
 
 

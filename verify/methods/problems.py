@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from typing import Any
 
+from verify.methods.method import Unsuitable
 from verify.scene.materials import axial_modulus, elastic_constants
 from verify.scene.schema import Scene, counted_steps
 
@@ -55,6 +56,32 @@ def analytical_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
         "points": counted_steps(scene),
         **_support(scene),
     }
+
+
+def arms_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
+    """What ``verify.theory.arms`` solves of a scene whose bond slides."""
+    from verify.scene.bond.mixed import mixed_bond
+    from verify.theory.arms.problem import Arm, ArmsProblem, Load, Support
+
+    specimen, keys, law = scene.specimen, common_keys(scene, effects), mixed_bond(scene)
+    if law is None:
+        raise Unsuitable("interface.shear_strength, shear_toughness: must be given where the bond slides")
+    arms = [
+        Arm(thickness, axial_modulus(material, specimen.plane), constants["E2"], constants["G12"])
+        for thickness, material in zip(specimen.thicknesses, (*scene.materials, *scene.materials)[:2], strict=True)
+        for constants in (elastic_constants(material),)
+    ]
+    return ArmsProblem(
+        arms=(arms[0], arms[1]),
+        length=specimen.lengths[0],
+        bonded=specimen.bonded,
+        loads=tuple(Load(*load) for load in specimen.loads),
+        supports=tuple(Support(*support) for support in specimen.supports),
+        law=law,
+        loaded_at=specimen.loaded_at,
+        points=counted_steps(scene),
+        **{name: keys[name] for name in ("width", "opening", "snapshot_openings")},
+    )
 
 
 def _support(scene: Scene) -> dict[str, Any]:

@@ -1,30 +1,31 @@
-"""What methods make of a bond that slides: they solve its opening, which is all there is between two equal arms."""
+"""A bond that slides: which methods solve it, and what is said of a bond that could and does not."""
 
 from __future__ import annotations
 
-from verify.methods.method import Unsuitable
+from verify.methods.method import Prepared, Unsuitable
+from verify.methods.names import METHODS, have_it
+from verify.scene.effects import simulated
+from verify.scene.laws import mixed
 from verify.scene.schema import Scene
+from verify.scene.tables import one_of
 
 #: Said before a run with keys that change nothing.
 NO_EFFECT = "interface.shear_strength, shear_toughness: without effect, as two equal arms open and do not slide"
 
 
-def refuse_sliding(scene: Scene, who: str) -> None:
-    """Raise Unsuitable where the shear keys of a scene would change the answer, which no method knows yet."""
-    bond, wrong = scene.interface, []
-    if not bond.slides:
+def refuse_sliding(prepared: Prepared) -> None:
+    """Raise Unsuitable where the bond of a scene slides, and the method solves its opening alone."""
+    scene, method = prepared.scene, prepared.method
+    if not prepared.effects["shear"]:
         return
-    if not scene.specimen.symmetric:
-        found = f"got {bond.shear_strength:g} and {bond.shear_toughness:g}"
-        left_out = f"must be left out for {who}, as no method solves a {scene.specimen.kind} whose bond slides"
-        wrong.append(f"interface.shear_strength, shear_toughness: {left_out}, {found}")
-    for key in ("friction", "viscosity"):
-        if value := getattr(bond, key):
-            wrong.append(f"interface.{key}: must be 0 for {who}, as no method has it, got {value:g}")
-    if wrong:
-        raise Unsuitable("\n".join(wrong))
+    if not method.slides:
+        able = have_it(name for name, other in METHODS.items() if other.slides)
+        text = f"must be left out for {method.name}, which solves no {scene.specimen.kind} whose bond slides; {able}"
+        raise Unsuitable(f"interface.shear_strength, shear_toughness: {text}")
+    if scene.interface.law not in mixed():
+        raise Unsuitable(f"interface.law: must be {one_of(mixed())} where it slides, got {scene.interface.law!r}")
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
     """A sentence for a scene whose shear keys have no effect."""
-    return (NO_EFFECT,) if scene.interface.slides and scene.specimen.symmetric else ()
+    return (NO_EFFECT,) if scene.interface.slides and not simulated(scene)["shear"] else ()

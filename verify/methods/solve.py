@@ -52,8 +52,8 @@ def require(prepared: Prepared) -> None:
 
         given_meshes(scene) if method.takes_files else refuse_files(scene, method.name)
     refuse_law(scene, method.name, method.laws())
+    refuse_sliding(prepared)
     refuse_arms(scene, method)
-    refuse_sliding(scene, method.name)
     method.require(prepared)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,7 @@ from markupsafe import Markup, escape
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare
 from verify.scene.effects import simulated
+from verify.scene.keys import keys_of
 
 if TYPE_CHECKING:
     from verify.scene.bond.interface import Interface
@@ -123,16 +124,25 @@ def sentence(scene: Scene) -> str:
     """The problem with its effects, in words."""
     units, specimen = Units.of(scene.units), scene.specimen
     openings = " → ".join(number(v, 4) for v in scene.load.opening)
-    moved = f"to {openings} {units.length}".rstrip()
+    unit = "radians" if all(load.couple for load in specimen.loads) else units.length
+    moved = f"to {openings} {unit}".rstrip()
     law, done = f"a {scene.interface.law} traction law", f"{_body(specimen, units.length)} {moved}"
     return f"{done}, in plane {specimen.plane}, with {law} and {_effects(scene)}."
 
 
 def _body(specimen: Delamination, unit: str) -> str:
     """The specimen and its load."""
-    return specimen.sentence.format(
-        **{name: quantity(value, unit) for name, value in specimen if isinstance(value, float)}
-    )
+    return specimen.sentence.format(**dict(_sizes(specimen, unit)))
+
+
+def _sizes(specimen: Delamination, unit: str) -> Iterator[tuple[str, str]]:
+    """Numbers of a specimen in words; of a pair of equal ones, one."""
+    for key in keys_of("specimen", type(specimen)):
+        value = getattr(specimen, key.name)
+        numbers = value if isinstance(value, tuple) else (value,)
+        if numbers and all(isinstance(one, float) for one in numbers):
+            shown = [quantity(one, unit if key.dimension == "length" else "") for one in numbers]
+            yield key.name, " and ".join(dict.fromkeys(shown) if key.dimension == "length" else shown)
 
 
 def _effects(scene: Scene) -> str:
@@ -173,15 +183,11 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
     specimen, law, mesh, other = scene.specimen, scene.interface, scene.discretization, reference_mesh(scene)
     scale, bilinear = 2 * law.toughness / law.strength, law.law == "bilinear"
     rows = [
-        *(
-            ("specimen", name.replace("_", " "), quantity(value, units.length))
-            for name, value in specimen
-            if isinstance(value, float)
-        ),
+        *(("specimen", name.replace("_", " "), value) for name, value in _sizes(specimen, units.length)),
         *(
             (body, name, quantity(value, unit))
-            for body in specimen.materials
-            for name, value, unit in _moduli(getattr(scene, body), units)
+            for body, material in scene.named_materials.items()
+            for name, value, unit in _moduli(material, units)
         ),
         ("interface", "strength p_max", quantity(law.strength, units.stress)),
         ("interface", "toughness G_Ic", quantity(law.toughness, units.toughness)),
@@ -225,6 +231,7 @@ def _moduli(material: Material, units: Units) -> list[tuple[str, float, str]]:
         ("E2", "E2", units.stress),
         ("G12", "G12", units.stress),
         ("nu12", "nu12", ""),
+        ("nu23", "nu23", ""),
     )
     given = [(label, getattr(material, key, None), unit) for key, label, unit in names]
     return [(label, value, unit) for label, value, unit in given if value is not None]

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Result, Snapshot
+from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Result, Snapshot, support_columns
 from verify.support.checked_files import ANY, NUMBER, Damaged, number, read_json
 
 FILES = ("curve.csv", "evidence.csv", "result.json", "fields.npz", "moments.npz", "error.log")
@@ -38,7 +38,8 @@ class CurveWriter:
 
     def __call__(self, row: Mapping[str, float]) -> None:
         if self._evidence is None:
-            self._columns = tuple(name for name in (*CURVE_COLUMNS, *EVIDENCE_COLUMNS) if name in row)
+            known = (*CURVE_COLUMNS, *EVIDENCE_COLUMNS, *support_columns(row))
+            self._columns = tuple(name for name in known if name in row)
             self._evidence = _opened(self._evidence_path, self._columns)
             _append(
                 self._curve, CURVE_COLUMNS, dict.fromkeys(CURVE_COLUMNS, 0.0)
@@ -190,7 +191,8 @@ def _snapshot(table: Mapping[str, np.ndarray]) -> Snapshot:
     found = Snapshot(**values)
     sizes = {len(array) for array in (found.s_q, found.gap_q, found.traction_q, found.damage_q)}
     grids = found.X_euvi.shape == found.u_euvi.shape and found.stress_euv.shape in (found.X_euvi.shape[:-1], (0,))
-    if not (grids and len(sizes) == 1 and all(array.dtype.kind in "fiu" for array in table.values())):
+    sliding = {len(found.slip_q), len(found.shear_q)} in ({0}, sizes)
+    if not (grids and sliding and len(sizes) == 1 and all(array.dtype.kind in "fiu" for array in table.values())):
         raise ValueError("arrays that do not belong together")
     return found
 

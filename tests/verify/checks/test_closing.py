@@ -68,7 +68,7 @@ def test_faces_without_contact_beyond_the_bond_are_found(
 ) -> None:
     """Contact planted out there: of all checks this one alone sees the bodies pass through each other."""
     scene = scene_of(*words)
-    monkeypatch.setattr("iga.specimen.specimen.presses", lambda problem: False)
+    monkeypatch.setattr("iga.specimen.specimen.touches", lambda problem: False)
     result = solve(scene, method)
     assert penetration(scene, result.steps) > 10.0
     assert "penetration" in failing(scene, result)

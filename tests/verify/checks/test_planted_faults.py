@@ -19,6 +19,7 @@ from doctored_meshes import arch, function_scaled
 import verify
 from iga.interface import laws
 from iga.mesh.boundary import boundary_chains
+from tests.verify.checks.test_mixed_faults import IN_A_RUN as SLIDING
 from tests.verify.checks.test_peel_checks import made_up as made_up_peel
 from verify.checks.between_codes import cross_checks, published_names
 from verify.checks.foreign_curves import checks_of
@@ -509,7 +510,7 @@ def stem(name: str) -> str:
     return re.sub(r"(-leg)-\d+$", r"\1", name.split(" of ")[0])
 
 
-PLANTED = {stem(name) for name in (*IN_A_RUN, *BETWEEN, *IN_THE_PLANE)} | {"sum-of-functions"}
+PLANTED = {stem(name) for name in (*IN_A_RUN, *SLIDING, *BETWEEN, *IN_THE_PLANE)} | {"sum-of-functions"}
 #: Modules that make checks whose names stand in a table of rows, with the number of columns of that.
 TABLES = {"compare.py": 4, "leg_checks.py": 3}
 #: Modules that make checks of names from a scene (values that others published), or of those of `identity`.

@@ -168,7 +168,7 @@ def test_the_page_shows_published_values_with_their_source(tmp_path: Path) -> No
 
 
 def test_benchmarks_are_run_by_name_only() -> None:
-    assert len(benchmarks()) == 6
+    assert len(benchmarks()) == 15
     assert not set(benchmarks()) & set(verified_scenes())
 
 

@@ -86,3 +86,8 @@ def scale(values: np.ndarray) -> np.ndarray:
 
 def worst(deviation: np.ndarray) -> float:
     return float(np.max(np.abs(deviation), initial=0.0))  # NaN stays NaN, and fails
+
+
+def integral(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Integral of y dx from the first step on (n_steps,), by trapezoids."""
+    return np.append(0.0, np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(x)))

@@ -87,6 +87,8 @@ def j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     """
     if not has(steps, "face_slope_top", "face_slope_bottom", "face_energy", "tip_opening", "dissipated_energy"):
         return None
+    if simulated(scene)["shear"]:  # the work of sliding is not the area under the law of opening
+        return None
     J = steps["load"] * _rotation_of_faces(scene, steps) / scene.specimen.width - steps["face_energy"]
     law, spent, tip = law_of(scene), _area_at_tip(scene, steps), steps["tip_opening"]
     area = spent - law.area(steps.get("end_opening", np.zeros(J.size)))

@@ -62,9 +62,13 @@ def _available_energy(scene: Scene, steps: Steps) -> np.ndarray:
 def growing(scene: Scene, steps: Steps) -> np.ndarray:
     """Steps (n_steps,) of a peel with a complete process zone: the tip is open and the damage front is in the bond.
 
-    All False for another specimen, or without the columns.
+    All False for another specimen, a bond that slides, or without the columns.
     """
-    if not scene.specimen.clamped or not has(steps, "tip_opening", "damage_front", "dissipated_energy"):
+    if (
+        not scene.specimen.clamped
+        or simulated(scene)["shear"]
+        or not has(steps, "tip_opening", "damage_front", "dissipated_energy")
+    ):
         return np.zeros(steps["opening"].size, dtype=bool)
     open_ = tip_is_open(scene, steps)
     inside = steps["damage_front"] < (1.0 - AT_THE_END) * scene.specimen.extent

@@ -5,31 +5,38 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from verify.methods.method import Look, Method, OnFrame, OnStep, Prepared, require_growing, result_of
-from verify.methods.problems import analytical_keys, known
+from verify.methods.method import Look, Method, OnFrame, OnStep, Prepared, require_beams, result_of
+from verify.methods.problems import analytical_keys, arms_problem, known
 from verify.result import Result
+from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.support.timing import Stopwatch
 
 
 def beam_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
-    """What ``verify.theory.beam.solve`` solves of a scene."""
+    """What ``verify.theory.beam.solve`` solves of a scene, or ``verify.theory.arms.solve`` where its bond slides."""
     from verify.theory.beam.problem import BeamProblem
 
+    if effects["shear"]:
+        return arms_problem(scene, effects)
     return BeamProblem(**known(BeamProblem, analytical_keys(scene, effects)))
 
 
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
+    from verify.theory.arms.solve import solve as solve_arms
     from verify.theory.beam.solve import solve as solve_beam
 
     watch, problem = Stopwatch(), prepared.problem
     with watch.phase("solve"):
-        solution = solve_beam(problem, on_step)
+        solution = (solve_arms if prepared.effects["shear"] else solve_beam)(problem, on_step)
     return result_of(prepared.method.name, solution, watch)
 
 
-def _one_arm(scene: Scene) -> Mapping[str, Any]:
-    """One arm stands for both; beneath a strip the beam has its substrate, too."""
+def _its_effects(scene: Scene) -> Mapping[str, Any]:
+    """One arm stands for both; beneath a strip the beam has its substrate, too. Where the bond slides it has both arms,
+    with linear kinematics."""
+    if simulated(scene)["shear"]:
+        return {"symmetry": False, "search": False, "kinematics": "linear"}
     return {"symmetry": scene.specimen.symmetric, "search": False}
 
 
@@ -39,8 +46,9 @@ BEAM = Method(
     what="beam on a cohesive interface",
     solve=solve,
     problem=beam_problem,
-    require=require_growing,
-    fixed=_one_arm,  # of the laws it has the bilinear one: its zones are linear springs
+    require=require_beams,
+    fixed=_its_effects,  # of the laws it has the bilinear one: its zones are linear springs
+    slides=True,
     code="beam",
     equal_arms=True,
     place=200,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,9 +21,11 @@ from verify.methods.method import (
     Unsuitable,
     result_of,
 )
+from verify.methods.mixed import modelled_law
 from verify.methods.problems import common_keys, rectangles
 from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
+from verify.scene.bond.mixed import mixed_bond
 from verify.scene.schema import Scene, counted_steps
 from verify.support.timing import Stopwatch
 
@@ -34,8 +37,8 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
     ------
     Unsuitable : fewer elements than the specimen has parts, no node where the load is, or unequal arms that turn far.
     """
-    from fem_reference.problem.delamination import Problem, Rectangle
-    from fem_reference.problem.material import Moduli
+    from fem_reference.problem.delamination import Problem
+    from fem_reference.problem.material import Moduli, Rectangle
 
     mesh = reference_mesh(scene)
     try:
@@ -44,6 +47,7 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
             bonded=scene.specimen.bonded,
             on_base=scene.specimen.clamped,
             **common_keys(scene, effects),
+            **_sliding(scene, effects),
             steps=counted_steps(scene),
             degree=mesh.degree,
             elements=mesh.elements,
@@ -52,6 +56,25 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
     except ValueError as error:
         table = "effects" if str(error).startswith("kinematics") else "dolfinx"
         raise Unsuitable(f"{table}.{error}") from None
+
+
+def _sliding(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
+    """Law, loads and supports of a bond that slides; nothing for one that opens alone."""
+    bond = mixed_bond(scene) if effects["shear"] else None
+    if bond is None:
+        return {}
+    from fem_reference.problem.loads import Load, Support
+
+    law = replace(modelled_law(bond), contact=effects["contact"], irreversible=effects["irreversible"])
+    specimen = scene.specimen
+    if specimen.clamped:
+        return {"mixed_law": law}
+    return {
+        "mixed_law": law,
+        "loads": tuple(Load(*load) for load in specimen.loads),
+        "supports": tuple(Support(*support) for support in specimen.supports),
+        "loaded_at": specimen.loaded_at,
+    }
 
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:
@@ -103,6 +126,7 @@ DOLFINX = Method(
     laws=_laws,
     fixed=_both_bodies,
     code="dolfinx",
+    slides=True,
     packages=("fem_reference",),
     ranks=True,
     # All runs share a cache of compiled forms: the second to compile the same form would wait for the first, and give

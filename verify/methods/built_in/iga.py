@@ -11,9 +11,11 @@ from typing import Any
 from iga.bases.basis import Basis
 from iga.bases.names import BASES
 from verify.methods.method import Look, MeshFacts, Method, OnFrame, OnStep, Prepared, Unsuitable, result_of
+from verify.methods.mixed import sliding_law
 from verify.methods.problems import common_keys, rectangles
 from verify.result import Result
 from verify.scene.schema import DEFAULT_STEPS, Scene
+from verify.scene.specimens.delamination import Delamination
 from verify.support.timing import Stopwatch
 
 
@@ -37,7 +39,7 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
     """The module of ``iga`` that solves a scene, and the problem that it is given."""
     from iga.delamination import solution
     from iga.delamination.problem import Problem
-    from iga.specimen.layout import Clamp, Load, Moduli, Rectangle
+    from iga.specimen.layout import Moduli, Rectangle
 
     specimen, mesh = scene.specimen, scene.discretization
     upper, lower = rectangles(scene, Rectangle, Moduli)
@@ -45,8 +47,8 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
         **common_keys(scene, effects),
         **mesh.model_dump(),
         **scene.pose.model_dump(),
-        "loads": tuple(Load(*load) for load in specimen.loads),
-        "clamps": tuple(Clamp(*clamp) for clamp in specimen.clamps),
+        **_outline(specimen),
+        **({"mixed": sliding_law(scene, effects)} if effects["shear"] else {}),
         "symmetry": effects["symmetry"],
         "search": effects["search"],
         "basis": basis,
@@ -54,6 +56,22 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
         "steps": None if mesh.steps == "auto" else mesh.steps,
     }
     return solution, Problem(bodies=(upper, lower), bonded=specimen.bonded, **keys)
+
+
+def _outline(specimen: Delamination) -> dict[str, Any]:
+    """What a specimen is loaded and held by."""
+    from iga.specimen import layout
+
+    clamps = tuple(layout.Clamp(*clamp) for clamp in specimen.clamps)
+    if not specimen.slides:  # loads on end faces, without supports
+        loads = tuple(layout.Load(load.body or 0, load.side, load.share) for load in specimen.loads)
+        return {"loads": loads, "clamps": clamps}
+    return {
+        "loads": tuple(layout.Load(*load) for load in specimen.loads),
+        "clamps": clamps,
+        "supports": tuple(layout.Support(*support) for support in specimen.supports),
+        "loaded_at": specimen.loaded_at,
+    }
 
 
 def _given(scene: Scene, basis: str) -> tuple[Any, ...]:
@@ -141,6 +159,7 @@ def _method(number: int, basis: Basis) -> Method:
         packages=("iga",),
         with_dofs=True,
         takes_files=basis.local,
+        slides=True,
         mesh_error=basis.mesh_error,
         place=number,
         per_step=0.01,

@@ -11,6 +11,7 @@ from matplotlib.patches import Polygon, Rectangle
 
 from verify.pages.style import WIDE, Panel, colour, drawing, to_svg
 from verify.pages.text import Units, number, quantity
+from verify.report.figures.supports import acting, pull
 from verify.scene.specimens.delamination import Delamination
 
 if TYPE_CHECKING:
@@ -41,12 +42,15 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
         for length, y, thickness in zip(body.lengths, (0.0, -bottom), (top, bottom), strict=True):
             _rectangle(axes, length * scale, y, thickness)
         _bond(axes, body, scale)
-        _loads(axes, body, scale, (top, -bottom))
-        _float(axes, max(body.lengths) * scale) if free else _clamp(axes, body.lengths[1] * scale, -bottom)
+        if body.supports:
+            acting(axes, body, scale, (top, -bottom))
+        else:
+            _loads(axes, body, scale, (top, -bottom))
+            _float(axes, max(body.lengths) * scale) if free else _clamp(axes, body.lengths[1] * scale, -bottom)
         _dimensions(axes, body, units, scale, -bottom - (0.44 if free else 0.22))
         if zone is not None and zone[1] > zone[0]:
             start, end = sorted(body.place(s) * scale for s in zone[:2])
-            mark_zone(axes, start, end, top + 0.42, zone_label(zone, units))
+            mark_zone(axes, start, end, top + (0.6 if body.supports else 0.42), zone_label(zone, units))
         svg = to_svg(figure, key, f"Side view of the specimen of {scene.name}")
     return Panel(svg, _caption(body, thicker), "wide")
 
@@ -54,6 +58,12 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
 def _caption(body: Delamination, thicker: float) -> str:
     exaggerated = f"lengths to scale, {body.body}s {number(thicker, 2)} times too thick"
     drawn = f"The undeformed specimen, {exaggerated if thicker > 1.001 else 'to scale'}."
+    if body.supports:
+        return (
+            f"{drawn} Loads and supports act on patches, a load as an even dead traction with its share of the load P. "
+            "The opening is what P works on: the sum of these shares times the mean displacements, or rotations, of "
+            "their patches. A support holds the mean displacement of its patch at 0."
+        )
     if not body.clamps:
         return (
             f"{drawn} The load is a uniform dead traction on each loaded face, its resultant is the load P; the "
@@ -61,7 +71,7 @@ def _caption(body: Delamination, thicker: float) -> str:
         )
     upper, lower = body.bodies
     return (
-        f"{drawn} The load P is the resultant of a uniform dead traction on the {body.loads[0].end} end of the "
+        f"{drawn} The load P is the resultant of a uniform dead traction on the {body.loads[0].side} end of the "
         f"{upper}; the opening Δ is the mean displacement of that face. The base of the {lower} is clamped; nothing "
         "else is held across the specimen."
     )
@@ -77,7 +87,8 @@ def _rectangle(axes: Axes, length: float, y: float, thickness: float) -> None:
 
 def _bond(axes: Axes, body: Delamination, scale: float) -> None:
     """The bond, and the crack between two arms."""
-    cracked = [((body.loaded_at, body.tip), "paper")] if body.arms == 2 else []
+    begins = 0.0 if body.slides else body.loaded_at
+    cracked = [((begins, body.tip), "paper")] if body.arms == 2 else []
     for ends, ink in (*cracked, (body.bonded, "accent")):
         x = [end * scale for end in sorted(ends)]
         axes.plot(x, [0, 0], color=colour(ink), linewidth=2.0, zorder=3, solid_capstyle="butt")
@@ -85,18 +96,13 @@ def _bond(axes: Axes, body: Delamination, scale: float) -> None:
 
 def _loads(axes: Axes, body: Delamination, scale: float, outer: tuple[float, float]) -> None:
     """Arrows from the middles of the loaded faces to beyond their ``outer`` edges."""
-    for loaded, end, share in body.loads:
-        sign, edge = np.sign(share), outer[loaded]
-        x, beside, align = (0.0, -0.1, "right") if end == "left" else (body.lengths[loaded] * scale, 0.1, "left")
+    for load in body.loads:
+        loaded, left = load.body or 0, load.side == "left"
+        sign, edge = np.sign(load.share), outer[loaded]
+        x, beside, align = (0.0, -0.1, "right") if left else (body.lengths[loaded] * scale, 0.1, "left")
         pull(axes, (x, edge / 2), sign * (abs(edge) / 2 + _ARROW))
-        moved = f", {'+' if share > 0 else '−'}Δ/2" if body.symmetric else ", Δ" if body.arms == 1 else ""
+        moved = f", {'+' if load.share > 0 else '−'}Δ/2" if body.symmetric else ", Δ" if body.arms == 1 else ""
         axes.text(x + beside, edge + sign * _LABEL, f"P{moved}", ha=align, va="center", color=colour("bad"))
-
-
-def pull(axes: Axes, foot: tuple[float, float], length: float) -> None:
-    """The arrow of a transverse load."""
-    arrow = {"arrowstyle": "-|>", "color": colour("bad"), "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (foot[0], foot[1] + length), foot, arrowprops=arrow, zorder=5)
 
 
 def _clamp(axes: Axes, length: float, y: float) -> None:

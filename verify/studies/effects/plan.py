@@ -18,12 +18,13 @@ TIMES = 3
 
 @dataclass(frozen=True)
 class Switch:
-    """One effect: its key in ``[effects]``, its name in reports, and its two values."""
+    """One effect: its key in a ``table`` of the scene, its name in reports, and its two values."""
 
     key: str
     name: str
     on: str
     off: str
+    table: str = "effects"
 
     def __str__(self) -> str:
         return self.name
@@ -35,6 +36,13 @@ SWITCHES = (
     Switch("irreversible", "irreversible damage", "true", "false"),
     Switch("symmetry", "symmetry", "true", "false"),
     Switch("search", "search for the other face", "true", "false"),
+)
+
+#: Effects of a bond that slides, with the coefficients that they have where the scene has none.
+OF_SLIDING = (
+    Switch("shear", "sliding", "true", "false"),
+    Switch("friction", "friction", "0.3", "0.0", "interface"),
+    Switch("viscosity", "viscosity", "0.01", "0.0", "interface"),
 )
 
 
@@ -76,12 +84,20 @@ def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -
     require(prepare(scene, method))
     base = Job(source, scene, method, f"effects/{method}", tuple(given), fields=False)
     pairs, reasons = [], []
-    for switch in SWITCHES:
+    for switch in switches(scene):
         try:
             pairs.append(_pair(base, switch))
         except Refusal as error:
             reasons.append(f"{switch}: left out: {error}")
     return Plan(base, tuple(pairs), tuple(reasons))
+
+
+def switches(scene: Scene) -> tuple[Switch, ...]:
+    """The effects of a scene: those of sliding only where its bond may, with coefficients of its own if it has any."""
+    if not scene.interface.slides:
+        return SWITCHES
+    has = {key: str(value) for key in ("friction", "viscosity") if (value := getattr(scene.interface, key))}
+    return (*SWITCHES, *(replace(switch, on=has.get(switch.key, switch.on)) for switch in OF_SLIDING))
 
 
 def _pair(base: Job, switch: Switch) -> Pair:
@@ -93,13 +109,15 @@ def _pair(base: Job, switch: Switch) -> Pair:
     """
     now = _value(base.scene, base.method, switch)
     other = switch.off if now == switch.on else switch.on
-    override = f"effects.{switch.key}={other}"
+    override = f"{switch.table}.{switch.key}={other}"
     try:
         switched = parse_scene(base.scene.model_dump(), [override])
     except SceneError as error:
         raise Refusal("; ".join(error.sentences)) from None
     if _value(switched, base.method, switch) == now:
         raise Refusal(f"{base.method} {'always' if now == switch.on else 'never'} has it")
+    if switch.table == "interface" and not prepare(switched, base.method).effects["shear"]:
+        raise Refusal("nothing slides")
     job = replace(base, variant=f"{base.variant}-{switch.key}-{other}", overrides=(*base.overrides, override))
     if why := left_out(job):
         raise Refusal(why)
@@ -108,4 +126,6 @@ def _pair(base: Job, switch: Switch) -> Pair:
 
 def _value(scene: Scene, method: str, switch: Switch) -> str:
     """The value of the effect in a method's simulation, as in a scene file."""
+    if switch.table == "interface":
+        return str(getattr(scene.interface, switch.key))
     return str(prepare(scene, method).effects[switch.key]).lower()

@@ -36,7 +36,8 @@ def _unload() -> Sequence[Variant]:
     ]
 
 
-def _judge_unload(trials: Trials) -> Iterator[Finding]:
+def judge_unload(trials: Trials) -> Iterator[Finding]:
+    """Of the runs ``to-zero-KINEMATICS`` and ``closing-KINEMATICS``, beside ``monotone-KINEMATICS``."""
     for name, trial in trials.items():
         if name.startswith("monotone"):
             continue
@@ -160,7 +161,7 @@ def _judge_separation(trials: Trials) -> Iterator[Finding]:
 
 PROGRAMME_CASES = (
     Case("big-steps", "The whole programme in 5 requested steps, and in 5000.", _big_steps, _judge_big_steps),
-    Case("unload-reload", "The crack closes, presses, and opens again.", _unload, _judge_unload),
+    Case("unload-reload", "The crack closes, presses, and opens again.", _unload, judge_unload),
     Case("tiny-reversals", "The programme turns back by a billionth and goes on.", _reversals, _judge_reversals),
     Case(
         "full-separation",

@@ -12,6 +12,7 @@ from verify.curves.of_run import cubics
 from verify.methods.solve import prepare, solve
 from verify.methods.zone_resolution import warnings
 from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Number, Trial, Trials, variants
+from verify.studies.hard.criteria import point_areas
 from verify.theory.law import Bilinear
 from verify.verdict import Check
 
@@ -42,10 +43,7 @@ def broken_area(trial: Trial) -> tuple[float, float]:
     length between them is undefined. The new crack is the area of the points with k >= g_u. A partly damaged point has
     dissipated the part of the law up to its k.
     """
-    snapshot, mesh, law = trial.result.snapshots[-1], trial.scene.discretization, law_of(trial.scene)
-    nodes, weights = np.polynomial.legendre.leggauss(mesh.interface_points)
-    length_e = np.ptp(snapshot.s_q.reshape(-1, nodes.size), axis=1) * 2.0 / np.ptp(nodes)
-    dA_q = np.outer(length_e, weights / 2.0).ravel() * trial.scene.specimen.width
+    snapshot, dA_q, law = trial.result.snapshots[-1], point_areas(trial), law_of(trial.scene)
     assert isinstance(law, Bilinear), "the hard cases of strength are those of a bilinear law"
     # d = g_u (k - g_max) / (k (g_u - g_max)) between first damage and full opening
     k_q = law.g_open * law.g_peak / (law.g_open - snapshot.damage_q * (law.g_open - law.g_peak))

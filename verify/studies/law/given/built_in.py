@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from verify.methods.mixed import iga_law, modelled_law
 from verify.studies.law.given.answer import PointLaw
 from verify.studies.law.opening_bond import OpeningBond
 from verify.theory.mixed_law import MixedBond
@@ -13,20 +14,7 @@ from verify.theory.mixed_law import MixedBond
 
 def built_in(bond: MixedBond) -> PointLaw:
     """The law of ``iga`` with the numbers of a bond, with its tangent."""
-    from iga.interface.mixed_laws import MIXED_LAWS
-    from iga.interface.mode_ratio import ModeRatio
-
-    modes = ModeRatio(bond.toughness, bond.strength, bond.slopes, bond.criterion, bond.exponent, bond.onset_rule)
-    settings: dict[str, Any] = {
-        "contact": bond.contact,
-        "friction": bond.friction,
-        "viscosity": bond.viscosity,
-        "pressure_strength": bond.pressure_strength,
-        "rubs": bond.rubs,
-    }
-    if bond.law == "trapezoidal":
-        settings["plateau"] = bond.plateau
-    found = MIXED_LAWS[bond.law](modes, bond.penalty, **settings)
+    found = iga_law(bond)
 
     def law(g: float, s: float, state: Any, dt: float) -> tuple:
         history = found.start(1) if state is None else state
@@ -56,27 +44,7 @@ def opening_law(bond: MixedBond) -> PointLaw:
 
 def modelled(bond: MixedBond) -> PointLaw:
     """The law of ``fem_reference`` with the numbers of a bond."""
-    from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
-
-    own: dict[str, Any] = {"plateau": bond.plateau} if bond.law == "trapezoidal" else {}
-    found = MODELLED_MIXED_LAWS[bond.law](
-        strength=bond.strength[0],
-        shear_strength=bond.strength[1],
-        toughness=bond.toughness[0],
-        shear_toughness=bond.toughness[1],
-        stiffness=bond.slopes[0],
-        shear_stiffness=bond.slopes[1],
-        penalty=bond.penalty,
-        criterion=bond.criterion,
-        exponent=bond.exponent,
-        onset=bond.onset_rule,
-        contact=bond.contact,
-        friction=bond.friction,
-        viscosity=bond.viscosity,
-        pressure_strength=bond.pressure_strength,
-        rubs=bond.rubs,
-        **own,
-    )
+    found = modelled_law(bond)
 
     def law(g: float, s: float, state: Any, dt: float) -> tuple:
         d, slip = (np.zeros(1), np.zeros(1)) if state is None else state
