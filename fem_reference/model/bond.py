@@ -1,4 +1,4 @@
-"""The interface between the bodies as matrices: the gap at a point is a fixed linear function of the displacements."""
+"""The interface as one matrix: jump and mean tangent of the matched faces are linear in the displacements."""
 
 from __future__ import annotations
 
@@ -10,65 +10,99 @@ from petsc4py import PETSc
 
 @dataclass(frozen=True)
 class Bond:
-    """Gap, forces and tangent of the interface, from two fixed sparse matrices.
+    """Functionals z_qa of the displacements at the points of the interface, their forces and their tangent.
 
-    With matched meshes and the gap along the undeformed normal, g = G u at the quadrature points, so that
+    With z = Z u the virtual work is the sum over the points of w f_a delta z_a, so that
 
-        internal force  f = G^T (w p)          tangent  K = G^T diag(w dp/dg) G
+        internal force  f = Z^T (w f)          tangent  K = Z^T diag(w H) Z
 
-    with w the weight of a point times the width (Schellekens and de Borst 1993, Int. J. Numer. Methods Eng. 36, 43-66).
+    with the matrix H_ab = df_a/dz_b of every point (Schellekens and de Borst 1993, Int. J. Numer. Methods Eng. 36,
+    43-66). In mode I the only functional is the gap.
 
     Parameters
     ----------
-    G : (n_q, n_n), gap at the points by the displacements, supported unknowns included.
+    Z : (n_q m, n_n), the functionals of a point one after the other, supported unknowns included.
+    Z_X : the same of their derivatives along X, where the bond slides.
     weight_q : quadrature weight of each point times the width [area].
     free_n : 1 for a free unknown, 0 for a supported one.
     """
 
-    G: PETSc.Mat
+    Z: PETSc.Mat
+    Z_X: PETSc.Mat | None
     weight_q: np.ndarray
     free_n: np.ndarray
-    G_free: PETSc.Mat = field(init=False)
+    Z_free: PETSc.Mat = field(init=False)
+    H: PETSc.Mat = field(init=False)
     scaled: PETSc.Mat = field(init=False)
     product: PETSc.Mat = field(init=False)
     vec_n: PETSc.Vec = field(init=False)
-    vec_q: PETSc.Vec = field(init=False)
+    vec_r: PETSc.Vec = field(init=False)
 
     def __post_init__(self) -> None:
-        vec_n, vec_q = self.G.createVecs()
+        vec_n, vec_r = self.Z.createVecs()
         vec_n.array[:] = self.free_n
-        G_free = self.G.copy()
-        G_free.diagonalScale(R=vec_n)
-        scaled = G_free.copy()
+        Z_free = self.Z.copy()
+        Z_free.diagonalScale(R=vec_n)
+        H = self._blocks(vec_r, np.ones((self.weight_q.size, *(2 * [self._functionals(vec_r)]))))
+        scaled = H.matMult(Z_free)
         made = {
-            "G_free": G_free,
+            "Z_free": Z_free,
+            "H": H,
             "scaled": scaled,
-            "product": G_free.transposeMatMult(scaled),
+            "product": Z_free.transposeMatMult(scaled),
             "vec_n": vec_n,
-            "vec_q": vec_q,
+            "vec_r": vec_r,
         }
         for name, value in made.items():
             object.__setattr__(self, name, value)
 
-    def gap(self, u_n: np.ndarray) -> np.ndarray:
-        """Normal opening (n_q,)."""
-        self.vec_n.array[:] = u_n
-        self.G.mult(self.vec_n, self.vec_q)
-        return self.vec_q.array_r.copy()
+    def of(self, u_n: np.ndarray) -> np.ndarray:
+        """Functionals z_qa (n_q, m)."""
+        return self._product(self.Z, u_n)
 
-    def force(self, p_q: np.ndarray) -> np.ndarray:
-        """Internal forces (n_n,) of tractions p_q (n_q,), at supported unknowns too."""
-        return self.spread(self.weight_q * p_q)
+    def slopes(self, u_n: np.ndarray) -> np.ndarray:
+        """Derivatives along X of the functionals (n_q, m)."""
+        assert self.Z_X is not None
+        return self._product(self.Z_X, u_n)
 
-    def spread(self, force_q: np.ndarray) -> np.ndarray:
-        """Nodal forces G^T f (n_n,) of forces f (n_q,) at the points."""
-        self.vec_q.array[:] = force_q
-        self.G.multTranspose(self.vec_q, self.vec_n)
+    def force(self, f_qa: np.ndarray) -> np.ndarray:
+        """Internal forces (n_n,) of the forces f_qa per area, at supported unknowns too."""
+        return self.spread(self.weight_q[:, None] * f_qa)
+
+    def spread(self, f_qa: np.ndarray) -> np.ndarray:
+        """Nodal forces Z^T f (n_n,)."""
+        self.vec_r.array[:] = f_qa.ravel()
+        self.Z.multTranspose(self.vec_r, self.vec_n)
         return self.vec_n.array_r.copy()
 
-    def tangent(self, dp_q: np.ndarray) -> PETSc.Mat:
-        """Tangent (n_n, n_n) for slopes dp/dg (n_q,), zero in supported rows and columns; valid until the next call."""
-        self.vec_q.array[:] = self.weight_q * dp_q
-        self.G_free.copy(self.scaled, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
-        self.scaled.diagonalScale(L=self.vec_q)
-        return self.G_free.transposeMatMult(self.scaled, result=self.product)
+    def tangent(self, H_qab: np.ndarray) -> PETSc.Mat:
+        """Tangent (n_n, n_n), zero in supported rows and columns; valid until the next call."""
+        starts, columns = self._pattern(self.vec_r, H_qab.shape)
+        self.H.setValuesCSR(starts, columns, (self.weight_q[:, None, None] * H_qab).ravel())
+        self.H.assemble()
+        self.H.matMult(self.Z_free, result=self.scaled)
+        return self.Z_free.transposeMatMult(self.scaled, result=self.product)
+
+    def _product(self, Z: PETSc.Mat, u_n: np.ndarray) -> np.ndarray:
+        self.vec_n.array[:] = u_n
+        Z.mult(self.vec_n, self.vec_r)
+        return self.vec_r.array_r.reshape(self.weight_q.size, -1).copy()
+
+    def _functionals(self, vec_r: PETSc.Vec) -> int:
+        """Functionals of a point, also on a rank that owns no point."""
+        points = self.Z.comm.tompi4py().allreduce(self.weight_q.size)
+        return int(vec_r.getSize()) // points
+
+    def _blocks(self, vec_r: PETSc.Vec, H_qab: np.ndarray) -> PETSc.Mat:
+        starts, columns = self._pattern(vec_r, H_qab.shape)
+        sizes = vec_r.getSizes()
+        return PETSc.Mat().createAIJ((sizes, sizes), csr=(starts, columns, H_qab.ravel()), comm=self.Z.comm)
+
+    @staticmethod
+    def _pattern(vec_r: PETSc.Vec, shape: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+        """Row starts and columns of a matrix with one full block for every point."""
+        n, m, _ = shape
+        first, _ = vec_r.getOwnershipRange()
+        starts = m * np.arange(n * m + 1)
+        columns = first + m * np.repeat(np.arange(n), m * m) + np.tile(np.arange(m), n * m)
+        return starts.astype(PETSc.IntType), columns.astype(PETSc.IntType)

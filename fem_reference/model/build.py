@@ -14,20 +14,16 @@ from petsc4py import PETSc
 from fem_reference.dolfinx_api import add_block_matrix, compile_forms, create_block_matrix
 from fem_reference.model.assembled import BlockVector, owned
 from fem_reference.model.bond import Bond
-from fem_reference.model.forms import WeakForm, displacements, jump_forms, weak_form
-from fem_reference.model.jumps import Jumps
+from fem_reference.model.forms import BondForms, WeakForm, bond_forms, displacements, weak_form
 from fem_reference.model.linear import Factorisation, outer, widened, without_zeros
-from fem_reference.model.mesh import TwoBodies, two_bodies
+from fem_reference.model.mesh import two_bodies
 from fem_reference.model.mixed import MixedModel
 from fem_reference.model.model import Model, Phase
 from fem_reference.model.opening import OpeningModel
 from fem_reference.model.outline import action_rows
-from fem_reference.model.supports import Displacement, point_load, supports, tie
+from fem_reference.model.supports import point_load, supports, tie
 from fem_reference.problem.law import MODELLED_LAWS, Law
 from fem_reference.problem.problem import Debonding
-
-#: The mesh, and the displacements on its bodies.
-Meshed = tuple[TwoBodies, Displacement]
 
 
 def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
@@ -53,7 +49,7 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
     at_nodes = problem.load_at != "face"
     tie_n, springs_kn = tie(specimen, displacement), actions.springs_kn
     with phase("assembly"):
-        bond, X_q = _interface(problem, weak, (bodies, displacement), free_n, phase)
+        bond, X_q = _interface(bond_forms(problem, bodies, displacement), weak, free_n, problem.width, phase)
         bulk_matrix, tie_matrix = _bulk_and_springs(bulk, bcs, bond, (tie_n, *springs_kn))
         tangent_matrix = bulk_matrix.copy()
     end_load_n = point_load(specimen, problem.load_at, displacement, X_nI, comm) if at_nodes else load.assemble()
@@ -89,7 +85,7 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
 
 
 def _bulk_and_springs(
-    bulk: Any, bcs: Sequence[fem.DirichletBC], bond: Bond | Jumps, springs_n: Sequence[np.ndarray]
+    bulk: Any, bcs: Sequence[fem.DirichletBC], bond: Bond, springs_n: Sequence[np.ndarray]
 ) -> tuple[PETSc.Mat, ...]:
     """Stiffness of the unloaded bodies with the springs, in the pattern of the whole tangent, and that of the springs.
 
@@ -127,50 +123,25 @@ def _vector(blocks: list, weak: WeakForm) -> BlockVector:
 
 
 def _interface(
-    problem: Debonding, weak: WeakForm, meshed: Meshed, free_n: np.ndarray, phase: Phase
-) -> tuple[Bond | Jumps, np.ndarray]:
-    """Matrices of the interface, and the X of its points."""
-    if problem.mixed_law:
-        return _jumps(problem, weak, meshed, free_n, phase)
-    return _bond(problem, weak, free_n, phase)
-
-
-def _bond(problem: Debonding, weak: WeakForm, free_n: np.ndarray, phase: Phase) -> tuple[Bond, np.ndarray]:
-    """Matrices of the interface, and the X of its points; G and X are integrals divided by the weight of the point."""
-    with phase("compile"):
-        gap = [compile_forms(weak.gap, weak.maps)]
-        weight, position = (_vector([form], weak) for form in (weak.weight, weak.position))
-    weight_q = weight.assemble()
-    G = create_block_matrix(gap)
-    add_block_matrix(G, gap, ())
-    share = G.createVecLeft()
-    share.array[:] = 1.0 / weight_q
-    G.diagonalScale(L=share)
-    X_q = position.assemble() / weight_q
-    return Bond(without_zeros(G), problem.width * weight_q, free_n), X_q
-
-
-def _jumps(
-    problem: Debonding, weak: WeakForm, meshed: Meshed, free_n: np.ndarray, phase: Phase
-) -> tuple[Jumps, np.ndarray]:
-    """Matrix of the interface, and the X of its points; both are integrals divided by the weight of the point."""
-    forms = jump_forms(problem, *meshed)
+    forms: BondForms, weak: WeakForm, free_n: np.ndarray, width: float, phase: Phase
+) -> tuple[Bond, np.ndarray]:
+    """Matrices of the interface, and the X of its points; both are integrals divided by the weight of the point."""
     with phase("compile"):
         weight, position = (_vector([form], weak) for form in (forms.weight, forms.position))
-        functionals, slopes = ([compile_forms(row, weak.maps)] for row in (forms.functionals, forms.slopes))
+        blocks = [compile_forms([row], weak.maps) for row in (forms.functionals, forms.slopes) if row]
     weight_r = weight.assemble()
 
-    def at_points(blocks: list) -> PETSc.Mat:
-        Z = create_block_matrix(blocks)
-        add_block_matrix(Z, blocks, ())
+    def at_points(block: list) -> PETSc.Mat:
+        Z = create_block_matrix(block)
+        add_block_matrix(Z, block, ())
         share = Z.createVecLeft()
         share.array[:] = 1.0 / weight_r
         Z.diagonalScale(L=share)
         return without_zeros(Z)
 
     X_q = (position.assemble() / weight_r)[:: forms.per_point]
-    weight_q = problem.width * weight_r[:: forms.per_point]
-    return Jumps(at_points(functionals), at_points(slopes), weight_q, free_n), X_q
+    Z, *slopes = (at_points(block) for block in blocks)
+    return Bond(Z, slopes[0] if slopes else None, width * weight_r[:: forms.per_point], free_n), X_q
 
 
 def _node_positions(u: fem.Function) -> np.ndarray:

@@ -26,9 +26,7 @@ class WeakForm:
 
     ``internal`` and ``bulk`` are the internal forces of the bodies and their tangent; ``load`` the nodal forces of a
     unit load; ``slope`` the mean du_y/dX of each loaded face as a functional; ``face_energy`` the strain energy on the
-    end faces per unit width, signed as in the J-integral. ``gap`` (one row of blocks, bilinear), ``weight`` and
-    ``position`` are integrals over the interface of the gap, of 1 and of X, against test functions that are 1 at one of
-    its quadrature points and 0 at the others.
+    end faces per unit width, signed as in the J-integral.
     """
 
     internal: list
@@ -37,22 +35,20 @@ class WeakForm:
     slope: list
     energy: ufl.Form
     face_energy: ufl.Form
-    gap: list
-    weight: ufl.Form
-    position: ufl.Form
     maps: object
 
 
-class JumpForms(NamedTuple):
-    """Functionals of the displacements at the points of the interface, for `fem_reference.model.jumps`.
+class BondForms(NamedTuple):
+    """Functionals of the displacements at the points of the interface, for `fem_reference.model.bond`.
 
-    ``functionals`` (one row of blocks, bilinear) is the jump from the lower to the upper face and, where kinematics is
-    finite, the X-derivative of the mean of both faces; ``slopes`` their X-derivatives. ``weight`` and ``position`` are
-    integrals of 1 and of X. Test functions are 1 at one point for one of its ``per_point`` functionals, and else 0.
+    ``functionals`` (one row of blocks, bilinear) is the gap or, where the bond slides, the jump from the lower to the
+    upper face and, where kinematics is finite too, the X-derivative of the mean of both faces; ``slopes`` their
+    X-derivatives, where the bond slides. ``weight`` and ``position`` are integrals of 1 and of X. Test functions are 1
+    at one point for one of its ``per_point`` functionals, and else 0.
     """
 
     functionals: list
-    slopes: list
+    slopes: list | None
     weight: ufl.Form
     position: ufl.Form
     per_point: int
@@ -88,12 +84,10 @@ def weak_form(
     domain, finite, (u, w) = bodies.parent, problem.kinematics == "finite", displacement
     V = ufl.MixedFunctionSpace(u.function_space, w.function_space)
     v, d = ufl.TestFunctions(V), ufl.TrialFunctions(V)
-    point = basix.ufl.quadrature_element("interval", degree=2 * bond_points(problem.degree) - 1)
-    q = ufl.TestFunction(fem.functionspace(bodies.bond.mesh, point))("+")
     width = constant(domain, problem.width)
     D = [constant(domain, body.D_IJ) for body in specimen.bodies]
     W = [energy_density(u_body, D_body, finite) for u_body, D_body in zip(displacement, D, strict=True)]
-    dx, ds, dS = _measures(bodies, problem.degree)
+    dx, ds, _ = _measures(bodies, problem.degree)
 
     def over_faces(density: Callable, part: Callable[[Face], float]) -> ufl.Form:
         """Sum over the end faces of the integral of a density, a function of the body, times a factor of the face."""
@@ -112,45 +106,35 @@ def weak_form(
         slope=ufl.extract_blocks(over_faces(lambda i: v[i][1].dx(0), lambda face: abs(per_length(face)))),
         energy=stored,
         face_energy=over_faces(lambda i: W[i], lambda face: face.energy),
-        gap=[
-            ufl.TrialFunction(u.function_space)("+")[1] * q * dS(BOND),
-            -ufl.TrialFunction(w.function_space)("-")[1] * q * dS(BOND),
-        ],
-        weight=q * dS(BOND),
-        position=ufl.SpatialCoordinate(domain)("+")[0] * q * dS(BOND),
         maps=entity_maps(domain, (*bodies.pair, bodies.bond), bodies.interface_quads),
     )
 
 
-def jump_forms(problem: Debonding, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function]) -> JumpForms:
-    """The forms of jump and mean tangent: two functionals a point in linear kinematics, four in finite kinematics."""
-    count = 4 if problem.kinematics == "finite" else 2
+def bond_forms(problem: Debonding, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function]) -> BondForms:
+    """The forms of gap, jump and mean tangent: one functional a point in mode I, else two, or four if finite."""
+    slides, finite = bool(problem.mixed_law), problem.kinematics == "finite"
+    components = (0, 1) if slides else (1,)
+    count = 4 if slides and finite else len(components)
     degree = 2 * bond_points(problem.degree) - 1
     point = basix.ufl.quadrature_element("interval", value_shape=(count,), degree=degree)
     q = ufl.TestFunction(fem.functionspace(bodies.bond.mesh, point))("+")
     _, _, dS = _measures(bodies, problem.degree)
 
-    def at_points(v: ufl.core.expr.Expr, side: str, sign: float) -> list[ufl.core.expr.Expr]:
-        """Forms of the functionals and of their derivatives, the part of one body."""
-        jump = [sign * v[i](side) for i in range(2)]
-        parts = [v.dx(0), v.dx(0).dx(0)]
-        slope, bend = ([part[i](side) for i in range(2)] for part in parts)
-        mean, mean_slope = ([0.5 * a for a in part] if count == 4 else [] for part in (slope, bend))
-        jump_slope = [sign * a for a in slope]
-        vectors = ufl.as_vector(jump + mean), ufl.as_vector(jump_slope + mean_slope)
-        return [ufl.inner(vector, q) * dS(BOND) for vector in vectors]
+    def at_points(v: ufl.core.expr.Expr, side: str, sign: float) -> ufl.Form:
+        """Form of the functionals of ``v``, the displacements or their derivatives by X, the part of one body."""
+        parts = [sign * v[i](side) for i in components]
+        if count == 4:
+            parts += [0.5 * v.dx(0)[i](side) for i in components]
+        return ufl.inner(ufl.as_vector(parts), q) * dS(BOND)
 
-    spaces = [u.function_space for u in displacement]
-    above, below = (
-        at_points(ufl.TrialFunction(V), side, sign) for V, side, sign in zip(spaces, "+-", (1.0, -1.0), strict=True)
-    )
-    ones = ufl.as_vector([1.0] * count)
+    v, w = (ufl.TrialFunction(u.function_space) for u in displacement)
+    one = ufl.inner(ufl.as_vector([1.0] * count), q)
     X = ufl.SpatialCoordinate(bodies.parent)("+")[0]
-    return JumpForms(
-        functionals=[above[0], below[0]],
-        slopes=[above[1], below[1]],
-        weight=ufl.inner(ones, q) * dS(BOND),
-        position=X * ufl.inner(ones, q) * dS(BOND),
+    return BondForms(
+        functionals=[at_points(v, "+", 1.0), at_points(w, "-", -1.0)],
+        slopes=[at_points(v.dx(0), "+", 1.0), at_points(w.dx(0), "-", -1.0)] if slides else None,
+        weight=one * dS(BOND),
+        position=X * one * dS(BOND),
         per_point=count,
     )
 

@@ -16,7 +16,7 @@ class Relative(NamedTuple):
 
 
 def relative(z_qa: np.ndarray) -> Relative:
-    """Gap and slip by the functionals of `fem_reference.model.jumps`.
+    """Gap and slip by the functionals of `fem_reference.model.bond`.
 
     Two functionals are the jump of the displacement, from the lower to the upper face, in the reference frame. Four
     are the jump and the X-derivative of the mean displacement of both faces: with the unit vectors e and n along and

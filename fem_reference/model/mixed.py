@@ -8,7 +8,6 @@ import numpy as np
 from petsc4py import PETSc
 
 from fem_reference.model.frame import Relative, relative
-from fem_reference.model.jumps import Jumps
 from fem_reference.model.model import BondEnergies, Model
 from fem_reference.problem.mixed_law import MixedLaw
 
@@ -29,7 +28,6 @@ class MixedModel(Model):
     """
 
     law: MixedLaw
-    bond: Jumps
     dt: float = 0.0
 
     @property

@@ -16,7 +16,6 @@ from petsc4py import PETSc
 from fem_reference.dolfinx_api import add_block_matrix
 from fem_reference.model.assembled import BlockVector, owned
 from fem_reference.model.bond import Bond
-from fem_reference.model.jumps import Jumps
 from fem_reference.model.linear import Factorisation
 from fem_reference.model.mesh import TwoBodies
 from fem_reference.model.outline import ActionRows
@@ -61,7 +60,7 @@ class Model(ABC):
     bodies: TwoBodies
     displacement: tuple[fem.Function, fem.Function]  # upper, lower; the forms read them
     law: Law | MixedLaw
-    bond: Bond | Jumps
+    bond: Bond
     internal: BlockVector
     bulk: Any  # compiled blocks of the bodies' tangent
     energy: fem.Form

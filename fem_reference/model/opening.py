@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from petsc4py import PETSc
 
-from fem_reference.model.bond import Bond
 from fem_reference.model.model import BondEnergies, Model
 from fem_reference.problem.law import Law
 
@@ -17,16 +16,15 @@ class OpeningModel(Model):
     """A model whose bond carries tractions along its normal alone; jumps and histories are gaps (n_q,)."""
 
     law: Law
-    bond: Bond
 
     def jump(self, u_n: np.ndarray) -> np.ndarray:
         """Normal opening (n_q,)."""
-        return self.bond.gap(u_n)
+        return self.bond.of(u_n)[:, 0]
 
     def bond_force(self, u_n: np.ndarray, k_q: np.ndarray) -> np.ndarray:
         """Internal forces (n,) of the bond, at the supports too; ``k_q`` is the committed history."""
         p_q, _ = self.traction(self.jump(u_n), k_q)
-        return self.bond.force(p_q)
+        return self.bond.force(p_q[:, None])
 
     def traction(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Traction and slope (n_q,) each: those of `Law.traction` where bonded, elsewhere contact alone."""
@@ -50,7 +48,7 @@ class OpeningModel(Model):
     def bond_tangent(self, u_n: np.ndarray, k_q: np.ndarray) -> PETSc.Mat:
         """Derivative of `bond_force` by the displacements, zero at supports; valid until the next call."""
         _, dp_q = self.traction(self.jump(u_n), k_q)
-        return self.bond.tangent(dp_q)
+        return self.bond.tangent(dp_q[:, None, None])
 
     @property
     def onset(self) -> float:
@@ -81,7 +79,7 @@ class OpeningModel(Model):
 
     def rates(self, u_n: np.ndarray, rate_n: np.ndarray) -> np.ndarray:
         """Change (n_q,) of the measure with a change of the displacements."""
-        return self.bond.gap(rate_n)
+        return self.bond.of(rate_n)[:, 0]
 
     def measure_row(self, u_n: np.ndarray, share_q: np.ndarray) -> np.ndarray:
         """Change of the measures, weighted with ``share_q``, as a functional (n,) of that of the displacements."""

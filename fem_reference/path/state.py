@@ -51,7 +51,7 @@ def row_of(model: OpeningModel, state: State) -> dict[str, float]:
     ``reaction_x`` and ``reaction_y`` are the resultants of support forces and loads.
     """
     p_q, _ = model.traction(state.g_q, state.k_q)
-    bond_force_n = model.bond.force(p_q)
+    bond_force_n = model.bond.force(p_q[:, None])
     load_n = state.load * model.load_n
     reaction_n = (1 - model.free_n) * (model.bulk_force(state.u_n) + bond_force_n - load_n)
     face = model.comm.allreduce(fem.assemble_scalar(model.face_energy))

@@ -60,12 +60,12 @@ def test_tangent_is_the_derivative_of_the_residual(kinematics, state):
     model, rng = small(kinematics=kinematics), np.random.default_rng(1)
     opening = {"open": 2.0, "closed": -0.3, "softening": 0.3, "unloading": 0.3, "reloading": 0.3}[state]
     u_n = bent(model, opening, rng)
-    g_q = model.bond.gap(u_n)
+    g_q = model.jump(u_n)
     k_q = np.maximum(g_q, 0.0) * {"unloading": 1.7, "reloading": 1.001}.get(state, 0.5)
     damaged = np.max(k_q) > model.law.g_peak
     assert {"open": np.max(g_q) > model.law.g_open, "closed": np.min(g_q) < 0}.get(state, damaged)
     direction_n = model.free_n * rng.standard_normal(u_n.size)
-    h = 1e-7 * np.min(np.abs(g_q)) / np.max(np.abs(model.bond.gap(direction_n)))
+    h = 1e-7 * np.min(np.abs(g_q)) / np.max(np.abs(model.jump(direction_n)))
     h = max(h, 1e-8)
     ahead_n, behind_n = (model.residual(u_n + s * h * direction_n, 0.0, k_q) for s in (1, -1))
     change_n = (ahead_n - behind_n) / (2 * h)
@@ -159,13 +159,13 @@ def test_pulled_arm_carries_the_stress_of_its_material():
 
 def test_gap_is_found_where_it_is(finite):
     u_n = displacement(finite, lambda X, Y, up: (0.3 * X, np.where(up, 0.1 * X**2, 0.05 * X)))
-    assert finite.bond.gap(u_n) == pytest.approx(0.1 * finite.X_q**2 - 0.05 * finite.X_q, rel=1e-12)
+    assert finite.jump(u_n) == pytest.approx(0.1 * finite.X_q**2 - 0.05 * finite.X_q, rel=1e-12)
     assert np.min(finite.X_q) > SMALL.precrack
     assert np.sum(finite.bond.weight_q) == pytest.approx(SMALL.width * (SMALL.length - SMALL.precrack), rel=1e-13)
 
 
 def test_bond_forces_are_the_integrals_of_the_tractions(finite):
-    f_n = finite.bond.force(finite.X_q)
+    f_n = finite.bond.force(finite.X_q[:, None])
     half = 0.5 * SMALL.width * (SMALL.length**2 - SMALL.precrack**2)
     assert np.sum(f_n[finite.upper_n][1::2]) == pytest.approx(half, rel=1e-12)
     assert np.sum(f_n[~finite.upper_n][1::2]) == pytest.approx(-half, rel=1e-12)
@@ -265,15 +265,15 @@ def test_the_strip_is_bonded_on_the_left_and_free_beyond(peeled):
     assert 0.0 < np.min(peeled.X_q) and np.max(peeled.X_q) < PEEL.bond_length
     assert np.sum(peeled.bond.weight_q) == pytest.approx(PEEL.width * PEEL.bond_length, rel=1e-13)
     u_n = displacement(peeled, lambda X, Y, up: (X, np.where(up, 0.1 * X**2, 0.05 * X)))
-    assert peeled.bond.gap(u_n) == pytest.approx(0.1 * peeled.X_q**2 - 0.05 * peeled.X_q, rel=1e-12)
+    assert peeled.jump(u_n) == pytest.approx(0.1 * peeled.X_q**2 - 0.05 * peeled.X_q, rel=1e-12)
 
 
 def test_tangent_of_a_peel_is_the_derivative_of_its_residual(peeled):
     rng = np.random.default_rng(3)
     u_n = displacement(peeled, lambda X, Y, up: (-0.2 * Y * X, np.where(up, 0.02 * (X - 1) ** 2 * np.sign(X - 1), 0)))
     u_n = peeled.free_n * (u_n + 1e-4 * rng.standard_normal(u_n.size))
-    k_q = np.maximum(peeled.bond.gap(u_n), 0.0)
-    assert np.min(peeled.bond.gap(u_n)) < 0 and np.any((k_q > peeled.law.g_peak) & (k_q < peeled.law.g_open))
+    k_q = np.maximum(peeled.jump(u_n), 0.0)
+    assert np.min(peeled.jump(u_n)) < 0 and np.any((k_q > peeled.law.g_peak) & (k_q < peeled.law.g_open))
     direction_n = peeled.free_n * rng.standard_normal(u_n.size)
     h = 1e-8
     ahead_n, behind_n = (peeled.residual(u_n + s * h * direction_n, 0.0, 0.5 * k_q) for s in (1, -1))

@@ -155,7 +155,7 @@ def test_unloading_has_the_slope_of_frozen_damage():
     model.bulk_matrix.copy(model.tangent_matrix)
     left_q = (1 - model.law.damage(turn.k_q)) * model.law.K0
     secant_q = np.where(turn.g_q < 0, problem.penalty, left_q)
-    model.tangent_matrix.axpy(1.0, model.bond.tangent(secant_q))
+    model.tangent_matrix.axpy(1.0, model.bond.tangent(secant_q[:, None, None]))
     dense = model.tangent_matrix.convert("dense").getDenseArray()
     secant = 1.0 / (model.load_n @ np.linalg.solve(dense, model.free_n * model.load_n))
     back = np.argmax(run["opening"]) + np.arange(1, 10)
