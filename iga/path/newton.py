@@ -109,6 +109,8 @@ def _iterate(
         if found is None:
             return None, tuple(residuals)
         step_d, settled = found
+        if float(np.abs(step_d[:-1]).max()) > newton.furthest * np.ptp(solver.system.interface.local_AI):
+            return None, tuple(residuals)
         # where that does not converge once, it will not the next time; many points that touch sort themselves out later
         on_gaps = on_gaps and (settled or slides or not tried)
         now = advance(Line(solver, now, step_d, decide), newton)

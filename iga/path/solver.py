@@ -21,6 +21,8 @@ class Newton:
     whose residual has not come below the best one for ``patience`` iterations goes round in circles, as the softening
     front does between two of its points, and ends.
 
+    A step of ``furthest`` of the size of the model leads nowhere.
+
     Where the length of a step is searched for, a part ``slack`` of the work along it may be left, and there are
     ``searches`` attempts.
     """
@@ -31,6 +33,7 @@ class Newton:
     predictor: float = 1e-3
     iterations: int = 25
     patience: int = 6
+    furthest: float = 0.5
     slack: float = 0.05
     searches: int = 12
 

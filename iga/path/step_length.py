@@ -34,6 +34,7 @@ class Lengths:
     may leave the tangent of a step, if nothing else is asked for; ``failures`` that they are allowed, each converged
     step making up for one, and ``safe``, the number of counted steps for the whole programme that are made after those.
     ``fewest``: fewer counted steps than these do not draw the curve, and the number is then a least number of steps.
+    ``still``: a front that moves by a smaller part of g_u in a step does not lead it.
     ``cuts``: how often a step is shortened because it is not accurate. ``at_kinks``: how many steps end at kinks of any
     kind once a single arc of the load has turned out to have a corner. ``parabola``: distance of a parabola from its
     tangent over that from its chord, as it is measured.
@@ -48,6 +49,7 @@ class Lengths:
     failures: int = 3
     safe: int = 150
     fewest: int = 40
+    still: float = 1e-9
     cuts: int = 6
     at_kinks: int = 8
     parabola: float = 3.0
@@ -293,17 +295,24 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
     by_kinks = isinstance(lengths, ByAccuracy)
     every_kink = isinstance(lengths, ByAccuracy) and lengths.at_kinks > 0
     grows, q, past = bool(path.growing_q.any()), point.front, None
+
+    def leads(q: int, away: float) -> bool:
+        """Whether a point moves on: damage that grows by s^2 does not yet where nothing has moved."""
+        return abs(path.rate_q[q]) * away >= LENGTHS.still * law.span
+
     if away_from_zero(direction, point.opening) and (careful or not grows):
         past = _past_kink(system, point)
     if not grows:
         exact = abs(left) < 1.001 * lengths.length
         away = (left if exact else np.copysign(lengths.length, left)) / opening_rate
-        if past is not None and past[1] < away:
+        if past is not None and past[1] < away and leads(past[0], abs(away)):
             return Step(gap_control(system, past[0]), past[2], by_kinks=by_kinks)
         return Step(opening_control(system), away, exact, by_kinks, every_kink)
     if 0.0 < direction * left < lengths.length and not careful and path.heading == direction:
         return Step(opening_control(system), left / opening_rate, True, by_kinks)
-    away = min(lengths.front * law.span / abs(path.rate_q[q]), lengths.length / abs(opening_rate))
+    away = min(lengths.front * law.span / max(abs(path.rate_q[q]), 1e-300), lengths.length / abs(opening_rate))
+    if not leads(q, away):
+        return Step(opening_control(system), away, by_kinks=by_kinks)
     if past is not None and past[1] < away:
         q, _, away = past
     name = CONTROLS[lengths.number] if isinstance(lengths, Careful) else CONTROLS[0]

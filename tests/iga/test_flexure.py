@@ -9,6 +9,7 @@ import pytest
 from bent_specimens import HALF, MODES, bond, flexure, mixed_bending
 
 from iga.delamination.solution import solve
+from iga.interface.mixed_laws import ExponentialMixed
 
 FIRST, SECOND = MODES.toughness
 #: Of quadratic finite elements 0.25 mm long [cross-code]: initial stiffness in N/mm, largest load in N.
@@ -157,3 +158,12 @@ def test_faces_that_rub_take_energy_on_the_way_back_and_again_on_the_way_up_but_
     assert middle[0] < middle[1] - 1e-3 * load.max(), "the loop has an area"
     plain = curve()
     assert load.max() > 1.005 * plain["load"].max()
+
+
+def test_damage_that_begins_with_the_square_of_the_slip_sets_out_from_rest():
+    """Its slope is zero there, so that nothing but the opening can lead the first step."""
+    modes = replace(MODES, stiffness=ExponentialMixed.stiffnesses(MODES.toughness, MODES.strength))
+    keys: dict[str, Any] = {"mixed": ExponentialMixed(modes, 1e5), "opening": (1.0,), "dofs": 500}
+    small, large = (solve(flexure(**keys, kinematics=kinematics)) for kinematics in ("linear", "finite"))
+    assert small.status == large.status == "complete"
+    assert large.steps["load"][-1] == pytest.approx(small.steps["load"][-1], rel=0.005)
