@@ -170,3 +170,16 @@ def state_of_mode(keys: list[str], ratio: float) -> str:
     columns = one | {"crack_length": a, "damage_front": a, "dissipated_energy": 0.0}
     found = run_checks(scene, Result("beam", {name: np.array([value]) for name, value in columns.items()}))
     return next(check.state for check in found if check.name == "mode-ratio")
+
+
+@pytest.mark.parametrize(
+    ("moments", "opening", "judged"), [("1.0, 0.4", 1.2, True), ("0.4, 1.0", 1.2, False), ("0.4, 1.0", -1.2, True)]
+)
+def test_end_moments_say_nothing_of_arms_that_they_press_together(moments: str, opening: float, judged: bool) -> None:
+    scene, result = made_up("moments")
+    scene = load_scene("moments", [f"specimen.moments=[{moments}]", f"load.opening={opening}", "published=[]"])
+    names = {
+        check.name
+        for check in run_checks(scene, replace(result, steps={**result.steps, "load": opening * result.load}))
+    }
+    assert ("moments" in names) == judged
