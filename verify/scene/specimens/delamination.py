@@ -148,7 +148,7 @@ class Delamination(Section):
     @property
     def bonded(self) -> tuple[float, float]:
         """Coordinates X of the bond's end next to the load and of its far end."""
-        return self.tip, self.place(self.extent)
+        return self.tip, self.lengths[0] if self.tip > self.loaded_at else 0.0
 
     @property
     def loaded_at(self) -> float:

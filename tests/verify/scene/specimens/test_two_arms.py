@@ -19,6 +19,12 @@ def test_patches_are_half_an_arm_long_on_either_side_and_cut_off_at_the_ends() -
     assert body.bonded == (30.5, 145.5) and body.loaded_at == 0.5 and body.free_length == 30.0
 
 
+def test_the_bond_ends_with_the_arms_whatever_rounding_makes_of_the_overhangs() -> None:
+    body = load_scene("enf-as4peek", ["specimen.length=115.6", "specimen.overhang=5.82", "published=[]"]).specimen
+    assert body.start + (body.lengths[0] - body.start) != body.lengths[0], "nothing to be learnt from these numbers"
+    assert body.bonded[1] == body.lengths[0]
+
+
 def test_a_lever_pulls_up_and_presses_down() -> None:
     up, down = load_scene("mmb50-as4peek").specimen.loads
     assert (up.share, down.share) == pytest.approx((44.4 / 51.0, -95.4 / 51.0))
