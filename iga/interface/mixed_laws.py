@@ -260,26 +260,49 @@ class TrapezoidalMixed(MixedLaw):
     plateau: float = 0.5
 
     def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
-        (K, Ks), flat, g = self.stiffness, self.plateau, np.maximum(g, 0.0)
+        """``lambda / lambda0`` up to the onset, then 1 and the `way` of the damage that the jump drives to, so that
+        it grows with this whatever the mode ratio does; 1 and the part of the way to lambda_f once nothing is left."""
+        (K, Ks), g = self.stiffness, np.maximum(g, 0.0)
+        driven = self.driving(g, s, None)
         opening, sliding = K * g * g, Ks * s * s
-        square = opening + sliding
-        moved = square > TINY**0.5
-        square = np.where(moved, square, 1.0)
+        moved = opening + sliding > TINY**0.5
+        square = np.where(moved, opening + sliding, 1.0)
         B, size = np.where(moved, sliding / square, 0.0), np.where(moved, np.sqrt(square), 0.0)
         (m, dm), (G, dG) = self.modes.at(B)
-        onset = np.sqrt(m)
-        way, d_onset = (2.0 * G - m) / ((1.0 + flat) * onset), 0.5 * dm / onset
-        d_way = (2.0 * dG - dm) / ((1.0 + flat) * onset) - way * d_onset / onset
-        soft = size > onset
-        by_size, past = 1.0 / np.where(soft, way, onset), (size - onset) / way
-        by_B = np.where(soft, -(d_onset + past * d_way) / way, -size * d_onset / m)
+        onset, gone = np.sqrt(m), driven.d >= 1.0
+        last = (2.0 * G - m) / ((1.0 + self.plateau) * onset)  # from lambda0 to lambda_f
+        d_onset = 0.5 * dm / onset
+        d_last = (2.0 * dG - dm) / ((1.0 + self.plateau) * onset) - last * d_onset / onset
+        by_size = 1.0 / np.where(gone, last, onset)
+        by_B = np.where(gone, -(d_onset + (size - onset) / last * d_last) / last, -size * d_onset / m)
         along, across = by_size / square**0.5, 2.0 * by_B / square / square
-        fall, back = (1.0 - flat) * way, onset / np.maximum(1.0 - d, TINY_PART)
-        back = np.where(back > onset + flat * way, onset * (onset + way) / ((1.0 - d) * fall + onset), back)
-        x = np.where(soft, 1.0 + past, size / onset)
-        back = np.where(d > 0.0, 1.0 + (back - onset) / way, np.minimum(x, 1.0))
+        x = np.where(gone, 1.0 + (size - onset) / last, size / onset)
+        by_g, by_s = K * g * (along - across * sliding), Ks * s * (along + across * opening)
+        soft, (way, slope) = (driven.d > 0.0) & ~gone, self.way(driven.d)
+        x, by_g = np.where(soft, 1.0 + way, x), np.where(soft, slope * driven.by_g, by_g)
+        back = np.where(d > 0.0, 1.0 + self.way(d)[0], np.minimum(x, 1.0))
         back = np.where(d < 1.0, back, np.maximum(x, 2.0))
-        return Scaled(x, K * g * (along - across * sliding), Ks * s * (along + across * opening), back)
+        return Scaled(x, by_g, np.where(soft, slope * driven.by_s, by_s), back)
+
+    def way(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The part (n,) of the way from lambda0 to lambda_f at which damage is d (n,), and its slope.
+
+        As if lambda_f / lambda0 were the same in all modes: where it is not, the way of each has another length.
+        """
+        fall = (1.0 - self.plateau) * (1.0 - d)
+        below = 1.0 + fall * self._slender
+        way, slope = (1.0 - fall) / below, (1.0 - self.plateau) * (1.0 + self._slender) / below**2
+        if not self.plateau:
+            return way, slope
+        flat = way < self.plateau
+        left = np.where(flat, 1.0 - d, 1.0)
+        return np.where(flat, d / left / self._slender, way), np.where(flat, 1.0 / left**2 / self._slender, slope)
+
+    @cached_property
+    def _slender(self) -> float:
+        """``lambda_f / lambda0 - 1``, the geometric mean of opening and sliding, or little where that is nothing."""
+        (m, _), (G, _) = self.modes.at(np.array([0.0, 1.0]))
+        return float(np.prod(np.maximum((2.0 * G / m - 1.0) / (1.0 + self.plateau), BRITTLE)) ** 0.5)
 
     def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
         (K, Ks), flat = self.stiffness, self.plateau
