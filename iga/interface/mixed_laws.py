@@ -64,9 +64,9 @@ class Driving(NamedTuple):
 
 
 class Scaled(NamedTuple):
-    """The scaled jump (n,) that measures how far each point is on its way, with onset of damage and failure at the kinks of the law,
-    its derivatives by opening and slip, and ``back`` (n,), where along it the damage of a point grows again: the jump
-    itself, and no less, where there is no damage yet and where nothing is left to fail."""
+    """The scaled jump (n,) that measures how far each point is on its way, with onset of damage and failure at the
+    kinks of the law, its derivatives by opening and slip, and ``back`` (n,), where along it the damage of a point grows
+    again: the jump itself, and no less, where there is no damage yet and where nothing is left to fail."""
 
     x: np.ndarray
     by_g: np.ndarray

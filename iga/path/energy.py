@@ -23,6 +23,8 @@ class Balance:
     ``leak`` is in parts of the largest work so far. As long as less than that is dissipated it is no measure; then
     ``of_dissipated`` is a part of what is, or, where that is next to nothing, ``of_elastic`` one of the work.
     Less than ``rounding`` of the work is not dissipated: rounding alone leaves points without damage some.
+    Of a bond that slides the ledger of the whole path may be open by the part ``ledger`` of the largest work; from
+    there on a step may add that part of its own.
     What slides off the master is added up over so many parts of a step (``sliding``).
     """
 
@@ -30,6 +32,7 @@ class Balance:
     of_dissipated: float = 1e-3
     of_elastic: float = 1e-7
     rounding: float = 1e-13
+    ledger: float = 1e-3
     sliding: int = 16
 
 
@@ -175,6 +178,9 @@ def leaks(system: System, start: Point, end: Point, most: float) -> bool:
     left_over = end.residuals[-1] * end.response.scale if end.residuals else 0.0
     moved_d = end.state.u_d - start.state.u_d
     leak -= left_over * float(moved_d @ moved_d) ** 0.5
+    if system.interface.slides and abs(end.external_work - end.energies.total) > BALANCE.ledger * most:
+        if leak > BALANCE.ledger * abs(end.external_work - start.external_work):
+            return True  # many small leaks of one sign open the ledger as one large one does
     before, after = start.energies.dissipated, end.energies.dissipated
     begun = before <= BALANCE.rounding * most < after
     if after >= BALANCE.leak * most or begun or not system.interface.law.irreversible:

@@ -150,8 +150,12 @@ def _hopeless(residuals: list[float], newton: Newton) -> bool:
 
 
 def _circling(residuals: list[float]) -> bool:
-    """Whether the last iterates are those before, to and fro between two: each follows from the one before alone."""
-    return len(residuals) > 5 and bool(np.allclose(residuals[-4:], residuals[-6:-2], rtol=1e-6, atol=0.0))
+    """Whether the last iterates are those of before, round and round: each follows from the one before alone."""
+    for turn in (2, 3, 4):
+        last = residuals[-2 * turn :]
+        if len(residuals) > 3 * turn and np.allclose(last, residuals[-3 * turn : -turn], rtol=1e-6, atol=0.0):
+            return True
+    return False
 
 
 def _evaluated(solver: Solver, trial: State, decide: bool) -> Iterate:
