@@ -112,6 +112,7 @@ def tangent(
     growing_q = soft_q if onward or not law.irreversible else np.zeros_like(soft_q)
     flat_q = law.contact & (np.abs(g_q) <= SORTING.closed * law.g_max)
     closed_q, found = state.closed_q, None
+    tried: set[bytes] = set()
     for attempt in range(SORTING.attempts):
         if attempt > 0 or turning:
             # a history larger by a rounding is enough to be on the secant, a smaller one to be on the envelope
@@ -129,8 +130,22 @@ def tangent(
         if attempt == 0 and turning:
             sorted_ = _sorted(solver, state, direction, (soft_q, growing_q, flat_q))
             agreeing_q, touching_q = sorted_ or (agreeing_q, touching_q)
+        tried.add(np.concatenate([growing_q, closed_q]).tobytes())
+        if system.interface.slides and np.concatenate([agreeing_q, touching_q]).tobytes() in tried:
+            agreeing_q, touching_q = _one_changed((growing_q, closed_q), (agreeing_q, touching_q))
         growing_q, closed_q = agreeing_q, touching_q
     return found
+
+
+def _one_changed(
+    now: tuple[np.ndarray, np.ndarray], asked: tuple[np.ndarray, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Two sets of points (n_q,) with the first change of those asked for, and no other: where all at once lead round in
+    circles one at a time, in a fixed order, does not (Murty 1974)."""
+    both = np.concatenate(now)
+    first = np.flatnonzero(both != np.concatenate(asked))[:1]
+    both[first] = ~both[first]
+    return both[: now[0].size], both[now[0].size :]
 
 
 def _sorted(
