@@ -13,7 +13,7 @@ from iga.path.follow import follow
 from iga.path.newton import equilibrium
 from iga.path.point import Point
 from iga.path.solver import Solver
-from iga.path.tangent import on_envelope, tangent
+from iga.path.tangent import _one_changed, on_envelope, tangent
 from iga.system.system import respond
 
 #: The path is followed to a third of the opening that the mesh is made for: elements are so long that it snaps back.
@@ -187,3 +187,12 @@ def test_of_a_matrix_that_is_singular_there_is_no_tangent(monkeypatch):
     response = respond(system, start, decide=False)
     monkeypatch.setattr("iga.path.solver.factorise", lambda *given: None)
     assert tangent(Solver(system), start, response, 1.0) is None
+
+
+def test_where_all_changes_at_once_lead_round_the_first_one_is_made_alone():
+    """Of the points that grow before those that touch."""
+    now, other = np.array([True, False, True]), np.array([False, True])
+    growing_q, closed_q = _one_changed((now, other), (np.array([True, True, False]), ~other))
+    assert growing_q.tolist() == [True, True, True] and closed_q.tolist() == other.tolist()
+    growing_q, closed_q = _one_changed((now, other), (now, np.array([False, False])))
+    assert growing_q.tolist() == now.tolist() and closed_q.tolist() == [False, False]
