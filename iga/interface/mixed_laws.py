@@ -126,8 +126,8 @@ class MixedLaw(ABC):
 
     @property
     def span(self) -> float:
-        """The scaled jump over which a point goes from whole to failed."""
-        return self.kinks[-1]
+        """The scaled jump over which a point goes from the onset to failure."""
+        return self.kinks[-1] - self.kinks[0]
 
     @property
     def g_max(self) -> float:
