@@ -132,20 +132,27 @@ def tangent(
             agreeing_q, touching_q = sorted_ or (agreeing_q, touching_q)
         tried.add(np.concatenate([growing_q, closed_q]).tobytes())
         if system.interface.slides and np.concatenate([agreeing_q, touching_q]).tobytes() in tried:
-            agreeing_q, touching_q = _one_changed((growing_q, closed_q), (agreeing_q, touching_q))
+            asked, now = (agreeing_q, touching_q), (growing_q, closed_q)
+            agreeing_q, touching_q = _one_changed(now, asked, np.flatnonzero(soft_q), tried)
         growing_q, closed_q = agreeing_q, touching_q
     return found
 
 
 def _one_changed(
-    now: tuple[np.ndarray, np.ndarray], asked: tuple[np.ndarray, np.ndarray]
+    now: tuple[np.ndarray, np.ndarray], asked: tuple[np.ndarray, np.ndarray], soft: np.ndarray, tried: set[bytes]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Two sets of points (n_q,) with the first change of those asked for, and no other: where all at once lead round in
-    circles one at a time, in a fixed order, does not (Murty 1974)."""
-    both = np.concatenate(now)
-    first = np.flatnonzero(both != np.concatenate(asked))[:1]
-    both[first] = ~both[first]
-    return both[: now[0].size], both[now[0].size :]
+    """Two sets of points (n_q,) with one change: the first of those asked for, or else of the ``soft`` points (n_m,),
+    that leads to sets not ``tried`` yet; what is asked for where there is none.
+
+    Where the load falls what grows need not follow from rates: of two neighbours that soften one may have to unload.
+    """
+    both, points = np.concatenate(now), now[0].size
+    for place in (*np.flatnonzero(both != np.concatenate(asked)), *soft):
+        other = both.copy()
+        other[place] = ~other[place]
+        if other.tobytes() not in tried:
+            return other[:points], other[points:]
+    return asked
 
 
 def _sorted(

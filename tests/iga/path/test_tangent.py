@@ -189,10 +189,15 @@ def test_of_a_matrix_that_is_singular_there_is_no_tangent(monkeypatch):
     assert tangent(Solver(system), start, response, 1.0) is None
 
 
-def test_where_all_changes_at_once_lead_round_the_first_one_is_made_alone():
-    """Of the points that grow before those that touch."""
-    now, other = np.array([True, False, True]), np.array([False, True])
-    growing_q, closed_q = _one_changed((now, other), (np.array([True, True, False]), ~other))
-    assert growing_q.tolist() == [True, True, True] and closed_q.tolist() == other.tolist()
-    growing_q, closed_q = _one_changed((now, other), (now, np.array([False, False])))
-    assert growing_q.tolist() == now.tolist() and closed_q.tolist() == [False, False]
+def test_where_all_changes_at_once_lead_round_one_is_made_that_has_not_been_tried():
+    """Two points that soften: both grow, the second is to unload, and then to grow again; the first one has to."""
+    both, first, second, none = (np.array(grows) for grows in ([1, 1], [1, 0], [0, 1], [0, 0]))
+    closed_q, tried, soft = np.array([False, True]), set(), np.array([0, 1])
+    now, went = first.astype(bool), []
+    for one in (both, first):
+        tried.add(np.concatenate([one.astype(bool), closed_q]).tobytes())
+    for asked in (both, both):
+        now, touching_q = _one_changed((now, closed_q), (asked.astype(bool), closed_q), soft, tried)
+        tried.add(np.concatenate([now, touching_q]).tobytes())
+        went.append(now.tolist())
+    assert went == [none.tolist(), second.tolist()]
