@@ -49,8 +49,9 @@ def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
 
     An element boundary lies at the end of the precrack. The meshes are one element thick; one with few elements on the
     path (`Grading.few`) is quadratic through the arms, all that bending needs, and spends the rest along them. Where
-    the arms would miss ``dofs`` by more than `CrackPath.missed`, the lower one has one element more, or there are more
-    elements before the path. Arms that are pressed together have shorter elements at the loaded end.
+    the arms would miss ``dofs`` by more than `CrackPath.missed`, the lower one has one element more, or of arms on
+    rollers the one that bends more easily, or there are more elements before the path. Arms that are pressed together
+    have shorter elements at the loaded end.
 
     Raises
     ------
@@ -226,10 +227,12 @@ def _chosen(problem: Debonding, q: int) -> tuple[Arm, Arm]:
     least = unknowns(arms(n))
     spare = (problem.dofs - least) // (unknowns(arms(n, 1, 1)) - least)
     options = [arms(n), arms(n + 1), arms(n, spare, spare), arms(n, spare + 1, spare + 1)]
-    if not problem.symmetry:
-        alike = abs(problem.mismatch - 1.0) < 1e-9 and problem.interface_rule != "lumped"
-        options[2:2] = [((n, 0), (n + 1, 0))] if alike else []
-        options += [arms(n, spare, spare + 1)] if alike else []
+    if not problem.symmetry and abs(problem.mismatch - 1.0) < 1e-9 and problem.interface_rule != "lumped":
+        more, longer = ((n, 0), (n + 1, 0)), arms(n, spare, spare + 1)
+        upper, lower = (body.moduli.axial(problem.plane) * body.thickness**3 for body in problem.layout.bodies)
+        if problem.layout.supports and upper < lower:
+            more, longer = more[::-1], longer[::-1]
+        options = [*options[:2], more, *options[2:], longer]
     missed = [abs(unknowns(option) - problem.dofs) for option in options]
     near = [option for option, by in zip(options[:2], missed, strict=False) if by <= CRACK_PATH.missed * problem.dofs]
     return near[0] if near else options[int(np.argmin(missed))]

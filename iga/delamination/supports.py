@@ -27,15 +27,16 @@ def _on_rollers(problem: Debonding, arms: tuple[Body, ...]) -> Supports:
     """Stiff springs on the patches of the supports, and a soft one along the specimen, which carries no force.
 
     Springs of `ROLLER` times the modulus times the width are as good as rigid: they give way by about a millionth of
-    the deflection.
+    the deflection. The modulus is that of the stiffer arm, whichever is up.
     """
-    upper, n_dof, pose = problem.layout.bodies[0], control_points(arms).size, problem.pose
+    bodies, n_dof, pose = problem.layout.bodies, control_points(arms).size, problem.pose
+    modulus = max(body.moduli.E1 for body in bodies)
     rows = tuple(patch_rows(arms, support, pose, n_dof) for support in problem.layout.supports)
-    stiff = ROLLER * upper.moduli.E1 * problem.width
-    lever = sum(body.thickness for body in problem.layout.bodies)
+    stiff = ROLLER * modulus * problem.width
+    lever = sum(body.thickness for body in bodies)
     spring_r = [stiff * (lever**2 if support.couple else 1.0) for support in problem.layout.supports]
     along_d = mean_row(arms[-1].ends["right"], pose.axes_kI[0], n_dof)
-    soft = upper.moduli.E1 * problem.width * upper.thickness / upper.length
+    soft = modulus * problem.width * max(body.thickness for body in bodies) / bodies[0].length
     springs_rd = np.array([*(row.mean_d for row in rows), along_d])
     return Supports(springs_rd, np.array([*spring_r, soft]), np.ones(n_dof, dtype=bool), rows)
 

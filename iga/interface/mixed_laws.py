@@ -64,9 +64,9 @@ class Driving(NamedTuple):
 
 
 class Scaled(NamedTuple):
-    """The scaled jump (n,) that measures how far each point is on its way, 1 at the onset of damage and 2 at failure,
-    its derivatives by opening and slip, and ``back`` (n,), where along it the damage of a point grows again: the jump
-    itself, and no less, where there is no damage yet and where nothing is left to fail."""
+    """The scaled jump (n,) that measures how far each point is on its way, with onset of damage and failure at the
+    kinks of the law, its derivatives by opening and slip, and ``back`` (n,), where along it the damage of a point grows
+    again: the jump itself, and no less, where there is no damage yet and where nothing is left to fail."""
 
     x: np.ndarray
     by_g: np.ndarray
@@ -104,9 +104,7 @@ class MixedLaw(ABC):
     pressure_strength: float = 0.0
     rubs: str = "damage"
 
-    #: Scaled jumps at which tractions have a kink, rising; damage of a point that is whole and of one that has failed.
-    kinks: ClassVar[tuple[float, ...]] = (1.0, 2.0)
-    span: ClassVar[float] = 1.0
+    #: Damage of a point that is whole and of one that has failed.
     begun: ClassVar[float] = 0.0
     failed: ClassVar[float] = 1.0
 
@@ -120,6 +118,16 @@ class MixedLaw(ABC):
     @abstractmethod
     def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
         """The scaled jump at openings, slips and damages (n,); pressure does not count."""
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Scaled jumps at which tractions have a kink, rising: at the onset and at failure."""
+        return 1.0, 2.0
+
+    @property
+    def span(self) -> float:
+        """The scaled jump over which a point goes from the onset to failure."""
+        return self.kinks[-1] - self.kinks[0]
 
     @property
     def g_max(self) -> float:
@@ -260,26 +268,51 @@ class TrapezoidalMixed(MixedLaw):
     plateau: float = 0.5
 
     def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
-        (K, Ks), flat, g = self.stiffness, self.plateau, np.maximum(g, 0.0)
+        """``lambda / lambda0`` up to the onset, then that at which the damage that the jump drives to would be reached
+        in the mean of all modes (`reached`): it grows with damage, whatever the mode ratio does."""
+        (K, Ks), g = self.stiffness, np.maximum(g, 0.0)
+        driven = self.driving(g, s, None)
         opening, sliding = K * g * g, Ks * s * s
-        square = opening + sliding
-        moved = square > TINY**0.5
-        square = np.where(moved, square, 1.0)
+        moved = opening + sliding > TINY**0.5
+        square = np.where(moved, opening + sliding, 1.0)
         B, size = np.where(moved, sliding / square, 0.0), np.where(moved, np.sqrt(square), 0.0)
         (m, dm), (G, dG) = self.modes.at(B)
-        onset = np.sqrt(m)
-        way, d_onset = (2.0 * G - m) / ((1.0 + flat) * onset), 0.5 * dm / onset
-        d_way = (2.0 * dG - dm) / ((1.0 + flat) * onset) - way * d_onset / onset
-        soft = size > onset
-        by_size, past = 1.0 / np.where(soft, way, onset), (size - onset) / way
-        by_B = np.where(soft, -(d_onset + past * d_way) / way, -size * d_onset / m)
+        onset, gone = np.sqrt(m), driven.d >= 1.0
+        last = (2.0 * G - m) / ((1.0 + self.plateau) * onset)  # from lambda0 to lambda_f
+        d_onset = 0.5 * dm / onset
+        d_last = (2.0 * dG - dm) / ((1.0 + self.plateau) * onset) - last * d_onset / onset
+        by_size = np.where(gone, self.slender / last, 1.0 / onset)
+        by_B = np.where(gone, -(d_onset + (size - onset) / last * d_last) * by_size, -size * d_onset / m)
         along, across = by_size / square**0.5, 2.0 * by_B / square / square
-        fall, back = (1.0 - flat) * way, onset / np.maximum(1.0 - d, TINY_PART)
-        back = np.where(back > onset + flat * way, onset * (onset + way) / ((1.0 - d) * fall + onset), back)
-        x = np.where(soft, 1.0 + past, size / onset)
-        back = np.where(d > 0.0, 1.0 + (back - onset) / way, np.minimum(x, 1.0))
-        back = np.where(d < 1.0, back, np.maximum(x, 2.0))
-        return Scaled(x, K * g * (along - across * sliding), Ks * s * (along + across * opening), back)
+        x = np.where(gone, 1.0 + (size - onset) / last * self.slender, size / onset)
+        by_g, by_s = K * g * (along - across * sliding), Ks * s * (along + across * opening)
+        soft, (reached, slope) = (driven.d > 0.0) & ~gone, self.reached(driven.d)
+        x, by_g = np.where(soft, reached, x), np.where(soft, slope * driven.by_g, by_g)
+        back = np.where(d > 0.0, self.reached(d)[0], np.minimum(x, 1.0))
+        back = np.where(d < 1.0, back, np.maximum(x, self.kinks[-1]))
+        return Scaled(x, by_g, np.where(soft, slope * driven.by_s, by_s), back)
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        return 1.0, 1.0 + self.slender
+
+    @cached_property
+    def slender(self) -> float:
+        """``lambda_f / lambda0 - 1``, the geometric mean of opening and sliding, or little where that is nothing."""
+        (m, _), (G, _) = self.modes.at(np.array([0.0, 1.0]))
+        return float(np.prod(np.maximum((2.0 * G / m - 1.0) / (1.0 + self.plateau), BRITTLE)) ** 0.5)
+
+    def reached(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """``lambda / lambda0`` (n,) at which damage is d (n,), and its slope, where lambda_f / lambda0 is the mean."""
+        slender, whole = self.slender, 1.0 - self.plateau
+        fall = whole * (1.0 - d)
+        below = 1.0 + fall * slender
+        x, slope = 1.0 + slender * (1.0 - fall) / below, slender * whole * (1.0 + slender) / below**2
+        if not self.plateau:
+            return x, slope
+        flat = x < 1.0 + slender * self.plateau
+        left = np.where(flat, 1.0 - d, 1.0)
+        return np.where(flat, 1.0 / left, x), np.where(flat, 1.0 / left**2, slope)
 
     def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
         (K, Ks), flat = self.stiffness, self.plateau

@@ -23,6 +23,8 @@ class Balance:
     ``leak`` is in parts of the largest work so far. As long as less than that is dissipated it is no measure; then
     ``of_dissipated`` is a part of what is, or, where that is next to nothing, ``of_elastic`` one of the work.
     Less than ``rounding`` of the work is not dissipated: rounding alone leaves points without damage some.
+    Of a bond that slides the ledger of the whole path may be open by the part ``ledger`` of the largest work; from
+    there on a step may add that part of its own.
     What slides off the master is added up over so many parts of a step (``sliding``).
     """
 
@@ -30,6 +32,7 @@ class Balance:
     of_dissipated: float = 1e-3
     of_elastic: float = 1e-7
     rounding: float = 1e-13
+    ledger: float = 1e-3
     sliding: int = 16
 
 
@@ -96,26 +99,38 @@ def spending(interface: Interface, start: Point, state: State, response: Respons
     if q.size == 0:
         return state
     s0, s1 = (touch.slip.s_q for touch in touches if touch.slip is not None)
-    past = History(before.k_q[q], None if before.slip_q is None else before.slip_q[q])
-    kept = law.stored(g0[q], s0[q], past)
-    work_q, rubbed_q = np.zeros(q.size), np.zeros(q.size)
+    jumps, share = ((g0[q], s0[q]), (g1[q], s1[q])), (shares[0][q], shares[1][q])
+    ends = [History(one.k_q[q], None if one.slip_q is None else one.slip_q[q]) for one in (before, now)]
     parts = 1 if interface.viscosity else BALANCE.sliding  # a part of a viscous step does not end where the step does
-    found = law.traction(g0[q], s0[q], past, INSTANT)
-    step_g, step_s = (g1 - g0)[q] / parts, (s1 - s0)[q] / parts
-    for part in range(1, parts + 1):
-        earlier = found.history if part > 1 else past
-        last, share = found, shares[0][q] + (shares[1] - shares[0])[q] * (part - 0.5) / parts
-        g, s = g0[q] + part * step_g, s0[q] + part * step_s
-        found = law.traction(g, s, earlier, state.dt or INSTANT)
-        work_q += 0.5 * share * ((last.p + found.p) * step_g + (last.t + found.t) * step_s)
-        if earlier.slip is not None and found.history.slip is not None:
-            held_q = found.t - (1.0 - found.history.d) * law.stiffness[1] * s
-            rubbed_q += share * held_q * (found.history.slip - earlier.slip)
-    after = History(now.k_q[q], None if now.slip_q is None else now.slip_q[q])
-    left = law.stored(g1[q], s1[q], after)
-    work_q -= shares[1][q] * sum(left) - shares[0][q] * sum(kept)
+    work_q, rubbed_q = _work_of_jumps(law, jumps, share, ends[0], (parts, state.dt or INSTANT))
+    kept, left = (law.stored(g, s, past) for (g, s), past in zip(jumps, ends, strict=True))
+    work_q -= share[1] * sum(left) - share[0] * sum(kept)
     dA_q = interface.dA_q[q]
     return replace(state, spent=state.spent + float(dA_q @ work_q), rubbed=state.rubbed + float(dA_q @ rubbed_q))
+
+
+def _work_of_jumps(
+    law: MixedLaw,
+    jumps: Sequence[tuple[np.ndarray, np.ndarray]],
+    shares: tuple[np.ndarray, np.ndarray],
+    past: History,
+    timed: tuple[int, float],
+) -> tuple[np.ndarray, np.ndarray]:
+    """Work per area (n,) of the tractions along straight ways of gap and slip, and what friction takes of it; in a
+    number of parts that take a time each."""
+    (g0, s0), (g1, s1), (parts, dt) = *jumps, timed
+    work, rubbed, step_g, step_s = np.zeros(g0.size), np.zeros(g0.size), (g1 - g0) / parts, (s1 - s0) / parts
+    found = law.traction(g0, s0, past, INSTANT)
+    for part in range(1, parts + 1):
+        earlier = found.history if part > 1 else past
+        last, share = found, shares[0] + (shares[1] - shares[0]) * (part - 0.5) / parts
+        s = s0 + part * step_s
+        found = law.traction(g0 + part * step_g, s, earlier, dt)
+        work += 0.5 * share * ((last.p + found.p) * step_g + (last.t + found.t) * step_s)
+        if earlier.slip is not None and found.history.slip is not None:
+            held = found.t - (1.0 - found.history.d) * law.stiffness[1] * s
+            rubbed += share * held * (found.history.slip - earlier.slip)
+    return work, rubbed
 
 
 def slid_off(system: System, start: Point, end: Point, away: float, back: float) -> float:
@@ -175,6 +190,9 @@ def leaks(system: System, start: Point, end: Point, most: float) -> bool:
     left_over = end.residuals[-1] * end.response.scale if end.residuals else 0.0
     moved_d = end.state.u_d - start.state.u_d
     leak -= left_over * float(moved_d @ moved_d) ** 0.5
+    if system.interface.slides and abs(end.external_work - end.energies.total) > BALANCE.ledger * most:
+        if leak > BALANCE.ledger * abs(end.external_work - start.external_work):
+            return True  # many small leaks of one sign open the ledger as one large one does
     before, after = start.energies.dissipated, end.energies.dissipated
     begun = before <= BALANCE.rounding * most < after
     if after >= BALANCE.leak * most or begun or not system.interface.law.irreversible:

@@ -28,13 +28,13 @@ from iga.interface.interface import Interface
 class GapLimits:
     """What this may cost before a new tangent is the better choice, and when it has converged.
 
-    ``corrections`` of the gaps, as many of the slips, and ``patience`` times as many where it pays to be patient; from
-    number ``damped`` on every other one goes half way as long as more than the part ``large`` of the traction is left,
-    as they may go round in circles on a law that softens. Tractions agree with the
-    law within ``agreed`` of the largest. There are at most ``solutions``, two tangents or so, each of which is worth 25
-    to 40 of them; up to ``unknowns`` tangents are so little work that any number may be taken; with more than
-    ``entries`` numbers in all solutions these are more work to move about than a tangent; ``sharing`` points share one.
-    Fewer points than ``apart`` are solved for one by one; what they add is rounding below ``rounding`` of the largest.
+    ``corrections`` of the jumps, and ``patience`` times as many where it pays to be patient; from number ``damped`` on
+    every other one goes half way as long as more than the part ``large`` of the traction is left, as they may go round
+    in circles on a law that softens. Tractions agree with the law within ``agreed`` of the largest. There are at most
+    ``solutions``, two tangents or so, each of which is worth 25 to 40 of them; up to ``unknowns`` tangents are so
+    little work that any number may be taken; with more than ``entries`` numbers in all solutions these are more work to
+    move about than a tangent; ``sharing`` points share one. Fewer points than ``apart`` are solved for one by one; what
+    they add is rounding below ``rounding`` of the largest.
     """
 
     corrections: int = 40
@@ -149,7 +149,7 @@ def settled_step(
     j0_qc, pulls = start_qc + touch.jump_rates(linear_d[:-1]), _first_pulls(law, tied, n_dof)
     known_qc, z_r = np.zeros(j0_qc.shape), np.zeros(pulls.parts_mr.shape[1])
     j_qc, guessed = (j0_qc, False) if guess_qc is None else (guess_qc, True)
-    most = GAP_NEWTON.corrections * (GAP_NEWTON.patience if law.patient else start_qc.shape[1])
+    most = GAP_NEWTON.corrections * (GAP_NEWTON.patience if law.patient else 1)
     for correction in range(1, most + 1):
         force_qc, slope_qcc = law.at(j_qc)
         w_qc = force_qc - law.force_qc - _sloped(law.slope_qcc, (j_qc - start_qc)[..., None])[..., 0]

@@ -97,7 +97,7 @@ def _iterate(
         stays = len(residuals) > 1 and norm > 0.25 * residuals[-2]
         if met and stays and norm <= floor:
             return now, tuple(residuals)
-        if _hopeless(residuals, newton):
+        if _hopeless(residuals, newton) or (slides and _circling(residuals)):
             return None, tuple(residuals)
         stale = factorised and _holds(residuals, newton.tolerance)
         if not stale and solver.factorise(now.response) is None:
@@ -149,6 +149,15 @@ def _hopeless(residuals: list[float], newton: Newton) -> bool:
         return True
     best = int(np.argmin(residuals))
     return len(residuals) - 1 - best > newton.patience
+
+
+def _circling(residuals: list[float]) -> bool:
+    """Whether the last iterates are those of before, round and round: each follows from the one before alone."""
+    for turn in (2, 3, 4):
+        last = residuals[-2 * turn :]
+        if len(residuals) > 3 * turn and np.allclose(last, residuals[-3 * turn : -turn], rtol=1e-6, atol=0.0):
+            return True
+    return False
 
 
 def _evaluated(solver: Solver, trial: State, decide: bool) -> Iterate:

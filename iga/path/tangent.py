@@ -112,6 +112,7 @@ def tangent(
     growing_q = soft_q if onward or not law.irreversible else np.zeros_like(soft_q)
     flat_q = law.contact & (np.abs(g_q) <= SORTING.closed * law.g_max)
     closed_q, found = state.closed_q, None
+    tried: set[bytes] = set()
     for attempt in range(SORTING.attempts):
         if attempt > 0 or turning:
             # a history larger by a rounding is enough to be on the secant, a smaller one to be on the envelope
@@ -129,8 +130,29 @@ def tangent(
         if attempt == 0 and turning:
             sorted_ = _sorted(solver, state, direction, (soft_q, growing_q, flat_q))
             agreeing_q, touching_q = sorted_ or (agreeing_q, touching_q)
+        tried.add(np.concatenate([growing_q, closed_q]).tobytes())
+        if system.interface.slides and np.concatenate([agreeing_q, touching_q]).tobytes() in tried:
+            asked, now = (agreeing_q, touching_q), (growing_q, closed_q)
+            agreeing_q, touching_q = _one_changed(now, asked, np.flatnonzero(soft_q), tried)
         growing_q, closed_q = agreeing_q, touching_q
     return found
+
+
+def _one_changed(
+    now: tuple[np.ndarray, np.ndarray], asked: tuple[np.ndarray, np.ndarray], soft: np.ndarray, tried: set[bytes]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Two sets of points (n_q,) with one change: the first of those asked for, or else of the ``soft`` points (n_m,),
+    that leads to sets not ``tried`` yet; what is asked for where there is none.
+
+    Where the load falls what grows need not follow from rates: of two neighbours that soften one may have to unload.
+    """
+    both, points = np.concatenate(now), now[0].size
+    for place in (*np.flatnonzero(both != np.concatenate(asked)), *soft):
+        other = both.copy()
+        other[place] = ~other[place]
+        if other.tobytes() not in tried:
+            return other[:points], other[points:]
+    return asked
 
 
 def _sorted(

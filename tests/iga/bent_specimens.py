@@ -16,8 +16,8 @@ HALF = 51.0
 PRESSED = (HALF - 0.5, HALF + 0.5)
 
 
-def bond(penalty: float = 1e5, **keys: Any) -> BilinearMixed:
-    return BilinearMixed(MODES, penalty, **keys)
+def bond(penalty: float = 1e5, modes: ModeRatio = MODES, **keys: Any) -> BilinearMixed:
+    return BilinearMixed(modes, penalty, **keys)
 
 
 def flexure(**keys: Any) -> Problem:

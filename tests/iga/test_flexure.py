@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bent_specimens import HALF, MODES, bond, flexure, mixed_bending
+from bent_specimens import ARM, HALF, MODES, PRESSED, ROLLERS, bond, flexure, mixed_bending
 
 from iga.delamination.solution import solve
-from iga.interface.mixed_laws import ExponentialMixed
+from iga.interface.mixed_laws import BilinearMixed, ExponentialMixed
+from iga.specimen.layout import Load, Moduli, Rectangle
 
 FIRST, SECOND = MODES.toughness
 #: Of quadratic finite elements 0.25 mm long [cross-code]: initial stiffness in N/mm, largest load in N.
@@ -167,3 +168,39 @@ def test_damage_that_begins_with_the_square_of_the_slip_sets_out_from_rest():
     small, large = (solve(flexure(**keys, kinematics=kinematics)) for kinematics in ("linear", "finite"))
     assert small.status == large.status == "complete"
     assert large.steps["load"][-1] == pytest.approx(small.steps["load"][-1], rel=0.005)
+
+
+def stiff(K: float, Ks: float) -> BilinearMixed:
+    return bond(modes=replace(MODES, stiffness=(K, Ks)))
+
+
+HARD = {
+    "soft in opening": {"mixed": stiff(3.8e3, 3.8e6), "opening": (6.0,), "dofs": 600},
+    "soft in sliding": {"mixed": stiff(3.8e5, 3.8e3), "opening": (9.0,), "dofs": 600},
+    "stiff on a coarse mesh": {"mixed": stiff(1e7, 1e7), "opening": (2.0,), "dofs": 800, "basis": "tspline"},
+}
+
+
+@pytest.mark.parametrize("case", HARD)
+def test_of_any_stiffnesses_the_path_comes_to_its_end_and_its_ledger_closes(case):
+    """Damage leads where the mode ratio changes along the path, and a kink is passed by a part of the onset."""
+    solution = solve(mixed_bending(steps=150, **HARD[case]))
+    steps = solution.steps
+    missing = steps["external_work"] - steps["stored_energy"] - steps["dissipated_energy"]
+    assert solution.status == "complete" and steps["dissipated_energy"][-1] > 0.0
+    assert np.abs(missing).max() < 5e-3 * steps["external_work"].max()
+
+
+@pytest.mark.parametrize("basis", ["nurbs", "lagrange"])
+def test_two_unequal_arms_are_as_stiff_upside_down(basis):
+    """Turned over, with the loads and what is slave and master."""
+    soft = Rectangle(102.0, 3.0, Moduli(E1=60e3, E2=8e3, G12=4e3, nu12=0.3))
+    found = []
+    for arms, slave, sign in (((ARM, soft), "upper", -1.0), ((soft, ARM), "lower", 1.0)):
+        body, side = (1, "bottom") if sign < 0 else (0, "top")
+        rollers = tuple(roller._replace(body=body, side=side) for roller in ROLLERS)
+        load = Load(1 - body, "top" if side == "bottom" else "bottom", sign, PRESSED)
+        problem = flexure(bodies=arms, supports=rollers, loads=(load,), slave=slave, opening=(0.2,), dofs=600)
+        steps = solve(replace(problem, basis=basis)).steps
+        found.append(steps["load"][1] / steps["opening"][1])
+    assert found[1] == pytest.approx(found[0], rel=1e-9)

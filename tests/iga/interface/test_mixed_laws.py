@@ -120,6 +120,33 @@ def test_the_tangent_is_the_derivative_and_at_kinks_that_of_one_side(case):
             assert np.all(((exact > low) & (exact < high))[one])
 
 
+#: Shear stiffness over that in opening.
+RATIOS = (1e-3, 1.0, 1e3)
+
+
+@pytest.mark.parametrize("name", ["bilinear", "trapezoidal"])
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_the_scaled_jump_grows_with_the_damage_that_the_jump_drives_to(name, ratio):
+    """Whatever the mode ratio does: with unequal stiffnesses a jump that slides on may drive to less damage."""
+    law = law_of(name, PEEK | {"stiffness": (1.2e5 / ratio**0.5, 1.2e5 * ratio**0.5)}, exponent=2.284)
+    rng, n, (K, Ks) = np.random.default_rng(5), 20_000, law.stiffness
+    angle = rng.uniform(0.0, 0.5 * np.pi, n)
+    (m, _), (G, _) = law.modes.at(np.sin(angle) ** 2)
+    size = m**0.5 * (2.0 * G / m) ** rng.uniform(-0.3, 1.1, n)  # from below the onset to beyond failure
+    g, s = size * np.cos(angle) / K**0.5, size * np.sin(angle) / Ks**0.5
+    d = law.driven(g, s)
+    found, soft, order = law.scaled(g, s, d), (d > 0.0) & (d < 1.0), np.argsort(d)
+    first, last = law.kinks
+    assert np.all(found.x[d == 0.0] <= first) and np.all(found.x[d == 1.0] >= last)
+    assert np.all(np.diff(found.x[order][soft[order]]) > 0.0)
+    assert found.x[soft] == pytest.approx(found.back[soft], rel=1e-12)
+    for by, v, w in ((found.by_g, g, 0.0), (found.by_s, 0.0, s)):
+        h = 1e-7
+        change = law.scaled(g + h * v, s + h * w, d).x - law.scaled(g - h * v, s - h * w, d).x
+        away = np.abs(change / (2.0 * h) - by * (v + w)) / found.x
+        assert np.mean(away > 1e-6) < 1e-3 and away[soft].max() < 0.5  # but where a kink is between both
+
+
 def test_at_a_kink_the_tangent_is_that_of_going_on():
     """On the envelope at the largest jump so far: that of loading; a rounding behind it that of unloading."""
     law, g, s = law_of(), np.array([0.8]), np.array([0.6])

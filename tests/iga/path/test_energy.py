@@ -74,13 +74,32 @@ def test_what_a_step_may_leak(before, after, leak, left_over, refused):
     )
     for reversible in (False, True):
         law = SimpleNamespace(irreversible=not reversible)
-        system = SimpleNamespace(interface=SimpleNamespace(law=law))
+        system = SimpleNamespace(interface=SimpleNamespace(law=law, slides=False))
         off = replace(end.energies, bulk=end.energies.bulk - leak)
         response = SimpleNamespace(scale=5.0)
         after_it = SimpleNamespace(
             external_work=1.0, energies=off, state=end.state, response=response, residuals=(1.0, 0.1 * left_over)
         )
         assert leaks(system, start, after_it, 0.0) == (refused if not reversible else leak > 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("ledger", "leak", "refused"), [(0.9e-3, 5e-4, False), (1.1e-3, 5e-4, True), (0.1, 0.9e-4, False)]
+)
+def test_of_a_bond_that_slides_an_open_ledger_is_not_opened_further(ledger, leak, refused):
+    """Of a step that does a tenth of the work, in parts of which it may leak a thousandth then."""
+    law = SimpleNamespace(irreversible=True)
+    system = SimpleNamespace(interface=SimpleNamespace(law=law, slides=True))
+    start, end = (
+        SimpleNamespace(
+            external_work=work,
+            energies=Energies(work - 0.5 - off, 0.0, 0.0, 0.5),
+            state=SimpleNamespace(u_d=np.array([work])),
+            residuals=(),
+        )
+        for work, off in ((0.9, ledger - leak), (1.0, ledger))
+    )
+    assert leaks(system, start, end, 0.0) == refused
 
 
 LAW = BilinearLaw(4.0, 0.1, 12.5, 1e3, True, True)

@@ -14,7 +14,7 @@ from iga.dcb import build
 from iga.interface.laws import BilinearLaw
 from iga.path.control import Prescribed, gap_control, load_control, opening_control
 from iga.path.follow import PATH, follow
-from iga.path.newton import Iterate, Line, _holds, _hopeless, _searched, equilibrium, residual_norm
+from iga.path.newton import Iterate, Line, _circling, _holds, _hopeless, _searched, equilibrium, residual_norm
 from iga.path.point import Point
 from iga.path.solver import DEFAULT, MANY_DECIDE, Newton, Solver
 from iga.path.tangent import tangent
@@ -138,6 +138,12 @@ def test_a_search_that_goes_round_in_circles_ends():
     many = list(np.geomspace(1.0, 1e-3, DEFAULT.iterations))
     assert not _hopeless(many, DEFAULT) and _hopeless([*many, 1e-4], DEFAULT) and _hopeless([np.inf], DEFAULT)
     assert not _hopeless([*many, 1e-4, 1e-5], DEFAULT.searching)
+
+
+@pytest.mark.parametrize("turn", [[2.0, 1.0], [3.0, 1.0, 2.0], [4.0, 1.0, 3.0, 2.0]])
+def test_iterates_that_come_back_for_the_third_time_go_round(turn):
+    assert _circling([9.0, *turn * 3]) and not _circling(turn * 2)
+    assert not _circling([9.0, *turn, *turn, *(1.0001 * np.array(turn))])
 
 
 def met(value, target, change):

@@ -13,7 +13,7 @@ from iga.path.follow import follow
 from iga.path.newton import equilibrium
 from iga.path.point import Point
 from iga.path.solver import Solver
-from iga.path.tangent import on_envelope, tangent
+from iga.path.tangent import _one_changed, on_envelope, tangent
 from iga.system.system import respond
 
 #: The path is followed to a third of the opening that the mesh is made for: elements are so long that it snaps back.
@@ -187,3 +187,17 @@ def test_of_a_matrix_that_is_singular_there_is_no_tangent(monkeypatch):
     response = respond(system, start, decide=False)
     monkeypatch.setattr("iga.path.solver.factorise", lambda *given: None)
     assert tangent(Solver(system), start, response, 1.0) is None
+
+
+def test_where_all_changes_at_once_lead_round_one_is_made_that_has_not_been_tried():
+    """Two points that soften: both grow, the second is to unload, and then to grow again; the first one has to."""
+    both, first, second, none = (np.array(grows) for grows in ([1, 1], [1, 0], [0, 1], [0, 0]))
+    closed_q, tried, soft = np.array([False, True]), set(), np.array([0, 1])
+    now, went = first.astype(bool), []
+    for one in (both, first):
+        tried.add(np.concatenate([one.astype(bool), closed_q]).tobytes())
+    for asked in (both, both):
+        now, touching_q = _one_changed((now, closed_q), (asked.astype(bool), closed_q), soft, tried)
+        tried.add(np.concatenate([now, touching_q]).tobytes())
+        went.append(now.tolist())
+    assert went == [none.tolist(), second.tolist()]
