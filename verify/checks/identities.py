@@ -126,7 +126,7 @@ def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
     if not IDENTITIES[check.name].of_zone or not abs(check.value) > check.tolerance:
         return ""
     return (
-        mixed.stocky_arms(prepared.scene, check)
+        mixed.not_slender(prepared.scene, result.steps, check)
         or resolution.too_coarse(prepared, result, check)
         or end_cannot_judge(prepared, result, check)
     )

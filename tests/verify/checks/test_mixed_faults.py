@@ -160,14 +160,16 @@ def test_slender_arms_on_a_single_leg_slide_by_three_sevenths() -> None:
     assert state_of_mode([], 3.0 / 7.0) == state_of_mode([], 0.425) == "holds"
     assert state_of_mode([], 0.408) == state_of_mode(stocky, 0.38) == "broken"
     assert state_of_mode(stocky, 0.415) == "unresolved"
+    assert state_of_mode([], 0.47, zone=0.1) == "unresolved"
+    assert state_of_mode([], 0.50, zone=0.1) == "broken"
 
 
-def state_of_mode(keys: list[str], ratio: float) -> str:
-    """The verdict on a slb that slides by a part of J, of one step before its crack grows."""
+def state_of_mode(keys: list[str], ratio: float, zone: float = 0.0) -> str:
+    """The verdict on a slb that slides by a part of J, of one step with a process zone of so many crack lengths."""
     scene = load_scene("slb", keys)
     a = scene.specimen.free_length
     one = {"opening": 1.0, "load": 1.0, "J_loads": 1.0, "J_bond": 1.0, "J_shear": ratio}
-    columns = one | {"crack_length": a, "damage_front": a, "dissipated_energy": 0.0}
+    columns = one | {"crack_length": a, "damage_front": (1.0 + zone) * a, "dissipated_energy": 0.0}
     found = run_checks(scene, Result("beam", {name: np.array([value]) for name, value in columns.items()}))
     return next(check.state for check in found if check.name == "mode-ratio")
 
