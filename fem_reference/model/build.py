@@ -50,7 +50,7 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
     tie_n, springs_kn = tie(specimen, displacement), actions.springs_kn
     with phase("assembly"):
         bond, X_q = _interface(bond_forms(problem, bodies, displacement), weak, free_n, problem.width, phase)
-        bulk_matrix, tie_matrix = _bulk_and_springs(bulk, bcs, bond, (tie_n, *springs_kn))
+        bulk_matrix, tie_matrix = _bulk_and_springs(bulk, bcs, bond, free_n * np.stack([tie_n, *springs_kn]))
         tangent_matrix = bulk_matrix.copy()
     end_load_n = point_load(specimen, problem.load_at, displacement, X_nI, comm) if at_nodes else load.assemble()
     kind: type[Model] = MixedModel if problem.mixed_law else OpeningModel
@@ -85,16 +85,17 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
 
 
 def _bulk_and_springs(
-    bulk: Any, bcs: Sequence[fem.DirichletBC], bond: Bond, springs_n: Sequence[np.ndarray]
+    bulk: Any, bcs: Sequence[fem.DirichletBC], bond: Bond, springs_kn: np.ndarray
 ) -> tuple[PETSc.Mat, ...]:
     """Stiffness of the unloaded bodies with the springs, in the pattern of the whole tangent, and that of the springs.
 
-    A spring is a row: its elongation times the square root of its stiffness.
+    A spring is a row of ``springs_kn`` (n_k, n_n): its elongation times the square root of its stiffness, zero at
+    supported unknowns.
     """
     narrow = create_block_matrix(bulk)
     add_block_matrix(narrow, bulk, bcs)
-    spring_matrix = outer(springs_n[0], narrow)
-    for spring_n in springs_n[1:]:
+    spring_matrix = outer(springs_kn[0], narrow)
+    for spring_n in springs_kn[1:]:
         spring_matrix.axpy(1.0, outer(spring_n, narrow), PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     bulk_matrix = widened(widened(narrow, bond.product), spring_matrix)
     add_block_matrix(bulk_matrix, bulk, bcs)

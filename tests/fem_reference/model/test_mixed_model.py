@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 from mpi4py import MPI
-from sliding_specimens import ENF, LAW, pulled_apart, under_moments
+from sliding_specimens import ARM, ENF, LAW, pulled_apart, under_moments
 
 from fem_reference.model.build import build_model
 from fem_reference.model.frame import relative
@@ -126,9 +126,13 @@ def test_loads_and_supports_work_on_the_mean_displacement_and_the_mean_rotation(
 
 def test_motions_that_no_support_resists_are_held():
     """One rigid motion after the other: its smallest stiffness is that of a spring or of a point that is held."""
-    for problem in (SMALL, pulled_apart(elements=24, layers=1), under_moments(1.0, 1.0, elements=24, layers=1)):
+    few = {"elements": 24, "layers": 1}
+    unequal = under_moments(1.0, 0.2, bodies=(ARM, replace(ARM, thickness=4.0)), **few)
+    for problem in (SMALL, pulled_apart(**few), under_moments(1.0, 1.0, **few), unequal):
         model = build(problem)
         A = model.tangent(0 * model.load_n, model.intact()).convert("dense").getDenseArray()
+        held = np.flatnonzero(model.free_n == 0.0)
+        assert np.array_equal(A[held], np.eye(len(A))[held]), "a point that is held feels no spring"
         assert np.linalg.eigvalsh(0.5 * (A + A.T))[0] > 1e-6
 
 
