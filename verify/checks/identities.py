@@ -310,7 +310,7 @@ identity("mode-ratio", 0.01, "The part of sliding in J is that of the closed for
     mixed.mode_gap
 )
 identity("moments", 0.003, "J is that of the end moments.", kind="analytical", of_zone=True)(mixed.moments_gap)
-identity("moments-elastic", 1e-6, "Before any damage J is that of the end moments.", kind="analytical")(
+identity("moments-elastic", 1e-6, "Before any damage J is that of the end moments.", kind="analytical", of_zone=True)(
     mixed.elastic_moments_gap
 )
 identity("growth-toughness", 0.003, "While a crack grows J is the toughness.", kind="analytical", of_zone=True)(
