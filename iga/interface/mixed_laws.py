@@ -368,6 +368,11 @@ class ExponentialMixed(MixedLaw):
 
     failed: ClassVar[float] = -np.expm1(-EXPONENTS_GONE)
 
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """It has none: the exponent at which sliding is at its strength stands for the onset, and `failed`."""
+        return 1.0 + 0.5 / EXPONENTS_GONE, 2.0
+
     def __post_init__(self) -> None:
         if self.pressure_strength or self.rubs != "damage":
             raise ValueError('the exponential law has no pressure_strength, and what rubs of it is the "damage"')

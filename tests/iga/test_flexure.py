@@ -168,6 +168,8 @@ def test_damage_that_begins_with_the_square_of_the_slip_sets_out_from_rest():
     small, large = (solve(flexure(**keys, kinematics=kinematics)) for kinematics in ("linear", "finite"))
     assert small.status == large.status == "complete"
     assert large.steps["load"][-1] == pytest.approx(small.steps["load"][-1], rel=0.005)
+    front = large.steps["damage_front"]
+    assert front[1] < 45.0 < ARM.length, "where the strength is reached; damage begins at once, everywhere"
 
 
 def stiff(K: float, Ks: float) -> BilinearMixed:

@@ -185,3 +185,14 @@ def test_end_moments_say_nothing_of_arms_that_they_press_together(moments: str, 
         for check in run_checks(scene, replace(result, steps={**result.steps, "load": opening * result.load}))
     }
     assert ("moments" in names) == judged
+
+
+def test_a_specimen_at_rest_is_no_evidence() -> None:
+    """A zone that reaches the far end from the first step on leaves the row at rest alone, whose J is 0."""
+    scene, result = made_up("4enf")
+    steps = {
+        **result.steps,
+        "damage_front": np.where(result.opening > 0.0, scene.specimen.extent, result.steps["damage_front"]),
+    }
+    names = {check.name for check in run_checks(scene, replace(result, steps=steps))}
+    assert not names & {"j-loads", "plateau", "dissipation", "mode-ratio"}

@@ -5,6 +5,7 @@ Each function returns the largest relative deviation over the steps, or None whe
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import sqrt
 
 import numpy as np
@@ -54,7 +55,7 @@ def j_loads(scene: Scene, steps: Steps) -> float | None:
     """
     if not sliding(scene, steps):
         return None
-    gap, counted = steps["J_loads"] - steps["J_bond"], zone_is_free(scene, steps)
+    gap, counted = steps["J_loads"] - steps["J_bond"], zone_is_free(scene, steps) & (steps["J_loads"] != 0.0)
     return worst(gap[counted] / scale(peak(steps["J_loads"][counted]))) if counted.any() else None
 
 
@@ -99,7 +100,8 @@ def mode_gap(scene: Scene, steps: Steps) -> float | None:
     """
     if not sliding(scene, steps) or not _alike(scene):
         return None
-    expected, body, counted = _mode(scene), scene.specimen, zone_is_free(scene, steps)
+    expected, body = _mode(scene), scene.specimen
+    counted = zone_is_free(scene, steps) & (steps["J_bond"] != 0.0)
     if body.kind == "slb":
         counted &= steps["damage_front"] < body.extent / 2.0 - AWAY * sum(body.thicknesses)
     if expected is None or not counted.any():
@@ -167,9 +169,12 @@ def elastic_moments_gap(scene: Scene, steps: Steps) -> float | None:
     return worst(steps["J_loads"][counted] / J[counted] - 1.0) if counted.any() else None
 
 
-def plateau_gap(scene: Scene, steps: Steps) -> float | None:
+def plateau_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: 0.0) -> float | None:
     """Largest difference of the load of a 4enf from ``(4 w / 3 d) (E h^3 G_IIc)^(1/2)`` while its crack grows between
-    the loads, over it; E is that of bending, and arms may differ in thickness and material."""
+    the loads, over it; E is that of bending, and arms may differ in thickness and material.
+
+    The crack has grown by an ``element`` of the bond at least: its length is known between points of the bond alone.
+    """
     body, toughness = scene.specimen, scene.interface.shear_toughness
     if not isinstance(body, FourPointEnf) or not _linear(scene) or not sliding(scene, steps) or not toughness:
         return None
@@ -177,6 +182,9 @@ def plateau_gap(scene: Scene, steps: Steps) -> float | None:
     plateau = sqrt(toughness / arms.release(middle)[0]) / arms.compliance(middle)
     counted = steps["crack_length"] > max(body.free_length, body.offset + away)
     counted &= steps["damage_front"] < body.length - body.offset - away
+    if counted.any():
+        grown = np.nan_to_num(element())
+        counted &= steps["crack_length"] > body.free_length + grown
     return worst(steps["load"][counted] / plateau - 1.0) if counted.any() else None
 
 
