@@ -47,8 +47,8 @@ Arm = tuple[int, int]
 def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
     """NURBS or Lagrange meshes of both arms: equal elements on the crack path, longer ones before and beyond it.
 
-    An element boundary lies at the end of the precrack. The meshes are one element thick; one with few elements on the
-    path (`Grading.few`) is quadratic through the arms, all that bending needs, and spends the rest along them. Where
+    An element boundary lies at the end of the precrack, and there are ``layers`` elements through each arm. A mesh with
+    few elements on the path (`Grading.few`) is quadratic there, all that bending needs, and spends the rest along. If
     the arms would miss ``dofs`` by more than `CrackPath.missed`, the lower one has one element more, or of arms on
     rollers the one that bends more easily, or there are more elements before the path. Arms that are pressed together
     have shorter elements at the loaded end.
@@ -66,7 +66,7 @@ def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
 
     @cache
     def drawn(arm: Arm, thickness: float) -> Mesh:
-        through = thickness * np.linspace(0.0, 1.0, 2)
+        through = thickness * np.linspace(0.0, 1.0, problem.layers + 1)
         return find(problem.basis).rectangle((problem.degree, q), lines(problem, *arm), through)
 
     upper, lower = (drawn(arm, body.thickness) for arm, body in zip(both, problem.layout.bodies, strict=True))
@@ -215,13 +215,14 @@ def _chosen(problem: Debonding, q: int) -> tuple[Arm, Arm]:
         return upper, lower
 
     columns = find(problem.basis).columns
+    rows = columns(q, problem.layers)
 
     @cache
     def along(arm: Arm) -> int:
         return columns(problem.degree, len(lines(problem, *arm)) - 1)
 
     def unknowns(both: tuple[Arm, Arm]) -> int:
-        return 2 * (q + 1) * sum(along(arm) for arm in both)
+        return 2 * rows * sum(along(arm) for arm in both)
 
     n = largest(lambda n: unknowns(arms(n)), 1, problem.dofs)
     least = unknowns(arms(n))

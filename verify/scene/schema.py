@@ -99,6 +99,8 @@ class Discretization(Section):
     """Degree of the basis; 3 for tspline."""
     dofs: int = Field(default=1956, ge=40, le=1_000_000)
     """Unknowns to aim at."""
+    layers: int = Field(default=1, ge=1, le=8)
+    """Elements through each of two arms, for nurbs and lagrange; T-meshes are graded there."""
     interface_rule: Literal["gauss", "lobatto", "lumped"] = "gauss"
     """How the interface is integrated."""
     interface_points: int = Field(default=2, ge=1, le=12)
@@ -263,6 +265,8 @@ class Scene(Section):
     @classmethod
     def _two_meshes(cls, mesh: Discretization, info: ValidationInfo) -> Discretization:
         effects, specimen = info.data.get("effects"), info.data.get("specimen")
+        if mesh.layers > 1 and specimen is not None and specimen.clamped:
+            raise refuse(f"1 for a {specimen.kind}, whose lower body is graded", (("layers",), mesh.layers))
         if mesh.adaptive and specimen is not None and (specimen.mesh or not specimen.symmetric):
             why = "with specimen.mesh, which is taken as it is" if specimen.symmetric else f"for a {specimen.kind}"
             raise refuse(f"false {why}", (("adaptive",), True))
