@@ -104,6 +104,12 @@ def require_arms(problem: Debonding) -> None:
         raise ValueError(f"arms must end with the bond and be opened at X = 0, got {lengths} and {layout.bonded}")
 
 
+def _turned(problem: Debonding) -> bool:
+    """Whether couples act on the faces at the left ends, and arms turn far."""
+    couples = any(load.couple and load.side == "left" for load in problem.layout.loads)
+    return couples and problem.kinematics == "finite"
+
+
 def _thinner(problem: Debonding) -> float:
     return min(body.thickness for body in problem.layout.bodies)
 
@@ -195,12 +201,13 @@ def division(
 def lines(problem: Debonding, path: int, spare: int = 0, layers: int = 0) -> np.ndarray:
     """Element boundaries along an arm that is divided like this; parameters as those of `division`.
 
-    Where arms are pressed together the first element is halved towards the loaded end, again and again, down to
-    `Grading.pressed`: load and contact balance each other within about the thickness of an arm from there.
+    Where arms are pressed together, or turned far by couples on their faces, the first element is halved towards the
+    loaded end, again and again, down to `Grading.pressed`: within about the thickness of an arm from there load and
+    contact balance each other, and the J-integral of couples is that of strains at the face.
     """
     parts, x = division(problem, path, spare, layers)
     breaks = pieces(*((start, end, n) for start, end, n in zip(x[:-1], x[1:], parts, strict=True)))
-    if not presses(problem):
+    if not (presses(problem) or _turned(problem)):
         return breaks
     halvings = np.log2(x[1] / (parts[0] - spare) / (GRADING.pressed * _thinner(problem))) - GRADING.rounding
     number = min(max(0, int(np.ceil(halvings))), most_halvings(path))
