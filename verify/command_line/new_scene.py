@@ -14,7 +14,7 @@ from verify.scene.keys import SPECIMENS, Key, keys, keys_of
 from verify.scene.load import load_scene
 from verify.scene.materials import Orthotropic
 from verify.scene.parse import SceneError, parse_scene
-from verify.scene.published import Published
+from verify.scene.stated.published import Published
 from verify.support.refusal import Refusal
 
 #: A TOML value that no key accepts; its refusal contains the accepted values.
