@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from pydantic import ConfigDict, model_validator
+from pydantic import ConfigDict, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from verify.scene.tables import Section, refuse
 
@@ -56,6 +56,15 @@ class Uncertainty(Section):
             raise refuse(f"a relative standard uncertainty, a number > 0 and <= {MOST_UNCERTAIN:g}", *wrong)
         return {key: value if key in cls.model_fields else float(value) for key, value in pairs}
 
+    @model_serializer(mode="wrap")
+    def _in_tables(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """As tables in tables, in which --set replaces a single key."""
+        found: dict[str, Any] = {}
+        for key, value in write(self).items():
+            table, _, name = key.rpartition(".")
+            (found.setdefault(table, {}) if table else found)[name] = value
+        return found
+
     @property
     def inputs(self) -> Mapping[str, float]:
         """Of numbers of the scene, by dotted key."""
@@ -67,11 +76,19 @@ class Uncertainty(Section):
         return {key: (self.model_extra or {}).get(key, 0.0) for key in DATA_KEYS}
 
 
-def number_at(tables: Mapping[str, Any], key: str) -> float | None:
-    """The number other than 0 that a dotted key names in the tables of a scene; None where there is none."""
+def number_at(tables: Mapping[str, Any], key: str) -> float | tuple[float, ...] | None:
+    """The number other than 0 that a dotted key names in the tables of a scene, or the numbers, as of two arms, which
+    are off by the same part; None where there is none."""
     table, _, name = key.partition(".")
-    value = tables[table].model_dump().get(name) if isinstance(tables.get(table), Section) else None
-    return value if isinstance(value, float) and value != 0.0 else None
+    known = table in UNCERTAIN_TABLES and isinstance(tables.get(table), Section)
+    value = tables[table].model_dump().get(name) if known else None
+    numbers = value if isinstance(value, tuple) and value else (value,)
+    return value if all(isinstance(one, float) and one != 0.0 for one in numbers) else None
+
+
+def scaled(number: float | tuple[float, ...], factor: float) -> str:
+    """A number, or several, times a factor, as TOML."""
+    return str([one * factor for one in number]) if isinstance(number, tuple) else repr(number * factor)
 
 
 def numbers_in(tables: Mapping[str, Any]) -> tuple[str, ...]:

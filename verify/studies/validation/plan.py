@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from verify.methods.method import Prepared
@@ -11,7 +12,7 @@ from verify.methods.solve import prepare, require
 from verify.runs.jobs import Job, left_out
 from verify.scene.parse import SceneError
 from verify.scene.schema import Scene
-from verify.scene.stated.uncertainty import number_at
+from verify.scene.stated.uncertainty import number_at, scaled
 from verify.studies.validation.statement import LEAST_STEP, Known
 from verify.support.refusal import Refusal
 
@@ -63,7 +64,7 @@ def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -
     require(prepared)
     base = Job(source, scene, method, f"validation/{method}", (*given, *_held(prepared, given)), fields=False)
     numbers = scene.uncertainty
-    places, why = _places(base) if numbers.introduction else ({}, "")
+    places, why = _places(base, prepared.method.has_mesh) if numbers.introduction else ({}, "")
     remarks = [why] if why else []
     meshes = (base, *_coarser(base, prepared))
     if len(meshes) == 1:
@@ -86,7 +87,7 @@ def _held(prepared: Prepared, given: Sequence[str]) -> list[str]:
     held += [f"effects.{one.key}={_toml(one.value)}" for one in prepared.decisions]
     if prepared.method.with_dofs and not any(one.startswith("discretization.steps") for one in given):
         held.append("discretization.steps=auto")
-    return [one for one in held if one.partition("=")[0] not in [other.partition("=")[0] for other in given]]
+    return held
 
 
 def _coarser(base: Job, prepared: Prepared) -> list[Job]:
@@ -111,25 +112,23 @@ def _moved(base: Job, key: str, stated: float) -> tuple[float, Job, Job]:
         raise Refusal(f"uncertainty.{key}: must be that of a number of the scene")
     names = {"smaller": 1.0 - step, "larger": 1.0 + step}
     low, high = (
-        _checked(_varied(base, f"{key}-{name}", f"{key}={value * factor!r}"), f"uncertainty.{key}")
+        _checked(_varied(base, f"{key}-{name}", f"{key}={scaled(value, factor)}"), f"uncertainty.{key}")
         for name, factor in names.items()
     )
     return step, low, high
 
 
-def _places(base: Job) -> tuple[dict[str, Job], str]:
+def _places(base: Job, meshed: bool) -> tuple[dict[str, Job], str]:
     """Runs with the load at every place that the method and the specimen have, or why there is one."""
+    one_place = f"load introduction: {base.method} has one place of the load in this scene, which is not in the budget"
+    if not meshed:
+        return {}, one_place
     found: dict[str, Job] = {base.scene.load.at: base}
     for place in LOAD_PLACES:
-        if place in found:
-            continue
-        try:
-            found[place] = _checked(_varied(base, f"load-at-{place}", f"load.at={place}"), "load.at")
-        except Refusal:
-            pass
-    if len(found) > 1:
-        return found, ""
-    return {}, f"load introduction: {base.method} has one place of the load in this scene, which is not in the budget"
+        if place not in found:
+            with suppress(Refusal):
+                found[place] = _checked(_varied(base, f"load-at-{place}", f"load.at={place}"), "load.at")
+    return (found, "") if len(found) > 1 else ({}, one_place)
 
 
 def _varied(base: Job, name: str, override: str) -> Job:
@@ -150,7 +149,7 @@ def _checked(job: Job, what: str) -> Job:
     except SceneError as error:
         why = "; ".join(error.sentences)
     if why:
-        raise Refusal(f"{what}: {why}")
+        raise Refusal(f"{what}: {' '.join(why.split())}")
     return job
 
 

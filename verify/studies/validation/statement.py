@@ -22,6 +22,9 @@ LEAST_STEP = 0.005
 #: Relative change of all openings by which a quantity is differentiated: well inside `Windows.whole`.
 OPENING_STEP = 0.005
 
+#: Part of u_val up to which what is not linear does not count.
+NEGLIGIBLE_BEND = 0.1
+
 #: Part of u_val that meshes which are not in the asymptotic range may make before no statement is made: they add a
 #: twentieth to it.
 NEGLIGIBLE_MESH = 0.3
@@ -120,12 +123,16 @@ class Statement:
     @property
     def remarks(self) -> list[str]:
         """Contributions that count and that are not linear."""
-        bent = [p for p in self.parts if not p.straight and abs(p.second) > 0.1 * self.u_val]
         return [
             f"{self.quantity}: not linear in {p.name}: over its uncertainty the second-order term is "
             f"{abs(p.second / p.u) if p.u else float('inf'):.0%} of the first, which alone counts here"
-            for p in bent
+            for p in self.parts
+            if self.bent(p)
         ]
+
+    def bent(self, part: Part) -> bool:
+        """Whether a part is not linear over its uncertainty, and its second-order term counts in u_val."""
+        return not part.straight and abs(part.second) > NEGLIGIBLE_BEND * self.u_val
 
     def part(self, value: float) -> float:
         """A value over that of the data."""
