@@ -25,12 +25,14 @@ class Windows:
     whole : part of the last opening of the shorter curve up to which loads count, so that they are there with other
         inputs and openings, too
     least : shortest propagation branch, in parts of its first opening
+    narrow : least width of the window of the stiffness, in parts of the opening at the peak of the simulation
     inside : part of the last opening by which a largest load lies before it, to be a peak
     """
 
     stiff: tuple[float, float] = (0.1, 0.4)
     whole: float = 0.98
     least: float = 0.05
+    narrow: float = 1e-3
     inside: float = 1e-3
 
 
@@ -60,7 +62,16 @@ def quantities(simulated: Curve, data: Curve, at: Sequence[float] = ()) -> tuple
     S, D = (envelope(*from_origin(*curve)) for curve in (simulated, data))
     last = WINDOWS.whole * min(float(S[0][-1]), float(D[0][-1]))
     found = (_of_peak(S, D), _of_stiffness(S, D), _of_propagation(S, D, last), *(_of_load(x, last) for x in at))
-    return tuple(one for one in found if isinstance(one, Quantity)), [one for one in found if isinstance(one, str)]
+    checked = [_positive(one, S, D) if isinstance(one, Quantity) else one for one in found]
+    return tuple(one for one in checked if isinstance(one, Quantity)), [one for one in checked if isinstance(one, str)]
+
+
+def _positive(one: Quantity, S: Pair, D: Pair) -> Quantity | str:
+    """Left out where it has no size, which errors are relative to."""
+    simulated, measured = one.of(S), one.of(D)
+    if simulated > 0.0 and measured > 0.0:
+        return one
+    return f"{one.name}: left out: must be > 0, got {simulated:.4g} of the simulation and {measured:.4g} of the data"
 
 
 def _of_peak(S: Pair, D: Pair) -> Quantity | str:
@@ -73,8 +84,8 @@ def _of_peak(S: Pair, D: Pair) -> Quantity | str:
 
 def _of_stiffness(S: Pair, D: Pair) -> Quantity | str:
     low, high = (_reached(D, part * peak(D)[1]) for part in WINDOWS.stiff)
-    if not low < high <= S[0][-1]:
-        return f"initial stiffness: left out: openings {low:.4g} to {high:.4g} of the data are not in the simulation"
+    if not (high - low > WINDOWS.narrow * peak(S)[0] and high <= S[0][-1]):
+        return f"initial stiffness: left out: the data rise between openings {low:.4g} and {high:.4g}"
     where = f"slope of a straight line through openings {low:.4g} to {high:.4g}"
     return Quantity("initial stiffness", where, partial(_slope, np.linspace(low, high, SAMPLES)))
 
