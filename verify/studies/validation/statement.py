@@ -112,11 +112,11 @@ class Statement:
         if self.resolved:
             more = "more" if self.E > 0 else "less"
             return f"the model shows {more} than the data: its error is between {low:+.4g} and {high:+.4g}"
-        return f"no error of the model can be told from zero: it is between {low:+.4g} and {high:+.4g}"
+        return f"the error of the model cannot be told from zero: it is between {low:+.4g} and {high:+.4g}"
 
     @property
     def sentence(self) -> str:
-        """peak load: S 0.551, D 0.542, E = +0.009 (+1.6 %), u_val 1.3 %: no error of the model ..."""
+        """peak load: S 0.551, D 0.542, E = +0.009 (+1.6 %), u_val 1.3 %: the error of the model ..."""
         values = f"S {self.S:.5g}, D {self.D:.5g}, E {self.E:+.3g} ({self.part(self.E):+.2%} of D)"
         return f"{self.quantity}: {values}, u_val {self.part(self.u_val):.2%}: {self.verdict}"
 
