@@ -12,15 +12,16 @@ from math import hypot, sqrt
 
 import numpy as np
 
-from verify.curves.convergence import assess, grid_convergence_index
+from verify.curves.convergence import GCI_SAFETY, assess
 
 
 @dataclass(frozen=True)
 class Estimates:
     """How an uncertainty follows from runs.
 
-    most_order : observed orders count up to this one, as the load of a cohesive front is no smoother: two meshes that
-        agree by chance show as a high order, which would make the index small
+    most_order : the load of a cohesive front has no higher order. A higher observed one is that of two fine meshes that
+        agree by chance: the error is then that of this order over the range of all values, range / ((h_coarsest /
+        h_finest)^order - 1), times the safety factor of the index
     expansion : from a grid convergence index of 95 % to a standard uncertainty. The error of a mesh has a sign, so that
         the interval is one-sided: 1.1 to 1.15, and not the 2 of a normal distribution
     spread : safety factor on the error of meshes that are not in the asymptotic range, which is then that of a first
@@ -96,18 +97,21 @@ def of_input(name: str, stated: float, moved: Moved, kind: str = "input") -> Par
 def of_meshes(sizes: Sequence[float], values: Sequence[float]) -> Part:
     """Of the finest of three or more meshes: its grid convergence index over the factor of expansion.
 
-    With an observed order of more than `Estimates.most_order` the index is that of the latter. Meshes that are not in
-    the asymptotic range have `Estimates.spread` times a first-order error in its place.
+    Observed orders of more than `Estimates.most_order`, and meshes that are not in the asymptotic range, have an error
+    over the range of their values in its place.
     """
     by_size = np.argsort(sizes)
     h, f = np.asarray(sizes, dtype=float)[by_size], np.asarray(values, dtype=float)[by_size]
     if len(set(h)) < len(h):
         return Part("mesh", "num", float("nan"), remark="two meshes are of one size", doubtful=True)
     found = assess(h, f)
-    if found.asymptotic:
-        index = abs(f[0]) * grid_convergence_index(h, f, min(found.order, ESTIMATES.most_order))
+    ratio = float(h[-1] / h[0])
+    if not found.asymptotic:
+        index = ESTIMATES.spread * float(np.ptp(f)) / (ratio - 1.0)
+    elif found.order > ESTIMATES.most_order:
+        index = GCI_SAFETY * float(np.ptp(f)) / (ratio**ESTIMATES.most_order - 1.0)
     else:
-        index = ESTIMATES.spread * float(np.ptp(f)) / (h[-1] / h[0] - 1.0)
+        index = float(abs(f[0])) * found.gci
     return Part("mesh", "num", index / ESTIMATES.expansion, remark=found.verdict, doubtful=not found.asymptotic)
 
 
