@@ -15,8 +15,9 @@ from pydantic_core import PydanticCustomError
 from verify.scene.bond.interface import Interface
 from verify.scene.bond.shear import require_shear
 from verify.scene.materials import Material, MaterialOrTwo, definite
-from verify.scene.published import Published
 from verify.scene.specimens import Specimen
+from verify.scene.stated.published import Published
+from verify.scene.stated.uncertainty import Uncertainty, require_numbers
 from verify.scene.tables import Section, refuse
 from verify.support.programme import turns
 
@@ -176,6 +177,7 @@ class Scene(Section):
     discretization: Discretization = Discretization()
     dolfinx: Dolfinx = Dolfinx()
     published: Annotated[tuple[Published, ...], BeforeValidator(_as_tables)] = ()
+    uncertainty: Uncertainty = Uncertainty()
 
     @property
     def materials(self) -> tuple[Material, ...]:
@@ -303,6 +305,12 @@ class Scene(Section):
                 rule = f">= {low:g} and <= {high:g}, leg {value.leg} of load.opening"
                 raise refuse(rule, ((i, "opening"), value.opening))
         return published
+
+    @field_validator("uncertainty")
+    @classmethod
+    def _of_its_numbers(cls, uncertainty: Uncertainty, info: ValidationInfo) -> Uncertainty:
+        require_numbers(uncertainty, info.data)
+        return uncertainty
 
 
 def _definite(found: Material | tuple[Material, Material], specimen: Specimen) -> Material | tuple[Material, ...]:

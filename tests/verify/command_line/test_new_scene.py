@@ -18,8 +18,8 @@ from verify.scene.keys import SPECIMENS, keys, keys_of
 from verify.scene.load import load_scene, packaged_scenes
 from verify.scene.materials import Orthotropic
 from verify.scene.parse import parse_scene
-from verify.scene.published import Published
 from verify.scene.schema import Scene
+from verify.scene.stated.published import Published
 
 KINDS = tuple(SPECIMENS)
 #: Keys of a bond that slides.
