@@ -68,7 +68,7 @@ def measured(result: Result, kind: CertifiedKind, opening: float | None = None) 
 
 def _work(result: Result, end: float) -> float:
     d, P = envelope(*from_origin(*sampled(result)))
-    bears = abs(P[-1]) > CERTIFIED_RULE.gone * float(np.max(np.abs(P), initial=0.0))
+    bears = abs(result.load[-1]) > CERTIFIED_RULE.gone * float(np.max(np.abs(result.load)))
     if bears and d[-1] < CERTIFIED_RULE.whole * end:
         return nan
     kept = d < end

@@ -20,7 +20,7 @@ from verify.scene.stated.certified import CertifiedKind
 
 
 @dataclass(frozen=True)
-class Shares:
+class BudgetShares:
     """How parts of a budget follow from runs.
 
     halved : error of steps over what halving them changes: 4/3 for an order of 2, times the safety factor of the index
@@ -31,7 +31,7 @@ class Shares:
     newton: float = 1e-9
 
 
-SHARES = Shares()
+BUDGET_SHARES = BudgetShares()
 
 
 @dataclass(frozen=True)
@@ -76,8 +76,8 @@ def of_code(seen: Seen, shift: float = 0.0) -> OfCode:
     parts = {
         "mesh": mesh.index,
         "thickness": 0.0 if seen.layered is None else abs(seen.layered - finest),
-        "steps": SHARES.halved * abs(seen.paced - finest),
-        "iteration": SHARES.newton * abs(finest),
+        "steps": BUDGET_SHARES.halved * abs(seen.paced - finest),
+        "iteration": BUDGET_SHARES.newton * abs(finest),
         "rounding": float(np.finfo(float).eps) * seen.condition * abs(finest),
     }
     return OfCode(finest + shift, tuple((h, f + shift) for h, f in seen.meshes), parts, mesh.verdict)
