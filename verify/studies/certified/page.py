@@ -23,13 +23,19 @@ def write(study: Study, path: Path) -> None:
 
 
 def share(part: float) -> str:
-    """0.031 %."""
-    return f"{100 * part:.3f}\u00a0%" if np.isfinite(part) else "–"
+    """0.031 %, or that it is less than 0.001 %."""
+    return _percent(abs(part), "")
 
 
 def signed(part: float) -> str:
-    """+0.031 %."""
-    return f"{100 * part:+.3f}\u00a0%".replace("-", "−") if np.isfinite(part) else "–"
+    """+0.031 %, or that it is less than 0.001 %."""
+    return _percent(part, "+").replace("-", "−")
+
+
+def _percent(part: float, sign: str) -> str:
+    if not np.isfinite(part) or part == 0.0:
+        return "–" if part else "0"
+    return f"{100 * part:{sign}.3f}\u00a0%" if abs(part) >= 1e-5 else "< 0.001\u00a0%"
 
 
 def intervals(study: Study, key: str) -> Panel:
