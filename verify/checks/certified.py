@@ -115,7 +115,7 @@ def certified_check(name: str, result: Result, known: Certified, tolerance: floa
     deviation = measured(result, known.kind, known.opening) / reference - 1.0
     allowed = hypot(CERTIFIED_RULE.wider(known.kind) * tolerance, uncertainty)
     source = f"that of two codes on three meshes each, {known.value:.6g} ± {known.uncertainty:.2g} (95 %)"
-    label = {"peak_opening": "peak-opening", "load_at": f"load-{known.opening}"}.get(known.kind, known.kind)
+    label = {"peak_opening": "peak-opening", "load_at": f"load-{known.opening or 0.0:g}"}.get(known.kind, known.kind)
     meaning = f"{known.quantity[:1].upper()}{known.quantity[1:]}: {source}."
     return Check(f"certified-{label}", name, deviation, allowed, "certified", meaning, uncertainty)
 
