@@ -92,6 +92,13 @@ def test_every_run_and_every_other_code_is_held_to_them(scene: Scene) -> None:
     assert of_other["certified-peak"] == "broken" and "certified-zone" not in of_other
 
 
+@pytest.mark.parametrize("every", [3, 6, 10])
+def test_a_right_curve_of_few_steps_is_right(scene: Scene, every: int) -> None:
+    steps = {name: run().steps[name][::every] for name in ("opening", "load")}
+    found = certified_checks(scene, "mine", Result("mine", steps), CODE_TOLERANCE)
+    assert {check.name for check in found if not check.passed} == set()
+
+
 def test_a_scene_without_values_has_no_such_checks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "certified", lambda scene: ())
     assert not states(cross_checks(load_scene("dcb-czm1"), {"nurbs": run(), "dolfinx": run()}))
