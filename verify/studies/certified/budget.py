@@ -59,7 +59,7 @@ class Seen:
     """Values of a quantity in the runs of one code.
 
     meshes : (size, value), finest first
-    paced, layered : of the finest mesh with half the steps and with more layers; None where there is no such run
+    paced, layered : of the finest mesh with steps half as long and with more layers; None where there is no such run
     condition : of the tangents
     """
 

@@ -45,7 +45,7 @@ RESOLUTION = Resolution()
 
 @dataclass(frozen=True)
 class OfCode:
-    """Runs of one code: three ``meshes``, finest first; the finest with half the steps, and with more elements through
+    """Runs of one code: three ``meshes``, finest first; the finest with steps half as long, and with more elements through
     the thickness, which is None where a scene has one layer alone."""
 
     meshes: tuple[Job, ...]
