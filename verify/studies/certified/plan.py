@@ -44,9 +44,12 @@ RESOLUTION = Resolution()
 
 
 @dataclass(frozen=True)
-class OfCode:
-    """Runs of one code: three ``meshes``, finest first; the finest with steps half as long, and with more elements through
-    the thickness, which is None where a scene has one layer alone."""
+class CodeRuns:
+    """Runs of one code: three ``meshes``, finest first, and two of the finest.
+
+    paced : with steps half as long
+    layered : with more elements through the thickness; None where a scene has one layer alone
+    """
 
     meshes: tuple[Job, ...]
     paced: Job
@@ -64,7 +67,7 @@ class Plan:
     left_out : a sentence for what is in no budget
     """
 
-    codes: Mapping[str, OfCode]
+    codes: Mapping[str, CodeRuns]
     matched: Job | None
     places: Mapping[str, Job]
     at: tuple[float, ...]
@@ -89,7 +92,7 @@ def planned(source: str, scene: Scene, at: Sequence[float] = (), given: Sequence
     """
     end = max(scene.load.opening)
     if not only_opens(scene.load.opening) or end <= 0.0:
-        raise Refusal(f"load.opening: must only grow for debond certify, got {list(scene.load.opening)}")
+        raise Refusal(f"load.opening: must only grow from 0 on for debond certify, got {list(scene.load.opening)}")
     if wrong := [one for one in at if not 0.0 < one <= end]:
         raise Refusal(f"--at: must be > 0 and <= {end:g}, the largest opening, got {wrong[0]:g}")
     for method in (SEARCHING, REFERENCE):
@@ -105,7 +108,7 @@ def planned(source: str, scene: Scene, at: Sequence[float] = (), given: Sequence
     return Plan(codes, matched, places, openings, tuple(remarks))
 
 
-def _of_nurbs(base: Job, scene: Scene) -> OfCode:
+def _of_nurbs(base: Job, scene: Scene) -> CodeRuns:
     """Meshes by their unknowns, with chosen steps."""
     mesh, name = scene.discretization, SEARCHING
     code = replace(base, method=name, overrides=(*base.overrides, *_chosen(RESOLUTION.bend)))
@@ -114,10 +117,10 @@ def _of_nurbs(base: Job, scene: Scene) -> OfCode:
     rows = mesh.degree + mesh.layers  # of functions through an arm
     more = f"discretization.layers={mesh.layers + 1}", f"discretization.dofs={round(sizes[0] * (rows + 1) / rows)}"
     paced = _varied(meshes[0], "steps", *_chosen(RESOLUTION.bend / 4.0))
-    return OfCode(meshes, paced, _able(_varied(meshes[0], "layers", *more)))
+    return CodeRuns(meshes, paced, _able(_varied(meshes[0], "layers", *more)))
 
 
-def _of_dolfinx(base: Job, scene: Scene) -> OfCode:
+def _of_dolfinx(base: Job, scene: Scene) -> CodeRuns:
     """Meshes by their elements along the specimen, which are cubic, with counted steps."""
     mesh, name, steps = reference_mesh(scene), REFERENCE, f"discretization.steps={RESOLUTION.counted}"
     kept = f"dolfinx.degree={max(mesh.degree, RESOLUTION.degree)}", f"dolfinx.layers={mesh.layers}", steps
@@ -125,7 +128,7 @@ def _of_dolfinx(base: Job, scene: Scene) -> OfCode:
     sizes = [round(mesh.elements * scale) for scale in _scales(name)]
     meshes = tuple(_checked(_varied(code, f"{name}-{n}", f"dolfinx.elements={n}")) for n in sizes)
     paced = _varied(meshes[0], "steps", f"discretization.steps={2 * RESOLUTION.counted}")
-    return OfCode(meshes, paced, _able(_varied(meshes[0], "layers", f"dolfinx.layers={2 * mesh.layers}")))
+    return CodeRuns(meshes, paced, _able(_varied(meshes[0], "layers", f"dolfinx.layers={2 * mesh.layers}")))
 
 
 def _scales(code: str) -> list[float]:

@@ -17,7 +17,7 @@ from verify.runs.jobs import Job, Outcome
 from verify.scene.stated.certified import Certified, CertifiedKind, problem_key
 from verify.studies import frame
 from verify.studies.certified.budget import Seen, Value, of_code
-from verify.studies.certified.plan import OfCode, Plan
+from verify.studies.certified.plan import CodeRuns, Plan
 
 #: Load, over the peak load, below which a load is not certified: relative errors say nothing of it.
 LEAST_CERTIFIED = 0.05
@@ -163,7 +163,7 @@ def _value(plan: Plan, runs: Mapping[Job, Result], wanted: Wanted) -> Value:
     return Value(name, kind, opening, codes, matched if isfinite(matched) else nan, known)
 
 
-def _seen(code: OfCode, runs: Mapping[Job, Result], wanted: Wanted, condition: float) -> Seen:
+def _seen(code: CodeRuns, runs: Mapping[Job, Result], wanted: Wanted, condition: float) -> Seen:
     def of(job: Job) -> float:
         return measured(runs[job], *wanted[1:])
 

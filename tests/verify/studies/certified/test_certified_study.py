@@ -65,7 +65,7 @@ def test_a_plan_has_three_meshes_of_two_codes_and_one_run_for_each_other_share()
 @pytest.mark.parametrize(
     ("given", "at", "sentence"),
     [
-        (["load.opening=[1.0, 0.5, 2.0]"], [], "load.opening: must only grow for debond certify"),
+        (["load.opening=[1.0, 0.5, 2.0]"], [], "load.opening: must only grow from 0 on for debond certify"),
         ([], [9.0], "--at: must be > 0 and <= 3, the largest opening, got 9"),
     ],
 )
