@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import hypot, nan
+from math import hypot, isfinite, nan
 
 import numpy as np
 from scipy.integrate import trapezoid
@@ -138,8 +138,8 @@ def keeps_pairs(scene: Scene, name: str) -> bool | None:
 
 
 def _quantities_of(name: str, result: Result) -> tuple[CertifiedKind, ...]:
-    """The beam is a theory of the load, and a curve has no front."""
+    """The beam is a theory of the load, a curve has no front, and that of a coarse mesh may stand still for a step."""
     if name in RUNS and not RUNS[name].has_mesh:
         return "peak", "load_at", "work"
-    fronts: tuple[CertifiedKind, ...] = ("zone",) if result.steps.keys() >= OF_THE_FRONT else ()
-    return "peak", "peak_opening", "load_at", "work", *fronts
+    zone: tuple[CertifiedKind, ...] = ("zone",) if isfinite(measured(result, "zone", float(result.opening[-1]))) else ()
+    return "peak", "peak_opening", "load_at", "work", *zone

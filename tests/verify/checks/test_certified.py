@@ -99,6 +99,12 @@ def test_a_right_curve_of_few_steps_is_right(scene: Scene, every: int) -> None:
     assert {check.name for check in found if not check.passed} == set()
 
 
+def test_a_front_that_stands_still_for_a_step_has_no_zone_to_judge(scene: Scene) -> None:
+    stalled = run()
+    stalled.steps["damage_front"][250] = stalled.steps["damage_front"][249]
+    assert "certified-zone" not in states(certified_checks(scene, "lagrange", stalled, CODE_TOLERANCE))
+
+
 def test_a_scene_without_values_has_no_such_checks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "certified", lambda scene: ())
     assert not states(cross_checks(load_scene("dcb-czm1"), {"nurbs": run(), "dolfinx": run()}))
