@@ -63,7 +63,7 @@ FLOORS = (
     ("verify.studies.viscosity",),
     (
         "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.law",
-        "verify.studies.paper", "verify.studies.plane", "verify.studies.scaling",
+        "verify.studies.paper", "verify.studies.plane", "verify.studies.reduce", "verify.studies.scaling",
     ),
     ("verify.studies.page",),
     ("verify.studies.frame",),
@@ -73,6 +73,7 @@ FLOORS = (
     ("verify.fields",),
     ("verify.methods.built_in",),
     ("verify.methods",),
+    ("verify.reduction",),
     ("verify.curves",),
     ("verify.verdict",),
     ("verify.scene",),
