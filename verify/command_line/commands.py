@@ -337,7 +337,7 @@ def compare(options: argparse.Namespace) -> int:
 
 
 def reduce(options: argparse.Namespace) -> int:
-    from verify.command_line import reduce as work
+    from verify.studies.reduce import command as work
 
     test, found, known, fit = work.reduced(options)
     if options.out is not None:

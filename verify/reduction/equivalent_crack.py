@@ -9,7 +9,7 @@ from verify.reduction.dcb import factors
 from verify.reduction.scheme import CannotReduce, Fitted, Setting, measured_crack
 
 #: Kinds to which the factors of large openings belong.
-OPENED = ("dcb", "adcb")
+LIKE_A_DCB = ("dcb", "adcb")
 #: Passes of the fixed point of an equivalent crack and its factor N, which changes it by a few per cent.
 PASSES = 8
 
@@ -39,7 +39,7 @@ def cbbm(s: Setting) -> Fitted:
     rotation at the tip counts as in `cbt`, in sliding as well, where the first papers left it to E_f.
     """
     E, beam, a0 = flexural(s), s.beam, s.coupon.precrack
-    with_factors = s.coupon.kind in OPENED and (s.settings.large or s.settings.block != (0.0, 0.0))
+    with_factors = s.coupon.kind in LIKE_A_DCB and (s.settings.large or s.settings.block != (0.0, 0.0))
 
     def crack(rows: Measured) -> np.ndarray:
         a = beam.crack(rows.compliance, E)
@@ -69,7 +69,7 @@ def flexural(s: Setting) -> float:
 
 def _parts(s: Setting, rows: Measured, a: np.ndarray, E: float) -> tuple[np.ndarray, np.ndarray]:
     opened, slid = s.beam.release(rows.load, a, E)
-    if s.coupon.kind in OPENED:
+    if s.coupon.kind in LIKE_A_DCB:
         F = factors(rows.opening, a, s.settings.large, s.settings.block)[0]
         opened, slid = F * opened, F * slid
     return opened + slid, slid if s.beam.separate else np.full(np.shape(opened), np.nan)

@@ -13,7 +13,7 @@ from verify.studies.reduce.bias import Bias
 from verify.studies.reduce.fit import Fit
 
 #: Scheme -> its colour in the palette, and its dashes in points.
-INKS: dict[str, tuple[str, tuple[float, ...]]] = {
+SCHEME_INKS: dict[str, tuple[str, tuple[float, ...]]] = {
     "MBT": ("nurbs", ()),
     "CC": ("lagrange", (4.0, 1.5)),
     "MCC": ("tspline", (1.5, 1.5)),
@@ -22,9 +22,9 @@ INKS: dict[str, tuple[str, tuple[float, ...]]] = {
     "CBBM": ("accent", ()),
     "J": ("ink", (1.0, 1.0)),
 }
-_MARKS = {NL: "o", FIVE: "s", VIS: "^"}
+_POINTS = {NL: "o", FIVE: "s", VIS: "^"}
 #: Points of a curve that are drawn, at most: more make the page large.
-DRAWN = 600
+MOST_DRAWN = 600
 
 
 def curve(found: Reduction, units: Units, key: str, fit: Fit | None = None) -> Panel:
@@ -50,7 +50,7 @@ def curve(found: Reduction, units: Units, key: str, fit: Fit | None = None) -> P
             axes.axvline(0.0, color=colour("rule"), linewidth=0.8)
         for name, i in found.points.items():
             at = steady.opening[i], steady.load[i]
-            axes.plot(*at, _MARKS[name], color=colour("bad"), markersize=5, label=name, fillstyle="none")
+            axes.plot(*at, _POINTS[name], color=colour("bad"), markersize=5, label=name, fillstyle="none")
         axes.set(xlabel=axis("opening", units.length), ylabel=axis("load", units.force), ylim=(0.0, 1.12 * top))
         axes.legend(loc="best")
         svg = to_svg(figure, key, "Load over opening")
@@ -78,7 +78,7 @@ def r_curves(found: Reduction, known: tuple[Bias, ...], units: Units, key: str) 
 
 
 def _r_curve(axes: Axes, one: Reduced) -> None:
-    ink, dashes = INKS[one.name]
+    ink, dashes = SCHEME_INKS[one.name]
     some = _some(one.G.size)
     axes.plot(
         one.growth[some],
@@ -93,4 +93,4 @@ def _r_curve(axes: Axes, one: Reduced) -> None:
 
 
 def _some(count: int) -> np.ndarray:
-    return np.unique(np.linspace(0, count - 1, min(count, DRAWN)).astype(int)) if count else np.zeros(0, dtype=int)
+    return np.unique(np.linspace(0, count - 1, min(count, MOST_DRAWN)).astype(int)) if count else np.zeros(0, dtype=int)

@@ -147,14 +147,10 @@ class _Solver:
 
     def curve(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Opening and load, with points between the steps."""
-        names = [
-            f"interface.{key}={base * float(part)!r}" for key, base, part in zip(self._keys, self.base, x, strict=False)
-        ]
-        moduli = [
-            f"{table}.{key}={value * float(x[2])!r}"
-            for table in ("material",)
-            for key, value in _moduli(self._table[table]).items()
-        ]
+        strength, toughness, modulus = (float(part) for part in x)
+        bond = zip(self._keys, (strength * self.base[0], toughness * self.base[1]), strict=True)
+        names = [f"interface.{key}={value!r}" for key, value in bond]
+        moduli = [f"material.{key}={modulus * value!r}" for key, value in _moduli(self._table["material"]).items()]
         settings = [f"load.opening={self._end!r}", f"discretization.steps={FITTING.steps}"]
         scene = parse_scene(self._table, [*names, *moduli, *settings])
         self.count += 1

@@ -11,7 +11,7 @@ from typing import Any
 from verify.curves.read import Reading
 from verify.reduction.coupon import Coupon, coupon
 from verify.reduction.data import Columns, Measured, of_steps, read_measured
-from verify.reduction.equivalent_crack import OPENED
+from verify.reduction.equivalent_crack import LIKE_A_DCB
 from verify.reduction.scheme import Settings
 from verify.runs.folder import read_result
 from verify.scene.effects import simulated
@@ -39,11 +39,11 @@ class Given:
 
     def settings(self, asked: Settings, window: tuple[float, float] | None) -> Settings:
         """The settings with what a run is known by: no toe, and large openings where it has finite rotations."""
-        if self.coupon.kind not in OPENED and (asked.large or asked.block != (0.0, 0.0)):
+        if self.coupon.kind not in LIKE_A_DCB and (asked.large or asked.block != (0.0, 0.0)):
             raise Refusal(f"--large, --block: must be left out for the kind {self.coupon.kind!r}: factors of a dcb")
         if not self.measured.virtual:
             return asked if window is None else replace(asked, window=window)
-        large = self.coupon.kind in OPENED and simulated(self.scene)["kinematics"] == "finite"
+        large = self.coupon.kind in LIKE_A_DCB and simulated(self.scene)["kinematics"] == "finite"
         return replace(asked, window=window or OF_RUNS, toe=False, large=asked.large or large)
 
 

@@ -7,7 +7,7 @@ from math import floor, isfinite, log10
 
 import numpy as np
 
-from verify.reduction.equivalent_crack import OPENED
+from verify.reduction.equivalent_crack import LIKE_A_DCB
 from verify.reduction.initiation import FIVE, NL, VIS
 from verify.reduction.reduce import Reduced, Reduction, Value
 from verify.studies.reduce.bias import Bias
@@ -89,7 +89,7 @@ def remarks(found: Reduction) -> list[str]:
         )
     grown = found.rows.at(found.grown)
     spread = grown.opening / np.fmax(grown.crack, found.coupon.precrack)
-    if found.coupon.kind in OPENED and not found.settings.large and spread.max(initial=0.0) > LARGE_OPENING:
+    if found.coupon.kind in LIKE_A_DCB and not found.settings.large and spread.max(initial=0.0) > LARGE_OPENING:
         said.append(f"the opening is up to {spread.max():.2g} of the crack length: --large counts F and N in")
     if not found.grown.any():
         said.append("no row shows growth, so there is no propagation value")
