@@ -106,7 +106,7 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
     except CannotReduce as error:
         raise Refusal(f"{measured.source}: the linear part says that {error}; moduli, lengths, units?") from None
     end = steady.load.size - 1
-    if not grown.any() and points[NL] == end:
+    if points[NL] == end:
         raise Refusal(f"{measured.source}: must go on until the crack grows, got a curve that is linear to its end")
     test = _Test(measured, coupon, settings, window, smoothed, points, grown)
     whole = test.estimates(np.ones(end + 1, dtype=bool))

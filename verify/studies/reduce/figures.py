@@ -19,10 +19,10 @@ SCHEME_INKS: dict[str, tuple[str, tuple[float, ...]]] = {
     "MCC": ("tspline", (1.5, 1.5)),
     "CBT": ("beam", (5.0, 1.5, 1.0, 1.5)),
     "D6671": ("beam", (5.0, 1.5, 1.0, 1.5)),
-    "CBBM": ("accent", ()),
+    "CBBM": ("bad", ()),
     "J": ("ink", (1.0, 1.0)),
 }
-_POINTS = {NL: "o", FIVE: "s", VIS: "^"}
+POINT_MARKS = {NL: "o", FIVE: "s", VIS: "^"}
 #: Points of a curve that are drawn, at most: more make the page large.
 MOST_DRAWN = 600
 
@@ -50,7 +50,7 @@ def curve(found: Reduction, units: Units, key: str, fit: Fit | None = None) -> P
             axes.axvline(0.0, color=colour("rule"), linewidth=0.8)
         for name, i in found.points.items():
             at = steady.opening[i], steady.load[i]
-            axes.plot(*at, _POINTS[name], color=colour("bad"), markersize=5, label=name, fillstyle="none")
+            axes.plot(*at, POINT_MARKS[name], color=colour("bad"), markersize=5, label=name, fillstyle="none")
         axes.set(xlabel=axis("opening", units.length), ylabel=axis("load", units.force), ylim=(0.0, 1.12 * top))
         axes.legend(loc="best")
         svg = to_svg(figure, key, "Load over opening")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from verify.pages.template import rendered
-from verify.pages.text import Units, sentence
+from verify.pages.text import Units, quantity
 from verify.reduction.reduce import Reduction
 from verify.scene.schema import Scene
 from verify.studies.reduce import figures
@@ -29,9 +29,8 @@ def write(
         "verify.studies.reduce",
         "page.html.j2",
         {},
-        source=source,
-        name=scene.name,
-        sentence=sentence(scene),
+        source=Path(source).name,
+        sentence=_specimen(found, scene, units),
         unit=units.toughness,
         panels=[one for one in made if one is not None],
         heads=(*HEADS, "against input") if known else HEADS,
@@ -42,3 +41,13 @@ def write(
         fit=fit,
     )
     path.write_text(page, encoding="utf-8")
+
+
+def _specimen(found: Reduction, scene: Scene, units: Units) -> str:
+    """A dcb of the scene mine: arms 1.56 mm thick, 25.4 mm wide, precrack 32.9 mm."""
+    of = found.coupon
+    thick = " and ".join(quantity(h, units.length) for h in dict.fromkeys(of.thickness))
+    sizes = (
+        f"arms {thick} thick, {quantity(of.width, units.length)} wide, precrack {quantity(of.precrack, units.length)}"
+    )
+    return f"The {of.kind} specimen of the scene {scene.name}: {sizes}."
