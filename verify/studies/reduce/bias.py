@@ -56,7 +56,8 @@ def of_run(scene: Scene, result: Result, source: str = "run") -> Reduction | Non
 
     A programme that turns is left out.
     """
-    if scene.specimen.kind not in REDUCED or len(scene.load.opening) > 1 or not result.complete:
+    whole = len({column.size for column in result.steps.values()}) == 1
+    if scene.specimen.kind not in REDUCED or len(scene.load.opening) > 1 or not (result.complete and whole):
         return None
     try:
         specimen = coupon(scene)

@@ -24,9 +24,9 @@ from verify.support.refusal import Refusal
 class FitSettings:
     """How a curve is fitted.
 
-    ``points`` openings at which both curves are compared: more say more of a noisy curve and cost nothing, up to its
-    rows. ``step`` is the relative change of a number for its derivative: below it the steps of the solver show, above
-    it the curve bends. ``steps`` of a solution and ``solutions`` at most bound the time.
+    ``points`` openings at which the curve of a run is compared, that of a test at all its rows. ``step`` is the
+    relative change of a number for its derivative: below it the steps of the solver show, above it the curve bends.
+    ``steps`` of a solution and ``solutions`` at most bound the time.
     """
 
     points: int = 120
@@ -98,13 +98,17 @@ def fitted(found: Reduction, scene: Scene) -> Fit:
     if not found.grown.any():
         raise Refusal("--fit: needs rows on which the crack grows, got none")
     data = _data(found)
-    solver = _Solver(scene, found, data)
+    with Progress("fit", FITTING.solutions) as progress:
+        return _fitted(_Solver(scene, found, data, progress), data[0].size)
+
+
+def _fitted(solver: _Solver, rows: int) -> Fit:
     start = np.ones(3)
     best = least_squares(
         solver.left, start, bounds=([0.05, 0.2, 0.3], [20.0, 5.0, 3.0]), diff_step=FITTING.step, xtol=1e-4, ftol=1e-6,
         max_nfev=FITTING.solutions // 4,
     )  # fmt: skip
-    free = data[0].size - 3
+    free = rows - 3
     s2 = 2.0 * best.cost / free
     spread = np.linalg.pinv(best.jac.T @ best.jac)
     half = student.ppf(0.5 + LEVEL / 2.0, free) * np.sqrt(s2 * np.diag(spread))
@@ -115,24 +119,20 @@ def fitted(found: Reduction, scene: Scene) -> Fit:
 
 
 def _data(found: Reduction) -> tuple[np.ndarray, np.ndarray]:
-    """Openings, equally far apart, and means of the loads around them, over the largest load."""
-    last = int(np.flatnonzero(found.grown)[-1])
-    d, P = found.rows.opening[: last + 1], found.rows.load[: last + 1]
-    end, begin = float(d.max()), float(d[found.part.rows[0]])
-    at = begin + (end - begin) * np.arange(1, FITTING.points) / FITTING.points
-    if found.rows.virtual or d.size < 3 * FITTING.points:
-        load = load_at((d, P), at)
-    else:
-        place = np.rint((d - begin) / (end - begin) * FITTING.points).astype(int)
-        load = np.array([P[place == i].mean() if (place == i).any() else np.nan for i in range(1, FITTING.points)])
-    known = np.isfinite(load)
-    return at[known], load[known]
+    """Openings and loads from the linear part on: the rows of a test, and of a run points equally far apart."""
+    first, last = int(found.part.rows[0]), int(np.flatnonzero(found.grown)[-1])
+    d, P = found.rows.opening[first : last + 1], found.rows.load[first : last + 1]
+    if not found.rows.virtual:
+        return d, P
+    at = d[0] + (float(d.max()) - d[0]) * np.arange(1, FITTING.points + 1) / FITTING.points
+    at[-1] = d.max()
+    return at, load_at((d, P), at)
 
 
 class _Solver:
     """Solutions of the scene with strength, toughness and modulus times ``x`` (3,)."""
 
-    def __init__(self, scene: Scene, found: Reduction, data: tuple[np.ndarray, np.ndarray]) -> None:
+    def __init__(self, scene: Scene, found: Reduction, data: tuple[np.ndarray, np.ndarray], progress: Progress) -> None:
         self._at, self._load = data
         self._peak = float(self._load.max())
         self._keys = FITTED_KEYS[found.coupon.kind]
@@ -141,9 +141,9 @@ class _Solver:
         bond = self._table["interface"]
         start = next(one.propagation.value for one in found.schemes if one.name == "CBBM")
         self.base = (float(bond[self._keys[0]]), start, found.coupon.young)
-        self._end = 1.001 * float(self._at[-1])
+        self._end = 1.001 * float(self._at.max())
         self.count = 0
-        self._progress = Progress("fit", FITTING.solutions)
+        self._progress = progress
 
     def curve(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Opening and load, with points between the steps."""
@@ -164,5 +164,5 @@ class _Solver:
 
 
 def _moduli(material: Any) -> dict[str, float]:
-    """Moduli of a material, which are changed together."""
-    return {key: float(material[key]) for key in ("young", "E1", "E2", "G12") if material.get(key) is not None}
+    """The modulus along the arms, by its key."""
+    return {key: float(material[key]) for key in ("young", "E1") if material.get(key) is not None}

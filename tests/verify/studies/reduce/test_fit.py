@@ -30,7 +30,7 @@ def test_strength_and_toughness_come_back_from_a_run() -> None:
 @pytest.mark.slow
 def test_a_brittle_curve_does_not_tell_the_strength() -> None:
     """Of fracture mechanics, with noise: infinite strength fits as well as a large one."""
-    test = recorded("dcb", replace(NOISY, noise=0.01))
+    test = recorded("dcb", replace(NOISY, noise=0.02, rows=300))
     found = reduce(test, specimen("dcb"), Settings(machine=NOISY.machine))
     scene = load_scene("dcb-as4peek", ("interface.strength=100", 'effects.kinematics="linear"'))
     fit = fitted(found, scene)
