@@ -87,6 +87,7 @@ class Reduction:
     schemes: tuple[Reduced, ...]
 
 
+@np.errstate(all="ignore")  # what a file brings about comes out as NaN, and is left out
 def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None) -> Reduction:
     """Toughness of a test by every scheme of its kind.
 

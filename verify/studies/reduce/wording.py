@@ -44,7 +44,7 @@ def with_interval(value: Value) -> str:
     """0.2651 ± 0.0012, with digits down to the interval's second one."""
     if not isfinite(value.value):
         return "-"
-    if not isfinite(value.half) or value.half < 5e-6 * abs(value.value):
+    if not isfinite(value.half) or value.half <= 5e-6 * abs(value.value):
         return f"{value.value:.5g}"
     size = floor(log10(abs(value.value))) if value.value else 0
     power = size if not -4 <= size < 6 else 0
@@ -79,6 +79,7 @@ def _modulus(found: Reduction) -> Value | None:
     return next((one.constants["E_f"] for one in found.schemes if "E_f" in one.constants), None)
 
 
+@np.errstate(all="ignore")
 def remarks(found: Reduction) -> list[str]:
     """What a reader should know before trusting the numbers."""
     said, modulus, young = [], _modulus(found), found.coupon.young
