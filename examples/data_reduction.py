@@ -52,8 +52,8 @@ table(long)
 # %% [markdown]
 # What fits the compliance to crack lengths of the same test (MBT, CC, MCC) holds while the crack grows: the length of
 # the zone stays the same then, and the fit takes it for a part of the crack. What takes a modulus fails. CBT has the
-# right one and too short a crack. CBBM finds its own from the first rise of the curve, where the bond gives way already,
-# and gets one that is too soft. No initiation value is a toughness here: at NL no point of the bond has failed.
+# right one and too short a crack. CBBM finds its own from the first rise of the curve, where the bond gives way
+# already, and gets one that is too soft. No initiation value is a toughness here: at NL no point of the bond has failed.
 #
 # ## In between
 

@@ -291,7 +291,7 @@ def _reduce_options(sub: Parser) -> None:
     sub.add_argument("--rotations", type=columns, default=(), metavar="COLUMN,...", help=what)
     what = "multiplies the rotations, to radians"
     sub.add_argument("--rotation-scale", type=scale, default=1.0, metavar="X", help=what)
-    what = "the curve is linear between these parts of the largest load; default: 0.2,0.5, of a run 0.02,0.2"
+    what = "the curve is linear between these parts of the largest load; default: 0.2,0.5, of a run 0,0.2"
     sub.add_argument("--linear", type=numbers, metavar="LOW,HIGH", help=what)
     sub.add_argument("--no-toe", action="store_true", help="leave the origin where it is")
     what = "compliance of the machine, whose part of the opening is taken off"

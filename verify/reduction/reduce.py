@@ -39,7 +39,7 @@ NORMAL = 1.96
 
 @dataclass(frozen=True)
 class Value:
-    """A value and the half width of its 95 % interval."""
+    """A value and the half width of its 95 % interval, NaN of a run, which has no noise."""
 
     value: float
     half: float = float("nan")
@@ -111,7 +111,8 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
         raise Refusal(f"{measured.source}: must go on until the crack grows, got a curve that is linear to its end")
     test = _Test(measured, coupon, settings, window, smoothed, points, grown)
     whole = test.estimates(np.ones(end + 1, dtype=bool))
-    parts = [test.estimates(kept) for kept in _left_out(measured, window, grown)]
+    left_out = [] if measured.virtual else _left_out(measured, window, grown)
+    parts = [test.estimates(kept) for kept in left_out]
     schemes = tuple(_reduced(test, rows, name, whole, parts) for name in SCHEMES[coupon.kind])
     return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, schemes)
 
