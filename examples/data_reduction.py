@@ -43,7 +43,7 @@ table(short)
 # %% [markdown]
 # ## A long one
 #
-# The specimen of the paper, `dcb-czm1`: arms 0.2 mm thick, and a zone nearly as long as the precrack of 4 mm.
+# The specimen of the paper, `dcb-czm1`: arms 0.2 mm thick, a precrack of 4 mm, and a zone of 1 mm.
 
 # %%
 found, long = reduced(load_scene("dcb-czm1"))
@@ -53,7 +53,8 @@ table(long)
 # What fits the compliance to crack lengths of the same test (MBT, CC, MCC) holds while the crack grows: the length of
 # the zone stays the same then, and the fit takes it for a part of the crack. What takes a modulus fails. CBT has the
 # right one and too short a crack. CBBM finds its own from the first rise of the curve, where the bond gives way
-# already, and gets one that is too soft. No initiation value is a toughness here: at NL no point of the bond has failed.
+# already, and gets one that is too soft. No initiation value is a toughness here: at NL no point of the bond has
+# failed.
 #
 # ## In between
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from verify.curves.read import Reading
+from verify.reduction.calibration import POWERS
 from verify.reduction.coupon import Coupon, coupon
 from verify.reduction.data import Columns, Measured, of_steps, read_measured
 from verify.reduction.equivalent_crack import LIKE_A_DCB
@@ -41,6 +42,8 @@ class Given:
         """The settings with what a run is known by: no toe, and large openings where it has finite rotations."""
         if self.coupon.kind not in LIKE_A_DCB and (asked.large or asked.block != (0.0, 0.0)):
             raise Refusal(f"--large, --block: must be left out for the kind {self.coupon.kind!r}: factors of a dcb")
+        if self.coupon.kind not in POWERS and asked.calibration:
+            raise Refusal(f"--calibration: must be left out for the kind {self.coupon.kind!r}, whose CC has none")
         if not self.measured.virtual:
             return asked if window is None else replace(asked, window=window)
         large = self.coupon.kind in LIKE_A_DCB and simulated(self.scene)["kinematics"] == "finite"

@@ -183,6 +183,7 @@ def test_what_cannot_be_reduced(name: str, folder: Path, capsys: pytest.CaptureF
         (["test.csv", "--scene", "enf-as4peek", "--rotations", "3"], "must be of a dcb or adcb"),
         (["test.csv", "--scene", "enf-as4peek", "--set", "specimen.arm_thickness=[1.5, 2.0]"], "arms must be alike"),
         (["test.csv", "--scene", "mmb50-as4peek", "--fit"], "--fit: must be for dcb"),
+        (["test.csv", "--scene", "mine.toml", "--calibration", "1,1,2,2"], "whose CC has none"),
         ([".", "--scene", "mine.toml"], "must be a file with a curve"),
         (["test.csv", "--scene", "mine.toml", "--set", "specimen.width=-1"], "specimen.width: must be > 0"),
     ],

@@ -43,7 +43,7 @@ def test_enf_and_mmb_with_a_short_zone(name: str, overrides: tuple[str, ...]) ->
 
 
 def test_dcb_with_a_long_zone() -> None:
-    """Of the scene of the paper the zone is nearly as long as the precrack: what fits the compliance to crack lengths
+    """Of the scene of the paper the zone is a quarter of the precrack: what fits the compliance to crack lengths
     holds on growth, what takes a modulus fails, and so do all initiation values."""
     found = off("dcb-czm1")
     for name in ("MBT", "CC", "MCC", "J"):
