@@ -10,6 +10,7 @@ from pathlib import Path
 
 import made_up_point_laws
 import made_up_studies
+import made_up_tests
 import numpy as np
 from iga_files import SMALL
 from made_up_costs import SCENE, a_row, against
@@ -28,6 +29,9 @@ from verify.cli import main
 from verify.curves.read import Reading
 from verify.methods.solve import solve
 from verify.pages.style import METHOD_NAMES
+from verify.reduction.coupon import coupon
+from verify.reduction.reduce import Value, reduce
+from verify.reduction.scheme import Settings
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
@@ -45,6 +49,9 @@ from verify.studies.law.given.answer import of_function
 from verify.studies.law.given.built_in import built_in
 from verify.studies.law.judge import judge
 from verify.studies.law.ways.paths import paths
+from verify.studies.reduce import page as reduce_page
+from verify.studies.reduce.bias import biases
+from verify.studies.reduce.fit import Fit
 from verify.studies.scaling import page as scaling_page
 from verify.studies.validation import page as validation_page
 from verify.studies.validation.plan import planned as validation_planned
@@ -214,6 +221,16 @@ def law(out: Path) -> Path:
     return out / "law.html"
 
 
+def reduction(out: Path) -> Path:
+    """A noisy test with a toe and a machine, a scheme that is missing, and a fit that cannot tell the strength."""
+    scene = load_scene("dcb-as4peek")
+    found = reduce(made_up_tests.recorded("dcb", made_up_tests.NOISY), coupon(scene), Settings(machine=1e-4))
+    fit = Fit(Value(80.0, 70.0), Value(0.969, 2e-3), Value(1.2e5, 300.0), 0.01, 1e-3, 30, *np.ones((2, 2)))
+    name = "a_file_with_a_long_name_from_a_machine_in_the_laboratory_001.csv"
+    reduce_page.write(found, biases(found, scene), scene, name, out / "reduce.html", fit)
+    return out / "reduce.html"
+
+
 def comparison(out: Path) -> Path:
     """Two curves, one with a peak that is off."""
     d = np.linspace(0.0, 3.0, 60)
@@ -245,6 +262,7 @@ PAGES: Mapping[str, Callable[[Path], Path]] = {
     "validation": validation,
     "hard": hard,
     "law": law,
+    "reduce": reduction,
     "compare": comparison,
     "mesh": mesh,
 }

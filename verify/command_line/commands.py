@@ -357,6 +357,18 @@ def compare(options: argparse.Namespace) -> int:
     return 0 if all(check.passed for check in found) else FAILED
 
 
+def reduce(options: argparse.Namespace) -> int:
+    from verify.studies.reduce import command as work
+
+    test, found, known, fit = work.reduced(options)
+    if options.out is not None:
+        _folder(options.out)
+    work.report(found, known, fit)
+    if options.out is not None:
+        work.write(options.out, str(options.file), test.scene, found, known, fit)
+    return 0
+
+
 def law(options: argparse.Namespace) -> int:
     from verify.command_line import law as work
     from verify.export.point_law import write_paths

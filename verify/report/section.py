@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from verify.pages.style import IN_TABLES, Panel
 from verify.pages.text import NO_VALUE, Units, inputs, modelled, number, percent, quantity, seconds, sentence
-from verify.report import converged, cost, matched, published, zones
+from verify.report import converged, cost, matched, published, toughness, zones
 from verify.report.figures import curves, drawing, fields, meshes, opening, undeformed
 from verify.report.figures.entry import Entry, entries
 from verify.report.tally import EVIDENCE, Tally, headline, tally
@@ -91,6 +91,7 @@ class Section:
     zones: tuple[zones.ZoneRow, ...]
     published: tuple[published.PublishedRow, ...]
     compared: tuple[Entry, ...]  # columns of the table of published values
+    toughness: toughness.ToughnessTable | None
     notes: tuple[str, ...]
 
     @property
@@ -125,6 +126,7 @@ def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
         zones=zones.rows(report.scene, found),
         published=published.rows(report.scene, found),
         compared=published.compared(found),
+        toughness=toughness.table(report.scene, found),
         notes=(*_notes(found), *report.remarks),
     )
 
