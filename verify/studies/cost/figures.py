@@ -44,7 +44,7 @@ def work_precision(rows: Sequence[Row], key: str, size: str = "wide") -> Panel:
     """
     wide = size == "wide"
     with drawing():
-        figure, axes = panel(HALF * (1.7 if wide else 1.0), 3.6 if wide else 3.1)
+        figure, axes = panel(HALF * (1.7 if wide else 1.0), 3.6 if wide else 2.8)
         if wide:
             box = axes.get_position()
             axes.set_position((box.x0, box.y0, 0.68 * box.width, box.height))
