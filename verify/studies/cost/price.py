@@ -16,6 +16,9 @@ from verify.studies.cost.row import Row
 #: Levels whose price is told, the first that is reached.
 PRICED = ("0.3%", "1%")
 
+#: Sentence for a ladder that was not finished.
+UNFINISHED = "The time allowed for a quick ladder is over; the same command goes on from here."
+
 #: The code whose price is told beside that of the cheapest one.
 BESIDE = "dolfinx"
 
@@ -68,6 +71,10 @@ class Price:
     @property
     def sentence(self) -> str:
         """0.3 % of the load curve costs 0.11 s with one method and 0.83 s with another."""
+        return f"{self._told} {UNFINISHED}" if UNFINISHED in self.left_out else self._told
+
+    @property
+    def _told(self) -> str:
         if not self.pair:
             return (
                 f"No run of the quick ladder on {self.scene.name} is within {_percent(PRICED[-1])} of its load curve."

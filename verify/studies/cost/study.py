@@ -142,17 +142,17 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     runner = Runner(source, scene, tuple(given), out, against)
     whole = [
         climb(rungs, partial(runner, seconds=LIMITS.climb), lambda: runner.rows),
-        runner(between(runner.rows), LIMITS.vary),
+        runner(_between(runner.rows), LIMITS.vary),
         runner(
             [other for one, row in runner.rows.items() if _nearly_accurate(row) for other in one.with_few_steps()],
             LIMITS.vary,
         ),
-        runner([other for one in best(runner.rows) for other in one.with_other_steps()], LIMITS.vary),
+        runner([other for one in _best(runner.rows) for other in one.with_other_steps()], LIMITS.vary),
     ]
     for repeat in range(1, LIMITS.times):
         whole.append(
             runner(
-                [replace(one, repeat=repeat) for one in best(runner.rows, LIMITS.close, LIMITS.once, LIMITS.late)],
+                [replace(one, repeat=repeat) for one in _best(runner.rows, LIMITS.close, LIMITS.once, LIMITS.late)],
                 LIMITS.repeat,
             )
         )
@@ -207,32 +207,26 @@ def _nearly_accurate(found: Row) -> bool:
     return found.curve_error <= LIMITS.near * max(LEVELS.values())
 
 
-def best(
-    rows: Mapping[Try, Row],
-    within: float = 1.0,
-    once: float = 1.0,
-    late: float = 0.0,
-    levels: Iterable[str] = tuple(LEVELS),
-) -> list[Try]:
+def _best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late: float = 0.0) -> list[Try]:
     """The cheapest runs of every method for every level, and those whose time is nearly the same.
 
     Nearly: at most the factor ``within``, or ``once`` for runs that were timed once, plus ``late`` seconds.
     """
     chosen: dict[Try, None] = {}
-    for level in levels:
-        for method, quickest in cheapest(list(rows.values()), level).of_method.items():
+    for level, error in LEVELS.items():
+        for method, best in cheapest(list(rows.values()), level).of_method.items():
             for one, found in rows.items():
-                most = (once if found.times == 1 else within) * quickest.seconds + late
-                if found.method == method and found.curve_error <= LEVELS[level] and found.seconds <= most:
+                most = (once if found.times == 1 else within) * best.seconds + late
+                if found.method == method and found.curve_error <= error and found.seconds <= most:
                     chosen[one] = None
     return list(chosen)
 
 
-def between(rows: Mapping[Try, Row], levels: Iterable[str] = tuple(LEVELS)) -> list[Try]:
+def _between(rows: Mapping[Try, Row]) -> list[Try]:
     """Meshes between the last that misses a level and the first that reaches it, for every method's best family."""
     chosen: dict[Try, None] = {}
-    for error in (LEVELS[level] for level in levels):
-        for one in best(rows, levels=levels):
+    for error in LEVELS.values():
+        for one in _best(rows):
             coarser = [other for other in rows if other.family == one.family and other.size < one.size]
             below = max(coarser, key=lambda other: other.size, default=None)
             if below is not None and rows[one].curve_error <= error < rows[below].curve_error:

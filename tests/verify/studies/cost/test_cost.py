@@ -21,7 +21,7 @@ from verify.studies.cost.ladder import Try
 from verify.studies.cost.nonzeros import nonzeros
 from verify.studies.cost.reference import _index, reference
 from verify.studies.cost.row import Row, errors, row, traction_error
-from verify.studies.cost.study import LIMITS, Study, best
+from verify.studies.cost.study import LIMITS, Study, _best
 from verify.support.checked_files import read_table
 
 # --- the reference
@@ -176,9 +176,9 @@ def test_runs_that_may_only_have_come_out_late_are_timed_again() -> None:
     """What a machine does besides takes no share of a run but some milliseconds, which short ones are lost in."""
     seconds = {1: 0.020, 2: 0.024, 3: 0.045, 4: 0.056}
     rows = {Try(NURBS, rung, 500, 40): a_row("nurbs", 0.002, each) for rung, each in seconds.items()}
-    assert {one.rung for one in best(rows, LIMITS.close, LIMITS.close, LIMITS.late)} == {1, 2, 3}
-    assert {one.rung for one in best(rows, LIMITS.close, LIMITS.close)} == {1, 2} and [
-        one.rung for one in best(rows)
+    assert {one.rung for one in _best(rows, LIMITS.close, LIMITS.close, LIMITS.late)} == {1, 2, 3}
+    assert {one.rung for one in _best(rows, LIMITS.close, LIMITS.close)} == {1, 2} and [
+        one.rung for one in _best(rows)
     ] == [1]
 
 
@@ -189,7 +189,7 @@ def test_a_run_that_was_timed_once_may_be_half_as_long_again() -> None:
         Try(NURBS, rung, 500, 40): replace(a_row("nurbs", 0.002, each), times=times)
         for rung, (each, times) in seconds.items()
     }
-    assert {one.rung for one in best(rows, LIMITS.close, LIMITS.once)} == {1, 2, 4}
+    assert {one.rung for one in _best(rows, LIMITS.close, LIMITS.once)} == {1, 2, 4}
 
 
 def test_cost_json_names_the_cheapest_and_the_front(tmp_path: Path) -> None:

@@ -121,10 +121,10 @@ def test_a_ladder_has_patience_with_the_quickest_accurate_run() -> None:
 def test_more_is_tried_where_it_may_pay() -> None:
     tries = {Try(NURBS, i, size, 80): a_row("nurbs", e, t, size) for i, (size, e, t) in enumerate(
         [(300, 0.02, 1.0), (420, 0.008, 1.2), (590, 0.002, 1.5), (830, 0.0008, 1.7)])}  # fmt: skip
-    sizes = [one.size for one in study_of.best(tries)]
+    sizes = [one.size for one in study_of._best(tries)]
     assert sizes == [420, 590, 830]
-    assert [one.size for one in study_of.best(tries, 1.3)] == [420, 590, 830]
-    assert [one.size for one in study_of.between(tries)] == [355, 498, 700]
+    assert [one.size for one in study_of._best(tries, 1.3)] == [420, 590, 830]
+    assert [one.size for one in study_of._between(tries)] == [355, 498, 700]
     first = next(iter(tries))
     assert [one.steps for one in first.with_few_steps()] == ["auto", "auto-0.02", "auto-0.05", "auto-0.1"]
     assert [one.steps for one in first.with_other_steps()] == [40, 150]
