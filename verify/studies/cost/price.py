@@ -20,7 +20,7 @@ PRICED = ("0.3%", "1%")
 UNFINISHED = "The time allowed for a quick ladder is over; the same command goes on from here."
 
 #: The code whose price is told beside that of the cheapest one.
-BESIDE = "dolfinx"
+OTHER_CODE = "dolfinx"
 
 
 @dataclass(frozen=True)
@@ -44,13 +44,13 @@ class Price:
 
     @property
     def pair(self) -> tuple[Row, ...]:
-        """The cheapest run of the level, and that of `BESIDE`, or where that is the cheapest, of the next method."""
+        """The cheapest run of the level, and that of `OTHER_CODE`, or where that is the cheapest, of the next method."""
         found = cheapest(self.rows, self.level) if self.level else None
         if found is None or found.best is None:
             return ()
         best = found.best
         others = [row for method, row in found.of_method.items() if method not in (best.method, *THEORIES)]
-        wanted = others if best.method == BESIDE else [row for row in others if row.method == BESIDE]
+        wanted = others if best.method == OTHER_CODE else [row for row in others if row.method == OTHER_CODE]
         return (best, *wanted[:1])
 
     @property
@@ -82,8 +82,8 @@ class Price:
         first, *others = self.pair
         text = f"{_percent(self.level)} of the load curve of {self.scene.name} costs {_cost(first, ' unknowns')}"
         if not others:
-            why = "was not run" if all(row.method != BESIDE for row in self.rows) else "did not reach it"
-            return f"{text}; {METHODS[BESIDE].label} {why}."
+            why = "was not run" if all(row.method != OTHER_CODE for row in self.rows) else "did not reach it"
+            return f"{text}; {METHODS[OTHER_CODE].label} {why}."
         text += f" and {_cost(others[0])}, {self.ratio:.2g} × as long"
         if self.ratio_at_equal_steps is None:
             return f"{text}."
