@@ -44,7 +44,7 @@ class Price:
 
     @property
     def pair(self) -> tuple[Row, ...]:
-        """The cheapest run of the level, and that of `OTHER_CODE`, or where that is the cheapest, of the next method."""
+        """The cheapest run of the level, and that of `OTHER_CODE`, or where that is cheapest, of the next method."""
         found = cheapest(self.rows, self.level) if self.level else None
         if found is None or found.best is None:
             return ()
