@@ -7,6 +7,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from verify.pages.style import Panel
 from verify.pages.template import rendered
 from verify.pages.text import percent, seconds, symbols
 from verify.report import markdown
@@ -19,6 +20,7 @@ from verify.report.studies.paper import section as paper_section
 from verify.report.summary import summarise
 from verify.studies.cost.figures import named, work_precision
 from verify.studies.cost.page import script as chart_script
+from verify.studies.cost.price import Price
 from verify.studies.effects.page import in_cell
 from verify.studies.hard.suite import totals
 
@@ -55,9 +57,7 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
         _FILTERS,
         sections=sections,
         summary=summary,
-        prices=[
-            (price, work_precision(price.rows, f"price-{i + 1}", "half")) for i, price in enumerate(summary.prices)
-        ],
+        prices=[(price, _chart(price, f"price-{i + 1}")) for i, price in enumerate(summary.prices)],
         included=studies,
         scripts=_scripts(sections, studies),
         planes=planes,
@@ -74,6 +74,11 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
     if text:
         lines = markdown.lines(summary, sections, planes, rates, studies, findings.environment)
         path.with_suffix(".md").write_text("\n".join(lines), encoding="utf-8")
+
+
+def _chart(price: Price, key: str) -> Panel | None:
+    """The chart of a quick ladder; None where no run was measured."""
+    return work_precision(price.rows, key, "half") if any(row.measured for row in price.rows) else None
 
 
 def _scripts(sections: Sequence[Section], studies: Sequence[IncludedSection]) -> tuple[Markup, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
+from made_up_costs import SCENE, a_row, against  # noqa: E402
 from made_up_runs import ENVIRONMENT, made_up, scene_report  # noqa: E402
 
 from verify import report  # noqa: E402
@@ -24,6 +26,7 @@ from verify.report.figures.agreement import path  # noqa: E402
 from verify.report.tally import EVIDENCE  # noqa: E402
 from verify.result import CURVE_COLUMNS, Result  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
+from verify.studies.cost.price import Price  # noqa: E402
 from verify.verdict import Check, SceneReport  # noqa: E402
 
 
@@ -232,6 +235,13 @@ def test_texts_are_escaped(tmp_path: Path) -> None:
     text, parsed = page(tmp_path, replace(given, scene=scene))
     assert text.count("<script") == 2 and parsed.tags.count("script") == 2  # our own
     assert "<script>alert" not in text and hostile in parsed.text
+
+
+def test_a_ladder_of_which_nothing_was_measured_has_a_sentence_and_no_chart(tmp_path: Path) -> None:
+    price = Price(SCENE, against(), (a_row("nurbs", nan, nan), a_row("dolfinx", nan, nan, 540, 2)))
+    report.write(report.Findings((), ENVIRONMENT, prices=(price,)), tmp_path / "report.html")
+    text = (tmp_path / "report.html").read_text()
+    assert price.sentence in text and "Curve error against time" not in text and "<svg" not in text
 
 
 def test_numbers_read_well() -> None:
