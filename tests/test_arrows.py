@@ -63,7 +63,7 @@ FLOORS = (
     ("verify.studies.viscosity",),
     (
         "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.law",
-        "verify.studies.paper", "verify.studies.plane", "verify.studies.scaling",
+        "verify.studies.paper", "verify.studies.plane", "verify.studies.scaling", "verify.studies.validation",
     ),
     ("verify.studies.page",),
     ("verify.studies.frame",),

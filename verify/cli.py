@@ -117,6 +117,10 @@ def _studies(command: Callable[..., Parser]) -> None:
     text = "What viscosity changes in a bond that slides, and what time it saves."
     example = "viscosity enf-as4peek --out viscosity"
     _viscosity_options(command(commands.viscosity, text, example, "read viscosity/report.html"))
+    text = "A statement of ASME V&V 20 on the error of the model: a measured curve against a scene, with uncertainties."
+    example = "validate dcb-czm1 --with lab.csv --out validation"
+    leaves = "read validation/report.html; exit 0: a statement could be made"
+    _validate_options(command(commands.validate, text, example, leaves))
     text = "How time and memory grow up to 100,000 unknowns, what more ranks gain, what to expect of many."
     _scaling_options(command(commands.scaling, text, "scaling dcb-czm1 --out scaling", "read scaling/report.html"))
     text = "The cases on which cohesive codes stop or go wrong."
@@ -219,6 +223,16 @@ def _viscosity_options(sub: Parser) -> None:
     sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx")
     _set_option(sub)
     _out_option(sub, "debond-viscosity")
+    _sweep_options(sub)
+
+
+def _validate_options(sub: Parser) -> None:
+    _scene_argument(sub)
+    _with_options(sub)
+    sub.add_argument("--at", type=numbers, default=[], metavar="D,D,...", help="the loads at these openings as well")
+    sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
+    _set_option(sub)
+    _out_option(sub, "debond-validation")
     _sweep_options(sub)
 
 

@@ -30,6 +30,9 @@ CURVE_COLUMNS = (
     "newton_iterations",
 )
 
+#: Further columns of ``curve.csv`` where the bond slides, described below; NaN where a method does not know one.
+SLIDING_COLUMNS = ("J_loads", "J_bond", "mode_ratio")
+
 #: What the checks need besides; a method leaves out what it cannot know.
 EVIDENCE_COLUMNS = (
     "load_slope",  # d load / d opening of the path at this point, exact (bordered system)

@@ -47,8 +47,8 @@ Arm = tuple[int, int]
 def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
     """NURBS or Lagrange meshes of both arms: equal elements on the crack path, longer ones before and beyond it.
 
-    An element boundary lies at the end of the precrack. The meshes are one element thick; one with few elements on the
-    path (`Grading.few`) is quadratic through the arms, all that bending needs, and spends the rest along them. Where
+    An element boundary lies at the end of the precrack, and there are ``layers`` elements through each arm. A mesh with
+    few elements on the path (`Grading.few`) is quadratic there, all that bending needs, and spends the rest along. If
     the arms would miss ``dofs`` by more than `CrackPath.missed`, the lower one has one element more, or of arms on
     rollers the one that bends more easily, or there are more elements before the path. Arms that are pressed together
     have shorter elements at the loaded end.
@@ -66,7 +66,7 @@ def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
 
     @cache
     def drawn(arm: Arm, thickness: float) -> Mesh:
-        through = thickness * np.linspace(0.0, 1.0, 2)
+        through = thickness * np.linspace(0.0, 1.0, problem.layers + 1)
         return find(problem.basis).rectangle((problem.degree, q), lines(problem, *arm), through)
 
     upper, lower = (drawn(arm, body.thickness) for arm, body in zip(both, problem.layout.bodies, strict=True))
@@ -102,6 +102,12 @@ def require_arms(problem: Debonding) -> None:
     opened = bool(layout.supports) or layout.loaded_at == 0.0
     if lengths != [end, end] or not opened or not 0.0 < precrack < end:
         raise ValueError(f"arms must end with the bond and be opened at X = 0, got {lengths} and {layout.bonded}")
+
+
+def _turned(problem: Debonding) -> bool:
+    """Whether couples act on the faces at the left ends, and arms turn far."""
+    couples = any(load.couple and load.side == "left" for load in problem.layout.loads)
+    return couples and problem.kinematics == "finite"
 
 
 def _thinner(problem: Debonding) -> float:
@@ -195,12 +201,13 @@ def division(
 def lines(problem: Debonding, path: int, spare: int = 0, layers: int = 0) -> np.ndarray:
     """Element boundaries along an arm that is divided like this; parameters as those of `division`.
 
-    Where arms are pressed together the first element is halved towards the loaded end, again and again, down to
-    `Grading.pressed`: load and contact balance each other within about the thickness of an arm from there.
+    Where arms are pressed together, or turned far by couples on their faces, the first element is halved towards the
+    loaded end, again and again, down to `Grading.pressed`: within about the thickness of an arm from there load and
+    contact balance each other, and the J-integral of couples is that of strains at the face.
     """
     parts, x = division(problem, path, spare, layers)
     breaks = pieces(*((start, end, n) for start, end, n in zip(x[:-1], x[1:], parts, strict=True)))
-    if not presses(problem):
+    if not (presses(problem) or _turned(problem)):
         return breaks
     halvings = np.log2(x[1] / (parts[0] - spare) / (GRADING.pressed * _thinner(problem))) - GRADING.rounding
     number = min(max(0, int(np.ceil(halvings))), most_halvings(path))
@@ -215,13 +222,14 @@ def _chosen(problem: Debonding, q: int) -> tuple[Arm, Arm]:
         return upper, lower
 
     columns = find(problem.basis).columns
+    rows = columns(q, problem.layers)
 
     @cache
     def along(arm: Arm) -> int:
         return columns(problem.degree, len(lines(problem, *arm)) - 1)
 
     def unknowns(both: tuple[Arm, Arm]) -> int:
-        return 2 * (q + 1) * sum(along(arm) for arm in both)
+        return 2 * rows * sum(along(arm) for arm in both)
 
     n = largest(lambda n: unknowns(arms(n)), 1, problem.dofs)
     least = unknowns(arms(n))

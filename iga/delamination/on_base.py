@@ -19,6 +19,7 @@ from iga.specimen.grading import (
     unequal,
 )
 from iga.specimen.problem import Debonding, presses
+from iga.specimen.ranges import require
 from iga.specimen.tmesh_strip import Strip, strip_tmesh
 from iga.tsplines.tmesh import DEGREE, TMesh
 
@@ -171,6 +172,7 @@ def _breaks(problem: Debonding, length: float, path: int, beyond: int, layers: i
 
 
 def _require_bodies(problem: Debonding) -> None:
+    require(problem, "layers", problem.layers == 1, "1 on a base, which has layers of its own")
     layout = problem.layout
     (bond, start), (strip, substrate) = layout.bonded, (body.length for body in layout.bodies)
     if start != 0.0 or not 0.0 < bond < strip or bond > substrate or layout.loaded_at != strip:

@@ -47,6 +47,7 @@ class Debonding(ABC):
     ``plateau`` and ``table`` are numbers of the trapezoidal and of the tabular law. ``meshes`` are those of the bodies,
     upper first, in the specimen's own frame; made by the solver where left out.
 
+    ``layers`` is the number of elements through each of two arms, but of T-splines, which are graded there.
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
     body, "upper" or "lower", whose points are projected: in every configuration where ``search`` is set, else once, and
     gaps are measured along the normal there for good. Steps that the path chooses leave the tangent by ``bend`` of the
@@ -82,6 +83,7 @@ class Debonding(ABC):
     degree: int = 3
     dofs: int = 1956
     meshes: tuple[Mesh, ...] = ()
+    layers: int = 1
     mismatch: float = 1.0
     slave: str = "upper"
     search: bool = True
@@ -103,6 +105,7 @@ class Debonding(ABC):
         require_positive(self, "strength", "toughness", "penalty", "width", "mismatch", "bend")
         require(self, "ductility", 1.0 < self.ductility < np.inf, "> 1 and finite")
         require(self, "degree", self.degree >= 1, ">= 1")
+        require(self, "layers", self.layers >= 1, ">= 1")
         require(self, "interface_points", self.interface_points >= 1, ">= 1")
         require(self, "steps", self.steps is None or self.steps >= 1, ">= 1, or None")
         moves = len(self.opening) > 0 and all(0.0 < abs(after - before) < np.inf for before, after in self.legs)

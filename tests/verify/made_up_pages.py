@@ -22,10 +22,14 @@ from tests.verify.studies.hard.test_hard import FAKE, faulty, stub
 from tests.verify.studies.paper import test_figure9, test_paper
 from tests.verify.studies.plane import test_rates as test_plane_rates
 from verify import report
+from verify.checks.foreign_curves import Curve
 from verify.checks.identities import run_checks
 from verify.cli import main
+from verify.curves.read import Reading
 from verify.methods.solve import solve
 from verify.pages.style import METHOD_NAMES
+from verify.result import Result
+from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
 from verify.studies.cost import page as cost_page
 from verify.studies.cost.price import Price
@@ -44,6 +48,9 @@ from verify.studies.law.given.built_in import built_in
 from verify.studies.law.judge import judge
 from verify.studies.law.ways.paths import paths
 from verify.studies.scaling import page as scaling_page
+from verify.studies.validation import page as validation_page
+from verify.studies.validation.plan import planned as validation_planned
+from verify.studies.validation.study import judged as validation_judged
 from verify.studies.viscosity import page as viscosity_page
 from verify.studies.viscosity.row import Row as ViscosityRow
 from verify.studies.viscosity.study import Study as ViscosityStudy
@@ -161,6 +168,24 @@ def viscosity(out: Path) -> Path:
     return out / "report.html"
 
 
+def validation(out: Path) -> Path:
+    """A statement that shows an error of the model, others that do not or cannot; an input that is not linear."""
+    stated = ("specimen.arm_thickness=0.01", "interface.toughness=0.05", "data.load=0.005", "data.opening=0.01")
+    scene = load_scene("dcb-czm1", [f"uncertainty.{one}" for one in stated])
+    plan = validation_planned("dcb-czm1", scene, "nurbs")
+    d = np.linspace(0.0, 3.0, 301)
+
+    def of(job: Job) -> Outcome:
+        number = plan.jobs.index(job)
+        load = (1.0 + 0.01 * np.sin(3.0 * number)) * d * np.exp(-1.5 * d)
+        return Outcome(job, Result("nurbs", {"opening": d, "load": load}, elements=240 - 60 * min(number, 2)))
+
+    data = Curve("lab", out / "lab.csv", Reading(), Result("lab", {"opening": d, "load": d * np.exp(-1.6 * d)}))
+    study = validation_judged(plan, data, {job: of(job) for job in plan.jobs}, (0.5, 9.0))
+    validation_page.write(study, out / "report.html")
+    return out / "report.html"
+
+
 def scaling(out: Path) -> Path:
     """Two methods of many sizes, on one rank and on two."""
     scaling_page.write(made_up_studies.scaling_study(), out / "report.html")
@@ -225,6 +250,7 @@ PAGES: Mapping[str, Callable[[Path], Path]] = {
     "effects": effects,
     "scaling": scaling,
     "viscosity": viscosity,
+    "validation": validation,
     "hard": hard,
     "law": law,
     "compare": comparison,

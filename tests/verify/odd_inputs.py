@@ -23,6 +23,7 @@ DCB = {
     "discretization": {"degree": 3, "dofs": 280, "interface_rule": "gauss", "interface_points": 2, "steps": 5},
     "dolfinx": {"degree": 2, "elements": 112},
     "published": [{"quantity": "load_at", "opening": 1.0, "value": [4.3, 4.5], "tolerance": 0.05, "source": "there"}],
+    "uncertainty": {"material": {"young": 0.02}, "interface": {"toughness": 0.05}, "data": {"load": 0.01}},
 }
 PEEL = {
     **{key: DCB[key] for key in ("name", "units", "interface", "load", "discretization", "dolfinx")},
@@ -112,7 +113,7 @@ OVERRIDES = st.lists(
 
 #: Words of command lines. What they name is there, or not.
 WORDS = st.one_of(
-    st.sampled_from("verify solve cost effects scaling hard export compare mesh scenes doctor nosuch".split()),
+    st.sampled_from("verify solve cost effects validate scaling hard export compare mesh scenes doctor nosuch".split()),
     st.sampled_from("dcb-czm1 peel-60 own.toml broken.toml curve.csv other.csv body.iga /dev/null . missing".split()),
     st.sampled_from(
         "--out --method --dofs --set --jobs --full --dry-run --fields --frames --accuracy --end --begin --at "
@@ -122,7 +123,7 @@ WORDS = st.one_of(
     st.sampled_from("nurbs dolfinx beam lefm 0 1 -1 1e-3 80 1e999 nan 0.3% 1,2 abaqus csv md here here/x".split()),
     st.text(st.characters(exclude_characters="\0", exclude_categories=("Cs",)), max_size=8),
 )
-FIRST = st.sampled_from("verify solve cost effects scaling hard export compare mesh".split())
+FIRST = st.sampled_from("verify solve cost effects validate scaling hard export compare mesh".split())
 
 
 @st.composite

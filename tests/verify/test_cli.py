@@ -281,6 +281,10 @@ UNSAID = {
     },
     "cost S": {"overrides": [], "out": Path("debond-cost"), "dry_run": False},
     "effects S": {"method": "nurbs", "overrides": [], "out": Path("debond-effects"), "scheduler": None},
+    "validate S": {
+        "method": "nurbs", "overrides": [], "out": Path("debond-validation"), "scheduler": None, "curves": [], "at": [],
+        "opening": None, "load": None, "opening_scale": 1.0, "load_scale": 1.0, "dry_run": False,
+    },
     "scaling S": {"overrides": [], "out": Path("debond-scaling"), "dry_run": False},
     "hard": {"names": [], "out": Path("debond-hard"), "scheduler": None, "dry_run": False},
     "compare A B": {

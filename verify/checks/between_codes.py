@@ -19,8 +19,8 @@ from verify.curves.of_run import peak_load
 from verify.methods import through_thickness, zone_resolution
 from verify.methods.solve import prepare
 from verify.result import Result
-from verify.scene.published import Published
 from verify.scene.schema import Scene
+from verify.scene.stated.published import Published
 from verify.verdict import Check
 
 #: The reference that shares no code and no discretisation with the plane solvers.

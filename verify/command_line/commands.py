@@ -288,6 +288,27 @@ def viscosity(options: argparse.Namespace) -> int:
     return 0 if viscosity(plan, options.out, options.jobs, options.scheduler).complete else FAILED
 
 
+def validate(options: argparse.Namespace) -> int:
+    from verify.methods.method import NotRun
+    from verify.studies.validation.plan import planned
+    from verify.studies.validation.study import validate, would_run
+
+    _known_method(options.method, None)
+    scene = _studied(options, "validate")
+    curves = _curves(options, 1, 0)
+    if len(curves) != 1:
+        raise Refusal(f"--with: must name one curve that the scene is held against, got {len(curves)}")
+    try:
+        plan = planned(options.scene, scene, options.method, options.overrides)
+    except NotRun as error:
+        return _not_run(error)
+    if options.dry_run:
+        return _listed(would_run(plan, options.out, options.jobs))
+    _folder(options.out)
+    study = validate(plan, curves[0], options.out, options.at, options.jobs, options.scheduler)
+    return 0 if study.complete else FAILED
+
+
 def scaling(options: argparse.Namespace) -> int:
     from verify.studies.scaling.study import scaling, would_run
 

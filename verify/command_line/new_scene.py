@@ -14,7 +14,9 @@ from verify.scene.keys import SPECIMENS, Key, keys, keys_of
 from verify.scene.load import load_scene
 from verify.scene.materials import Orthotropic
 from verify.scene.parse import SceneError, parse_scene
-from verify.scene.published import Published
+from verify.scene.schema import Scene
+from verify.scene.stated.published import Published
+from verify.scene.stated.uncertainty import DATA_KEYS, MOST_UNCERTAIN, UNCERTAIN_TABLES, numbers_in
 from verify.support.refusal import Refusal
 
 #: A TOML value that no key accepts; its refusal contains the accepted values.
@@ -92,10 +94,27 @@ def new_scene(kind: str) -> str:
             table = key.table
             lines += ["", f"[{table}]"]
         lines += [*_comment(raw, key), *_assigned(raw, key)]
+    lines += _uncertain(kind, parse_scene(raw))
     lines += ["", "# What others have found, as often as there are values; `debond verify` holds every method to them."]
     return (
         "\n".join([*lines, *_commented("[[published]]", raw, keys_of("published", Published), published(raw))]) + "\n"
     )
+
+
+def _uncertain(kind: str, scene: Scene) -> list[str]:
+    """Examples of relative standard uncertainties as comments, in the table that has begun."""
+    text = (
+        "How well a number is known: its key once more, with its relative standard uncertainty. Any number of "
+        f"specimen, materials and interface; takes a number > 0 and <= {MOST_UNCERTAIN:g}, for `debond validate`."
+    )
+    of_scene = numbers_in({name: getattr(scene, name) for name in UNCERTAIN_TABLES})
+    thickness = f"specimen.{SPECIMENS[kind].thickness_keys[0]}"
+    shown = [key for key in of_scene if key == thickness or key.endswith(("young", "E1", ".toughness"))]
+    return [
+        *(f"# {line}" for line in textwrap.wrap(text, _LINE_WIDTH - 2)),
+        *(f"# {key} = 0.02" for key in shown),
+        *(f"# {key} = 0.005  # {what}" for key, what in DATA_KEYS.items()),
+    ]
 
 
 def published(raw: Mapping[str, Any]) -> dict[str, Any]:

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import textwrap
+from dataclasses import replace
 
 from verify.command_line.sketch import sketch
 from verify.methods.reference_mesh import reference_mesh
+from verify.methods.solve import prepare, require
 from verify.scene.bond.interface import Interface
 from verify.scene.laws import EXPONENTIAL
 from verify.scene.materials import Isotropic, Material
 from verify.scene.schema import Scene
+from verify.theory.arms.brittle import stability
 
 NAME_WIDTH = 24
+
+#: Lengths of crack at which its growth is looked at.
+GROWN_CRACKS = 40
 
 
 def line(name: str, scene: Scene, width: int) -> str:
@@ -34,6 +40,7 @@ def page(scene: Scene, width: int) -> str:
         **{name: _material(material) for name, material in scene.named_materials.items()},
         "interface": f"{law.law}, strength {law.strength:g}, toughness {law.toughness:g}, ductility {law.ductility:g}",
         "sliding": _sliding(law),
+        "growth": _growth(scene),
         "opening": " -> ".join(f"{opening:g}" for opening in scene.load.opening),
         "effects": ", ".join(_effect(name, getattr(scene.effects, name)) for name in type(scene.effects).model_fields),
         "meshes": f"{mesh.dofs} unknowns of degree {mesh.degree}; DOLFINx {other.elements} elements along, "
@@ -56,6 +63,25 @@ def _sliding(law: Interface) -> str:
     mixing = [] if law.law == EXPONENTIAL else [f"{law.criterion} of exponent {law.exponent:g}, onset {law.onset}"]
     strengths = f"strength {law.shear_strength:g}, toughness {law.shear_toughness:g}"
     return ", ".join([f"{strengths}, stiffness {law.shear_stiffness:g}", *mixing, *more])
+
+
+def _growth(scene: Scene) -> str:
+    """Whether fracture mechanics has the crack of a bond that slides run away at a prescribed deflection."""
+    prepared = prepare(scene, "lefm")
+    if not prepared.effects["shear"]:
+        return ""
+    try:
+        require(prepared)
+        found = stability(replace(prepared.problem, points=GROWN_CRACKS))
+    except ValueError:  # a programme that unloads; loads that release nothing, or that nothing takes
+        return ""
+    precrack = scene.specimen.free_length
+    if found.stable:
+        shorter = [a for a in found.changes if a < precrack]
+        return "by LEFM stable" + (f"; unstable with a precrack shorter than {shorter[-1]:.3g}" if shorter else "")
+    longer = [a for a in found.changes if a > precrack]
+    until = f" up to a crack length of {longer[0]:.3g}" if longer else ""
+    return f"by LEFM unstable: the deflection falls while the crack grows{until}"
 
 
 def _material(material: Material) -> str:

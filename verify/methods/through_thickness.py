@@ -24,6 +24,6 @@ def warnings(prepared: Prepared) -> tuple[str, ...]:
     if error <= NAMED:
         return ()
     there = f"{mesh.layers} element{'s' * (mesh.layers > 1)} of degree {mesh.degree} through the {scene.specimen.body}"
-    finer = "discretization.dofs larger" if scene.discretization.degree > 2 else "discretization.degree = 3"
+    finer = "discretization.layers larger" if scene.discretization.degree > 2 else "discretization.degree = 3"
     remedy = finer if prepared.method.with_dofs else "dolfinx.layers or dolfinx.degree larger"
     return (f"{there}: the load may be off by {error:.1%}, however many elements along it; {remedy} resolves it",)

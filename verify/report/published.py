@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from verify.checks.between_codes import published_load
 from verify.pages.text import Units, number, percent, quantity
 from verify.report.figures.entry import Entry
-from verify.scene.published import Published
 from verify.scene.schema import Scene
+from verify.scene.stated.published import Published
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,8 @@ def digest(*content: object) -> str:
 
 def _problem(scene: Scene, method: str) -> list[object]:
     meshes = [hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in scene.specimen.mesh]
-    return [scene.model_dump(mode="json"), method, meshes]
+    solved = scene.model_dump(mode="json", exclude={"uncertainty"})  # which no run knows
+    return [solved, method, meshes]
 
 
 @cache

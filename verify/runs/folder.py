@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Result, Snapshot, support_columns
+from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, SLIDING_COLUMNS, Result, Snapshot, support_columns
 from verify.support.checked_files import ANY, NUMBER, Damaged, number, read_json
 
 FILES = ("curve.csv", "evidence.csv", "result.json", "fields.npz", "moments.npz", "error.log")
@@ -31,22 +31,30 @@ class CurveWriter:
         folder.mkdir(parents=True, exist_ok=True)
         for name in FILES:  # files of an earlier run must not be taken for those of this one
             (folder / name).unlink(missing_ok=True)
-        self._curve = _opened(folder / "curve.csv", CURVE_COLUMNS)
+        self._folder = folder
+        self._curve_columns: tuple[str, ...] = CURVE_COLUMNS
+        self._curve = _opened(folder / "curve.csv", self._curve_columns)
         self._evidence: FileIO | None = None
-        self._evidence_path = folder / "evidence.csv"
         self._columns: tuple[str, ...] = ()
 
     def __call__(self, row: Mapping[str, float]) -> None:
         if self._evidence is None:
-            known = (*CURVE_COLUMNS, *EVIDENCE_COLUMNS, *support_columns(row))
-            self._columns = tuple(name for name in known if name in row)
-            self._evidence = _opened(self._evidence_path, self._columns)
-            _append(
-                self._curve, CURVE_COLUMNS, dict.fromkeys(CURVE_COLUMNS, 0.0)
-            )  # the contract of curve.csv: all columns start at 0, also the crack length
+            self._begin(row)
         else:
-            _append(self._curve, CURVE_COLUMNS, dict.fromkeys(CURVE_COLUMNS, math.nan) | dict(row))
+            _append(self._curve, self._curve_columns, dict.fromkeys(self._curve_columns, math.nan) | dict(row))
+        assert self._evidence is not None
         _append(self._evidence, self._columns, row)
+
+    def _begin(self, row: Mapping[str, float]) -> None:
+        """The columns that the first row has, and zeros for all of curve.csv, the crack length included."""
+        known = (*CURVE_COLUMNS, *EVIDENCE_COLUMNS, *support_columns(row))
+        self._columns = tuple(name for name in known if name in row)
+        self._evidence = _opened(self._folder / "evidence.csv", self._columns)
+        if any(name in row for name in SLIDING_COLUMNS):
+            self._curve.close()
+            self._curve_columns = (*CURVE_COLUMNS, *SLIDING_COLUMNS)
+            self._curve = _opened(self._folder / "curve.csv", self._curve_columns)
+        _append(self._curve, self._curve_columns, dict.fromkeys(self._curve_columns, 0.0))
 
     def close(self) -> None:
         for stream in (self._curve, self._evidence):

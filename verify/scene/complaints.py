@@ -71,7 +71,7 @@ def _elsewhere(name: str) -> str:
     """Where a key of this name would be one, if it has been put into the wrong table."""
     from verify.scene.keys import dotted_keys  # which reads scenes, and so needs this file
 
-    places = [key for key in dotted_keys() if "." in key and key.rpartition(".")[2] == name]
+    places = [key for key in dotted_keys() if key.count(".") == 1 and key.rpartition(".")[2] == name]
     return f"did you mean {one_of(places)}?" if places else ""
 
 

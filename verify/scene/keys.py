@@ -11,6 +11,7 @@ from pydantic.fields import FieldInfo
 from verify.scene.materials import Isotropic, Orthotropic
 from verify.scene.schema import Scene
 from verify.scene.specimens import SPECIMENS
+from verify.scene.stated.uncertainty import DATA_KEYS, UNCERTAIN_TABLES
 from verify.scene.tables import Section
 
 
@@ -58,7 +59,12 @@ def keys_of(name: str, table: type[Section]) -> tuple[Key, ...]:
 
 def dotted_keys() -> tuple[str, ...]:
     """What may stand before the equals sign of ``--set``, for any specimen and material."""
-    found = [key.dotted for kind in SPECIMENS for key in keys(kind)]
+    found = [key for kind in SPECIMENS for key in keys(kind)]
     for kind in SPECIMENS:
-        found += [key.dotted for name in SPECIMENS[kind].materials for key in keys_of(name, Orthotropic)]
-    return tuple(sorted(set(found)))
+        found += [key for name in SPECIMENS[kind].materials for key in keys_of(name, Orthotropic)]
+    uncertain = [*DATA_KEYS, *(key.dotted for key in found if key.table in UNCERTAIN_TABLES and _is_number(key))]
+    return tuple(sorted({*(key.dotted for key in found), *(f"uncertainty.{name}" for name in uncertain)}))
+
+
+def _is_number(key: Key) -> bool:
+    return key.field.annotation in (float, float | None)

@@ -15,8 +15,9 @@ from pydantic_core import PydanticCustomError
 from verify.scene.bond.interface import Interface
 from verify.scene.bond.shear import require_shear
 from verify.scene.materials import Material, MaterialOrTwo, definite
-from verify.scene.published import Published
 from verify.scene.specimens import Specimen
+from verify.scene.stated.published import Published
+from verify.scene.stated.uncertainty import Uncertainty, require_numbers
 from verify.scene.tables import Section, refuse
 from verify.support.programme import turns
 
@@ -99,6 +100,8 @@ class Discretization(Section):
     """Degree of the basis; 3 for tspline."""
     dofs: int = Field(default=1956, ge=40, le=1_000_000)
     """Unknowns to aim at."""
+    layers: int = Field(default=1, ge=1, le=8)
+    """Elements through each of two arms, for nurbs and lagrange; T-meshes are graded there."""
     interface_rule: Literal["gauss", "lobatto", "lumped"] = "gauss"
     """How the interface is integrated."""
     interface_points: int = Field(default=2, ge=1, le=12)
@@ -174,6 +177,7 @@ class Scene(Section):
     discretization: Discretization = Discretization()
     dolfinx: Dolfinx = Dolfinx()
     published: Annotated[tuple[Published, ...], BeforeValidator(_as_tables)] = ()
+    uncertainty: Uncertainty = Uncertainty()
 
     @property
     def materials(self) -> tuple[Material, ...]:
@@ -263,6 +267,8 @@ class Scene(Section):
     @classmethod
     def _two_meshes(cls, mesh: Discretization, info: ValidationInfo) -> Discretization:
         effects, specimen = info.data.get("effects"), info.data.get("specimen")
+        if mesh.layers > 1 and specimen is not None and specimen.clamped:
+            raise refuse(f"1 for a {specimen.kind}, whose lower body is graded", (("layers",), mesh.layers))
         if mesh.adaptive and specimen is not None and (specimen.mesh or not specimen.symmetric):
             why = "with specimen.mesh, which is taken as it is" if specimen.symmetric else f"for a {specimen.kind}"
             raise refuse(f"false {why}", (("adaptive",), True))
@@ -299,6 +305,12 @@ class Scene(Section):
                 rule = f">= {low:g} and <= {high:g}, leg {value.leg} of load.opening"
                 raise refuse(rule, ((i, "opening"), value.opening))
         return published
+
+    @field_validator("uncertainty")
+    @classmethod
+    def _of_its_numbers(cls, uncertainty: Uncertainty, info: ValidationInfo) -> Uncertainty:
+        require_numbers(uncertainty, info.data)
+        return uncertainty
 
 
 def _definite(found: Material | tuple[Material, Material], specimen: Specimen) -> Material | tuple[Material, ...]:

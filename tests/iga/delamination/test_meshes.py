@@ -282,3 +282,21 @@ def test_where_few_elements_are_on_the_path_there_are_no_more_elsewhere():
     assert (before, beyond) == (7, 7)
     (before, _, beyond), places = division(late, 8)
     assert before > 8 and beyond > 8 and places[0] == 0.0 and places[-1] == late.length
+
+
+@pytest.mark.parametrize("basis", [name for name, basis in BASES.items() if not basis.local])
+def test_layers_divide_the_arms_through_their_thickness(basis: str) -> None:
+    """More of them make short stocky arms softer: one cubic element does not follow how a section warps in shear."""
+    stocky = replace(
+        CZM1, basis=basis, precrack=1.0, arm_thickness=1.0, dofs=4000, opening=(1e-4,), kinematics="linear"
+    )
+    meshes = drawn(replace(stocky, layers=3)).meshes
+    assert all(np.unique(mesh.P_AI[:, 1]).size == BASES[basis].columns(3, 3) for mesh in meshes)
+    assert 2 * sum(len(mesh.P_AI) for mesh in meshes) == pytest.approx(4000, rel=0.02)
+    loads = [solve(replace(stocky, layers=n)).load[-1] for n in (1, 2, 3)]
+    assert loads[0] > loads[1] > loads[2] > 0.99 * loads[0]
+
+
+def test_a_base_has_layers_of_its_own() -> None:
+    with pytest.raises(ValueError, match="layers: must be 1 on a base"):
+        drawn(replace(PEEL, layers=2))

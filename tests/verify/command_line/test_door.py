@@ -32,6 +32,7 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     import verify.studies.effects.study
     import verify.studies.hard.suite
     import verify.studies.scaling.study
+    import verify.studies.validation.study
     import verify.verification
 
     def nothing(prepared, *_: object, **__: object):
@@ -47,6 +48,7 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for study, name in (
         (verify.studies.effects.study, "effects"),
         (verify.studies.scaling.study, "scaling"),
+        (verify.studies.validation.study, "validate"),
     ):
         monkeypatch.setattr(study, name, lambda *_: type("Study", (), {"complete": True}))
     (tmp_path / "own.toml").write_text("\n".join(f"{key} = {as_toml(value)}" for key, value in DCB.items()))

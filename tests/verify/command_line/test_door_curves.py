@@ -17,6 +17,7 @@ from verify.curves.read import Reading
 from verify.methods import plugins
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
+from verify.studies import frame
 from verify.support.refusal import Refusal
 
 PLAIN = b"opening,load\n0,0\n1,2\n3,1\n"
@@ -28,11 +29,17 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder to stand in, in which runs are made up and no page is drawn."""
     known = {"nurbs": Result("nurbs", curve(1e-3)), "beam": Result("beam", curve()), "lefm": limit()}
 
+    def found(job: Job) -> Result:
+        size = 1.0 + 0.01 * sum(map(ord, job.variant)) / 1000  # every run is another one
+        steps = {name: size * column if name == "load" else column for name, column in curve().items()}
+        return Result("nurbs", steps, elements=job.solved.discretization.dofs)
+
     def runs(plan: list[Job], *_: object) -> list[Outcome]:
         return [Outcome(job, known.get(job.method), "" if job.method in known else "not run") for job in plan]
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(verification, "run_all", runs)
+    monkeypatch.setattr(frame, "run", lambda plan, *_: {job: Outcome(job, found(job)) for job in plan})
     monkeypatch.setattr(verification, "write_page", lambda *_: None)
     monkeypatch.setattr(plugins, "entry_points", lambda group: [])  # which all packages are searched for
     return tmp_path
@@ -52,6 +59,30 @@ def judged(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
     (folder / "out" / "verdict.json").unlink(missing_ok=True)
     code, said = answered(capsys, "verify", SCENE, "--with", "mine=a.csv", "--out", "out")
     assert said.startswith("debond: a.csv") if code == 2 else (folder / "out" / "verdict.json").exists()
+
+
+def stated(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    """A statement, or one that cannot be made, on runs that are made up."""
+    (folder / "a.csv").write_bytes(text)
+    (folder / "out" / "validation.json").unlink(missing_ok=True)
+    words = ["--set", "uncertainty.material.young=0.02", "--set", "uncertainty.data.opening=0.01", "--at", "1,2.5"]
+    code, said = answered(capsys, "validate", SCENE, "--with", "mine=a.csv", *words, "--out", "out")
+    assert said.startswith("debond: a.csv") if code == 2 else (folder / "out" / "validation.json").exists()
+
+
+@given(text=CURVES)
+@settings(max_examples=40, suppress_health_check=QUIET)
+@pytest.mark.filterwarnings("error")
+def test_validate_with(text: bytes, folder: Path, capsys: pytest.CaptureFixture, monkeypatch) -> None:
+    monkeypatch.setattr(frame, "write_page", lambda *_: None)
+    stated(text, folder, capsys)
+
+
+@given(text=DRAWN)
+@settings(max_examples=10, suppress_health_check=QUIET)
+@pytest.mark.filterwarnings("error")
+def test_the_page_of_a_statement_is_drawn(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    stated(text, folder, capsys)
 
 
 @given(a=CURVES, b=CURVES | st.just(PLAIN))

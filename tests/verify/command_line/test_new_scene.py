@@ -18,8 +18,8 @@ from verify.scene.keys import SPECIMENS, keys, keys_of
 from verify.scene.load import load_scene, packaged_scenes
 from verify.scene.materials import Orthotropic
 from verify.scene.parse import parse_scene
-from verify.scene.published import Published
 from verify.scene.schema import Scene
+from verify.scene.stated.published import Published
 
 KINDS = tuple(SPECIMENS)
 #: Keys of a bond that slides.
@@ -277,3 +277,16 @@ PICTURES = {
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_specimen_is_drawn_as_it_is_held_and_pulled(name: str) -> None:
     assert "\n".join(["", *sketch(load_scene(name), 60)]) == PICTURES[name]
+
+
+@pytest.mark.parametrize(("precrack", "words"), [(39.3, "stable; unstable with a precrack"), (25.0, "unstable: ")])
+def test_the_page_of_a_scene_says_whether_its_crack_runs_away(precrack: float, words: str) -> None:
+    """An end-notched flexure does for a < 0.693 L, with the half span L = 51 and a + 0.4 h in place of a."""
+    found = page(parse_scene(load_scene("enf-as4peek").model_dump(), (f"specimen.precrack={precrack}",)), 200)
+    (growth,) = (line for line in found.splitlines() if line.startswith("growth"))
+    assert f"by LEFM {words}" in growth
+    assert 0.95 * 0.693 * 51.0 < float(re.findall(r"\d+\.\d+$", growth)[0]) < 0.693 * 51.0
+
+
+def test_the_page_of_a_bond_that_opens_alone_says_nothing_of_its_growth() -> None:
+    assert "\ngrowth" not in page(load_scene("dcb-czm1"), 200)

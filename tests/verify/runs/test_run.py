@@ -24,7 +24,7 @@ from verify.methods.solve import prepare
 from verify.result import CURVE_COLUMNS, Result, Snapshot, steps_from_rows
 from verify.runs import environment
 from verify.runs import run as run_of
-from verify.runs.folder import read_columns, read_result, write_json
+from verify.runs.folder import CurveWriter, read_columns, read_result, write_json
 from verify.runs.run import Keep, run
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
@@ -87,6 +87,15 @@ def test_curve_csv_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
     assert [float(cell) for cell in lines[1].split(",")] == [0.0] * 7
     assert len(lines) == 2 + 5
     assert float(lines[2].split(",")[0]) == float(np.linspace(0.0, 3.0, 6)[1])  # 17 digits: nothing is lost
+
+
+def test_curve_csv_of_a_bond_that_slides_has_j_and_the_mode_ratio(tmp_path: Path) -> None:
+    writer = CurveWriter(tmp_path)
+    for d in (0.0, 1.0):
+        writer(dict.fromkeys(CURVE_COLUMNS, d) | {"J_loads": 2.0 * d, "J_bond": 3.0 * d, "mode_ratio": 0.5})
+    writer.close()
+    lines = (tmp_path / "curve.csv").read_text().splitlines()
+    assert lines == [f"{HEADER},J_loads,J_bond,mode_ratio", ",".join("0" * 10), "1,1,1,1,1,1,1,2,3,0.5"]
 
 
 def test_result_json_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:

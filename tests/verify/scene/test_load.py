@@ -126,6 +126,7 @@ BROKEN_PEEL = {
     "substrate.poison=0.2": 'substrate.poison: is not a key of a scene, got 0.2; did you mean "poisson"?',
     'specimen.mesh="strip.iga"': "specimen.mesh: must be two files, of strip and substrate, got ['strip.iga']",
     "discretization.adaptive=true": "discretization.adaptive: must be false for a peel, got true",
+    "discretization.layers=2": "discretization.layers: must be 1 for a peel, whose lower body is graded, got 2",
     "effects.search=false": "effects.search: must be true for a peel: strip and substrate turn, got false",
     "effects.symmetry=true": "effects.symmetry: must be false for a peel: strip and substrate differ, got true",
     "load.opening=301": "load.opening: must be >= -4 (-2 strip_thickness) and <= 300 (2 strip_length), got 301",

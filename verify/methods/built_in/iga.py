@@ -90,7 +90,8 @@ def mesh_facts(prepared: Prepared) -> MeshFacts:
     solver, problem = prepared.problem
     specimen = solver.build(problem)
     degree = min(min(block.degrees) for mesh in specimen.meshes for block in mesh.blocks)
-    return MeshFacts(element_length(specimen), degree, 0 if BASES[prepared.method.name].local else 1)
+    layers = 0 if BASES[prepared.method.name].local else prepared.scene.discretization.layers
+    return MeshFacts(element_length(specimen), degree, layers)
 
 
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:

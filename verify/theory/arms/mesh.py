@@ -80,6 +80,12 @@ class Mesh:
         first = UNKNOWNS * ARM_DEGREE * np.arange(len(self.sizes))
         return first[:, None] + np.arange(UNKNOWNS * (ARM_DEGREE + 1))
 
+    def within(self, x: np.ndarray) -> np.ndarray:
+        """Unknowns (E, 30) of every element, with displacements less those of its first node."""
+        x_eai = x[self.dofs_el].reshape(len(self.sizes), -1, UNKNOWNS)
+        turns = np.arange(UNKNOWNS) % 3 == 2
+        return (x_eai - np.where(turns, 0.0, x_eai[:, :1])).reshape(len(self.sizes), -1)
+
     def places(self, points: Points) -> np.ndarray:
         """X (E, q) of points of every element."""
         return self.ends[:-1, None] + self.sizes[:, None] * points.at

@@ -15,7 +15,8 @@ from verify.curves.curve import curve_error
 from verify.result import CURVE_COLUMNS, steps_from_rows
 from verify.support.refusal import Refusal
 from verify.theory.arms.problem import ArmsProblem
-from verify.theory.arms.solve import solve
+from verify.theory.arms.solve import model, solve
+from verify.theory.arms.structure import rigid
 from verify.theory.beam.problem import BeamProblem
 from verify.theory.beam.solve import solve as solve_one_arm
 
@@ -43,6 +44,13 @@ def test_curves_of_fine_plane_meshes(name: str, peak: float) -> None:
     if file.exists():
         reference = np.loadtxt(file, delimiter=",", skiprows=1)[:, :2].T
         assert curve_error((s["opening"], s["load"]), tuple(reference)) < 0.004
+
+
+def test_arms_that_move_as_a_whole_have_no_forces() -> None:
+    """Not even by rounding, which would add up along the arms to what statics then misses."""
+    one = model(ENF)
+    moved = rigid(ENF.arms, one.structure.mesh)[:, :2] @ np.array([123.456, 1234.567])
+    assert not one.internal(moved, np.zeros_like(one.intact().jump)).any()
 
 
 @pytest.mark.parametrize("name", PROBLEMS)

@@ -1,0 +1,125 @@
+"""How well the numbers of a scene, and of data that it is held against, are known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from pydantic import ConfigDict, SerializerFunctionWrapHandler, model_serializer, model_validator
+
+from verify.scene.tables import Section, refuse
+
+#: Tables of a scene whose numbers may have an uncertainty.
+UNCERTAIN_TABLES = ("specimen", "material", "strip", "substrate", "interface")
+
+#: Keys of measured data, or of a curve of another code, with what they are.
+DATA_KEYS: Mapping[str, str] = {
+    "data.load": "Of the loads of the data as a whole: load cell, width, scatter from specimen to specimen.",
+    "data.opening": "Of the openings of the data as a whole: gauge, compliance of the machine.",
+}
+
+#: Largest relative standard uncertainty: beyond it a linear propagation means nothing.
+MOST_UNCERTAIN = 0.3
+
+#: What a table must be, in the words of a refusal.
+UNCERTAIN_TABLE = "a table of keys of the scene and of data, like material.young = 0.02 and data.load = 0.005"
+
+
+class Uncertainty(Section):
+    """Relative standard uncertainties by the dotted key of the number that they belong to, independent of each other.
+
+    The keys are those of the scene once more, as ``material.young = 0.02``, with or without quotation marks, and those
+    of `DATA_KEYS`.
+    """
+
+    model_config = ConfigDict(extra="allow")
+
+    introduction: bool = True
+    """Whether it is open where on the loaded face the load acts, which `debond validate` then counts as an input."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_dotted_keys(cls, given: Any) -> Any:
+        """Tables in tables as dotted keys, and only sizes that are relative standard uncertainties."""
+        if isinstance(given, Uncertainty):
+            return given
+        if not isinstance(given, Mapping):
+            raise refuse(UNCERTAIN_TABLE, ((), given))
+        pairs = list(_flat("", given))
+        keys = [key for key, _ in pairs]
+        twice = [((key,), value) for key, value in pairs if keys.count(key) > 1]
+        if twice:
+            raise refuse("stated once", *twice[-1:])
+        stated = [(key, value) for key, value in pairs if key not in cls.model_fields]
+        wrong = [((key,), value) for key, value in stated if not _is_relative(value)]
+        if wrong:
+            raise refuse(f"a relative standard uncertainty, a number > 0 and <= {MOST_UNCERTAIN:g}", *wrong)
+        return {key: value if key in cls.model_fields else float(value) for key, value in pairs}
+
+    @model_serializer(mode="wrap")
+    def _in_tables(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """As tables in tables, in which --set replaces a single key."""
+        found: dict[str, Any] = {}
+        for key, value in write(self).items():
+            table, _, name = key.rpartition(".")
+            (found.setdefault(table, {}) if table else found)[name] = value
+        return found
+
+    @property
+    def inputs(self) -> Mapping[str, float]:
+        """Of numbers of the scene, by dotted key."""
+        return {key: value for key, value in (self.model_extra or {}).items() if key not in DATA_KEYS}
+
+    @property
+    def data(self) -> Mapping[str, float]:
+        """Of the data, by dotted key; 0 where none is stated."""
+        return {key: (self.model_extra or {}).get(key, 0.0) for key in DATA_KEYS}
+
+
+def number_at(tables: Mapping[str, Any], key: str) -> float | tuple[float, ...] | None:
+    """The number other than 0 that a dotted key names in the tables of a scene, or the numbers, as of two arms, which
+    are off by the same part; None where there is none."""
+    table, _, name = key.partition(".")
+    known = table in UNCERTAIN_TABLES and isinstance(tables.get(table), Section)
+    value = tables[table].model_dump().get(name) if known else None
+    numbers = value if isinstance(value, tuple) and value else (value,)
+    return value if all(isinstance(one, float) and one != 0.0 for one in numbers) else None
+
+
+def scaled(number: float | tuple[float, ...], factor: float) -> str:
+    """A number, or several, times a factor, as TOML."""
+    return str([one * factor for one in number]) if isinstance(number, tuple) else repr(number * factor)
+
+
+def numbers_in(tables: Mapping[str, Any]) -> tuple[str, ...]:
+    """Every dotted key that `number_at` knows: a list of two materials has none."""
+    found = [
+        f"{name}.{key}"
+        for name in UNCERTAIN_TABLES
+        if isinstance(tables.get(name), Section)
+        for key in tables[name].model_dump()
+    ]
+    return tuple(key for key in found if number_at(tables, key) is not None)
+
+
+def require_numbers(uncertainty: Uncertainty, tables: Mapping[str, Any]) -> None:
+    """Raise where a key names no number of a scene. Of tables that are missing, broken themselves, nothing is said."""
+    broken = set(UNCERTAIN_TABLES) - set(tables)
+    keys = [key for key in uncertainty.inputs if key.partition(".")[0] not in broken]
+    wrong = [((key,), uncertainty.inputs[key]) for key in keys if number_at(tables, key) is None]
+    if wrong:
+        known = [*numbers_in(tables), *DATA_KEYS]
+        raise refuse(f"that of a number of the scene that is not 0: one of {', '.join(known)}", *wrong)
+
+
+def _flat(before: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values; an empty table inside names nothing, and is kept to be refused."""
+    if isinstance(value, Mapping) and (value or not before):
+        for key, inner in value.items():
+            yield from _flat(f"{before}.{key}" if before else str(key), inner)
+    else:
+        yield before, value
+
+
+def _is_relative(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and 0 < value <= MOST_UNCERTAIN

@@ -1,0 +1,145 @@
+"""Standard uncertainties of one quantity: of the mesh, of inputs, of the introduction of the load, of data.
+
+ASME V&V 20-2009, *Standard for Verification and Validation in Computational Fluid Dynamics and Heat Transfer*: u_num in
+section 2, u_input by sensitivity coefficients in section 3, u_D in section 4, u_val in section 5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import hypot, sqrt
+
+import numpy as np
+
+from verify.curves.convergence import GCI_SAFETY, assess
+
+
+@dataclass(frozen=True)
+class Estimates:
+    """How an uncertainty follows from runs.
+
+    most_order : the load of a cohesive front has no higher order. A higher observed one is that of two fine meshes that
+        agree by chance: the error is then that of this order over the range of all values, range / ((h_coarsest /
+        h_finest)^order - 1), times the safety factor of the index
+    expansion : from a grid convergence index of 95 % to a standard uncertainty. The error of a mesh has a sign, so that
+        the interval is one-sided: 1.1 to 1.15, and not the 2 of a normal distribution
+    spread : safety factor on the error of meshes that are not in the asymptotic range, which is then that of a first
+        order over the range of all values, range / (h_coarsest / h_finest - 1) (Eca and Hoekstra 2014, J. Comput. Phys.
+        262, 104)
+    linear : largest part of a contribution that its second-order term may be
+    """
+
+    most_order: float = 2.0
+    expansion: float = 1.15
+    spread: float = 3.0
+    linear: float = 0.1
+
+
+ESTIMATES = Estimates()
+
+
+@dataclass(frozen=True)
+class Part:
+    """One line of a budget.
+
+    name : dotted key of an input or of the data, "mesh", or "load introduction"
+    kind : "num", "input", "introduction" or "data"
+    u : standard uncertainty of the quantity [its unit], with the sign of the sensitivity
+    stated : relative standard uncertainty that the scene states, 0 where it states none
+    sensitivity : relative change of the quantity over that of the input
+    second : second-order term of the contribution [unit of the quantity]
+    remark : what the mesh, or the places of the load, have shown
+    doubtful : whether meshes are not in the asymptotic range
+    """
+
+    name: str
+    kind: str
+    u: float
+    stated: float = 0.0
+    sensitivity: float = float("nan")
+    second: float = 0.0
+    remark: str = ""
+    doubtful: bool = False
+
+    @property
+    def straight(self) -> bool:
+        """Whether the quantity is linear in the input over its uncertainty."""
+        return abs(self.second) <= ESTIMATES.linear * abs(self.u)
+
+
+@dataclass(frozen=True)
+class Moved:
+    """Values of a quantity with an input at (1 - step), 1 and (1 + step) times its value."""
+
+    step: float
+    low: float
+    middle: float
+    high: float
+
+    @property
+    def slope(self) -> float:
+        """Central difference: change of the quantity over relative change of the input."""
+        return (self.high - self.low) / (2.0 * self.step)
+
+    @property
+    def bend(self) -> float:
+        """Half the second derivative."""
+        return (self.high - 2.0 * self.middle + self.low) / (2.0 * self.step**2)
+
+
+def of_input(name: str, stated: float, moved: Moved, kind: str = "input") -> Part:
+    """(dq/dx) u_x, with the next term of the series beside it (V&V 20-2009, section 3)."""
+    u, second = moved.slope * stated, moved.bend * stated**2
+    return Part(name, kind, u, stated, moved.slope / moved.middle if moved.middle else float("nan"), second)
+
+
+def of_meshes(sizes: Sequence[float], values: Sequence[float]) -> Part:
+    """Of the finest of three or more meshes: its grid convergence index over the factor of expansion.
+
+    Observed orders of more than `Estimates.most_order`, and meshes that are not in the asymptotic range, have an error
+    over the range of their values in its place.
+    """
+    by_size = np.argsort(sizes)
+    h, f = np.asarray(sizes, dtype=float)[by_size], np.asarray(values, dtype=float)[by_size]
+    if len(set(h)) < len(h):
+        return Part("mesh", "num", float("nan"), remark="two meshes are of one size", doubtful=True)
+    found = assess(h, f)
+    ratio = float(h[-1] / h[0])
+    if not found.asymptotic:
+        index = ESTIMATES.spread * float(np.ptp(f)) / (ratio - 1.0)
+    elif found.order > ESTIMATES.most_order:
+        index = GCI_SAFETY * float(np.ptp(f)) / (ratio**ESTIMATES.most_order - 1.0)
+    else:
+        index = float(abs(f[0])) * found.gci
+    return Part("mesh", "num", index / ESTIMATES.expansion, remark=found.verdict, doubtful=not found.asymptotic)
+
+
+def of_introduction(values: Mapping[str, float]) -> Part:
+    """Of where the load acts: any place between the extremes is as likely, which is their distance over sqrt(12)."""
+    width = max(values.values()) - min(values.values())
+    seen = ", ".join(f"{place} {value:.6g}" for place, value in values.items())
+    return Part("load introduction", "introduction", width / sqrt(12.0), remark=seen)
+
+
+def of_data(stated: Mapping[str, float], value: float, over_opening: float) -> tuple[Part, ...]:
+    """Of errors of the load and of the opening of the data as a whole.
+
+    Parameters
+    ----------
+    stated : relative standard uncertainties "data.load" and "data.opening"
+    value : of the quantity in the data
+    over_opening : change of the quantity over the relative change of all openings, from the curve of the simulation,
+        which is smooth
+    """
+    slopes = {"data.load": value, "data.opening": over_opening}
+    return tuple(
+        Part(key, "data", slopes[key] * u, u, slopes[key] / value if value else float("nan"))
+        for key, u in stated.items()
+        if u
+    )
+
+
+def together(parts: Sequence[Part]) -> float:
+    """Root of the sum of squares."""
+    return hypot(*(part.u for part in parts))

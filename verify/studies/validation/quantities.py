@@ -1,0 +1,138 @@
+"""What is held against the data: peak load, initial stiffness, loads of the propagation branch.
+
+Each is one function of a curve, the same of the simulation and of the data: windows are fixed by the two curves as they
+are, and do not move with the inputs or the mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TypeAlias
+
+import numpy as np
+
+from verify.curves.curve import PROPAGATION, SAMPLES, Curve, envelope, from_origin, load_at, peak
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Which part of a curve counts.
+
+    stiff : parts of the peak load of the data between which the stiffness is the slope of a straight line: above the
+        slack of a test, below its first damage
+    whole : part of the last opening of the shorter curve up to which loads count, so that they are there with other
+        inputs and openings, too
+    least : shortest propagation branch, in parts of its first opening
+    narrow : least width of the window of the stiffness, in parts of the opening at the peak of the simulation
+    inside : part of the last opening by which a largest load lies before it, to be a peak
+    """
+
+    stiff: tuple[float, float] = (0.1, 0.4)
+    whole: float = 0.98
+    least: float = 0.05
+    narrow: float = 1e-3
+    inside: float = 1e-3
+
+
+WINDOWS = Windows()
+
+#: Opening and load (n,) of an envelope.
+Pair: TypeAlias = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of a load-opening curve; ``of`` takes opening (n,) and load (n,), NaN where the curve has no such."""
+
+    name: str
+    where: str
+    of: Callable[[Curve], float]
+
+
+def quantities(simulated: Curve, data: Curve, at: Sequence[float] = ()) -> tuple[tuple[Quantity, ...], list[str]]:
+    """The quantities that both curves have, and a sentence for each that one of them lacks.
+
+    Parameters
+    ----------
+    simulated, data : opening (n,) and load (n,)
+    at : openings at which the load is wanted, too
+    """
+    S, D = (envelope(*from_origin(*curve)) for curve in (simulated, data))
+    last = WINDOWS.whole * min(float(S[0][-1]), float(D[0][-1]))
+    found = (_of_peak(S, D), _of_stiffness(S, D), _of_propagation(S, D, last), *(_of_load(x, last) for x in at))
+    checked = [_positive(one, S, D) if isinstance(one, Quantity) else one for one in found]
+    return tuple(one for one in checked if isinstance(one, Quantity)), [one for one in checked if isinstance(one, str)]
+
+
+def _positive(one: Quantity, S: Pair, D: Pair) -> Quantity | str:
+    """Left out where it has no size, which errors are relative to."""
+    simulated, measured = one.of(S), one.of(D)
+    if simulated > 0.0 and measured > 0.0:
+        return one
+    return f"{one.name}: left out: must be > 0, got {simulated:.4g} of the simulation and {measured:.4g} of the data"
+
+
+def _of_peak(S: Pair, D: Pair) -> Quantity | str:
+    names = {"the simulation": S, "the data": D}
+    growing = [name for name, curve in names.items() if not _has_peak(curve)]
+    if growing:
+        return f"peak load: left out: the load of {' and of '.join(growing)} still grows at the end"
+    return Quantity("peak load", f"that of the simulation at the opening {peak(S)[0]:.4g}", _peak)
+
+
+def _of_stiffness(S: Pair, D: Pair) -> Quantity | str:
+    low, high = (_reached(D, part * peak(D)[1]) for part in WINDOWS.stiff)
+    if not (high - low > WINDOWS.narrow * peak(S)[0] and high <= S[0][-1]):
+        return f"initial stiffness: left out: the data rise between openings {low:.4g} and {high:.4g}"
+    where = f"slope of a straight line through openings {low:.4g} to {high:.4g}"
+    return Quantity("initial stiffness", where, partial(_slope, np.linspace(low, high, SAMPLES)))
+
+
+def _of_propagation(S: Pair, D: Pair, last: float) -> Quantity | str:
+    begin = PROPAGATION * max(peak(S)[0], peak(D)[0])
+    if not (_has_peak(S) and _has_peak(D)) or last < (1 + WINDOWS.least) * begin:
+        return f"propagation load: left out: the curves go to {last:.4g}, and it would begin at {begin:.4g}"
+    where = f"mean over openings {begin:.4g} to {last:.4g}"
+    return Quantity("propagation load", where, partial(_mean, np.linspace(begin, last, SAMPLES)))
+
+
+def _of_load(opening: float, last: float) -> Quantity | str:
+    if 0.0 < opening <= last:
+        return Quantity(f"load at {opening:g}", "", partial(_mean, np.array([opening])))
+    return f"load at {opening:g}: left out: must be > 0 and <= {last:.4g}, short of where a curve ends"
+
+
+def _has_peak(curve: Pair) -> bool:
+    """Whether the load has fallen before the curve ends."""
+    return peak(curve)[0] < (1 - WINDOWS.inside) * curve[0][-1]
+
+
+def _peak(curve: Curve) -> float:
+    return float(np.max(envelope(*curve)[1]))
+
+
+def _reached(curve: Curve, load: float) -> float:
+    """Opening at which the load is first reached, along straight lines."""
+    d, P = (np.asarray(values, dtype=float) for values in curve)
+    i = int(np.argmax(P >= load))
+    if i == 0:
+        return float(d[0])
+    return float(d[i - 1] + (load - P[i - 1]) / (P[i] - P[i - 1]) * (d[i] - d[i - 1]))
+
+
+def _slope(grid: np.ndarray, curve: Curve) -> float:
+    """Least squares over equal openings, with an intercept: slack of a test does not count."""
+    load, x = loads(curve, grid), grid - grid.mean()
+    return float(x @ load / (x @ x))
+
+
+def _mean(grid: np.ndarray, curve: Curve) -> float:
+    return float(np.mean(loads(curve, grid)))
+
+
+def loads(curve: Curve, grid: np.ndarray) -> np.ndarray:
+    """Loads of the envelope, 0 behind its end, where the specimen is separated."""
+    d, P = from_origin(*curve)
+    return np.where(grid > np.max(d), 0.0, load_at((d, P), np.minimum(grid, np.max(d))))
