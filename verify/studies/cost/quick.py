@@ -86,22 +86,32 @@ def _measured(runner: Runner, rungs: dict[Family, list[Try]]) -> bool:
     """Do the runs: the ladder, other steps on the best meshes, repetitions. Returns whether there was time for all."""
     if not climb(rungs, partial(runner, seconds=QUICK.climb), lambda: runner.rows):
         return False
+    for n in range(1, QUICK.times):
+        if not (runner(_other_steps(runner), QUICK.vary) and runner(_repeated(runner, n), QUICK.repeat)):
+            return False
+    return runner(_other_steps(runner), QUICK.repeat)  # a repetition may have changed who is the cheapest
+
+
+def _other_steps(runner: Runner) -> list[Try]:
+    """The meshes of the price with other steps."""
     told = {row.run for row in _price(runner).pair}
     chosen = [one for one in runner.rows if one.variant in told]
-    if not runner([other for one in chosen for other in one.with_other_steps(QUICK.ladder.other_steps)], QUICK.vary):
-        return False
-    again = range(1, QUICK.times)
-    return all(runner([replace(one, repeat=n) for one in _to_repeat(runner)], QUICK.repeat) for n in again)
+    return [other for one in chosen for other in one.with_other_steps(QUICK.ladder.other_steps)]
 
 
-def _to_repeat(runner: Runner) -> list[Try]:
-    """The runs of the price, those at equal steps, and runs of these methods that may only have come out late."""
+def _repeated(runner: Runner, n: int) -> list[Try]:
+    """The runs of the price, those at equal steps, and runs that may only have come out late, once more.
+
+    A run may have come out late where its method has part in the price, or where it is nearly as quick as the cheapest.
+    """
     price, rows = _price(runner), runner.rows
     told, methods = {row.run for row in (*price.pair, *price.equal)}, {row.method for row in price.pair}
-    enough = LEVELS.get(price.level, 0.0)
-    late = (one for one in _best(rows, LIMITS.close, LIMITS.once, LIMITS.late) if rows[one].curve_error <= enough)
-    chosen = dict.fromkeys([*(one for one in rows if one.variant in told), *late])
-    return [one for one in chosen if one.family.method in methods]
+    enough, soon = LEVELS.get(price.level, 0.0), LIMITS.once * min((row.seconds for row in price.pair), default=0.0)
+    chosen = [one for one in rows if one.variant in told]
+    for one in _best(rows, LIMITS.close, LIMITS.once, LIMITS.late):
+        if rows[one].curve_error <= enough and (rows[one].method in methods or rows[one].seconds <= soon):
+            chosen.append(one)
+    return [replace(one, repeat=n) for one in dict.fromkeys(chosen)]
 
 
 def _price(runner: Runner, reasons: Sequence[str] = ()) -> Price:
