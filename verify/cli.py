@@ -173,6 +173,9 @@ def _verify_options(sub: Parser) -> None:
     sub.add_argument("--strict", action="store_true", help="exit 1 where anything could not be judged")
     beside = "md writes report.md beside report.html: its numbers, for a terminal or a forge"
     sub.add_argument("--format", choices=("html", "md"), default="html", help=beside)
+    priced = "what accuracy costs there, by few runs of every method; default: a dcb of the scenes; repeatable"
+    sub.add_argument("--ladder", action="append", default=[], metavar="SCENE", help=priced)
+    sub.add_argument("--no-ladder", action="store_true", help="do not ask what accuracy costs")
     shown = "show what debond cost, effects, scaling or hard wrote there; folders in --out are found without it"
     sub.add_argument("--include", type=Path, action="append", default=[], metavar="DIR", help=shown)
     _sweep_options(sub)

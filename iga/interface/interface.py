@@ -306,8 +306,8 @@ def settled(interface: Interface) -> SettledInterface:
 @dataclass(frozen=True)
 class Shear:
     """What sliding adds to the response of the points (n_q,): traction t_q along the master, the slopes of both
-    tractions that opening alone does not have, the history ``slip_q`` of friction, the law, and the jumps and the damage
-    at which it was asked.
+    tractions that opening alone does not have, the history ``slip_q`` of friction, the law, and the jumps and the
+    damage at which it was asked.
     """
 
     t_q: np.ndarray

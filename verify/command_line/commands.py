@@ -189,7 +189,8 @@ def verify(options: argparse.Namespace) -> int:
     demands = Demands(options.strict, tuple(options.require))
     for method in demands.required:
         _known_method(method, None, "--require")
-    subjects = Subjects(scenes, options.full, plates, curves, named(options.include))
+    ladders = _ladders(options, scenes)
+    subjects = Subjects(scenes, options.full, plates, curves, named(options.include), ladders)
     if options.dry_run:
         return _listed(would_run(subjects, options.out, options.jobs))
     _folder(options.out)
@@ -197,6 +198,22 @@ def verify(options: argparse.Namespace) -> int:
         say(remark)
     text = options.format == "md"
     return 0 if verify(subjects, options.out, options.jobs, options.scheduler, text, demands) else FAILED
+
+
+def _ladders(options: argparse.Namespace, scenes: Sequence[tuple[str, Scene]]) -> Sequence[tuple[str, Scene]]:
+    """The scenes of quick ladders: those that are named, else one of the scenes that are verified, or none."""
+    from verify.methods.given_meshes import refuse_files
+    from verify.scene.load import load_scene
+    from verify.verification import laddered
+
+    if options.no_ladder and options.ladder:
+        raise Refusal(f"--no-ladder: must be left out with --ladder {options.ladder[0]}")
+    if options.no_ladder:
+        return ()
+    chosen = [(source, load_scene(source)) for source in dict.fromkeys(options.ladder)]
+    for _, scene in chosen:
+        refuse_files(scene, "--ladder")
+    return chosen or laddered(scenes)
 
 
 def _curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curve, ...]:
