@@ -38,6 +38,9 @@ DISTANCES = Distances()
 #: How many points break on a step that passes over arcs.
 SEVERAL = 2
 
+#: Part of an arc after which a parabola over it crosses its own mean.
+AT_MEAN = 0.5 - 12.0**-0.5
+
 #: Opening and load.
 Place = tuple[float, float]
 
@@ -113,7 +116,7 @@ def nearest_end(
     ahead_q = g_q[g_q > g_q[q]]
     end = on_kink(Kink(q, gap))
     if follows_on and broken and np.count_nonzero(passed_q) >= SEVERAL and ahead_q.size > 0:
-        end = StepEnd(end.kink, gap + 0.5 * (np.min(ahead_q) - g_q[q]), on=False)
+        end = StepEnd(end.kink, gap + AT_MEAN * (np.min(ahead_q) - g_q[q]), on=False)
     return end if np.any(g_q >= gap) and k_q[q] < gap and g_q[q] != end.target else None
 
 

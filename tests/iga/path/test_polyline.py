@@ -118,4 +118,4 @@ def test_what_a_step_keeps_is_told_in_parts_of_the_promise():
     system, points, _ = run(replace(LEAPING, opening=(4.0,), dofs=400), 60)
     whole, half = (judged(system, points[1], points[-1], Largest(), bend) for bend in (BEND, 0.5 * BEND))
     assert 0.0 < whole.away < 1.0 and half.away == pytest.approx(2.0 * whole.away)
-    assert whole == Kept(1.0, whole.away, few=True)
+    assert whole == Kept(1.0, whole.away, few=True, opened=whole.opened) and 0.0 < whole.opened < 1.0
