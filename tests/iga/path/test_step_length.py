@@ -134,6 +134,20 @@ def test_a_step_that_is_not_accurate_is_cut_and_a_cornered_arc_ends_at_every_kin
     assert cornered.at_kinks == 0 and cornered.cuts == 0
 
 
+def test_a_path_that_crawls_from_point_to_point_counts_its_steps() -> None:
+    """As soon as attempts that get less far than counted steps outnumber the others; a front that opens is no crawl."""
+    start = lengths = replace(step_length(np.array([3.0]), None), length=0.1)
+    small = ends(1.0, 0.5 * start.counted.length, 0.0)
+    for opened, moved in ((0.5, small), (0.0, ends(1.0, 0.1, 0.0))):
+        for _ in range(2 * LENGTHS.crawl):
+            lengths = lengths.after(*moved, 4.0, Kept(opened=opened))
+        assert isinstance(lengths, ByAccuracy) and lengths.crawl == 0
+    for _ in range(LENGTHS.crawl // 2):
+        lengths = lengths.cut(Kept(part=0.5), 0.01).after(*small, 4.0, Kept(opened=0.0))
+    assert isinstance(lengths, ByAccuracy) and lengths.crawl == LENGTHS.crawl
+    assert lengths.after(*small, 4.0, Kept(opened=0.0)) == Counted(0.02, 0.02, since=1.01)
+
+
 def test_steps_that_are_counted_after_failures_are_accurate_and_those_of_the_user_as_they_are() -> None:
     counted = replace(step_length(np.array([3.0]), None, 0.02), left=0).failed(0.0)
     assert isinstance(counted, Counted) and counted.bend == 0.02
