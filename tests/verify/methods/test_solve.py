@@ -126,7 +126,7 @@ BARE = {
 
 @pytest.mark.parametrize("kind", BARE)
 def test_what_is_not_told_is_the_same_for_a_solver_and_for_a_scene(kind: str) -> None:
-    """But for the snapshots, for theories that are linear by themselves, and for the steps of `iga`, which a scene leaves
+    """But for the snapshots, for theories that are linear by themselves, and the steps of `iga`: a scene leaves them
     to the path where the mesh resolves its process zone, of which `iga` knows nothing."""
     stiff = {"young": 120e3, "poisson": 0.2}
     bodies = {"material": stiff} if kind == "dcb" else {"strip": stiff, "substrate": stiff}
