@@ -105,19 +105,25 @@ def _kept(options: argparse.Namespace) -> Keep:
 def _say_before(prepared: Prepared, frames: bool) -> None:
     """Messages before a run: automatic decisions, keys without effect, and warnings of coarse meshes."""
     from verify.methods import sliding, through_thickness, zone_resolution
+    from verify.scene.schema import DEFAULT_STEPS
 
     coarse = (*zone_resolution.warnings(prepared), *through_thickness.warnings(prepared))
     for remark in (*prepared.decisions, *sliding.remarks(prepared.scene), *coarse):
         say(str(remark))
+    if prepared.counted:
+        say(f"discretization.steps: {DEFAULT_STEPS}, as {prepared.counted}")
     if frames and not prepared.method.has_mesh:
         say(f"--fields: the method {prepared.method.name} has no bodies to draw: no frames for ParaView")
 
 
 def _say_after(prepared: Prepared, result: Result, checks: Sequence[Check]) -> None:
     from verify.checks import neglected
+    from verify.scene.schema import DEFAULT_STEPS
 
     for remark in neglected.warnings(prepared, result):
         say(remark)
+    if result.counted_steps:
+        say(f"discretization.steps: {DEFAULT_STEPS} {result.counted_steps}")
     broken = _broken(checks)
     if result.complete and broken:
         say(f"{result.method}: broken: {', '.join(broken)}; the run or the solver is at fault, not the mesh")
