@@ -47,11 +47,15 @@ class Step:
     """The equations of one step: equilibrium from a committed history ``k_q`` of the bond, and the control equation.
 
     ``force_scale`` is the norm of the external forces met so far; it or the load of the guess must not be zero.
+    ``early`` is a residual over it at which iterations stop, since one more correction follows. Without ``patience``
+    there is no second attempt.
     """
 
     control: Control
     k_q: np.ndarray
     force_scale: float
+    early: float = 0.0
+    patience: bool = True
 
 
 @dataclass(frozen=True)
@@ -100,7 +104,7 @@ def find_equilibrium(model: Model, step: Step, u_n: np.ndarray, load: float) -> 
     back-substitutions (Batoz and Dhatt 1979, Int. J. Numer. Methods Eng. 14, 1262-1267).
     """
     plain = _newton(model, step, u_n, load, REFERENCE_NEWTON.full_iterations, full_step)
-    if plain.converged:
+    if plain.converged or not step.patience:
         return plain
     careful = plain
     for stage in stiffening(model):
@@ -128,8 +132,8 @@ def stiffening(model: Model) -> list[Model]:
 
 def _newton(model: Model, step: Step, u_n: np.ndarray, load: float, most: int, length: Length) -> Attempt:
     settings = REFERENCE_NEWTON
-    scale = max(step.force_scale, abs(load) * model.norm(model.load_n))
-    target = max(settings.tolerance, settings.rounding * model.rounding(u_n) / scale)
+    scale, target = scale_and_target(model, step, u_n, load)
+    target = max(target, step.early)
     r_n = model.residual(u_n, load, step.k_q)
     norms = [model.norm(r_n) / scale]
     while target < norms[-1] < settings.diverged and len(norms) <= most:
@@ -139,6 +143,13 @@ def _newton(model: Model, step: Step, u_n: np.ndarray, load: float, most: int, l
         u_n, load = line.at(s)
         norms.append(model.norm(r_n) / scale)
     return Attempt(u_n, load, tuple(norms), norms[-1] <= target)
+
+
+def scale_and_target(model: Model, step: Step, u_n: np.ndarray, load: float) -> tuple[float, float]:
+    """Force scale of a step from a guess, and the residual over it at which a state counts as converged."""
+    settings = REFERENCE_NEWTON
+    scale = max(step.force_scale, abs(load) * model.norm(model.load_n))
+    return scale, max(settings.tolerance, settings.rounding * model.rounding(u_n) / scale)
 
 
 def bordered_step(model: Model, control: Control, u_n: np.ndarray, r_n: np.ndarray) -> tuple[np.ndarray, float]:

@@ -26,7 +26,7 @@ from verify.methods.problems import common_keys, rectangles
 from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.scene.bond.mixed import mixed_bond
-from verify.scene.schema import Scene, counted_steps
+from verify.scene.schema import Scene
 from verify.support.timing import Stopwatch
 
 
@@ -48,7 +48,8 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
             on_base=scene.specimen.clamped,
             **common_keys(scene, effects),
             **_sliding(scene, effects),
-            steps=counted_steps(scene),
+            steps=None if scene.discretization.steps == "auto" else scene.discretization.steps,
+            bend=scene.discretization.bend,
             degree=mesh.degree,
             elements=mesh.elements,
             layers=mesh.layers,
