@@ -60,8 +60,8 @@ class ChosenSteps:
     usual: float = 0.005
     chord: float = 0.8
     tangent: float = 0.25
-    strayed: float = 0.3
-    most: float = 2e-3
+    strayed: float = 0.4
+    most: float = 4e-3
     top: float = 0.2
     spare: float = 0.5
     grow: float = 2.0
@@ -69,7 +69,7 @@ class ChosenSteps:
     longest: float = 0.75
     cut_off: float = 2.0
     early: float = 1e-4
-    finest: int = 150
+    finest: int = 600
 
 
 CHOSEN_STEPS = ChosenSteps()
@@ -216,7 +216,7 @@ class Drawn(NamedTuple):
 
     ``length`` is that of its chord. The energies of a step are the area below the true path, however many points break
     on it: ``from_chord`` is the largest distance of a parabola with that area from the chord, and ``strayed`` the mean
-    distance of the cubic from the path. ``over``: how far the cubic rises above both ends.
+    distance of the cubic from the path over the mean load. ``over``: how far the cubic rises above both ends.
     """
 
     length: float
@@ -226,6 +226,9 @@ class Drawn(NamedTuple):
 
 
 _S = np.linspace(0.0, 1.0, 17)
+
+#: Load over the peak below which a step need not be more accurate for being under less load.
+_LIGHT = 0.25
 
 
 def _drawn(before: State, reached: State, size: tuple[float, float]) -> Drawn:
@@ -239,7 +242,8 @@ def _drawn(before: State, reached: State, size: tuple[float, float]) -> Drawn:
     below_chord = 0.5 * (ends[0, 1] + ends[1, 1]) * along[0]
     sign = np.sign(ends[1, 1] or ends[0, 1])
     over = float(np.max(sign * (ends[0, 1] + _cubic(before, reached, size, along)))) - float(np.max(sign * ends[:, 1]))
-    return Drawn(length, 1.5 * abs(spent - below_chord) / length, abs(worked - spent) / length, over)
+    strayed = abs(worked - spent) / length / max(0.5 * abs(ends[0, 1] + ends[1, 1]), _LIGHT)
+    return Drawn(length, 1.5 * abs(spent - below_chord) / length, strayed, over)
 
 
 def _cubic(before: State, reached: State, size: tuple[float, float], along: np.ndarray) -> np.ndarray:
