@@ -16,7 +16,6 @@ from fem_reference.model.model import Model
 from fem_reference.path.state import State, ordered_along
 from fem_reference.path.stride import Stride
 
-
 #: Damage counts as growing at a point that would reach it within this many steps.
 LOOKAHEAD = 2.0
 
@@ -133,7 +132,9 @@ def edge_control(model: Model, state: State, front: Front, stride: Stride) -> Co
     end = s_p[first] + (gap_p[first] - model.failure + abs(front.change(model, stride))) * flat
     between_i = np.pad(np.diff(s_p), 1, constant_values=np.inf)
     s_i, gap_i = (0.5 * (a_p[1:] + a_p[:-1]) for a_p in (s_p, gap_p))
-    edge_i = (between_i[1:-1] < between_i[:-2]) & (between_i[1:-1] < between_i[2:]) & (bonded_p[1:] * bonded_p[:-1] > 0.0)
+    edge_i = (
+        (between_i[1:-1] < between_i[:-2]) & (between_i[1:-1] < between_i[2:]) & (bonded_p[1:] * bonded_p[:-1] > 0.0)
+    )
     within_i = np.flatnonzero(edge_i & (gap_i < model.failure) & (s_i > s_p[first]) & (s_i <= end))
     if not within_i.size:
         return None

@@ -22,8 +22,8 @@ def branches(problem: Debonding, whole: bool = False) -> list[np.ndarray]:
     crossed = np.flatnonzero(goals[1:] * goals[:-1] < 0.0)
     corners = np.insert(goals, crossed + 1, 0.0)
     ways = np.abs(np.diff(corners))
-    steps = 1 if whole else problem.steps or COUNTED_STEPS.instead
-    counts = np.maximum(1, np.rint(steps * ways / ways.sum()).astype(int)) if not whole else np.ones_like(ways, int)
+    steps = 0 if whole else problem.steps or COUNTED_STEPS.instead
+    counts = np.maximum(1, np.rint(steps * ways / ways.sum()).astype(int))
     parts = zip(corners[:-1], corners[1:], counts, ways, strict=True)
     return [np.linspace(start, end, n + 1) for start, end, n, way in parts if way > 0]
 

@@ -60,7 +60,7 @@ class ChosenSteps:
     usual: float = 0.005
     chord: float = 0.8
     tangent: float = 0.25
-    strayed: float = 0.4
+    strayed: float = 0.25
     most: float = 4e-3
     top: float = 0.2
     spare: float = 0.5
@@ -159,18 +159,20 @@ class Chosen:
 
     def judged(self, before: State, reached: State) -> tuple[bool, Chosen]:
         """Whether a step is accurate, and what follows it."""
-        size = max(self.size[::-1], (abs(reached.load), abs(reached.opening)))[::-1]
-        here = replace(self, size=size)
+        size, here = self.size, self
+        if reached.opening > 0.0 and abs(reached.load) > size[1]:  # pressed faces set no scale
+            size = reached.opening, abs(reached.load)
+            here = replace(self, size=size)
         if not all(size):
             return True, here
         drawn = _drawn(before, reached, size)
-        import os
-        if os.environ.get("DBG"): print(f"{before.opening:.4f}->{reached.opening:.4f} it{reached.iterations} slow {self.slow:.2f} reach {self.reach:.3f}", *(f"{e:.2f}" for e in self._excess(drawn)), f"slopes {before.slope:.3f} {reached.slope:.3f}")
         ratio = self._ratio(drawn)
         gone = abs(reached.opening - before.opening)
         if self._too_long(drawn) and not self._fine(drawn.length * size[0]):
             part = float(np.clip(ratio, CHOSEN_STEPS.shortest, CHOSEN_STEPS.longest))
-            return False, replace(self, reach=part * min(self.reach, max(gone, 0.1 * self.reach)), slow=part * self.slow)
+            return False, replace(
+                self, reach=part * min(self.reach, max(gone, 0.1 * self.reach)), slow=part * self.slow
+            )
         grown = float(np.clip(ratio, 1.0 / CHOSEN_STEPS.grow, CHOSEN_STEPS.grow))
         # a step that has ended at an edge or a kink is shorter than it might have been
         reach = grown * max(gone, min(self.reach, CHOSEN_STEPS.cut_off * gone))
@@ -238,7 +240,9 @@ def _drawn(before: State, reached: State, size: tuple[float, float]) -> Drawn:
     length = float(np.hypot(*along))
     if length == 0.0:
         return Drawn(0.0, 0.0, 0.0, 0.0)
-    spent, worked = ((b - a) / (size[0] * size[1]) for a, b in ((before.energy, reached.energy), (before.work, reached.work)))
+    spent, worked = (
+        (b - a) / (size[0] * size[1]) for a, b in ((before.energy, reached.energy), (before.work, reached.work))
+    )
     below_chord = 0.5 * (ends[0, 1] + ends[1, 1]) * along[0]
     sign = np.sign(ends[1, 1] or ends[0, 1])
     over = float(np.max(sign * (ends[0, 1] + _cubic(before, reached, size, along)))) - float(np.max(sign * ends[:, 1]))
