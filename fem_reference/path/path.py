@@ -86,7 +86,7 @@ def reach(
         if separated(model, state, point, goal):
             yield Separation(point.opening)
             return None
-        state = departing(model, point, goal, stride, anew=stride.lands and at_kink(model, point))
+        state = departing(model, point, goal, stride, anew=True) if stride.lands and at_kink(model, point) else point
     yield Failure(
         f"the path did not come from opening {state.opening:.6g} to {goal:.6g} in {REFERENCE_PATH.steps} steps; "
         f"{FINER}",

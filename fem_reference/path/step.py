@@ -27,7 +27,7 @@ class StepSettings:
         determined: small enough to change no force, large enough for gaps beyond rounding.
     """
 
-    corrections: int = 20
+    corrections: int = 6
     closed: float = 1e-8
     leap: float = 0.05
     ahead: float = 1e-6
@@ -117,7 +117,8 @@ def arrive(model: Model, state: State, equations: Step, guess: tuple[np.ndarray,
     """Equilibrium and the path through it.
 
     The tangent that gives the direction of the path also gives one more correction, after which only rounding remains.
-    After iterations that have stopped early it is made anew for another one until that is so.
+    After iterations that have stopped early it is made anew for another one until that is so; where full corrections do
+    not get there, all begins again without stopping early.
     """
     attempt = find_equilibrium(model, equations, *guess)
     if not attempt.converged:
@@ -135,7 +136,7 @@ def arrive(model: Model, state: State, equations: Step, guess: tuple[np.ndarray,
         scale, target = scale_and_target(model, equations, u_n, load)
         if model.norm(r_n) <= max(target, REFERENCE_STEP.closed) * scale:
             return arrival
-    return _no_equilibrium(state, attempt)
+    return arrive(model, state, replace(equations, early=0.0, patience=True), guess)
 
 
 def _no_equilibrium(state: State, attempt: Attempt) -> Failure:
