@@ -19,6 +19,7 @@ class NewtonSettings:
     rounding : the residual that rounding leaves, in units of (machine epsilon) x (largest displacement) x (largest
         stiffness); iterations also stop there, since they cannot get below it.
     full_iterations : iterations with full steps; where these cycle, more of them only delay the second attempt.
+    impatient : iterations with full steps where a shorter step follows on failure.
     searched_iterations : iterations with a line search, in every stage of the second attempt.
     diverged : residual over the force scale from which a step is given up.
     slack : a step is long enough once this part of the work along it, or less, remains; smaller values cost residuals,
@@ -31,6 +32,7 @@ class NewtonSettings:
     tolerance: float = 1e-10
     rounding: float = 16.0
     full_iterations: int = 20
+    impatient: int = 14
     searched_iterations: int = 60
     diverged: float = 1e12
     slack: float = 0.5
@@ -103,7 +105,8 @@ def find_equilibrium(model: Model, step: Step, u_n: np.ndarray, load: float) -> 
     stages. The bordered system ``[K, -f; c, 0] [du; dP] = [-r; missing]`` needs one factorisation of K and two
     back-substitutions (Batoz and Dhatt 1979, Int. J. Numer. Methods Eng. 14, 1262-1267).
     """
-    plain = _newton(model, step, u_n, load, REFERENCE_NEWTON.full_iterations, full_step)
+    most = REFERENCE_NEWTON.full_iterations if step.patience else REFERENCE_NEWTON.impatient
+    plain = _newton(model, step, u_n, load, most, full_step)
     if plain.converged or not step.patience:
         return plain
     careful = plain

@@ -114,7 +114,7 @@ def advance(model: Model, state: State, lines: np.ndarray, stride: Stride) -> St
     edge = edge_control(model, state, front, stride) if stride.lands and not ends else None
     if edge is not None:
         return lead(model, state, edge, lines, stride)
-    if forward and (ends or front.calm(model, stride)):
+    if forward and (ends or front.calm(model, stride) and not (stride.lands and cracked(model, state))):
         control = opening_control(model, next_line(state.opening, lines, reach))
         if model.law.irreversible and abs(goal) < abs(state.opening):
             return step(model, state, control, stride)
@@ -122,6 +122,11 @@ def advance(model: Model, state: State, lines: np.ndarray, stride: Stride) -> St
         if isinstance(reached, State) and not skipped(model, front, reached, stride):
             return reached
     return lead(model, state, front_control, lines, stride)
+
+
+def cracked(model: Model, state: State) -> bool:
+    """Whether any point of the bond is open."""
+    return bool(model.norm((model.bonded_q & (model.held(state.k_q) >= model.failure)).astype(float)) > 0)
 
 
 def at_kink(model: Model, state: State) -> bool:

@@ -48,6 +48,7 @@ class ChosenSteps:
     grow, shortest, longest : bounds of the length of a step over that of the one before, or of the first attempt.
     cut_off : how much longer a step may have been meant to be than it has become, where it ended at an edge or a kink,
         for the next one to be made from what was meant.
+    forget : growth from step to step of the largest step of the front after one that has failed.
     early : residual over the force scale at which iterations stop before the last correction, whose tangent is that of
         the path: it is off by about as much.
     finest : number of counted steps as short as which steps are not judged, at the ``usual`` bend: what is left then
@@ -68,6 +69,7 @@ class ChosenSteps:
     shortest: float = 0.25
     longest: float = 0.75
     cut_off: float = 2.0
+    forget: float = 1.2
     early: float = 1e-4
     finest: int = 600
 
@@ -123,7 +125,8 @@ class Chosen:
     ----------
     whole, bend : length of the programme in the opening, and the allowed distance from the tangent over the peak.
     reach : largest change of the opening in the next step.
-    slow : 1, or how much less far the front goes after steps that have failed or were not accurate.
+    slow : 1, or how much less far the front goes after steps that have failed or were not accurate; it is no more than
+        ``most``, which remembers failures for longer.
     size : opening at the largest load so far, and that load.
     """
 
@@ -131,6 +134,7 @@ class Chosen:
     bend: float
     reach: float
     slow: float = 1.0
+    most: float = 1.0
     size: tuple[float, float] = (0.0, 0.0)
 
     @property
@@ -154,7 +158,7 @@ class Chosen:
 
     def failed(self) -> Chosen | None:
         """What follows a step that has not converged; None where it cannot be any shorter."""
-        shorter = replace(self, reach=0.5 * self.reach, slow=0.5 * self.slow)
+        shorter = replace(self, reach=0.5 * self.reach, slow=0.5 * self.slow, most=0.5 * self.slow)
         return None if shorter.slow < 0.5**COUNTED_STEPS.halvings else shorter
 
     def judged(self, before: State, reached: State) -> tuple[bool, Chosen]:
@@ -176,9 +180,9 @@ class Chosen:
         grown = float(np.clip(ratio, 1.0 / CHOSEN_STEPS.grow, CHOSEN_STEPS.grow))
         # a step that has ended at an edge or a kink is shorter than it might have been
         reach = grown * max(gone, min(self.reach, CHOSEN_STEPS.cut_off * gone))
-        return True, replace(
-            here, reach=min(reach, CHOSEN_STEPS.largest * self.whole), slow=min(1.0, max(1.0, grown) * self.slow)
-        )
+        most = min(1.0, CHOSEN_STEPS.forget * self.most)
+        slow = min(most, max(1.0, grown) * self.slow)
+        return True, replace(here, reach=min(reach, CHOSEN_STEPS.largest * self.whole), slow=slow, most=most)
 
     def _too_long(self, drawn: Drawn) -> bool:
         return max(self._excess(drawn)) > 1.0
