@@ -13,7 +13,7 @@ from fem_reference.path.control import LANDING, Control, Front, at, edge_control
 from fem_reference.path.programme import NEAR_THE_GOAL, branches, next_line
 from fem_reference.path.state import State
 from fem_reference.path.step import FINER, LESS, Failure, departing, step, unloaded
-from fem_reference.path.stride import COUNTED_STEPS, Counted, Stride, chosen
+from fem_reference.path.stride import COUNTED_STEPS, Chosen, Counted, Stride, chosen
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,9 @@ def reach(
         if separated(model, state, point, goal):
             yield Separation(point.opening)
             return None
-        state = departing(model, point, goal, stride, anew=True) if stride.lands and at_kink(model, point) else point
+        state = point
+        if isinstance(stride, Chosen) and at_kink(model, point):
+            state, stride = departing(model, point, goal, stride, anew=True), stride.past_kink()
     yield Failure(
         f"the path did not come from opening {state.opening:.6g} to {goal:.6g} in {REFERENCE_PATH.steps} steps; "
         f"{FINER}",

@@ -46,11 +46,14 @@ class ChosenSteps:
     top : by how much the cubic may rise above the ends of a step, in parts of ``bend`` of the peak.
     spare : the next step is made for this part of ``strayed`` and ``top``.
     grow, shortest, longest : bounds of the length of a step over that of the one before, or of the first attempt.
+    past : length of the step that follows on one which ends at a kink, in parts of the programme.
     cut_off : how much longer a step may have been meant to be than it has become, where it ended at an edge or a kink,
         for the next one to be made from what was meant.
     forget : growth from step to step of the largest step of the front after one that has failed.
     early : residual over the force scale at which iterations stop before the last correction, whose tangent is that of
         the path: it is off by about as much.
+    digits : decimals of the ratio of two lengths: differences of energies are subject to rounding, and steps are to be
+        the same on any number of ranks.
     finest : number of counted steps as short as which steps are not judged, at the ``usual`` bend: what is left then
         are the teeth of the mesh. Their number grows with the root of a smaller one.
     """
@@ -68,9 +71,11 @@ class ChosenSteps:
     grow: float = 2.0
     shortest: float = 0.25
     longest: float = 0.75
+    past: float = 1.0 / 300.0
     cut_off: float = 2.0
     forget: float = 1.2
     early: float = 1e-4
+    digits: int = 2
     finest: int = 600
 
 
@@ -161,6 +166,10 @@ class Chosen:
         shorter = replace(self, reach=0.5 * self.reach, slow=0.5 * self.slow, most=0.5 * self.slow)
         return None if shorter.slow < 0.5**COUNTED_STEPS.halvings else shorter
 
+    def past_kink(self) -> Chosen:
+        """What follows a step that has ended at a kink, with the slope of its arrival, from which no cubic goes on."""
+        return replace(self, reach=min(self.reach, CHOSEN_STEPS.past * self.whole))
+
     def judged(self, before: State, reached: State) -> tuple[bool, Chosen]:
         """Whether a step is accurate, and what follows it."""
         size, here = self.size, self
@@ -201,7 +210,8 @@ class Chosen:
         chord, strayed, over = self._excess(drawn)
         spare = CHOSEN_STEPS.spare
         bounds = (CHOSEN_STEPS.tangent / CHOSEN_STEPS.chord, chord, 2), (spare, strayed, 3), (spare, over, 2)
-        return min((aim / max(excess, 1e-9)) ** (1.0 / order) for aim, excess, order in bounds)
+        ratio = min((aim / max(excess, 1e-9)) ** (1.0 / order) for aim, excess, order in bounds)
+        return round(ratio, CHOSEN_STEPS.digits)
 
     def _fine(self, length: float) -> bool:
         """Whether a step of this length in the plane of opening and load is so short that it is not judged."""

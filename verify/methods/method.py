@@ -131,6 +131,7 @@ class Method:
     mesh_error : error of the load curve that its mesh leaves at the unknowns of a packaged scene; 0 where that is less
         than the tolerances between codes
     equal_arms : whether two arms must be equal, where their bond opens alone
+    chooses_steps : whether it chooses steps by accuracy for ``discretization.steps = "auto"``, besides methods with dofs
     slides : whether it solves a bond that opens and slides
     place : among the methods in messages; equal ones are sorted by name
     besides, per_step : seconds of a run besides its steps, and a step and a thousand unknowns, see
@@ -155,6 +156,7 @@ class Method:
     is_limit: bool = False
     mesh_error: float = 0.0
     equal_arms: bool = False
+    chooses_steps: bool = False
     slides: bool = False
     place: int = 1000
     besides: float = 2.0

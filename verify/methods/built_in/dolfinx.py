@@ -127,6 +127,7 @@ DOLFINX = Method(
     laws=_laws,
     fixed=_both_bodies,
     code="dolfinx",
+    chooses_steps=True,
     slides=True,
     packages=("fem_reference",),
     ranks=True,
