@@ -131,7 +131,7 @@ class Method:
     mesh_error : error of the load curve that its mesh leaves at the unknowns of a packaged scene; 0 where that is less
         than the tolerances between codes
     equal_arms : whether two arms must be equal, where their bond opens alone
-    chooses_steps : whether it chooses steps by accuracy for ``discretization.steps = "auto"``, besides methods with dofs
+    chooses_steps : whether steps "auto" are chosen by accuracy, as those of methods with dofs are
     slides : whether it solves a bond that opens and slides
     place : among the methods in messages; equal ones are sorted by name
     besides, per_step : seconds of a run besides its steps, and a step and a thousand unknowns, see
