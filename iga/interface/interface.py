@@ -322,12 +322,14 @@ class Shear:
     @cached_property
     def scaled(self) -> Scaled:
         """How far damage is on its way."""
-        return self.law.scaled(*self.jump_qc.T, self.d_q)
+        g_q, s_q = self.jump_qc.T.copy()
+        return self.law.scaled(g_q, s_q, self.d_q)
 
     @cached_property
     def driven_q(self) -> np.ndarray:
         """The damage that the jump drives to on first loading."""
-        return self.law.driven(*self.jump_qc.T)
+        g_q, s_q = self.jump_qc.T.copy()
+        return self.law.driven(g_q, s_q)
 
     def along(self, g_q: np.ndarray, s_q: np.ndarray) -> np.ndarray:
         """Scaled jumps (n_q,) of undamaged points at small gaps and slips, in proportion to these."""

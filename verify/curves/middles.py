@@ -28,8 +28,8 @@ class Middles:
         """The columns of the curve between the row before and this one; None for the first one, and without slopes.
 
         Opening and load are on the cubic of the step (`verify.curves.curve.dense`), the work is that along it, and the
-        crack, what is dissipated and the J-integrals have gone half way, which leaves to be stored what keeps the ledger as it is at
-        both ends. ``newton_iterations`` is 0, as nothing has been solved.
+        crack, what is dissipated and the J-integrals have gone half way, which leaves to be stored what keeps the
+        ledger as it is at both ends. ``newton_iterations`` is 0, as nothing has been solved.
         """
         before, self._before = self._before, row
         self._size = np.maximum(self._size, np.abs([row["opening"], row["load"]]))

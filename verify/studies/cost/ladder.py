@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,10 +19,10 @@ class Ladder:
     """Constants of the runs of a family.
 
     ratio, rungs : ratio of the numbers of elements of successive meshes, and number of meshes
-    steps : setting of the steps of the first runs; 80 are enough for the sharp peak of ``peel-120``
-    few_steps : settings of the steps that are tried on accurate meshes to save time. ``iga`` chooses its steps; the
-        number after "auto" is the allowed distance from the tangent. DOLFINx counts steps and adds some for the zone
-    other_steps : settings that are tried on the best meshes
+    steps : number of steps of the first runs, enough for the sharp peak of ``peel-120``
+    few_steps : for every accuracy settings of the steps that are tried on meshes which may be the cheapest for it; both
+        codes choose them. The number after "auto" is the allowed distance from the tangent
+    other_steps : numbers of steps that are tried on the best meshes
     more_points : interface points per element beyond the degree, for the ``iga`` methods. They cost little: on
         ``dcb-czm1`` with 500 unknowns 5 points instead of 2 reduce the error of cubic NURBS from 0.43 to 0.17 %, of
         T-splines from 0.20 to 0.13 %, of Lagrange elements from 3.3 to 0.6 %. DOLFINx has three more
@@ -31,8 +31,13 @@ class Ladder:
     ratio: float = 1.4
     rungs: int = 8
     steps: int | str = 80
-    few_steps: tuple[str, ...] = ("auto", "auto-0.02", "auto-0.05", "auto-0.1")
-    few_steps_dolfinx: tuple[int, ...] = (20,)
+    few_steps: Mapping[str, tuple[str, ...]] = field(
+        default_factory=lambda: {
+            "1%": ("auto-0.05", "auto-0.1"),
+            "0.3%": ("auto-0.02", "auto-0.05"),
+            "0.1%": ("auto", "auto-0.02"),
+        }
+    )
     other_steps: tuple[int | str, ...] = (40, 150)
     more_points: int = 2
 
@@ -93,14 +98,10 @@ class Try:
         own = _overrides(self.family, scene, self.size, self.steps)
         return Job(source, scene, self.family.solver, self.variant, (*given, *own), repeat=self.repeat)
 
-    def with_few_steps(self) -> Iterator[Try]:
-        """The same mesh with few steps."""
+    def with_few_steps(self, level: str) -> Iterator[Try]:
+        """The same mesh with the few steps that are tried for an accuracy."""
         if self.family is not BEAM_FAMILY:
-            yield from (replace(self, steps=few) for few in self._few_steps)
-
-    @property
-    def _few_steps(self) -> tuple[int | str, ...]:
-        return LADDER.few_steps_dolfinx if self.family.solver == "dolfinx" else LADDER.few_steps
+            yield from (replace(self, steps=few) for few in LADDER.few_steps[level])
 
     def with_other_steps(self, among: Sequence[int | str] | None = None) -> Iterator[Try]:
         """The same mesh with other settings of the steps."""

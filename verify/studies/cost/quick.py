@@ -12,11 +12,12 @@ from time import monotonic
 from verify.runs.jobs import Job, Outcome
 from verify.scene.schema import Scene
 from verify.studies import frame
+from verify.studies.cost.contenders import best
 from verify.studies.cost.findings import LEVELS
 from verify.studies.cost.ladder import LADDER, Family, Ladder, Try, ladders
 from verify.studies.cost.price import UNFINISHED, Price
 from verify.studies.cost.reference import Meshes, reference, reference_jobs
-from verify.studies.cost.study import LIMITS, Runner, _best, climb
+from verify.studies.cost.study import LIMITS, Runner, climb
 from verify.studies.frame import failure, one_thread
 from verify.support.say import say
 
@@ -108,7 +109,7 @@ def _repeated(runner: Runner, n: int) -> list[Try]:
     told, methods = {row.run for row in (*price.pair, *price.equal)}, {row.method for row in price.pair}
     enough, soon = LEVELS.get(price.level, 0.0), LIMITS.once * min((row.seconds for row in price.pair), default=0.0)
     chosen = [one for one in rows if one.variant in told]
-    for one in _best(rows, LIMITS.close, LIMITS.once, LIMITS.late):
+    for one in best(rows, LIMITS.close, LIMITS.once, LIMITS.late):
         if rows[one].curve_error <= enough and (rows[one].method in methods or rows[one].seconds <= soon):
             chosen.append(one)
     return [replace(one, repeat=n) for one in dict.fromkeys(chosen)]
