@@ -122,6 +122,10 @@ def _studies(command: Callable[..., Parser]) -> None:
     example = "validate dcb-czm1 --with lab.csv --out validation"
     leaves = "read validation/report.html; exit 0: a statement could be made"
     _validate_options(command(commands.validate, text, example, leaves))
+    text = "Values that two codes agree on, with their uncertainties, to hold other codes against."
+    example = "certify dcb-czm1 --out certified"
+    leaves = "read certified/report.html; exit 0: every value is certified"
+    _certify_options(command(commands.certify, text, example, leaves))
     text = "How time and memory grow up to 100,000 unknowns, what more ranks gain, what to expect of many."
     _scaling_options(command(commands.scaling, text, "scaling dcb-czm1 --out scaling", "read scaling/report.html"))
     text = "The cases on which cohesive codes stop or go wrong."
@@ -241,6 +245,17 @@ def _validate_options(sub: Parser) -> None:
     sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
     _set_option(sub)
     _out_option(sub, "debond-validation")
+    _sweep_options(sub)
+
+
+def _certify_options(sub: Parser) -> None:
+    _scene_argument(sub)
+    what = "the loads at these openings; default: at every quarter of the programme"
+    sub.add_argument("--at", type=numbers, default=[], metavar="D,D,...", help=what)
+    _set_option(sub)
+    _out_option(sub, "debond-certified")
+    what = "in a checkout: keep the values for debond verify, in place of those that are there"
+    sub.add_argument("--keep", action="store_true", help=what)
     _sweep_options(sub)
 
 

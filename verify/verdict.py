@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from verify.result import Result
     from verify.scene.schema import Scene
 
-Kind = Literal["exact", "analytical", "cross-code", "regression"]
+Kind = Literal["exact", "analytical", "certified", "cross-code", "regression"]
 
 #: ``holds``: within the tolerance. ``broken``: a fault of the code that is judged. ``unresolved``: the check cannot
 #: judge, because a mesh or the reference is too coarse for its tolerance.
@@ -22,7 +22,8 @@ class Check:
     """One number held against one tolerance.
 
     ``kind`` says what stands behind it: ``exact`` (an identity), ``analytical`` (a closed form or beam solution),
-    ``cross-code`` (another code or a published value), ``regression`` (this code, earlier).
+    ``certified`` (a value of two codes with its uncertainty), ``cross-code`` (another code or a published value),
+    ``regression`` (this code, earlier).
     """
 
     name: str  # short and stable, e.g. "j-integral"

@@ -19,6 +19,7 @@ from made_up_runs import ENVIRONMENT, made_up, scene_report
 from iga.bases.names import BASES
 from tests.verify.report.studies import test_plane_page
 from tests.verify.studies import test_interface_rules as test_quadrature_study
+from tests.verify.studies.certified.test_certified_study import answered
 from tests.verify.studies.hard.test_hard import FAKE, faulty, stub
 from tests.verify.studies.paper import test_figure9, test_paper
 from tests.verify.studies.plane import test_rates as test_plane_rates
@@ -35,6 +36,9 @@ from verify.reduction.scheme import Settings
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
+from verify.studies.certified import page as certified_page
+from verify.studies.certified.plan import planned as certified_planned
+from verify.studies.certified.study import judged as certified_judged
 from verify.studies.cost import page as cost_page
 from verify.studies.cost.price import Price
 from verify.studies.cost.row import Row
@@ -193,6 +197,13 @@ def validation(out: Path) -> Path:
     return out / "report.html"
 
 
+def certified(out: Path) -> Path:
+    """Values that are certified, and others that are not; pairs that are kept make a difference."""
+    plan = certified_planned("dcb-czm1", load_scene("dcb-czm1"), (0.5, 1e-3))
+    certified_page.write(certified_judged(plan, answered(plan, 3e-4, 2e-3)), out / "report.html")
+    return out / "report.html"
+
+
 def scaling(out: Path) -> Path:
     """Two methods of many sizes, on one rank and on two."""
     scaling_page.write(made_up_studies.scaling_study(), out / "report.html")
@@ -268,6 +279,7 @@ PAGES: Mapping[str, Callable[[Path], Path]] = {
     "scaling": scaling,
     "viscosity": viscosity,
     "validation": validation,
+    "certified": certified,
     "hard": hard,
     "law": law,
     "reduce": reduction,

@@ -113,7 +113,9 @@ OVERRIDES = st.lists(
 
 #: Words of command lines. What they name is there, or not.
 WORDS = st.one_of(
-    st.sampled_from("verify solve cost effects validate scaling hard export compare mesh scenes doctor nosuch".split()),
+    st.sampled_from(
+        "verify solve cost effects validate certify scaling hard export compare mesh scenes doctor nosuch".split()
+    ),
     st.sampled_from("dcb-czm1 peel-60 own.toml broken.toml curve.csv other.csv body.iga /dev/null . missing".split()),
     st.sampled_from(
         "--out --method --dofs --set --jobs --full --dry-run --fields --frames --accuracy --end --begin --at "
@@ -123,7 +125,7 @@ WORDS = st.one_of(
     st.sampled_from("nurbs dolfinx beam lefm 0 1 -1 1e-3 80 1e999 nan 0.3% 1,2 abaqus csv md here here/x".split()),
     st.text(st.characters(exclude_characters="\0", exclude_categories=("Cs",)), max_size=8),
 )
-FIRST = st.sampled_from("verify solve cost effects validate scaling hard export compare mesh".split())
+FIRST = st.sampled_from("verify solve cost effects validate certify scaling hard export compare mesh".split())
 
 
 @st.composite

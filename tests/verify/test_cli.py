@@ -285,6 +285,9 @@ UNSAID = {
         "method": "nurbs", "overrides": [], "out": Path("debond-validation"), "scheduler": None, "curves": [], "at": [],
         "opening": None, "load": None, "opening_scale": 1.0, "load_scale": 1.0, "dry_run": False,
     },
+    "certify S": {
+        "at": [], "overrides": [], "out": Path("debond-certified"), "keep": False, "scheduler": None, "dry_run": False,
+    },
     "scaling S": {"overrides": [], "out": Path("debond-scaling"), "dry_run": False},
     "hard": {"names": [], "out": Path("debond-hard"), "scheduler": None, "dry_run": False},
     "compare A B": {

@@ -1,5 +1,5 @@
 """Checks between the runs of one scene: codes against the cohesive beam, codes against each other, and all runs
-against published values.
+against published and certified values.
 
 LEFM appears in no check: it is a limit that a cohesive zone approaches, not a target.
 """
@@ -11,6 +11,7 @@ from dataclasses import replace
 from math import inf
 
 from verify.checks import beam_error, load_introduction
+from verify.checks.certified import certified_checks
 from verify.checks.proof import REFERENCE, RUNS, beside_models, difference_of_models, held_against, proof, sampled
 from verify.curves.curve import curve_error, first_drop, from_origin, load_at
 from verify.curves.leg_checks import farthest_check, programme_checks, stiffness_check
@@ -57,19 +58,34 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
         if method in usable and REFERENCE in usable:
             pair = pair_checks(scene, f"{method} / {REFERENCE}", usable[method], usable[REFERENCE], tolerance)
             checks += [proven(scene, check, usable) for check in pair]
-    return (*checks, *published_checks(scene, usable))
+    return (*checks, *published_checks(scene, usable), *_certified(scene, usable))
+
+
+def _certified(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
+    """Every run against the certified values, each with the tolerance that its curve has against the other codes."""
+    allowed = {REFERENCE: CODE_TOLERANCE, **CROSS_CODE}
+    fine = beam_error.tolerance(scene)
+    if fine is not None and not no_beam(scene):
+        allowed[BEAM_RUN] = fine
+    found = [
+        one
+        for name, run in results.items()
+        if name in allowed
+        for one in certified_checks(scene, name, run, allowed[name])
+    ]
+    return tuple(proven(scene, one, results) for one in found)
 
 
 def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
-    """The check of two runs, marked unresolved where a mesh is too coarse for a verdict.
+    """The check of a run or of two, marked unresolved where a mesh is too coarse for a verdict.
 
     The error of the DOLFINx reference is known from its second mesh. Elements that are too long for the process zone,
     which every run warns of, explain distances up to `COARSE`.
     """
     pair, found = check.subject.split(" / "), check
-    if pair[-1] == REFERENCE:
+    if pair[1:] == [REFERENCE]:
         found = held_against(check, proof(results, max(scene.load.opening)))
-    if pair[-1] == BEAM_RUN:
+    if pair[1:] == [BEAM_RUN]:
         found = beside_models(check, difference_of_models(results, max(scene.load.opening)))
     if found.state != "broken" or not abs(found.value) <= COARSE:
         return found

@@ -22,6 +22,7 @@ from verify.checks.between_codes import (
     published_meaning,
     published_names,
 )
+from verify.checks.certified import certified_checks
 from verify.checks.odd_one_out import ODD, odd_one_out
 from verify.checks.proof import SEARCHING
 from verify.curves.leg_checks import farthest_check, turns_check
@@ -149,7 +150,7 @@ def _beginning(scene: Scene, name: str, curve: Result) -> tuple[str, ...]:
 
 
 def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Result]) -> tuple[Check, ...]:
-    """A foreign curve against the isogeometric codes, DOLFINx, the beam, and published values.
+    """A foreign curve against the isogeometric codes, DOLFINx, the beam, published and certified values.
 
     Parameters
     ----------
@@ -179,7 +180,7 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
     for known_name, known in zip(published_names(scene), scene.published, strict=True):
         value = known.deviation(published_load(known, curve, programme))
         checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))
-    return tuple(checks)
+    return (*checks, *certified_checks(scene, name, curve, CODE_TOLERANCE))
 
 
 def _keep(curve: Curve, folder: Path) -> None:

@@ -315,6 +315,30 @@ def validate(options: argparse.Namespace) -> int:
     return 0 if study.complete else FAILED
 
 
+def certify(options: argparse.Namespace) -> int:
+    from verify.methods.method import NotRun
+    from verify.studies.certified.keeping import keep, require_checkout
+    from verify.studies.certified.plan import planned
+    from verify.studies.certified.study import certify, would_run
+
+    scene = _studied(options, "certify")
+    if options.keep:
+        require_checkout()
+    try:
+        plan = planned(options.scene, scene, options.at, options.overrides)
+    except NotRun as error:
+        return _not_run(error)
+    if options.dry_run:
+        return _listed(would_run(plan, options.out, options.jobs))
+    _folder(options.out)
+    study = certify(plan, options.out, options.jobs, options.scheduler)
+    if options.keep and not study.failures:
+        keep(study)
+    elif study.kept:
+        print("--keep, in a checkout, keeps them: debond verify then holds every run of this problem to them")
+    return 0 if study.complete else FAILED
+
+
 def scaling(options: argparse.Namespace) -> int:
     from verify.studies.scaling.study import scaling, would_run
 

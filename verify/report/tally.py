@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 EVIDENCE = {
     "exact": "An identity that any solution must meet. Nothing else is needed to judge it.",
     "analytical": "Against a closed form or the cohesive-beam solution, which rests on beam theory.",
+    "certified": "Against values of two codes on three meshes each, with a stated uncertainty; kept, not run again.",
     "cross-code": "Against another code or a published value: two programs that share nothing but the problem.",
     "regression": "Against this code, earlier: says that nothing has changed, not that it is right.",
 }

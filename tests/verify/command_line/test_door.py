@@ -27,6 +27,7 @@ PROJECT = Path(__file__).resolve().parents[3]
 def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder to stand in, with all that takes long replaced by nothing."""
     import verify.export.command
+    import verify.studies.certified.study
     import verify.studies.cost.accuracy
     import verify.studies.cost.study
     import verify.studies.effects.study
@@ -49,6 +50,7 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (verify.studies.effects.study, "effects"),
         (verify.studies.scaling.study, "scaling"),
         (verify.studies.validation.study, "validate"),
+        (verify.studies.certified.study, "certify"),
     ):
         monkeypatch.setattr(study, name, lambda *_: type("Study", (), {"complete": True}))
     (tmp_path / "own.toml").write_text("\n".join(f"{key} = {as_toml(value)}" for key, value in DCB.items()))

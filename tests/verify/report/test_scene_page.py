@@ -194,7 +194,7 @@ def test_checks_of_one_name_stand_together_in_the_order_in_which_they_came(page:
     ((first, *_),) = [found for tally, found in page.checks if tally.kind == "exact"]
     assert [row.check.subject for row in first.rows] == ["nurbs", "dolfinx"]
     assert {tally.kind: tally.counts.total for tally, _ in page.checks} == {
-        "exact": 4, "analytical": 1, "cross-code": 1, "regression": 0,
+        "exact": 4, "analytical": 1, "certified": 0, "cross-code": 1, "regression": 0,
     }  # fmt: skip
 
 

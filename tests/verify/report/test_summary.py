@@ -76,7 +76,7 @@ def test_counts_and_failures_are_of_all_scenes_and_plane_problems(
     assert summary.headline == "1 broken of 8 checks on 2 scenes" and summary.tone == "bad"
     assert summary.not_held == (("two", "second", FAILS),)
     assert {t.kind: (t.counts.total, t.counts.broken) for t in summary.tallies} == {
-        "exact": (6, 1), "analytical": (1, 0), "cross-code": (1, 0), "regression": (0, 0),
+        "exact": (6, 1), "analytical": (1, 0), "certified": (0, 0), "cross-code": (1, 0), "regression": (0, 0),
     }  # fmt: skip
     assert summarise(scenes[:1]).tone == "good" and summarise(()).tone == "none"
     plane = SimpleNamespace(
@@ -177,7 +177,7 @@ def test_markdown_has_the_numbers_of_the_page(scenes: tuple[Section, ...], summa
     assert [row[-1] for row in overview[1:]] == ["6 of 6 hold", "1 of 2 hold"]
     for row, (_, cells) in zip(overview[1:], summary.rows, strict=True):
         assert row[1:-1] == [", ".join(filter(None, (cell.head, cell.tail))) for cell in cells]
-    assert [row[1] for row in kinds[1:]] == ["5 of 6", "1 of 1", "1 of 1", "none"]
+    assert [row[1] for row in kinds[1:]] == ["5 of 6", "1 of 1", "none", "1 of 1", "none"]
     methods = next(rows for rows in rest if rows[0][0] == "Method")
     assert methods[0][1:6] == ["Curve distance", "Oscillation", "Peak load", "at opening", "Unknowns"]
     for cells, row in zip(methods[1:], scenes[0].rows, strict=True):

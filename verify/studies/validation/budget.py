@@ -10,29 +10,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, sqrt
 
-import numpy as np
-
-from verify.curves.convergence import GCI_SAFETY, assess
+from verify.curves.mesh_error import mesh_error
 
 
 @dataclass(frozen=True)
 class Estimates:
     """How an uncertainty follows from runs.
 
-    most_order : the load of a cohesive front has no higher order. A higher observed one is that of two fine meshes that
-        agree by chance: the error is then that of this order over the range of all values, range / ((h_coarsest /
-        h_finest)^order - 1), times the safety factor of the index
     expansion : from a grid convergence index of 95 % to a standard uncertainty. The error of a mesh has a sign, so that
         the interval is one-sided: 1.1 to 1.15, and not the 2 of a normal distribution
-    spread : safety factor on the error of meshes that are not in the asymptotic range, which is then that of a first
-        order over the range of all values, range / (h_coarsest / h_finest - 1) (Eca and Hoekstra 2014, J. Comput. Phys.
-        262, 104)
     linear : largest part of a contribution that its second-order term may be
     """
 
-    most_order: float = 2.0
     expansion: float = 1.15
-    spread: float = 3.0
     linear: float = 0.1
 
 
@@ -95,24 +85,9 @@ def of_input(name: str, stated: float, moved: Moved, kind: str = "input") -> Par
 
 
 def of_meshes(sizes: Sequence[float], values: Sequence[float]) -> Part:
-    """Of the finest of three or more meshes: its grid convergence index over the factor of expansion.
-
-    Observed orders of more than `Estimates.most_order`, and meshes that are not in the asymptotic range, have an error
-    over the range of their values in its place.
-    """
-    by_size = np.argsort(sizes)
-    h, f = np.asarray(sizes, dtype=float)[by_size], np.asarray(values, dtype=float)[by_size]
-    if len(set(h)) < len(h):
-        return Part("mesh", "num", float("nan"), remark="two meshes are of one size", doubtful=True)
-    found = assess(h, f)
-    ratio = float(h[-1] / h[0])
-    if not found.asymptotic:
-        index = ESTIMATES.spread * float(np.ptp(f)) / (ratio - 1.0)
-    elif found.order > ESTIMATES.most_order:
-        index = GCI_SAFETY * float(np.ptp(f)) / (ratio**ESTIMATES.most_order - 1.0)
-    else:
-        index = float(abs(f[0])) * found.gci
-    return Part("mesh", "num", index / ESTIMATES.expansion, remark=found.verdict, doubtful=not found.asymptotic)
+    """Of the finest of three or more meshes: its index over the factor of expansion (`verify.curves.mesh_error`)."""
+    found = mesh_error(sizes, values)
+    return Part("mesh", "num", found.index / ESTIMATES.expansion, remark=found.verdict, doubtful=found.doubtful)
 
 
 def of_introduction(values: Mapping[str, float]) -> Part:

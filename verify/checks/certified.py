@@ -1,0 +1,145 @@
+"""Every run against the certified values of its scene (`verify.scene.stated.certified`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot, nan
+
+import numpy as np
+from scipy.integrate import trapezoid
+
+from verify.checks.proof import MATCHED, RUNS, sampled
+from verify.curves.curve import SAMPLES, envelope, from_origin, load_at, peak
+from verify.curves.of_run import peak_load
+from verify.result import Result
+from verify.scene.schema import Scene
+from verify.scene.stated.certified import Certified, CertifiedKind, certified
+from verify.verdict import Check
+
+
+@dataclass(frozen=True)
+class CertifiedRule:
+    """What certified values are, and how near a run must be.
+
+    whole : part of the last opening that a run must have reached to have a work, or else it bears no load any more
+    gone : part of the peak load up to which a specimen bears none
+    zone : part of the programme from which on the length of the process zone is averaged: one opening alone has that
+        of the few points where the front stands
+    peak_opening, zone_length : tolerance over that of a load curve. A peak is flat, and 0.5 % of its load are 5 % and
+        more of its opening; the ends of a zone are known to a part of an element
+    """
+
+    whole: float = 0.999
+    gone: float = 0.01
+    zone: float = 0.5
+    peak_opening: float = 4.0
+    zone_length: float = 10.0
+
+    def wider(self, kind: CertifiedKind) -> float:
+        """Tolerance of a quantity over that of a load curve."""
+        return {"peak_opening": self.peak_opening, "zone": self.zone_length}.get(kind, 1.0)
+
+
+CERTIFIED_RULE = CertifiedRule()
+
+#: Columns of a run that knows its process zone.
+OF_THE_FRONT = {"crack_length", "damage_front"}
+
+
+def measured(result: Result, kind: CertifiedKind, opening: float | None = None) -> float:
+    """The quantity of a run in the units of the scene; NaN where it has none.
+
+    peak : largest load; peak_opening : where that is
+    load_at : load at an opening that is a new largest one
+    work : of the load up to an opening, along the curve that a test under displacement control shows
+    zone : length between damage_front and crack_length, mean over the last half of the programme
+    """
+    if result.load.size < 2:
+        return nan
+    if kind == "peak":
+        return peak_load(result)
+    if kind == "peak_opening":
+        return peak((result.opening, result.load), result.steps.get("load_slope"))[0]
+    assert opening is not None
+    if kind == "load_at":
+        return float(load_at(from_origin(*sampled(result)), opening))
+    return _work(result, opening) if kind == "work" else _zone(result, opening)
+
+
+def _work(result: Result, end: float) -> float:
+    d, P = envelope(*from_origin(*sampled(result)))
+    bears = abs(result.load[-1]) > CERTIFIED_RULE.gone * float(np.max(np.abs(result.load)))
+    if bears and d[-1] < CERTIFIED_RULE.whole * end:
+        return nan
+    kept = d < end
+    last = [load_at((d, P), end)] if d[-1] >= end else []
+    return float(trapezoid(np.append(P[kept], last), np.append(d[kept], end if last else [])))
+
+
+def _zone(result: Result, end: float) -> float:
+    """NaN where the crack has not grown before the window, or where the front is at the far end in it."""
+    steps, d = result.steps, result.opening
+    if not steps.keys() >= OF_THE_FRONT or d[-1] < CERTIFIED_RULE.whole * end:
+        return nan
+    tip, front = steps["crack_length"], steps["damage_front"]
+    within = d >= CERTIFIED_RULE.zone * end
+    if tip[within][0] <= tip[1] or np.any(np.diff(front[within]) <= 0.0):
+        return nan
+    window = np.linspace(CERTIFIED_RULE.zone * end, end, SAMPLES)
+    return float(np.mean(np.interp(window, d, front - tip)))
+
+
+def certified_checks(scene: Scene, name: str, result: Result, tolerance: float) -> tuple[Check, ...]:
+    """One run against every certified value of its scene that it has.
+
+    Parameters
+    ----------
+    name : of a run of a built-in method, or of any other code
+    tolerance : that of the load curve of the run, which the uncertainty of the value widens
+    """
+    able = [one for one in certified(scene) if one.kind in _quantities_of(name, result)]
+    pairs = keeps_pairs(scene, name)
+    return tuple(certified_check(name, result, one, tolerance, pairs) for one in able)
+
+
+def certified_check(name: str, result: Result, known: Certified, tolerance: float, pairs_kept: bool | None) -> Check:
+    """One run against one value: the relative deviation, within tolerance and uncertainty together.
+
+    Parameters
+    ----------
+    pairs_kept : whether the run keeps its initial pairs of points; None where nobody knows: both are then right
+    """
+    shift = {True: known.matched, False: 0.0, None: 0.5 * known.matched}[pairs_kept]
+    reference = known.value + shift
+    uncertainty = (known.uncertainty + (0.5 * abs(known.matched) if pairs_kept is None else 0.0)) / abs(reference)
+    deviation = measured(result, known.kind, known.opening) / reference - 1.0
+    step = _step_at_peak(result) / abs(reference) if known.kind == "peak_opening" else 0.0
+    allowed = hypot(CERTIFIED_RULE.wider(known.kind) * tolerance, uncertainty, step)
+    source = f"that of two codes on three meshes each, {known.value:.6g} ± {known.uncertainty:.2g} (95 %)"
+    label = {"peak_opening": "peak-opening", "load_at": f"load-{known.opening or 0.0:g}"}.get(known.kind, known.kind)
+    meaning = f"{known.quantity[:1].upper()}{known.quantity[1:]}: {source}."
+    return Check(f"certified-{label}", name, deviation, allowed, "certified", meaning, uncertainty)
+
+
+def _step_at_peak(result: Result) -> float:
+    """The longer step beside the largest load of a curve that has no slopes: its peak may be anywhere in between."""
+    if "load_slope" in result.steps:
+        return 0.0
+    i = int(np.argmax(result.load))
+    return float(np.max(np.abs(np.diff(result.opening[max(i - 1, 0) : i + 2])), initial=0.0))
+
+
+def keeps_pairs(scene: Scene, name: str) -> bool | None:
+    """Whether a run keeps its initial pairs of points; None for a beam, which has none, and for other codes."""
+    method = RUNS.get(name)
+    if method is None or not method.has_mesh:
+        return None
+    return name == MATCHED or "search" in method.fixed(scene)
+
+
+def _quantities_of(name: str, result: Result) -> tuple[CertifiedKind, ...]:
+    """The beam is a theory of the load, and a curve has no front."""
+    if name in RUNS and not RUNS[name].has_mesh:
+        return "peak", "load_at", "work"
+    fronts: tuple[CertifiedKind, ...] = ("zone",) if result.steps.keys() >= OF_THE_FRONT else ()
+    return "peak", "peak_opening", "load_at", "work", *fronts

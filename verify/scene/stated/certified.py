@@ -1,0 +1,63 @@
+"""Values that `debond certify` has found for a problem, each with its uncertainty, kept in one file of the package."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, Literal
+
+from verify.scene.effects import simulated
+from verify.scene.schema import Scene
+
+CERTIFIED_FILE = Path(__file__).with_name("certified.json")
+
+#: Tables of a scene that make its problem, besides the effects as simulated: meshes, names and what is stated do not.
+PROBLEM_TABLES = ("material", "strip", "substrate", "interface", "load")
+
+#: Kinds of quantities. ``work`` and ``zone`` have the last opening of the programme as theirs.
+CertifiedKind = Literal["peak", "peak_opening", "load_at", "work", "zone"]
+
+
+@dataclass(frozen=True)
+class Certified:
+    """One value of a problem.
+
+    quantity : in words, like "load at 1.5"
+    opening : that the quantity belongs to; None for a peak
+    value : in the units of the scene
+    uncertainty : expanded, for 95 %, of ``value`` [its unit]
+    matched : what keeping the initial pairs of points changes [its unit]; 0 where nothing moves, or nobody knows
+    """
+
+    quantity: str
+    kind: CertifiedKind
+    opening: float | None
+    value: float
+    uncertainty: float
+    matched: float = 0.0
+
+
+def problem_key(scene: Scene) -> str:
+    """20 hexadecimal digits of everything that makes the problem: specimen, materials, interface, load, effects."""
+    dumped = scene.model_dump(mode="json")
+    problem: dict[str, Any] = {name: dumped[name] for name in PROBLEM_TABLES}
+    problem["specimen"] = {key: value for key, value in dumped["specimen"].items() if key != "mesh"}
+    problem["effects"] = simulated(scene)
+    return hashlib.sha256(json.dumps(problem, sort_keys=True).encode()).hexdigest()[:20]
+
+
+def certified(scene: Scene) -> tuple[Certified, ...]:
+    """The certified values of a scene; none where no problem like it was certified."""
+    entry = entries().get(problem_key(scene), {"values": []})
+    return tuple(Certified(**one) for one in entry["values"])
+
+
+@cache
+def entries(path: Path = CERTIFIED_FILE) -> Mapping[str, Mapping[str, Any]]:
+    """Key of a problem -> its ``scene``, ``units``, and ``values``, fields of `Certified` each."""
+    found: dict[str, Mapping[str, Any]] = json.loads(path.read_text())
+    return found

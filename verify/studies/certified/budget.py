@@ -1,0 +1,148 @@
+"""The uncertainty of one quantity in each code, and the value of both.
+
+Uncertainties are expanded, for 95 %, in the unit of the quantity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import hypot, isfinite, nan
+
+import numpy as np
+
+from verify.checks.between_codes import CODE_TOLERANCE
+from verify.checks.certified import CERTIFIED_RULE
+from verify.checks.proof import TRUST
+from verify.curves.convergence import GCI_SAFETY
+from verify.curves.mesh_error import mesh_error
+from verify.scene.stated.certified import CertifiedKind
+
+
+@dataclass(frozen=True)
+class BudgetShares:
+    """How parts of a budget follow from runs.
+
+    halved : error of steps over what halving them changes: 4/3 for an order of 2, times the safety factor of the index
+    newton : relative error of a value by the iteration: ten times the larger tolerance of both codes, 1e-10
+    """
+
+    halved: float = GCI_SAFETY * 4.0 / 3.0
+    newton: float = 1e-9
+
+
+BUDGET_SHARES = BudgetShares()
+
+
+@dataclass(frozen=True)
+class OfCode:
+    """A quantity in one code.
+
+    value : on the finest mesh; of the scene, also where the code keeps its pairs of points
+    meshes : size of the elements and value, finest first
+    parts : what makes the uncertainty -> its size: "mesh", "thickness", "steps", "iteration", "rounding"
+    """
+
+    value: float
+    meshes: tuple[tuple[float, float], ...]
+    parts: Mapping[str, float]
+    verdict: str
+
+    @property
+    def uncertainty(self) -> float:
+        """Root of the sum of squares."""
+        return hypot(*self.parts.values())
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Values of a quantity in the runs of one code.
+
+    meshes : (size, value), finest first
+    paced, layered : of the finest mesh with steps half as long and with more layers; None where there is no such run
+    condition : of the tangents
+    """
+
+    meshes: Sequence[tuple[float, float]]
+    paced: float
+    layered: float | None
+    condition: float
+
+
+def of_code(seen: Seen, shift: float = 0.0) -> OfCode:
+    """The budget of one code; ``shift`` is added to its values, so that they are those of the scene."""
+    (sizes, values), finest = zip(*seen.meshes, strict=True), seen.meshes[0][1]
+    mesh = mesh_error(sizes, values)
+    parts = {
+        "mesh": mesh.index,
+        "thickness": 0.0 if seen.layered is None else abs(seen.layered - finest),
+        "steps": BUDGET_SHARES.halved * abs(seen.paced - finest),
+        "iteration": BUDGET_SHARES.newton * abs(finest),
+        "rounding": float(np.finfo(float).eps) * seen.condition * abs(finest),
+    }
+    return OfCode(finest + shift, tuple((h, f + shift) for h, f in seen.meshes), parts, mesh.verdict)
+
+
+@dataclass(frozen=True)
+class Value:
+    """A quantity of a scene in two codes, and the value of both.
+
+    matched : what keeping the pairs of points changes, in the first code
+    places : what another place of the load changes, in the first code; in no uncertainty
+    """
+
+    quantity: str
+    kind: CertifiedKind
+    opening: float | None
+    codes: Mapping[str, OfCode]
+    matched: float = 0.0
+    places: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def value(self) -> float:
+        """Mean of the values on the finest meshes, each weighted by 1 / U^2."""
+        weight = np.array([one.uncertainty**-2 for one in self.codes.values()])
+        return float(weight @ [one.value for one in self.codes.values()] / weight.sum())
+
+    @property
+    def uncertainty(self) -> float:
+        """The smaller one of both codes, or as far as the value of either is from that of both.
+
+        Two errors of meshes may have one sign: that there are two makes the mean no better than the better one.
+        """
+        least = min(one.uncertainty for one in self.codes.values())
+        return max(least, *(abs(one.value - self.value) for one in self.codes.values()))
+
+    @property
+    def apart(self) -> float:
+        """Distance of both codes over what their uncertainties allow, sqrt(U_1^2 + U_2^2)."""
+        one, other = self.codes.values()
+        return abs(one.value - other.value) / hypot(one.uncertainty, other.uncertainty)
+
+    @property
+    def relative(self) -> float:
+        return self.uncertainty / abs(self.value) if self.value else nan
+
+    @property
+    def limit(self) -> float:
+        """Largest relative uncertainty by which a check still tells a wrong run."""
+        return TRUST.certain * CODE_TOLERANCE * CERTIFIED_RULE.wider(self.kind)
+
+    @property
+    def why_not(self) -> str:
+        """Why the value is not certified; empty where it is."""
+        if not isfinite(self.value):
+            return "a run has no such value"
+        if not self.apart <= 1.0:
+            said = " and ".join(f"{name} {one.value:.6g} ± {one.uncertainty:.2g}" for name, one in self.codes.items())
+            return f"{said} differ by more than their uncertainties: one of these is too small, or the models differ"
+        if not self.relative <= self.limit:
+            return f"its uncertainty is {self.relative:.2%}, more than {self.limit:.2%}: take finer meshes"
+        return ""
+
+    @property
+    def sentence(self) -> str:
+        """peak load: 0.55093 ± 0.0003 (0.05 %)"""
+        if self.why_not:
+            return f"{self.quantity}: not certified: {self.why_not}"
+        return f"{self.quantity}: {self.value:.6g} ± {self.uncertainty:.2g} ({self.relative:.3%})"

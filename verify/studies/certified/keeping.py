@@ -1,0 +1,55 @@
+"""What a checkout keeps of certified values: the file of the package, and the table of the guide."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from verify.scene.stated.certified import CERTIFIED_FILE, entries, problem_key
+from verify.studies.certified.study import Study
+from verify.support.refusal import Refusal
+
+#: The table of the guide stands between these lines of its page.
+GUIDE_PAGE = Path(__file__).resolve().parents[3] / "docs" / "pages" / "guide" / "certified.md"
+BEGIN, END = "<!-- written by debond certify -->", "<!-- to here -->"
+
+
+def require_checkout() -> None:
+    """Raises `Refusal` where there is no page of the guide beside the package, or it cannot be written."""
+    if not GUIDE_PAGE.exists():
+        raise Refusal(f"--keep: is for a checkout of the project, and there is none at {GUIDE_PAGE.parents[3]}")
+
+
+def keep(study: Study, file: Path = CERTIFIED_FILE, page: Path = GUIDE_PAGE) -> None:
+    """Replace the entry of the problem, by none where no value is certified, and write the table anew."""
+    known: dict[str, Any] = {key: one for key, one in entries(file).items() if key != problem_key(study.scene)}
+    if study.kept:
+        values = [asdict(one) for one in study.kept]
+        known[problem_key(study.scene)] = {"scene": study.scene.name, "units": study.scene.units, "values": values}
+    ordered = dict(sorted(known.items(), key=lambda item: (item[1]["scene"], item[0])))
+    file.write_text(json.dumps(ordered, indent=1) + "\n")
+    entries.cache_clear()
+    page.write_text(with_table(page.read_text(encoding="utf-8"), ordered), encoding="utf-8")
+
+
+def with_table(text: str, known: Mapping[str, Mapping[str, Any]]) -> str:
+    """The page with the table of all entries."""
+    before, _, rest = text.partition(BEGIN)
+    after = rest.partition(END)[2]
+    return "\n".join([before + BEGIN, "", *table(known.values()), "", END + after])
+
+
+def table(known: Iterable[Mapping[str, Any]]) -> list[str]:
+    """A line of Markdown for each value, with its uncertainty, and what keeping the pairs of points changes."""
+    lines = ["| scene | quantity | value | U, 95 % | of the value | pairs kept |", "|---|---|---|---|---|---|"]
+    for scene, group in groupby(known, key=lambda one: one["scene"]):
+        shown = [(one["units"], value) for one in group for value in one["values"]]
+        for i, (units, one) in enumerate(shown):
+            name = f"`{scene}` ({units})" if i == 0 else ""
+            numbers = f"{one['value']:.6g} | {one['uncertainty']:.2g} | {one['uncertainty'] / abs(one['value']):.3%}"
+            lines.append(f"| {name} | {one['quantity']} | {numbers} | {one['matched']:+.2g} |")
+    return lines
