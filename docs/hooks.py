@@ -37,6 +37,7 @@ ORDER = (
     "t_junctions",
     "verify_your_own_code",
     "what_a_law_owes_you",
+    "data_reduction",
     "what_accuracy_costs",
     "solve_in_python",
     "check_in_python",

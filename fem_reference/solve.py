@@ -19,8 +19,9 @@ from fem_reference.model.opening import OpeningModel
 from fem_reference.output.frames import frame
 from fem_reference.output.snapshots import field_sampler, snapshot
 from fem_reference.path.mixed_row import mixed_row
-from fem_reference.path.path import Failure, Separation, path
+from fem_reference.path.path import Separation, path
 from fem_reference.path.state import State, row_of
+from fem_reference.path.step import Failure
 from fem_reference.problem.problem import Debonding
 
 

@@ -25,6 +25,9 @@ from iga.system.system import Phase, System, respond, tangent_matrix
 #: wanted.
 OnFrame = Callable[[float, Callable[[], dict[str, Any]]], None]
 
+#: Why a path stops choosing its steps.
+NO_BETTER = "as those by accuracy failed or were no longer: the load rises and falls with single interface points"
+
 
 @dataclass(frozen=True)
 class Solution:
@@ -32,8 +35,9 @@ class Solution:
     how it ended.
 
     ``status`` is "complete" where the whole programme was run, and else says why it was not.
-    ``ending`` is the opening at which a specimen came apart, if it did; ``condition`` is the larger condition number of
-    the tangents at the first and at the last converged point.
+    ``ending`` is the opening at which a specimen came apart, if it did; ``counted_steps`` from where on steps were
+    counted although the path was to choose them, and why; ``condition`` is the larger condition number of the tangents
+    at the first and at the last converged point.
     """
 
     rows: tuple[Mapping[str, float], ...]
@@ -43,6 +47,7 @@ class Solution:
     status: str
     snapshots: tuple[Snapshot, ...]
     ending: str = ""
+    counted_steps: str = ""
     condition: float = 0.0
 
     @property
@@ -118,6 +123,7 @@ def run(
         status=end.status,
         snapshots=tuple(snapshots),
         ending=f"separated at opening {last.opening:.6g}" if end.separated else "",
+        counted_steps="" if end.counted is None else f"from opening {end.counted:.6g} on, {NO_BETTER}",
         condition=max(first, _condition(whose, last, phase)),
     )
 

@@ -63,7 +63,8 @@ FLOORS = (
     ("verify.studies.viscosity", "verify.studies.certified"),
     (
         "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.law",
-        "verify.studies.paper", "verify.studies.plane", "verify.studies.scaling", "verify.studies.validation",
+        "verify.studies.paper", "verify.studies.plane", "verify.studies.reduce", "verify.studies.scaling",
+        "verify.studies.validation",
     ),
     ("verify.studies.page",),
     ("verify.studies.frame",),
@@ -73,6 +74,7 @@ FLOORS = (
     ("verify.fields",),
     ("verify.methods.built_in",),
     ("verify.methods",),
+    ("verify.reduction",),
     ("verify.curves",),
     ("verify.verdict",),
     ("verify.scene",),

@@ -12,7 +12,13 @@ import pytest
 
 PROJECT = Path(__file__).parents[1]
 SCRIPTS = sorted((PROJECT / "examples").glob("*.py"))
-LONG = {"what_accuracy_costs", "oscillation", "j_integral", "process_zone"}  # 10 s each on a core of their own
+LONG = {
+    "what_accuracy_costs",
+    "oscillation",
+    "j_integral",
+    "process_zone",
+    "data_reduction",
+}  # 10 s each on a core of their own
 each = pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 once = pytest.mark.parametrize(
     "script",

@@ -21,6 +21,7 @@ from verify.command_line import commands  # noqa: E402
 from verify.command_line.arguments import (  # noqa: E402
     accuracy,
     column,
+    columns,
     count,
     fraction,
     names_of,
@@ -131,6 +132,9 @@ def _studies(command: Callable[..., Parser]) -> None:
     _hard_options(command(commands.hard, text, "hard coarse-czm2 --jobs 2", "read debond-hard/report.html"))
     text = "A traction law at one point, of the solvers or of anybody's code: judged on displacement paths."
     _law_options(command(commands.law, text, "law dcb-czm1 --out law", "read law/law.html; exit 0: all checks hold"))
+    text = "Toughness from a delamination test, or back from a run: every scheme of the standards, with intervals."
+    example = "reduce test.csv --scene mine.toml --load-scale 1e3 --crack a --out reduced"
+    _reduce_options(command(commands.reduce, text, example, "a table; read reduced/reduce.html"))
     text = "Two load-opening curves: error, peak, energy; of runs, or of anybody's code."
     example = "compare my.csv run --opening-a U2 --load-a RF2 --curve-tol 0.01"
     _compare_options(command(commands.compare, text, example, "a table; exit 1: my.csv is more than 1 % off the run"))
@@ -173,6 +177,9 @@ def _verify_options(sub: Parser) -> None:
     sub.add_argument("--strict", action="store_true", help="exit 1 where anything could not be judged")
     beside = "md writes report.md beside report.html: its numbers, for a terminal or a forge"
     sub.add_argument("--format", choices=("html", "md"), default="html", help=beside)
+    priced = "what accuracy costs there, by few runs of every method; default: a dcb of the scenes; repeatable"
+    sub.add_argument("--ladder", action="append", default=[], metavar="SCENE", help=priced)
+    sub.add_argument("--no-ladder", action="store_true", help="do not ask what accuracy costs")
     shown = "show what debond cost, effects, scaling or hard wrote there; folders in --out are found without it"
     sub.add_argument("--include", type=Path, action="append", default=[], metavar="DIR", help=shown)
     _sweep_options(sub)
@@ -182,6 +189,10 @@ def _with_options(sub: Parser) -> None:
     sub._negative_number_matcher = NEGATIVE
     what = "judge this load-opening curve of another code, a file or NAME=FILE, like one of the methods"
     sub.add_argument("--with", dest="curves", action="append", default=[], metavar="FILE", help=what)
+    _curve_options(sub)
+
+
+def _curve_options(sub: Parser) -> None:
     for key in ("opening", "load"):
         sub.add_argument(f"--{key}", type=column, metavar="COLUMN", help=f"name or number of the curve's {key}")
         what = f"multiplies the curve's {key}: units, and signs"
@@ -296,6 +307,37 @@ def _law_options(sub: Parser) -> None:
     what = "largest deviation of tractions, in parts of the strengths, and of energies; default: 1e-4"
     sub.add_argument("--tolerance", type=fraction, metavar="T", help=what)
     sub.add_argument("--out", type=Path, metavar="DIR", help="write law.json and law.html")
+
+
+def _reduce_options(sub: Parser) -> None:
+    sub._negative_number_matcher = NEGATIVE
+    sub.add_argument("file", metavar="FILE", type=Path, help="text file of a test, or folder of a run")
+    what = "the specimen, a packaged name or a file, whose [interface] and [load] may be missing; of a run: its own"
+    sub.add_argument("--scene", metavar="SCENE", help=what)
+    _set_option(sub)
+    _curve_options(sub)
+    what = "name or number of the crack lengths, from the load line or the left support; default: crack_length"
+    sub.add_argument("--crack", type=column, metavar="COLUMN", help=what)
+    sub.add_argument("--crack-scale", type=scale, default=1.0, metavar="X", help="multiplies the crack lengths")
+    what = "one or two columns: rotations of the loaded ends, for J"
+    sub.add_argument("--rotations", type=columns, default=(), metavar="COLUMN,...", help=what)
+    what = "multiplies the rotations, to radians"
+    sub.add_argument("--rotation-scale", type=scale, default=1.0, metavar="X", help=what)
+    what = "the curve is linear between these parts of the largest load; default: 0.2,0.5, of a run 0,0.2"
+    sub.add_argument("--linear", type=numbers, metavar="LOW,HIGH", help=what)
+    sub.add_argument("--no-toe", action="store_true", help="leave the origin where it is")
+    what = "compliance of the machine, whose part of the opening is taken off"
+    sub.add_argument("--machine-compliance", type=number, default=0.0, metavar="C", help=what)
+    what = "dcb: factors F and N of large openings; of runs with finite rotations they always count"
+    sub.add_argument("--large", action="store_true", help=what)
+    what = "dcb: load blocks, from the pin to the middle of the arm and to the edge of the block"
+    sub.add_argument("--block", type=numbers, default=(0.0, 0.0), metavar="L1,L2", help=what)
+    what = "compliances of precracks that were not broken, for CC of an enf"
+    sub.add_argument("--calibration", type=numbers, default=[], metavar="A,C,A,C,...", help=what)
+    sub.add_argument("--begin", type=fraction, metavar="D", help="crack growth from which propagation counts")
+    sub.add_argument("--end", type=fraction, metavar="D", help="and up to which it does")
+    sub.add_argument("--fit", action="store_true", help="strength and toughness by least squares on a cohesive beam")
+    sub.add_argument("--out", type=Path, metavar="DIR", help="write reduce.json, reduce.csv and reduce.html")
 
 
 def _compare_options(sub: Parser) -> None:

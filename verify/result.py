@@ -105,16 +105,18 @@ class Result:
 
     ``steps`` maps a column name to an array (n_steps,); it holds CURVE_COLUMNS and those EVIDENCE_COLUMNS that the
     method knows. ``status`` is ``complete`` or ``stopped: <cause and what to do>``. ``ending`` says what else is worth
-    saying of it: "separated at opening 5.2". ``condition`` is the largest condition number (1-norm, estimated) of the
-    tangents that were looked at, 0 where none was. ``between`` are more openings, coarsely sampled, for
-    drawings alone (`verify.fields.moments`). ``nonzeros`` counts the entries of a sparse tangent, 0 where the
-    method does not say; ``jit_seconds`` is the part of ``seconds["basis"]`` that compiling at run time took.
+    saying of it: "separated at opening 5.2". ``counted_steps`` says from where on, and why, steps were counted that the
+    path was to choose. ``condition`` is the largest condition number (1-norm, estimated) of the tangents that were
+    looked at, 0 where none was. ``between`` are more openings, coarsely sampled, for drawings alone
+    (`verify.fields.moments`). ``nonzeros`` counts the entries of a sparse tangent, 0 where the method does not say;
+    ``jit_seconds`` is the part of ``seconds["basis"]`` that compiling at run time took.
     """
 
     method: str
     steps: Mapping[str, np.ndarray]
     status: str = "complete"
     ending: str = ""
+    counted_steps: str = ""
     condition: float = 0.0
     dofs: int = 0
     elements: int = 0

@@ -9,12 +9,15 @@ from pathlib import Path
 
 from verify.checks.foreign_curves import Curve, joined
 from verify.checks.judgement import NO_DEMANDS, Demands, judged
+from verify.checks.proof import REFERENCE, SECOND
 from verify.checks.table import check_table, not_held, overview
 from verify.report.findings import Findings
 from verify.runs import verdict_file
 from verify.runs.environment import environment
-from verify.runs.jobs import Job, dry_run, run_all
+from verify.runs.jobs import Job, Outcome, dry_run, run_all
 from verify.scene.schema import Scene
+from verify.studies.cost import quick
+from verify.studies.cost.price import Price
 from verify.studies.found import Included, found_in
 from verify.studies.interface_rules import finding, study
 from verify.studies.one_scene import convergence, planned, scene_report
@@ -25,11 +28,15 @@ from verify.studies.plane.rates import rate_checks, rates
 from verify.studies.plane.study import Plate
 from verify.studies.plane.study import lines as plane_lines
 from verify.studies.plane.study import study as plane_study
+from verify.support.programme import only_opens
 from verify.support.progress import telling
 from verify.support.say import say, write_page
 
 #: About how long interface rules, figures and rates take after the runs, and each mesh from CAD.
 STUDIES_SECONDS, PLATE_SECONDS = 15.0, 3.0
+
+#: Scene of the quick ladder where it is verified.
+LADDERED = "dcb-czm1"
 
 
 @dataclass(frozen=True)
@@ -44,6 +51,7 @@ class Subjects:
     plates : meshes from CAD, on which plane problems with exact solutions are solved
     curves : curves of other codes, each a run in the report of every scene
     included : studies of other commands that the report shows, besides those in folders of the output folder
+    ladders : scenes of a quick ladder, each with the name or path that it was loaded from
     """
 
     scenes: Sequence[tuple[str, Scene]]
@@ -51,6 +59,7 @@ class Subjects:
     plates: Sequence[Plate] = ()
     curves: Sequence[Curve] = ()
     included: Sequence[Included] = ()
+    ladders: Sequence[tuple[str, Scene]] = ()
 
 
 def verify(
@@ -86,8 +95,9 @@ def verify(
     others = [(found.name, check) for found in planes for check in found.checks]
     others += [("plane elasticity", check) for check in rate_checks(bases)]
     judgement = judged(reports, others, demands)
-    verdict_file.write(out, reports, judgement, [os.path.relpath(study.folder, out) for study in studies])
-    findings = Findings(reports, environment(), quadrature, paper, planes, bases, peels, studies)
+    prices = _prices(subjects, out, jobs, list(outcomes.values()))
+    verdict_file.write(out, reports, judgement, [os.path.relpath(study.folder, out) for study in studies], prices)
+    findings = Findings(reports, environment(), quadrature, paper, planes, bases, peels, studies, prices)
     written = write_page("verify.report.page", findings, page, text)
     tables = [line for found in planes for line in [*plane_lines(found), *check_table(found.checks), ""]]
     print("\n".join([*overview(reports), *tables, *convergence(reports), *not_held(judgement.checks)]))
@@ -96,6 +106,7 @@ def verify(
     for title, found in (("Figures 6 to 8", paper), ("Figure 9", peels)):
         if found is not None:
             print("\n".join(lines(title, found)))
+    print("\n".join(price.sentence for price in prices), end="\n" * bool(prices))
     for gap in judgement.lacking:
         say(f"{gap.scene}: {gap.check or gap.subject} must have been judged: {gap.why}")
     print(f"{judgement.in_short()}: {page if written else out / verdict_file.VERDICT_FILE}")
@@ -104,7 +115,27 @@ def verify(
 
 def would_run(subjects: Subjects, out: Path, jobs: int) -> list[str]:
     """The runs of a verification with their times, a line each; nothing is run."""
-    return dry_run(_all_jobs(*_plans(subjects)), out, jobs)
+    lines = dry_run(_all_jobs(*_plans(subjects)), out, jobs)
+    for source, scene in subjects.ladders:
+        lines += ["", f"quick ladder on {scene.name}, one run at a time:", *quick.would_run(source, scene, out)]
+    return lines
+
+
+def laddered(scenes: Sequence[tuple[str, Scene]]) -> list[tuple[str, Scene]]:
+    """The scene of the quick ladder: `LADDERED`, else the first double cantilever beam, else none."""
+    beams = [(source, scene) for source, scene in scenes if scene.specimen.kind == "dcb" and not scene.specimen.mesh]
+    beams = [one for one in beams if only_opens(one[1].load.opening)]
+    return sorted(beams, key=lambda one: one[1].name != LADDERED)[:1]
+
+
+def _prices(subjects: Subjects, out: Path, jobs: int, outcomes: Sequence[Outcome]) -> tuple[Price, ...]:
+    """The quick ladders; their references are held against the two DOLFINx meshes of a scene that was verified."""
+    found = []
+    for source, scene in subjects.ladders:
+        of_scene = {one.job.variant: one for one in outcomes if one.job.scene == scene}
+        other = [of_scene[name] for name in (SECOND, REFERENCE) if name in of_scene]
+        found.append(quick.quick(source, scene, out, jobs, other if len(other) == 2 else ()))
+    return tuple(filter(None, found))
 
 
 def _plans(subjects: Subjects) -> tuple[list[Job], Plan, Plan]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,10 +19,11 @@ from fem_reference.model.bond import Bond
 from fem_reference.model.linear import Factorisation
 from fem_reference.model.mesh import TwoBodies
 from fem_reference.model.outline import ActionRows
+from fem_reference.model.supports import dofs_on
 from fem_reference.problem.law import Law
 from fem_reference.problem.mixed_law import MixedLaw
 from fem_reference.problem.problem import Debonding
-from fem_reference.problem.specimen import Specimen
+from fem_reference.problem.specimen import Region, Specimen
 
 Phase = Callable[[str], AbstractContextManager]
 
@@ -81,6 +82,7 @@ class Model(ABC):
     factorisation: Factorisation
     largest_stiffness: float
     phase: Phase
+    located: dict[tuple[int, Region], np.ndarray] = field(default_factory=dict, kw_only=True)
 
     @property
     def comm(self) -> MPI.Intracomm:
@@ -103,6 +105,14 @@ class Model(ABC):
         """Size of the forces that rounding of the displacements causes."""
         largest = self.comm.allreduce(float(np.max(np.abs(u_n), initial=0.0)), MPI.MAX)
         return np.finfo(float).eps * largest * self.largest_stiffness
+
+    def across(self, body: int, place: Region) -> np.ndarray:
+        """Owned unknowns u_y of a body, 0 the upper one, at a vertex or on a side; searched for once."""
+        if (body, place) not in self.located:
+            u = self.displacement[body]
+            dofs = dofs_on(u, place, self.specimen.near, 1)
+            self.located[body, place] = dofs[dofs < owned(u)]
+        return self.located[body, place]
 
     def displace(self, u_n: np.ndarray) -> None:
         """Copy displacements into the functions that the forms read."""

@@ -13,23 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.model.model import Model
-from fem_reference.path.state import State
+from fem_reference.path.state import State, ordered_along
+from fem_reference.path.stride import Stride
 
+#: Damage counts as growing at a point that would reach it within this many steps.
+LOOKAHEAD = 2.0
 
-@dataclass(frozen=True)
-class FrontSettings:
-    """Steps that are controlled by the gap of one point.
-
-    step : largest change of that gap in one step, in units of g_u, or of the scaled jump itself: smaller steps take
-        longer, larger ones pass kinks of more points at once.
-    lookahead : damage counts as growing at a point that would reach it within this many steps.
-    """
-
-    step: float = 0.125
-    lookahead: float = 2.0
-
-
-REFERENCE_FRONT = FrontSettings()
+#: How far before the onset of damage a step ends that lands there, in units of the front's measure: beyond rounding.
+LANDING = 1e-7
 
 #: A point of the bond: the rank that owns it, and its index there.
 PointOfBond = tuple[int, int]
@@ -63,18 +54,24 @@ class Front:
     row_n: np.ndarray
     level: float
 
-    def change(self, model: Model, reach: float, part: float) -> float:
-        """Change of the gap in a step of ``reach`` in the opening; at most ``part`` of the front's largest step."""
-        most = self.missing + part * REFERENCE_FRONT.step * model.unit
-        return float(np.copysign(min(abs(self.rate) * reach, most), self.rate))
+    def change(self, model: Model, stride: Stride) -> float:
+        """Change of the gap in a step: at most the front's largest step, or up to where damage begins to grow."""
+        most = self.missing + stride.front * model.unit
+        if stride.lands and self.missing > 4 * LANDING * model.unit:
+            most = self.missing - LANDING * model.unit
+        return float(np.copysign(min(abs(self.rate) * stride.reach, most), self.rate))
 
-    def calm(self, model: Model, reach: float, part: float) -> bool:
+    def calm(self, model: Model, stride: Stride) -> bool:
         """Whether damage grows so slowly that the opening can be prescribed instead."""
-        return self.missing == 0.0 and abs(self.rate) * reach < part * REFERENCE_FRONT.step * model.unit
+        return self.missing == 0.0 and abs(self.rate) * stride.reach < stride.front * model.unit
 
-    def control(self, model: Model, reach: float, part: float) -> Control:
+    def within(self, model: Model, stride: Stride, left: float) -> bool:
+        """Whether a way in the opening is no longer than a step may be."""
+        return left <= stride.reach and abs(self.rate) * left <= self.missing + stride.front * model.unit
+
+    def control(self, model: Model, stride: Stride) -> Control:
         """Control by the gap of the front, which grows steadily even where the opening has to decrease (snap-back)."""
-        return Control(self.row_n, self.level + self.change(model, reach, part))
+        return Control(self.row_n, self.level + self.change(model, stride))
 
 
 def front_of(model: Model, state: State, reach: float) -> Front | None:
@@ -85,7 +82,7 @@ def front_of(model: Model, state: State, reach: float) -> Front | None:
     gap_q, held_q = model.measure(state.g_q), model.held(state.k_q)
     rate_q = state.heading * model.rates(state.u_n, state.rate_n)
     missing_q = np.maximum(held_q, model.onset) - gap_q
-    grows_q = (held_q < model.failure) & (rate_q * REFERENCE_FRONT.lookahead * reach >= missing_q) & (rate_q > 0)
+    grows_q = (held_q < model.failure) & (rate_q * LOOKAHEAD * reach >= missing_q) & (rate_q > 0)
     heals_q = (gap_q < model.failure) & (gap_q > model.onset) & (not model.law.irreversible)
     place = most_open(model, np.where((grows_q | heals_q) & model.bonded_q, gap_q, -np.inf))
     if place is None:
@@ -118,3 +115,30 @@ def front_row(model: Model, place: PointOfBond, u_n: np.ndarray) -> np.ndarray:
     if model.comm.rank == place[0]:
         unit_q[place[1]] = 1.0
     return model.measure_row(u_n, unit_q)
+
+
+def edge_control(model: Model, state: State, front: Front, stride: Stride) -> Control | None:
+    """Control that opens the bond up to an edge between two elements, the last one within a step; None if none is.
+
+    The slope of a path leaps wherever a point breaks, and many do on a long step. An edge lies between the two closest
+    points: there the slope is near that of the mean path, and always at the same place between two leaps.
+    """
+    s_p, gap_p, bonded_p = ordered_along(model, model.measure(state.g_q), model.bonded_q.astype(float))
+    first = int(np.argmax((bonded_p > 0.0) & (gap_p < model.failure)))
+    second = min(first + 2, s_p.size - 1)
+    if front.missing > 0.0 or not gap_p[first] > gap_p[second]:
+        return None
+    flat = (s_p[second] - s_p[first]) / (gap_p[first] - gap_p[second])
+    end = s_p[first] + (gap_p[first] - model.failure + abs(front.change(model, stride))) * flat
+    between_i = np.pad(np.diff(s_p), 1, constant_values=np.inf)
+    s_i, gap_i = (0.5 * (a_p[1:] + a_p[:-1]) for a_p in (s_p, gap_p))
+    edge_i = (
+        (between_i[1:-1] < between_i[:-2]) & (between_i[1:-1] < between_i[2:]) & (bonded_p[1:] * bonded_p[:-1] > 0.0)
+    )
+    within_i = np.flatnonzero(edge_i & (gap_i < model.failure) & (s_i > s_p[first]) & (s_i <= end))
+    if not within_i.size:
+        return None
+    i = within_i[-1]
+    row_n = model.measure_row(state.u_n, 0.5 * np.isin(model.specimen.distance(model.X_q), s_p[i : i + 2]))
+    gap = float(gap_i[i])
+    return Control(row_n, model.level(gap, row_n, state.u_n) + model.failure - gap)

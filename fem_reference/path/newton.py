@@ -19,6 +19,7 @@ class NewtonSettings:
     rounding : the residual that rounding leaves, in units of (machine epsilon) x (largest displacement) x (largest
         stiffness); iterations also stop there, since they cannot get below it.
     full_iterations : iterations with full steps; where these cycle, more of them only delay the second attempt.
+    impatient : iterations with full steps where a shorter step follows on failure.
     searched_iterations : iterations with a line search, in every stage of the second attempt.
     diverged : residual over the force scale from which a step is given up.
     slack : a step is long enough once this part of the work along it, or less, remains; smaller values cost residuals,
@@ -31,6 +32,7 @@ class NewtonSettings:
     tolerance: float = 1e-10
     rounding: float = 16.0
     full_iterations: int = 20
+    impatient: int = 14
     searched_iterations: int = 60
     diverged: float = 1e12
     slack: float = 0.5
@@ -47,11 +49,15 @@ class Step:
     """The equations of one step: equilibrium from a committed history ``k_q`` of the bond, and the control equation.
 
     ``force_scale`` is the norm of the external forces met so far; it or the load of the guess must not be zero.
+    ``early`` is a residual over it at which iterations stop, since one more correction follows. Without ``patience``
+    there is no second attempt.
     """
 
     control: Control
     k_q: np.ndarray
     force_scale: float
+    early: float = 0.0
+    patience: bool = True
 
 
 @dataclass(frozen=True)
@@ -99,8 +105,9 @@ def find_equilibrium(model: Model, step: Step, u_n: np.ndarray, load: float) -> 
     stages. The bordered system ``[K, -f; c, 0] [du; dP] = [-r; missing]`` needs one factorisation of K and two
     back-substitutions (Batoz and Dhatt 1979, Int. J. Numer. Methods Eng. 14, 1262-1267).
     """
-    plain = _newton(model, step, u_n, load, REFERENCE_NEWTON.full_iterations, full_step)
-    if plain.converged:
+    most = REFERENCE_NEWTON.full_iterations if step.patience else REFERENCE_NEWTON.impatient
+    plain = _newton(model, step, u_n, load, most, full_step)
+    if plain.converged or not step.patience:
         return plain
     careful = plain
     for stage in stiffening(model):
@@ -128,8 +135,8 @@ def stiffening(model: Model) -> list[Model]:
 
 def _newton(model: Model, step: Step, u_n: np.ndarray, load: float, most: int, length: Length) -> Attempt:
     settings = REFERENCE_NEWTON
-    scale = max(step.force_scale, abs(load) * model.norm(model.load_n))
-    target = max(settings.tolerance, settings.rounding * model.rounding(u_n) / scale)
+    scale, target = scale_and_target(model, step, u_n, load)
+    target = max(target, step.early)
     r_n = model.residual(u_n, load, step.k_q)
     norms = [model.norm(r_n) / scale]
     while target < norms[-1] < settings.diverged and len(norms) <= most:
@@ -139,6 +146,13 @@ def _newton(model: Model, step: Step, u_n: np.ndarray, load: float, most: int, l
         u_n, load = line.at(s)
         norms.append(model.norm(r_n) / scale)
     return Attempt(u_n, load, tuple(norms), norms[-1] <= target)
+
+
+def scale_and_target(model: Model, step: Step, u_n: np.ndarray, load: float) -> tuple[float, float]:
+    """Force scale of a step from a guess, and the residual over it at which a state counts as converged."""
+    settings = REFERENCE_NEWTON
+    scale = max(step.force_scale, abs(load) * model.norm(model.load_n))
+    return scale, max(settings.tolerance, settings.rounding * model.rounding(u_n) / scale)
 
 
 def bordered_step(model: Model, control: Control, u_n: np.ndarray, r_n: np.ndarray) -> tuple[np.ndarray, float]:

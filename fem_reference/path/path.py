@@ -8,51 +8,31 @@ from dataclasses import dataclass, replace
 import numpy as np
 from mpi4py import MPI
 
-from fem_reference.model.model import BondEnergies, Model
-from fem_reference.path.control import REFERENCE_FRONT, Control, Front, at, front_of, opening_control
-from fem_reference.path.newton import Step, bordered_step, find_equilibrium
+from fem_reference.model.model import Model
+from fem_reference.path.control import LANDING, Control, Front, at, edge_control, front_of, opening_control
 from fem_reference.path.programme import NEAR_THE_GOAL, branches, next_line
 from fem_reference.path.state import State
-from fem_reference.path.work import chord, work_along
+from fem_reference.path.step import FINER, LESS, Failure, departing, step, unloaded
+from fem_reference.path.stride import COUNTED_STEPS, Chosen, Counted, Stride, chosen
 
 
 @dataclass(frozen=True)
 class PathSettings:
-    """When a path ends, and when two openings count as the same.
+    """When a path ends.
 
-    halvings : how often a step is halved before the run stops.
     steps : steps towards one goal after which the run stops.
     separated : load, as a part of the peak, below which a specimen whose damage grew has separated.
-    leap : part of the energy, or of the largest load times the change of the opening, by which work and energy of a
-        step may differ; one that ends on another branch of equilibrium was seen to miss by a quarter of the energy, one
-        along the path misses by 1e-6.
-    ahead : distance, as a part of the way to the goal, at which the open and closed points of a path that sets out are
-        determined: small enough to change no force, large enough for gaps beyond rounding.
     """
 
-    halvings: int = 12
     steps: int = 20_000
     separated: float = 1e-3
-    leap: float = 0.05
-    ahead: float = 1e-6
 
 
 REFERENCE_PATH = PathSettings()
 
-#: Why a step of a viscous bond is repeated.
+#: Why a step of a viscous bond is repeated, and one that the path has chosen.
 TOO_FAST = "damage grows too much in one step"
-
-#: Advice for a path that cannot go on, and for bodies that are pressed together.
-FINER = "use more elements along the specimen or a higher degree"
-LESS = "close by less (load.opening), as bodies that are crushed have no equilibrium,"
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A step that did not converge; ``final`` if the run stops because of it."""
-
-    reason: str
-    final: bool = False
+TOO_LONG = "the curve is not accurate on so long a step"
 
 
 @dataclass(frozen=True)
@@ -64,40 +44,51 @@ class Separation:
 
 def path(model: Model) -> Iterator[State | Failure | Separation]:
     """Converged states along the programme and the failures in between, up to a final failure or a separation."""
-    state = unloaded(model)
-    for lines in branches(model.problem):
+    state, by_accuracy = unloaded(model), model.problem.steps is None and not model.timed
+    stride: Stride = chosen(model.problem.way, model.problem.bend)
+    for lines in branches(model.problem, whole=by_accuracy):
+        if not by_accuracy:
+            stride = Counted(abs(lines[1] - lines[0]))
         first = state.heading == 0.0
-        state = departing(model, state, lines[-1])
+        state = departing(model, state, lines[-1], stride)
         if first:
             yield state
-        end = yield from reach(model, state, lines)
+        end = yield from reach(model, state, lines, stride)
         if end is None:
             return
-        state = end
+        state, stride = end
 
 
-def reach(model: Model, state: State, lines: np.ndarray) -> Generator[State | Failure | Separation, None, State | None]:
-    """Converged states along a branch; returns the last one, or None if the path ends before its goal.
+def reach(
+    model: Model, state: State, lines: np.ndarray, stride: Stride
+) -> Generator[State | Failure | Separation, None, tuple[State, Stride] | None]:
+    """Converged states along a branch; returns the last one and the next stride, or None where the path ends before.
 
-    Steps that fail are halved; steps after them grow again.
+    Steps that fail are halved, and those that are not accurate made shorter; steps after them grow again.
     """
-    goal, part = float(lines[-1]), 1.0
+    goal = float(lines[-1])
     for _ in range(REFERENCE_PATH.steps):
-        point = advance(model, state, lines, part)
+        point = advance(model, state, lines, stride)
         if isinstance(point, Failure):
-            part *= 0.5
-            final = part < 0.5**REFERENCE_PATH.halvings
-            yield replace(point, final=final)
-            if final:
+            shorter = stride.failed()
+            yield replace(point, final=shorter is None)
+            if shorter is None:
                 return None
+            stride = shorter
+            continue
+        accurate, stride = stride.judged(state, point)
+        if not accurate:
+            yield Failure(TOO_LONG)
             continue
         yield point
         if point.opening == goal:
-            return point
+            return point, stride
         if separated(model, state, point, goal):
             yield Separation(point.opening)
             return None
-        state, part = point, min(1.0, 2 * part)
+        state = point
+        if isinstance(stride, Chosen) and at_kink(model, point):
+            state, stride = departing(model, point, goal, stride, anew=True), stride.past_kink()
     yield Failure(
         f"the path did not come from opening {state.opening:.6g} to {goal:.6g} in {REFERENCE_PATH.steps} steps; "
         f"{FINER}",
@@ -106,48 +97,69 @@ def reach(model: Model, state: State, lines: np.ndarray) -> Generator[State | Fa
     return None
 
 
-def advance(model: Model, state: State, lines: np.ndarray, part: float) -> State | Failure:
+def advance(model: Model, state: State, lines: np.ndarray, stride: Stride) -> State | Failure:
     """One step: to the next end of an increment, or controlled by the front where damage grows fast.
 
     Two states before and after a snap-back can have the same opening. If the front has moved much further than its
     largest step, the step has missed the path between them and is repeated with control by the front. Where a bond that
     keeps its damage is unloaded, no step is: the front would lead back along the path of loading.
     """
-    goal, reach = float(lines[-1]), part * abs(lines[1] - lines[0])
+    goal, reach = float(lines[-1]), stride.reach
     front = None if model.timed else front_of(model, state, reach)
     ahead = goal > state.opening
     if front is None:
-        state = departing(model, state, goal)
-        reached = step(model, state, opening_control(model, next_line(state.opening, lines, reach)))
-        return Failure(TOO_FAST) if model.timed and hastens(model, state, reached, part) else reached
-    front_control = front.control(model, reach, part)
-    if (state.heading > 0) == ahead and front.calm(model, reach, part):
+        state = departing(model, state, goal, stride)
+        reached = step(model, state, opening_control(model, next_line(state.opening, lines, reach)), stride)
+        return Failure(TOO_FAST) if model.timed and hastens(model, state, reached, stride) else reached
+    front_control, forward = front.control(model, stride), (state.heading > 0) == ahead
+    ends = stride.lands and front.within(model, stride, abs(goal - state.opening))
+    edge = edge_control(model, state, front, stride) if stride.lands and not ends else None
+    if edge is not None:
+        return lead(model, state, edge, lines, stride)
+    if forward and (ends or front.calm(model, stride) and not (stride.lands and cracked(model, state))):
         control = opening_control(model, next_line(state.opening, lines, reach))
         if model.law.irreversible and abs(goal) < abs(state.opening):
-            return step(model, state, control)
-        reached = step(model, state, control, along_n=front_control.row_n)
-        if isinstance(reached, State) and not skipped(model, front, reached, part):
+            return step(model, state, control, stride)
+        reached = step(model, state, control, stride, along_n=front_control.row_n)
+        if isinstance(reached, State) and not skipped(model, front, reached, stride):
             return reached
-    return lead(model, state, front_control, lines)
+    return lead(model, state, front_control, lines, stride)
 
 
-def skipped(model: Model, front: Front, reached: State, part: float) -> bool:
+def cracked(model: Model, state: State) -> bool:
+    """Whether any point of the bond is open."""
+    return bool(model.norm((model.bonded_q & (model.held(state.k_q) >= model.failure)).astype(float)) > 0)
+
+
+def at_kink(model: Model, state: State) -> bool:
+    """Whether damage that has paused is just about to grow again."""
+    held_q = model.held(state.k_q)
+    missing_q = held_q - model.measure(state.g_q)
+    soon_q = (
+        (held_q > model.onset) & (held_q < model.failure) & (missing_q > 0) & (missing_q < 4 * LANDING * model.unit)
+    )
+    return bool(model.norm(soon_q.astype(float)) > 0)
+
+
+def skipped(model: Model, front: Front, reached: State, stride: Stride) -> bool:
     """Whether the gap of the front has changed by more than twice its largest step."""
     change = at(model, front.place, model.measure(reached.g_q)) - front.gap
-    return abs(change) > 2 * part * REFERENCE_FRONT.step * model.unit
+    return abs(change) > 2 * stride.front * model.unit
 
 
-def hastens(model: Model, before: State, reached: State | Failure, part: float) -> bool:
+def hastens(model: Model, before: State, reached: State | Failure, stride: Stride) -> bool:
     """Whether the damage of a viscous bond grows by more in a step than follows its time; not of the shortest steps."""
-    if isinstance(reached, Failure) or part <= 0.5 ** (REFERENCE_PATH.halvings - 1):
+    if isinstance(reached, Failure) or (
+        isinstance(stride, Counted) and stride.part <= 0.5 ** (COUNTED_STEPS.halvings - 1)
+    ):
         return False
     grows_q = model.damage(reached.k_q) - model.damage(before.k_q)
-    return model.comm.allreduce(float(np.max(grows_q, initial=0.0)), MPI.MAX) > REFERENCE_FRONT.step
+    return model.comm.allreduce(float(np.max(grows_q, initial=0.0)), MPI.MAX) > COUNTED_STEPS.front
 
 
-def lead(model: Model, state: State, control: Control, lines: np.ndarray) -> State | Failure:
+def lead(model: Model, state: State, control: Control, lines: np.ndarray, stride: Stride) -> State | Failure:
     """A step controlled by the front; if it passes or nearly reaches the goal it is repeated to end there."""
-    reached = step(model, state, control)
+    reached = step(model, state, control, stride)
     goal, increment = float(lines[-1]), lines[1] - lines[0]
     if isinstance(reached, State) and reached.opening * goal < 0.0 <= state.opening * goal:
         # the gap of the front can be met on both sides of zero, by pulling and by pressing
@@ -156,125 +168,7 @@ def lead(model: Model, state: State, control: Control, lines: np.ndarray) -> Sta
         return reached
     share = (goal - state.opening) / (reached.opening - state.opening)
     between = state.u_n + share * (reached.u_n - state.u_n), state.load + share * (reached.load - state.load)
-    return step(model, state, opening_control(model, goal), between, control.row_n)
-
-
-def step(
-    model: Model,
-    state: State,
-    control: Control,
-    guess: tuple[np.ndarray, float] | None = None,
-    along_n: np.ndarray | None = None,
-) -> State | Failure:
-    """The next converged state with its history committed, or the reason why there is none.
-
-    The tangent that gives the direction of the path also gives one more correction, after which only rounding remains.
-
-    Parameters
-    ----------
-    guess : displacements and load to start from; default: extrapolated along the tangent of the path.
-    along_n : a functional that changes monotonically along the step; default: the prescribed one.
-    """
-    if control.row_n is model.load_n:
-        model = model.in_time(control.value - state.opening)
-    if guess is None:
-        move = (control.value - model.dot(control.row_n, state.u_n)) / model.dot(control.row_n, state.rate_n)
-        guess = state.u_n + move * state.rate_n, state.load + move * state.slope
-    u_n, load = guess
-    attempt = find_equilibrium(model, equations(model, state, control), u_n, load)
-    if not attempt.converged:
-        less = f"{LESS} or " if state.opening <= 0.0 and state.heading < 0.0 else ""
-        return Failure(
-            f"no equilibrium beyond opening {state.opening:.6g} in {attempt.iterations} iterations "
-            f"(residual {attempt.residuals[-1]:.1e} of the load), however short the step; {less}{FINER}"
-        )
-    model.factorise(on_arrival(model, state, attempt.u_n), state.k_q)
-    rate_n, slope = tangent_of_path(model)
-    du_n, d_load = bordered_step(model, control, attempt.u_n, model.residual(attempt.u_n, attempt.load, state.k_q))
-    u_n, load = attempt.u_n + du_n, attempt.load + d_load
-    row_n = control.row_n if along_n is None else along_n
-    change = model.dot(row_n, u_n - state.u_n)
-    rates = change / model.dot(row_n, state.rate_n), change / model.dot(row_n, rate_n)
-    opening = control.value if control.row_n is model.load_n else model.dot(model.load_n, u_n)
-    g_q = model.jump(u_n)
-    slopes = state.slope, slope
-    if model.timed:  # the tangents are those of frozen time
-        slopes, rates = chord((state.opening, opening), (state.load, load))
-    work = work_along((state.opening, opening), (state.load, load), slopes, rates)
-    k_q = model.history(g_q, state.k_q)
-    reached = State(
-        u_n=u_n,
-        load=load,
-        opening=opening,
-        k_q=k_q,
-        g_q=g_q,
-        rate_n=rate_n,
-        slope=slope,
-        heading=float(np.sign(rates[1])),
-        peak=max(state.peak, abs(load)),
-        work=state.work + work,
-        bulk=model.bulk_energy(u_n),
-        bond=model.energies_after((state.g_q, state.k_q, state.bond), g_q, k_q),
-        iterations=attempt.iterations + 1,
-    )
-    if leaps(state, reached):
-        return Failure(f"the energy leaps at opening {state.opening:.6g}, however short the step; {FINER}")
-    return reached
-
-
-def leaps(state: State, reached: State) -> bool:
-    """Whether the work of a step differs so much from the change of the energy that it has left the path."""
-    leak = abs(reached.work - state.work - (reached.energy - state.energy))
-    step_work = reached.peak * abs(reached.opening - state.opening)
-    return leak > REFERENCE_PATH.leap * max(state.energy, reached.energy, step_work)
-
-
-def equations(model: Model, state: State, control: Control) -> Step:
-    """The equations of a step that starts from a converged state."""
-    return Step(control, state.k_q, state.peak * model.norm(model.load_n))
-
-
-def on_arrival(model: Model, state: State, u_n: np.ndarray) -> np.ndarray:
-    """Displacements at which the tangent of a converged step is taken: those found, unless the opening is zero.
-
-    At zero opening the signs of the gaps are rounding; the open and the closed points are then those just before.
-    """
-    if abs(model.dot(model.load_n, u_n)) > REFERENCE_PATH.ahead * abs(state.opening):
-        return u_n
-    return u_n + REFERENCE_PATH.ahead * (state.u_n - u_n)
-
-
-def tangent_of_path(model: Model) -> tuple[np.ndarray, float]:
-    """du/d(opening) (n,) and d load/d(opening), by the tangent factorised last."""
-    by_load_n = model.solve(model.free_n * model.load_n)
-    compliance = model.dot(model.load_n, by_load_n)
-    return by_load_n / compliance, 1.0 / compliance
-
-
-def unloaded(model: Model) -> State:
-    """The unloaded specimen; its ``heading`` is 0."""
-    u_n, k_q = np.zeros_like(model.load_n), model.intact()
-    model.factorise(u_n, k_q)
-    rate_n, slope = tangent_of_path(model)
-    return State(u_n, 0.0, 0.0, k_q, model.jump(u_n), rate_n, slope, 0.0, 0.0, 0.0, 0.0, BondEnergies(), 0)
-
-
-def departing(model: Model, state: State, goal: float) -> State:
-    """The same state with the tangent of the path that leaves it for a goal.
-
-    Where the programme turns round, and where all gaps are zero, this is not the tangent of the arrival: points whose
-    damage grew unload along their secants, gaps open or close. A state slightly ahead tells which.
-    """
-    heading = float(np.sign(goal - state.opening))
-    if heading == state.heading and state.opening != 0.0:
-        return state
-    small = REFERENCE_PATH.ahead * (goal - state.opening)
-    guess = state.u_n + small * state.rate_n, state.load + small * state.slope
-    control = opening_control(model, state.opening + small)
-    ahead = find_equilibrium(model, equations(model, state, control), *guess)
-    model.factorise(ahead.u_n if ahead.converged else state.u_n, state.k_q)
-    rate_n, slope = tangent_of_path(model)
-    return replace(state, rate_n=rate_n, slope=slope, heading=heading)
+    return step(model, state, opening_control(model, goal), stride, between, control.row_n)
 
 
 def separated(model: Model, before: State, state: State, goal: float) -> bool:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from fem_reference.path.stride import COUNTED_STEPS
 from fem_reference.problem.problem import Debonding
 
 #: A step that ends within this part of an increment of its goal is extended to the goal.
 NEAR_THE_GOAL = 0.01
 
 
-def branches(problem: Debonding) -> list[np.ndarray]:
+def branches(problem: Debonding, whole: bool = False) -> list[np.ndarray]:
     """Ends of equal increments of the opening, about ``steps`` over the whole programme, one array per branch.
+
+    Where a path chooses its steps a branch is ``whole``: one increment.
 
     A branch also ends where the programme passes through zero: there all gaps of an unloaded bond open or close.
     """
@@ -19,7 +22,8 @@ def branches(problem: Debonding) -> list[np.ndarray]:
     crossed = np.flatnonzero(goals[1:] * goals[:-1] < 0.0)
     corners = np.insert(goals, crossed + 1, 0.0)
     ways = np.abs(np.diff(corners))
-    counts = np.maximum(1, np.rint(problem.steps * ways / ways.sum()).astype(int))
+    steps = 0 if whole else problem.steps or COUNTED_STEPS.instead
+    counts = np.maximum(1, np.rint(steps * ways / ways.sum()).astype(int))
     parts = zip(corners[:-1], corners[1:], counts, ways, strict=True)
     return [np.linspace(start, end, n + 1) for start, end, n, way in parts if way > 0]
 

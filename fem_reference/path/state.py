@@ -11,7 +11,6 @@ from mpi4py import MPI
 from fem_reference.model.assembled import owned
 from fem_reference.model.model import BondEnergies, Model
 from fem_reference.model.opening import OpeningModel
-from fem_reference.model.supports import dofs_on
 from fem_reference.problem.specimen import point
 
 
@@ -97,9 +96,8 @@ def face_gaps(model: Model, state: State) -> np.ndarray:
     """Gaps (n,) at all nodes of the surfaces that are opposite each other, bonded or not, in the order of X."""
     sides, first = [], 0
     place = (min(model.specimen.facing), max(model.specimen.facing)), (0.0, 0.0)
-    for u in model.displacement:
-        dofs = dofs_on(u, place, model.specimen.near, 1)
-        own = first + dofs[dofs < owned(u)]
+    for body, u in enumerate(model.displacement):
+        own = first + model.across(body, place)
         X, across = (np.concatenate(model.comm.allgather(v)) for v in (model.X_nI[own, 0], state.u_n[own]))
         sides.append(across[np.argsort(X)])
         first += owned(u)
@@ -125,9 +123,9 @@ def moment(model: Model, state: State, force_n: np.ndarray) -> float:
 def opening_at(model: Model, X: float) -> float:
     """Normal gap at a vertex of the interface, for the displacements that the forms read at present."""
     jump = 0.0
-    for u, sign in zip(model.displacement, (1.0, -1.0), strict=True):
-        dofs = dofs_on(u, point(X, 0.0), model.specimen.near, 1)
-        jump += sign * float(np.sum(u.x.array[dofs[dofs < owned(u)]]))
+    for body, sign in enumerate((1.0, -1.0)):
+        own = model.across(body, point(X, 0.0))
+        jump += sign * float(np.sum(model.displacement[body].x.array[own]))
     return model.comm.allreduce(jump)
 
 

@@ -32,7 +32,9 @@ class Debonding(ABC):
     degree : Lagrange degree, 1 to 4.
     elements : elements along the longer body.
     layers : elements through the thickness of each loaded body.
-    steps : equal opening increments over the whole programme; the ends of its branches come on top.
+    steps : equal opening increments over the whole programme; the ends of its branches come on top. None: the path
+        chooses its steps by accuracy.
+    bend : for these, how far the load may leave the tangent of a step, in parts of the peak.
     snapshot_openings : fields are kept at the first converged step that reaches each of these openings.
 
     Raises
@@ -58,7 +60,8 @@ class Debonding(ABC):
     degree: int = 2
     elements: int = 112
     layers: int = 1
-    steps: int = 150
+    steps: int | None = 150
+    bend: float = 0.005
     snapshot_openings: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
@@ -66,7 +69,9 @@ class Debonding(ABC):
         _one_of("kinematics", self.kinematics, ("linear", "finite"))
         _one_of("load_at", self.load_at, ("face", "node", "hinge"))
         _one_of("degree", self.degree, (1, 2, 3, 4))
-        self.require_positive("strength", "toughness", "penalty", "width", "steps", "layers")
+        self.require_positive("strength", "toughness", "penalty", "width", "bend", "layers")
+        if self.steps is not None:
+            self.require_positive("steps")
         if not self.ductility > 1:
             raise ValueError(f"ductility: must be > 1, got {self.ductility}")
         if not np.any(self.opening):
@@ -78,6 +83,11 @@ class Debonding(ABC):
     @abstractmethod
     def specimen(self) -> Specimen:
         """Bodies, mesh lines, bond, supports and loads."""
+
+    @property
+    def way(self) -> float:
+        """Length of the whole programme in the opening."""
+        return float(np.sum(np.abs(np.diff([0.0, *self.opening]))))
 
     @property
     def presses(self) -> bool:

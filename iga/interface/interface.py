@@ -306,10 +306,8 @@ def settled(interface: Interface) -> SettledInterface:
 @dataclass(frozen=True)
 class Shear:
     """What sliding adds to the response of the points (n_q,): traction t_q along the master, the slopes of both
-    tractions that opening alone does not have, the history ``slip_q`` of friction, how far damage is on its way
-    (``scaled``), and the law.
-
-    ``driven_q`` is the damage that the jump drives to on first loading.
+    tractions that opening alone does not have, the history ``slip_q`` of friction, the law, and the jumps and the
+    damage at which it was asked.
     """
 
     t_q: np.ndarray
@@ -317,9 +315,21 @@ class Shear:
     dt_dg_q: np.ndarray
     dt_ds_q: np.ndarray
     slip_q: np.ndarray | None
-    driven_q: np.ndarray
-    scaled: Scaled
     law: MixedLaw
+    jump_qc: np.ndarray
+    d_q: np.ndarray
+
+    @cached_property
+    def scaled(self) -> Scaled:
+        """How far damage is on its way."""
+        g_q, s_q = self.jump_qc.T.copy()
+        return self.law.scaled(g_q, s_q, self.d_q)
+
+    @cached_property
+    def driven_q(self) -> np.ndarray:
+        """The damage that the jump drives to on first loading."""
+        g_q, s_q = self.jump_qc.T.copy()
+        return self.law.driven(g_q, s_q)
 
     def along(self, g_q: np.ndarray, s_q: np.ndarray) -> np.ndarray:
         """Scaled jumps (n_q,) of undamaged points at small gaps and slips, in proportion to these."""
@@ -389,10 +399,8 @@ def _sheared(
     d_q, slip_q = found.history
     if not contact.whole:
         d_q = np.where(holding(interface, contact), d_q, past.k_q)
-    scaled = law.scaled(g_q, s_q, d_q)
-    driven_q = law.driven(g_q, s_q)
     t_q, dp_ds_q, dt_dg_q, dt_ds_q = (share_q * part for part in (found.t, found.dp_ds, found.dt_dg, found.dt_ds))
-    shear = Shear(t_q, dp_ds_q, dt_dg_q, dt_ds_q, slip_q, driven_q, scaled, law)
+    shear = Shear(t_q, dp_ds_q, dt_dg_q, dt_ds_q, slip_q, law, jump_qc, d_q)
     return Tractions(share_q * found.p, share_q * found.dp_dg, d_q, shear)
 
 

@@ -132,7 +132,7 @@ def slid_slip(
     row = Unknowns.of(master, way, contact.dof_qd)
     r2 = master.coefficients(pairing.c_q, pairing.xi_q, 2)[2]
     d2M_qb = np.where(there.straight_q[:, None], 0.0, master.functions(pairing.c_q, r2))
-    turns = [row.at(0, N_qb, v_qi) for N_qb, v_qi in ((there.dM_qb, n_qi), (there.dM_qb, t_qi), (d2M_qb, n_qi))]
+    turns = [row.met(N_qb, v_qi) for N_qb, v_qi in ((there.dM_qb, n_qi), (there.dM_qb, t_qi), (d2M_qb, n_qi))]
     V_qrd = np.stack([row.first(contact.V_qrd[:, 1]), row.first(contact.gap_rows.G_qd), *turns], axis=1)
     s_q, stretch_qd, across_qkd, size_qk = _along_way(master, way, row, y_AI)
     ahead_qr = jet_kq[1][:, None] * _rate_of_place(jet_kq, g_q)
@@ -160,10 +160,15 @@ class Unknowns:
         """A row over the unknowns of the contact over all of them."""
         return np.pad(row_qd, ((0, 0), (0, self.dof_qd.shape[1] - row_qd.shape[1])))
 
-    def at(self, part: int, N_qb: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
-        """Rows ``v . N`` of functions N_qb on a part of the way, the one that is met first."""
-        row_qd, start = np.zeros(self.dof_qd.shape), self.own + self.side * (part - 1)
-        row_qd[:, start : start + self.side] = along(N_qb, v_qi)
+    def columns(self, part: int) -> slice:
+        """Those of the side that a part of the way is on; part 0 is on the side that is met."""
+        start = self.own + self.side * (part - 1)
+        return slice(start, start + self.side)
+
+    def met(self, N_qb: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
+        """Rows ``v . N`` of functions N_qb on the side that is met."""
+        row_qd = np.zeros(self.dof_qd.shape)
+        row_qd[:, self.columns(0)] = along(N_qb, v_qi)
         return row_qd
 
 
@@ -206,19 +211,21 @@ def _along_way(
     master: Surface, way: Way, row: Unknowns, y_AI: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Lengths s_q (n_q,), the rows (n_q, n_d) of their stretch, rows n.dy' and lengths |y'| (n_q, n_k, ...) by node."""
-    s_q, stretch_qd = np.zeros(len(way.c_qk)), np.zeros(row.dof_qd.shape)
-    across, sizes = [], []
-    for k, (c_q, xi_q, w_q) in enumerate(zip(way.c_qk.T, way.xi_qk.T, way.w_qk.T, strict=True)):
-        part = 0 if k <= ON_A_PART else 1 + (k - ON_A_PART - 1) // ON_A_PART
-        _, r1 = master.coefficients(c_q, xi_q, 1)
-        t_qi, dM_qb = np.sum(r1[..., None] * master.bezier_points(y_AI, c_q), axis=1), master.functions(c_q, r1)
-        size_q = np.sqrt(np.sum(t_qi**2, -1))
-        unit_qi = t_qi / size_q[:, None]
-        s_q += w_q * size_q
-        stretch_qd += row.at(part, dM_qb, w_q[:, None] * unit_qi)
-        across.append(row.at(part, dM_qb, np.stack([-unit_qi[:, 1], unit_qi[:, 0]], -1)))
-        sizes.append(size_q)
-    return s_q, stretch_qd, np.stack(across, axis=1), np.stack(sizes, axis=1)
+    (n_q, n_k), c = way.c_qk.shape, way.c_qk.ravel()
+    r1 = master.coefficients(c, way.xi_qk.ravel(), 1)[1]
+    t_mi, dM_mb = np.sum(r1[..., None] * master.bezier_points(y_AI, c), axis=1), master.functions(c, r1)
+    size_m = np.sqrt(np.sum(t_mi**2, -1))
+    unit_mi = t_mi / size_m[:, None]
+    across_mi = np.stack([-unit_mi[:, 1], unit_mi[:, 0]], -1)
+    ahead_qkd, aside_qkd = (along(dM_mb, v_mi).reshape(n_q, n_k, row.side) for v_mi in (unit_mi, across_mi))
+    stretch_qd, across_qkd = np.zeros(row.dof_qd.shape), np.zeros((n_q, n_k, row.dof_qd.shape[1]))
+    parts = [(0, ON_A_PART + 1), *((k, k + ON_A_PART) for k in range(ON_A_PART + 1, n_k, ON_A_PART))]
+    for part, (first, last) in enumerate(parts):
+        nodes, there = slice(first, last), row.columns(part)
+        stretch_qd[:, there] = (way.w_qk[:, None, nodes] @ ahead_qkd[:, nodes])[:, 0]
+        across_qkd[:, nodes, there] = aside_qkd[:, nodes]
+    size_qk = size_m.reshape(n_q, n_k)
+    return np.sum(way.w_qk * size_qk, axis=1), stretch_qd, across_qkd, size_qk
 
 
 def walked(master: Surface, x_AI: np.ndarray, c_q: np.ndarray, xi_q: np.ndarray) -> np.ndarray:

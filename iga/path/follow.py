@@ -80,10 +80,10 @@ def follow(
             inaccurate = kept.part < 1.0 and lengths.cuts < LENGTHS.cuts
             if inaccurate or reached is None or leaks(solver.system, point, reached, largest.work):
                 solver.drop()
-                shorter = lengths.cut(kept, moved) if inaccurate else lengths.failed()
+                shorter = lengths.cut(kept, moved) if inaccurate else lengths.failed(point.opening)
                 rejected += 1
                 if shorter is None:
-                    yield End(_advice(point, leapt=reached is not None), rejected)
+                    yield End(_advice(point, leapt=reached is not None), rejected, counted=lengths.since)
                     return
                 lengths = shorter
                 if isinstance(
@@ -95,7 +95,7 @@ def follow(
             lengths = lengths.after(point, reached, largest.load, kept)
             yield (point := replace(reached, opening=goal) if asked.exact else reached)
             if direction * point.opening > 0.0 and _separated(solver.system, point, reach, largest.load, direction):
-                yield End("complete", rejected, separated=True)
+                yield End("complete", rejected, separated=True, counted=lengths.since)
                 return
             renewed = renew(point) if renew is not None else None
             if renewed is not None:
@@ -105,7 +105,7 @@ def follow(
                     yield End(f"stopped: the new mesh at opening {goal:.6g} has a singular tangent", rejected)
                     return
                 point = departed
-    yield End("complete", rejected)
+    yield End("complete", rejected, counted=lengths.since)
 
 
 def _lengths(system: System, programme: Sequence[float], steps: int | None, bend: float) -> StepLength:

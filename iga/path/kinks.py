@@ -2,10 +2,11 @@
 
 The load over the opening is a chain of short arcs, one for every quadrature point that breaks, and the slope jumps
 between them by as much as it is itself: the exact slope somewhere on an arc says little of the curve. A step that ends
-where a point breaks is always at the same place of the chain, and so is one that ends half way to where the next one
-does: there the load is neither at the top nor at the foot of an arc, and such steps lie on one curve.
+where a point breaks is always at the same place of the chain, and so is one that ends a part of the way to where the
+next one does. Arcs are nearly parabolas: where one crosses its own mean (`AT_MEAN`) the load is that of the smooth
+curve, and neither at the top nor at the foot of an arc.
 
-Steps that pass over several arcs end half way and have the slope of the parabola through the last three of them; those
+Steps that pass over several arcs end there and have the slope of the parabola through the last three of them; those
 that go along a single one end at the kink and have the mean of the exact slopes before and after.
 """
 
@@ -38,6 +39,9 @@ DISTANCES = Distances()
 #: How many points break on a step that passes over arcs.
 SEVERAL = 2
 
+#: Part of an arc after which a parabola over it crosses its own mean.
+AT_MEAN = 0.5 - 12.0**-0.5
+
 #: Opening and load.
 Place = tuple[float, float]
 
@@ -52,7 +56,7 @@ class Kink:
 
 @dataclass(frozen=True)
 class StepEnd:
-    """Where a step ends: with the gap ``target`` at the point of a ``kink``, ``on`` the kink or half an arc beyond."""
+    """Where a step ends: with the gap ``target`` at the point of a ``kink``, ``on`` it or a part of an arc beyond."""
 
     kink: Kink
     target: float
@@ -102,7 +106,7 @@ def nearest_end(
     """A step's end at the kink nearest to the gaps g_q (n_q,): where a point breaks or, before any has, softens.
 
     ``k_q`` (n_q,) is the history at the start; ``touch`` as for `first_end`. None where there is no such kink. A step
-    over several arcs that ``follows_on`` one on which points broke, too, ends half an arc on from there.
+    over several arcs that ``follows_on`` one on which points broke, too, ends where the next arc is at its mean.
     """
     begins, *_, ends = system.interface.law.kinks
     g_q = np.where(holding(system.interface, touch), g_q, 0.0)
@@ -113,7 +117,7 @@ def nearest_end(
     ahead_q = g_q[g_q > g_q[q]]
     end = on_kink(Kink(q, gap))
     if follows_on and broken and np.count_nonzero(passed_q) >= SEVERAL and ahead_q.size > 0:
-        end = StepEnd(end.kink, gap + 0.5 * (np.min(ahead_q) - g_q[q]), on=False)
+        end = StepEnd(end.kink, gap + AT_MEAN * (np.min(ahead_q) - g_q[q]), on=False)
     return end if np.any(g_q >= gap) and k_q[q] < gap and g_q[q] != end.target else None
 
 

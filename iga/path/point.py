@@ -51,9 +51,11 @@ class Point:
 class End:
     """How a path ended: ``complete`` or ``stopped: <cause and what to do>``, and how many steps were taken back.
 
-    ``separated``: the specimen came apart before the programme was over, which is a complete path, too.
+    ``separated``: the specimen came apart before the programme was over, which is a complete path, too. ``counted``:
+    the opening from which on a path that chose its steps has counted them.
     """
 
     status: str
     rejected: int
     separated: bool = False
+    counted: float | None = None

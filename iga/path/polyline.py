@@ -34,7 +34,7 @@ class Accuracy:
     teeth: float = 1.0
     within: float = 0.8
     shortest: float = 0.25
-    longest: float = 0.75
+    longest: float = 0.5
     safely: float = 0.9
 
 
@@ -61,13 +61,14 @@ class Kept:
     """Part of a step that would be accurate, 1 for one that is, and ``away``: its distance over the one allowed.
 
     ``broken``: points of the interface have broken on the step; ``few``: no more than one of them has, and no more than
-    one has begun to soften.
+    one has begun to soften; ``opened``: by how much of g_u a point has opened at most.
     """
 
     part: float = 1.0
     away: float = 0.0
     few: bool = False
     broken: bool = False
+    opened: float = np.inf
 
 
 def judged(system: System, start: Point, end: Point, before: Largest, bend: float) -> Kept:
@@ -98,7 +99,8 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
         ACCURACY.tip * abs(unseen), abs(unseen) + ACCURACY.teeth * tooth * abs(chord[0])
     )
     above = max(unseen * np.sign(chord[0]), 0.0) / length
-    over = ends[0, 1] + float(y.max()) - 1.0 + max(ACCURACY.tip * above, above + ACCURACY.teeth * tooth)
+    over = ends[0, 1] - 1.0 + float(y.max()) + max(ACCURACY.tip * above, above + ACCURACY.teeth * tooth)
+    over = max(over, _leapt(start, end, size, chord) - max(0.0, chord[1]))
     open_ = abs(end.external_work - end.energies.total) > ACCURACY.ledger * largest.work
     leak = abs(work - spent) / (ACCURACY.ledger * abs(work)) if open_ and work != 0.0 else 0.0
     excess = max(away / length / (ACCURACY.within * bend), over / (ACCURACY.peak * bend), leak)
@@ -106,7 +108,21 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
     whole = system.interface.law.begun
     begun = np.count_nonzero((end.state.k_q > whole) & (start.state.k_q <= whole))
     broken = broken_between(system, start.state, end.state)
-    return Kept(part, away / length / bend, bool(max(begun, broken) < SEVERAL), broken > 0)
+    law = system.interface.law
+    x_q, before_q = (np.minimum(point.response.x_q, law.kinks[-1]) for point in (end, start))
+    opened = float(np.max(x_q - before_q)) / law.span
+    return Kept(part, away / length / bend, bool(max(begun, broken) < SEVERAL), broken > 0, opened)
+
+
+def _leapt(start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> float:
+    """By how much a load that rises and then falls on a step gets above its start, as the slopes at both ends have it.
+
+    Readers of a curve draw it by these slopes, whatever broke on the way.
+    """
+    first, last = np.array([start.slope, end.slope]) * size[0] / size[1] * chord[0]
+    if chord[0] <= 0.0 or not first > 0.0 > last:
+        return 0.0
+    return float(np.max(_S * _S * (3.0 - 2.0 * _S) * chord[1] + _S * (1.0 - _S) * ((1.0 - _S) * first - _S * last)))
 
 
 def _tooth(system: System, start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> float:

@@ -2,9 +2,9 @@
 
 Steps are `Counted`, all of one length, or chosen `ByAccuracy`; those that follow on a failed one are `Careful`. Each
 kind has a ``length``, the change of the opening, and ``front``, the largest step of the front in parts of g_u, and says
-what follows a step: one that has ``failed``, that is, has not converged; one that went for a change ``moved`` of the
-opening and was not accurate (``cut``); and one from ``start`` to ``end`` (``after``), where the load has been at most
-``peak`` so far. Where the path has chosen the steps they are as accurate as ``bend`` asks for (see
+what follows a step: one that has ``failed`` at an opening, that is, has not converged; one that went for a change
+``moved`` of the opening and was not accurate (``cut``); and one from ``start`` to ``end`` (``after``), where the load
+has been at most ``peak`` so far. Where the path has chosen the steps they are as accurate as ``bend`` asks for (see
 `iga.path.polyline`), and shortened until they are, at most `Lengths.cuts` times (``cuts``).
 """
 
@@ -35,9 +35,10 @@ class Lengths:
     step making up for one, and ``safe``, the number of counted steps for the whole programme that are made after those.
     ``fewest``: fewer counted steps than these do not draw the curve, and the number is then a least number of steps.
     ``still``: a front that moves by a smaller part of g_u in a step does not lead it.
-    ``cuts``: how often a step is shortened because it is not accurate. ``at_kinks``: how many steps end at kinks of any
-    kind once a single arc of the load has turned out to have a corner. ``parabola``: distance of a parabola from its
-    tangent over that from its chord, as it is measured.
+    ``cuts``: how often a step is shortened because it is not accurate. ``crawl``: so many more attempts that are cut,
+    or shorter than counted steps, than longer ones, and the rest of the steps is counted.
+    ``at_kinks``: how many steps end at kinks of any kind once a single arc of the load has turned out to have a corner.
+    ``parabola``: distance of a parabola from its tangent over that from its chord, as it is measured.
     """
 
     front: float = 0.125
@@ -51,6 +52,7 @@ class Lengths:
     fewest: int = 40
     still: float = 1e-9
     cuts: int = 6
+    crawl: int = 24
     at_kinks: int = 8
     parabola: float = 3.0
 
@@ -85,18 +87,22 @@ class Step:
 
 @dataclass(frozen=True)
 class Counted:
-    """Steps of one length; those that have been shortened grow again up to ``largest``."""
+    """Steps of one length; those that have been shortened grow again up to ``largest``.
+
+    ``since`` is the opening at which a path that chose its steps began to count them.
+    """
 
     largest: float
     length: float
     bend: float | None = None
     cuts: int = 0
+    since: float | None = None
 
     @property
     def front(self) -> float:
         return LENGTHS.front
 
-    def failed(self) -> Careful:
+    def failed(self, at: float) -> Careful:
         return Careful(replace(self, cuts=0))
 
     def cut(self, kept: Kept, moved: float) -> Counted:
@@ -112,7 +118,8 @@ class ByAccuracy:
 
     One that fails is halved, and the front goes half as far until as many have converged; where no failures are
     ``left`` they are ``counted`` from then on. After a single arc of the load that is not accurate, ``at_kinks`` steps
-    end at kinks of any kind.
+    end at kinks of any kind. Where the load rises and falls with single points by more than ``bend`` steps ``crawl``
+    from one to the next, and cost more than they save: counted ones follow, which are as they come.
     """
 
     largest: float
@@ -122,6 +129,8 @@ class ByAccuracy:
     left: int = LENGTHS.failures
     cuts: int = 0
     at_kinks: int = 0
+    crawl: int = 0
+    since: None = None
 
     @property
     def front(self) -> float:
@@ -129,16 +138,20 @@ class ByAccuracy:
         halved = 0.5 ** (LENGTHS.failures - self.left)
         return halved * LENGTHS.front_by_accuracy * (self.bend / LENGTHS.bend) ** 0.5
 
-    def failed(self) -> ByAccuracy | Counted:
+    def failed(self, at: float) -> ByAccuracy | Counted:
         if self.left == 0:
-            return self.counted
+            return replace(self.counted, since=at)
         return replace(self, length=0.5 * self.length, left=self.left - 1, cuts=0)
 
     def cut(self, kept: Kept, moved: float) -> ByAccuracy:
         length, at_kinks = min(kept.part * abs(moved), self.length), LENGTHS.at_kinks if kept.few else self.at_kinks
-        return replace(self, length=length, cuts=self.cuts + 1, at_kinks=at_kinks)
+        return replace(self, length=length, cuts=self.cuts + 1, at_kinks=at_kinks, crawl=self.crawl + 1)
 
-    def after(self, start: Point, end: Point, peak: float, kept: Kept) -> ByAccuracy:
+    def after(self, start: Point, end: Point, peak: float, kept: Kept) -> ByAccuracy | Counted:
+        short = abs(end.opening - start.opening) < self.counted.length and kept.opened < self.counted.front
+        crawl = self.crawl + 1 if short else max(self.crawl - 1, 0)
+        if crawl > LENGTHS.crawl:
+            return replace(self.counted, bend=None, since=end.opening)
         moved, rough = end.opening - start.opening, start.tangent.rough
         slope = start.tangent.departure if rough and not kept.broken else start.slope
         bend = abs(end.state.load - start.state.load - slope * moved) / (self.bend * peak)
@@ -148,7 +161,7 @@ class ByAccuracy:
         grown = gone * max(min(bend**-0.5, 2.0), 0.5) if bend > 0.0 else 2.0 * gone
         length = min(max(grown, LENGTHS.smallest * self.largest), self.largest)
         left, at_kinks = min(self.left + 1, LENGTHS.failures), max(self.at_kinks - 1, 0)
-        return replace(self, length=length, left=left, cuts=0, at_kinks=at_kinks)
+        return replace(self, length=length, left=left, cuts=0, at_kinks=at_kinks, crawl=crawl)
 
 
 @dataclass(frozen=True)
@@ -179,7 +192,11 @@ class Careful:
     def cuts(self) -> int:
         return self.usual.cuts
 
-    def failed(self) -> Careful | None:
+    @property
+    def since(self) -> float | None:
+        return None if isinstance(self.usual, ByAccuracy) else self.usual.since
+
+    def failed(self, at: float) -> Careful | None:
         """What follows a step that has not converged; None where it cannot be any shorter."""
         usual, number = replace(self.usual, cuts=0), self.number + 1
         if number < len(CONTROLS):
@@ -227,12 +244,13 @@ class InTime:
     growth: float
     bend: None = None
     cuts: int = 0
+    since: None = None
 
-    def failed(self) -> InTime | None:
+    def failed(self, at: float) -> InTime | None:
         return replace(self, length=0.5 * self.length) if self.length > self.shortest else None
 
     def cut(self, kept: Kept, moved: float) -> InTime | None:
-        return self.failed()
+        return self.failed(0.0)
 
     def after(self, start: Point, end: Point, peak: float, kept: Kept) -> InTime:
         grown = PACE.aim * self.growth / max(grows(start.state, end.state), 0.5 * PACE.aim * self.growth)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import made_up_point_laws
 import made_up_studies
+import made_up_tests
 import numpy as np
 from iga_files import SMALL
 from made_up_costs import SCENE, a_row, against
@@ -29,6 +30,9 @@ from verify.cli import main
 from verify.curves.read import Reading
 from verify.methods.solve import solve
 from verify.pages.style import METHOD_NAMES
+from verify.reduction.coupon import coupon
+from verify.reduction.reduce import Value, reduce
+from verify.reduction.scheme import Settings
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
@@ -36,6 +40,8 @@ from verify.studies.certified import page as certified_page
 from verify.studies.certified.plan import planned as certified_planned
 from verify.studies.certified.study import judged as certified_judged
 from verify.studies.cost import page as cost_page
+from verify.studies.cost.price import Price
+from verify.studies.cost.row import Row
 from verify.studies.cost.study import Study as CostStudy
 from verify.studies.effects import page as effects_page
 from verify.studies.effects.row import Row as EffectRow
@@ -49,6 +55,9 @@ from verify.studies.law.given.answer import of_function
 from verify.studies.law.given.built_in import built_in
 from verify.studies.law.judge import judge
 from verify.studies.law.ways.paths import paths
+from verify.studies.reduce import page as reduce_page
+from verify.studies.reduce.bias import biases
+from verify.studies.reduce.fit import Fit
 from verify.studies.scaling import page as scaling_page
 from verify.studies.validation import page as validation_page
 from verify.studies.validation.plan import planned as validation_planned
@@ -82,7 +91,9 @@ def verification(out: Path) -> Path:
     runs += (Run("T-spline", "tspline", None, "not run: no mesh has so few unknowns"),)
     given = replace(given, runs=runs, checks=(*given.checks, failing))
     path = out / "report.html"
-    report.write(report.Findings((given,), ENVIRONMENT, included=found_in(out)), path)
+    rows = ladders() + (a_row("lagrange", nan, 0.1, 732, 2),)
+    prices = (Price(SCENE, against(), rows, ("There was no time for more.",)), Price(given.scene, against(), rows[5:9]))
+    report.write(report.Findings((given,), ENVIRONMENT, included=found_in(out), prices=prices), path)
     return path
 
 
@@ -115,15 +126,19 @@ def paper(out: Path) -> Path:
     return out / "report.html"
 
 
-def cost(out: Path) -> Path:
-    """Ladders of every method, one run that stopped."""
+def ladders() -> tuple[Row, ...]:
+    """Runs of every method with a mesh, with few steps and with many."""
     sizes = (300, 500, 900, 1700, 3200)
     at = {"nurbs": (3, 6.0), "tspline": (3, 4.0), "lagrange": (3, 30.0), "dolfinx": (2, 9.0)}
-    rows = [
+    return tuple(
         a_row(method, size * n**-1.2, 1e-3 * n**1.1 * (4.0 if method == "dolfinx" else 1.0), n, degree, asked)
         for (method, (degree, size)), n, asked in product(at.items(), sizes, ("20", "80"))
-    ]
-    rows += [a_row("beam", 5e-4, 0.1, 0, 0), a_row("lagrange", nan, 0.1)]
+    )
+
+
+def cost(out: Path) -> Path:
+    """Ladders of every method, one run that stopped."""
+    rows = [*ladders(), a_row("beam", 5e-4, 0.1, 0, 0), a_row("lagrange", nan, 0.1)]
     cost_page.write(CostStudy(SCENE, tuple(rows), ("lefm: only a limit",), against()), out / "report.html")
     return out / "report.html"
 
@@ -225,6 +240,16 @@ def law(out: Path) -> Path:
     return out / "law.html"
 
 
+def reduction(out: Path) -> Path:
+    """A noisy test with a toe and a machine, a scheme that is missing, and a fit that cannot tell the strength."""
+    scene = load_scene("dcb-as4peek")
+    found = reduce(made_up_tests.recorded("dcb", made_up_tests.NOISY), coupon(scene), Settings(machine=1e-4))
+    fit = Fit(Value(80.0, 70.0), Value(0.969, 2e-3), Value(1.2e5, 300.0), 0.01, 1e-3, 30, *np.ones((2, 2)))
+    name = "a_file_with_a_long_name_from_a_machine_in_the_laboratory_001.csv"
+    reduce_page.write(found, biases(found, scene), scene, name, out / "reduce.html", fit)
+    return out / "reduce.html"
+
+
 def comparison(out: Path) -> Path:
     """Two curves, one with a peak that is off."""
     d = np.linspace(0.0, 3.0, 60)
@@ -257,6 +282,7 @@ PAGES: Mapping[str, Callable[[Path], Path]] = {
     "certified": certified,
     "hard": hard,
     "law": law,
+    "reduce": reduction,
     "compare": comparison,
     "mesh": mesh,
 }

@@ -42,6 +42,14 @@ def column(text: str) -> str | int:
     return int(text) if _is_short_integer(text) else text
 
 
+def columns(text: str) -> tuple[str | int, ...]:
+    """Names or numbers of columns: ``3,4``."""
+    found = tuple(column(part.strip()) for part in text.split(","))
+    if "" in found:
+        raise argparse.ArgumentTypeError(f"must be names or numbers of columns like 3,4, got {text!r}")
+    return found
+
+
 def scale(text: str) -> float:
     value = number(text)
     if value == 0.0:

@@ -105,19 +105,25 @@ def _kept(options: argparse.Namespace) -> Keep:
 def _say_before(prepared: Prepared, frames: bool) -> None:
     """Messages before a run: automatic decisions, keys without effect, and warnings of coarse meshes."""
     from verify.methods import sliding, through_thickness, zone_resolution
+    from verify.scene.schema import DEFAULT_STEPS
 
     coarse = (*zone_resolution.warnings(prepared), *through_thickness.warnings(prepared))
     for remark in (*prepared.decisions, *sliding.remarks(prepared.scene), *coarse):
         say(str(remark))
+    if prepared.counted:
+        say(f"discretization.steps: {DEFAULT_STEPS}, as {prepared.counted}")
     if frames and not prepared.method.has_mesh:
         say(f"--fields: the method {prepared.method.name} has no bodies to draw: no frames for ParaView")
 
 
 def _say_after(prepared: Prepared, result: Result, checks: Sequence[Check]) -> None:
     from verify.checks import neglected
+    from verify.scene.schema import DEFAULT_STEPS
 
     for remark in neglected.warnings(prepared, result):
         say(remark)
+    if result.counted_steps:
+        say(f"discretization.steps: {DEFAULT_STEPS} {result.counted_steps}")
     broken = _broken(checks)
     if result.complete and broken:
         say(f"{result.method}: broken: {', '.join(broken)}; the run or the solver is at fault, not the mesh")
@@ -189,7 +195,8 @@ def verify(options: argparse.Namespace) -> int:
     demands = Demands(options.strict, tuple(options.require))
     for method in demands.required:
         _known_method(method, None, "--require")
-    subjects = Subjects(scenes, options.full, plates, curves, named(options.include))
+    ladders = _ladders(options, scenes)
+    subjects = Subjects(scenes, options.full, plates, curves, named(options.include), ladders)
     if options.dry_run:
         return _listed(would_run(subjects, options.out, options.jobs))
     _folder(options.out)
@@ -197,6 +204,22 @@ def verify(options: argparse.Namespace) -> int:
         say(remark)
     text = options.format == "md"
     return 0 if verify(subjects, options.out, options.jobs, options.scheduler, text, demands) else FAILED
+
+
+def _ladders(options: argparse.Namespace, scenes: Sequence[tuple[str, Scene]]) -> Sequence[tuple[str, Scene]]:
+    """The scenes of quick ladders: those that are named, else one of the scenes that are verified, or none."""
+    from verify.methods.given_meshes import refuse_files
+    from verify.scene.load import load_scene
+    from verify.verification import laddered
+
+    if options.no_ladder and options.ladder:
+        raise Refusal(f"--no-ladder: must be left out with --ladder {options.ladder[0]}")
+    if options.no_ladder:
+        return ()
+    chosen = [(source, load_scene(source)) for source in dict.fromkeys(options.ladder)]
+    for _, scene in chosen:
+        refuse_files(scene, "--ladder")
+    return chosen or laddered(scenes)
 
 
 def _curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curve, ...]:
@@ -379,6 +402,18 @@ def compare(options: argparse.Namespace) -> int:
     for complaint in complaints(comparison, found):
         say(complaint)
     return 0 if all(check.passed for check in found) else FAILED
+
+
+def reduce(options: argparse.Namespace) -> int:
+    from verify.studies.reduce import command as work
+
+    test, found, known, fit = work.reduced(options)
+    if options.out is not None:
+        _folder(options.out)
+    work.report(found, known, fit)
+    if options.out is not None:
+        work.write(options.out, str(options.file), test.scene, found, known, fit)
+    return 0
 
 
 def law(options: argparse.Namespace) -> int:

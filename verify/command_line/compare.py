@@ -103,7 +103,7 @@ def numbers(
 
 
 def _side(source: Source, part: Part) -> Mapping[str, object]:
-    opening, load = source.reading.columns
+    opening, load, *_ = source.reading.columns
     return {
         "file": str(source.path),
         "columns": {"opening": opening, "load": load},

@@ -58,6 +58,7 @@ def _known() -> Mapping[str, tuple[str, ...]]:
     return {
         "scene": (*packaged_scenes(), *PATHS),
         "scenes": (*packaged_scenes(), *PATHS),
+        "ladder": (*packaged_scenes(), *PATHS),
         "method": tuple(known_methods()),
         "names": tuple(CASES),
         "overrides": tuple(f"{key}=" for key in dotted_keys()),

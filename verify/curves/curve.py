@@ -52,11 +52,16 @@ def from_origin(opening: ArrayLike, load: ArrayLike, ahead: float = 1.0) -> tupl
 
 
 def dense(
-    opening: ArrayLike, load: ArrayLike, slope: ArrayLike, heading: ArrayLike, per_step: int = 10
+    opening: ArrayLike,
+    load: ArrayLike,
+    slope: ArrayLike,
+    heading: ArrayLike,
+    per_step: int = 10,
+    size: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """The path between converged points, through snap-backs as well: ``per_step`` points on every step.
 
-    A geometric Hermite cubic in the plane of opening and load, each over its largest size: unit tangents
+    A geometric Hermite cubic in the plane of opening and load, each over its largest ``size``: unit tangents
     heading (1, slope), as long as the chord of the step. A chord falls short of its arc by the third power of the step,
     which shifts points along the curve and not off it: the curve is of fourth order all the same.
 
@@ -67,6 +72,7 @@ def dense(
     ----------
     opening, load, slope, heading : (n,) converged points, d load / d opening (infinite where the path turns), and +1
         or -1 where the opening grows or falls along the path.
+    size : (2,) what opening and load are measured in, where that is not the largest of these points
 
     Returns
     -------
@@ -75,8 +81,8 @@ def dense(
     points = np.stack([np.asarray(opening, dtype=float), np.asarray(load, dtype=float)], axis=1)
     if len(points) < 2:
         return points[:, 0], points[:, 1]
-    size = np.max(np.abs(points), axis=0)
-    size[size == 0.0] = 1.0
+    size = np.max(np.abs(points), axis=0) if size is None else size
+    size = np.where(size == 0.0, 1.0, size)
     start, chord = points[:-1] / size, np.diff(points / size, axis=0)
     angle = np.arctan(np.asarray(slope, dtype=float) * size[0] / size[1])
     unit = np.asarray(heading, dtype=float)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)

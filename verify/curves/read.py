@@ -26,7 +26,8 @@ class Reading:
     """Which columns of a table are opening and load, and what they are multiplied by.
 
     A column is a name, in capitals or not, or a number from 1. Without either the columns are those named opening and
-    load, in a table without a header the first two. A negative scale turns a sign.
+    load, in a table without a header the first two. A negative scale turns a sign. Of ``more`` columns cells may be
+    empty, and the values are as they stand.
 
     Raises
     ------
@@ -37,6 +38,7 @@ class Reading:
     load: Column | None = None
     opening_scale: float = 1.0
     load_scale: float = 1.0
+    more: tuple[Column, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("opening", "load"):
@@ -46,10 +48,13 @@ class Reading:
             scale = getattr(self, f"{name}_scale")
             if scale == 0 or not math.isfinite(scale):
                 raise CurveError(f"{name}_scale: must be a finite number other than 0, got {scale:g}")
+        if any(isinstance(column, int) and column < 1 for column in self.more):
+            raise CurveError(f"columns: must be names or numbers of columns, 1 or more, got {self.more}")
 
     @property
-    def columns(self) -> tuple[Column, Column]:
-        return self.opening or "opening", self.load or "load"
+    def columns(self) -> tuple[Column, ...]:
+        """Opening and load, and what else is read."""
+        return self.opening or "opening", self.load or "load", *self.more
 
 
 def read_curve(path: Path | str, reading: Reading | None = None) -> tuple[np.ndarray, np.ndarray]:
@@ -64,7 +69,19 @@ def read_curve(path: Path | str, reading: Reading | None = None) -> tuple[np.nda
     CurveError
         Naming the file, the line and the column.
     """
-    reading, path = reading or Reading(), Path(path)
+    d, P, _ = read_with_more(path, reading or Reading())
+    return d, P
+
+
+def read_with_more(path: Path | str, reading: Reading) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Opening (n,) and load (n,) as `read_curve` reads them, and the columns ``reading.more`` (k, n), NaN where empty.
+
+    Raises
+    ------
+    CurveError
+        Naming the file, the line and the column.
+    """
+    path = Path(path)
     path = path / "curve.csv" if path.is_dir() else path
     table = read_table(text_of(path, "a curve"))
     if not (table.lead or table.body):
@@ -72,11 +89,11 @@ def read_curve(path: Path | str, reading: Reading | None = None) -> tuple[np.nda
     header, body = _header(path, table, reading)
     points = np.array(
         [
-            [_value(f"{path}:{line}", table.dialect, cells, header, column) for column in header.chosen]
+            [_value(f"{path}:{line}", table.dialect, cells, header, i) for i in range(len(header.chosen))]
             for line, cells in _of_one_width(path, table.dialect, body, header)
         ]
-    ).reshape(-1, 2)
-    return sound(str(path), points[:, 0], points[:, 1], reading)
+    ).reshape(-1, len(header.chosen))
+    return *sound(str(path), points[:, 0], points[:, 1], reading), points[:, 2:].T
 
 
 def sound(source: str, d: np.ndarray, P: np.ndarray, reading: Reading) -> tuple[np.ndarray, np.ndarray]:
@@ -104,9 +121,10 @@ def sound(source: str, d: np.ndarray, P: np.ndarray, reading: Reading) -> tuple[
 
 @dataclass(frozen=True)
 class _Header:
-    """The chosen columns, counted from 0, and how many there are; names where there is a header."""
+    """The chosen columns, counted from 0, opening and load first, and how many there are; names where there is a
+    header."""
 
-    chosen: tuple[int, int]
+    chosen: tuple[int, ...]
     width: int
     names: Sequence[str] = ()
 
@@ -146,10 +164,10 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[_Header, list[R
     for line, cells in [*table.lead, *remarks] if wanted else []:
         if {_key(name) for name in wanted} <= {_key(cell) for cell in cells}:
             below = _below_units(table.dialect, [row for row in rows if row[0] > line])
-            return _Header(columns_of(f"{path}:{line}", cells, reading), len(cells), cells), below
+            return _Header(_chosen(f"{path}:{line}", cells, reading), len(cells), cells), below
     below = _below_units(table.dialect, rows)
     titles = rows[: len(rows) - len(below)]
-    if wanted and (titles or isinstance(reading.opening, str) or isinstance(reading.load, str)):
+    if wanted and (titles or any(isinstance(one, str) for one in (reading.opening, reading.load, *reading.more))):
         raise _no_such_column(path, table, wanted)
     if not below:
         raise CurveError(f"{path}: must hold at least 2 points of different opening, got no number")
@@ -173,6 +191,11 @@ def columns_of(place: str, names: Sequence[Any], reading: Reading) -> tuple[int,
     ------
     CurveError : no such column, several, or one for both, beginning with ``place``.
     """
+    opening, load, *_ = _chosen(place, names, reading)
+    return opening, load
+
+
+def _chosen(place: str, names: Sequence[Any], reading: Reading) -> tuple[int, ...]:
     return _different(place, [_column(place, names, column) for column in reading.columns])
 
 
@@ -189,7 +212,8 @@ def _column(place: str, names: Sequence[Any], wanted: Column) -> int:
 
 
 def _counted(place: str, reading: Reading, width: int) -> _Header:
-    columns = (column if isinstance(column, int) else at for column, at in zip(reading.columns, (1, 2), strict=True))
+    places = zip(reading.columns, (1, 2, *reading.more), strict=True)
+    columns = (column if isinstance(column, int) else int(at) for column, at in places)
     return _Header(_different(place, [_position(place, column, width) for column in columns]), width)
 
 
@@ -199,11 +223,14 @@ def _position(place: str, column: int, width: int) -> int:
     return column - 1
 
 
-def _different(place: str, chosen: Sequence[int]) -> tuple[int, int]:
-    opening, load = chosen
+def _different(place: str, chosen: Sequence[int]) -> tuple[int, ...]:
+    opening, load, *more = chosen
     if opening == load:
         raise CurveError(f"{place}: opening and load must be different columns, got column {opening + 1} for both")
-    return opening, load
+    twice = [column for column in more if chosen.count(column) > 1]
+    if twice:
+        raise CurveError(f"{place}: every column must be another one, got column {twice[0] + 1} twice")
+    return tuple(chosen)
 
 
 def _no_such_column(path: Path, table: Table, wanted: list[str]) -> CurveError:
@@ -239,9 +266,13 @@ def _of_one_width(path: Path, dialect: Dialect, body: list[Row], header: _Header
     return body
 
 
-def _value(place: str, dialect: Dialect, cells: list[str], header: _Header, column: int) -> float:
+def _value(place: str, dialect: Dialect, cells: list[str], header: _Header, i: int) -> float:
+    """In the ``i``-th chosen column; beyond opening and load an empty cell and NaN are no reading."""
+    column = header.chosen[i]
     cell = cells[column] if column < len(cells) else ""
-    value = dialect.value(cell)
+    value = math.nan if i > 1 and not cell else dialect.value(cell)
+    if i > 1 and value is not None and math.isnan(value):
+        return value
     if value is None or not math.isfinite(value):
         raise CurveError(f"{place}: {header.name(column)} must be a finite number, got {cell[:30]!r}")
     return value

@@ -119,6 +119,8 @@ class Method:
     problem : the scene in the solver's terms, from the effects as simulated. ValueError where it refuses them
     mesh : facts of the mesh made for a problem; None for a method without one. ValueError where none can be made
     require : raises `Unsuitable` or `NotRun` where the method cannot solve a prepared scene
+    counts : why the steps of a prepared scene are counted though it leaves them to the path, empty where this chooses
+        them by accuracy; None for a method that counts all steps
     laws : names of the traction laws that it has
     fixed : the effects that it has, whatever a scene asks for
     code : the program that it belongs to; methods of one program confirm each other less than others do
@@ -144,6 +146,7 @@ class Method:
     problem: Callable[[Scene, Mapping[str, Any]], Any] = lambda scene, effects: scene
     mesh: Callable[[Prepared], MeshFacts] | None = None
     require: Callable[[Prepared], None] = lambda prepared: None
+    counts: Callable[[Prepared], str] | None = None
     laws: Callable[[], Sequence[str]] = _bilinear
     fixed: Callable[[Scene], Mapping[str, Any]] = _all_free
     code: str
@@ -182,6 +185,18 @@ class Prepared:
     def decisions(self) -> tuple[Decision, ...]:
         """What stands for every effect that the scene leaves to ``auto`` and the method can choose."""
         return effects.decided(self.scene, self.method.fixed(self.scene))
+
+    @cached_property
+    def counted(self) -> str:
+        """Why the steps are counted of a scene that leaves them to a path which can choose them; empty otherwise."""
+        asked = self.scene.discretization.steps
+        return self.method.counts(self) if self.method.counts is not None and asked == "auto" else ""
+
+    @property
+    def by_accuracy(self) -> bool:
+        """Whether the path chooses its steps."""
+        asked = self.scene.discretization.steps
+        return self.method.counts is not None and asked == "auto" and not self.counted
 
     @cached_property
     def problem(self) -> Any:
@@ -236,6 +251,7 @@ def result_of(name: str, solution: Any, watch: Stopwatch) -> Result:
         steps=steps_from_rows(solution.rows),
         status=solution.status,
         ending=getattr(solution, "ending", ""),
+        counted_steps=getattr(solution, "counted_steps", ""),
         condition=getattr(solution, "condition", 0.0),
         dofs=getattr(solution, "dofs", 0),
         elements=getattr(solution, "elements", 0),

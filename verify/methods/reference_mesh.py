@@ -73,10 +73,11 @@ def second_mesh(scene: Scene) -> tuple[str, ...]:
     what either mesh leaves out, along and through the thickness. It has fewer steps, too.
     """
     mesh = reference_mesh(scene)
-    steps = max(FEWEST_STEPS, round(FEWER_STEPS * counted_steps(scene)))
+    counted = counted_steps(scene)
+    steps = min(max(FEWEST_STEPS, round(FEWER_STEPS * counted)), counted)
     return (
         f"dolfinx.degree={min(mesh.degree, 2)}",
         f"dolfinx.elements={max(mesh.elements // 2, min(2 * mesh.elements // 3, FEW_ELEMENTS), 4)}",
         f"dolfinx.layers={2 * mesh.layers}",
-        f"discretization.steps={min(steps, counted_steps(scene))}",
+        'discretization.steps="auto"' if scene.discretization.steps == "auto" else f"discretization.steps={steps}",
     )

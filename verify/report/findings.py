@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from verify.studies.cost.price import Price
     from verify.studies.found import Included
     from verify.studies.interface_rules import Study
     from verify.studies.paper.study import Study as Figures
@@ -29,6 +30,7 @@ class Findings:
     rates : convergence of the bases in plane elasticity; empty if not computed
     peels : Figure 9 of the paper, or None
     included : studies of other commands
+    prices : what accuracy costs, by quick ladders
     """
 
     reports: tuple[SceneReport, ...]
@@ -39,3 +41,4 @@ class Findings:
     rates: tuple[Convergence, ...] = ()
     peels: Figures | None = None
     included: Sequence[Included] = ()
+    prices: Sequence[Price] = ()

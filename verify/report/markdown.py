@@ -74,6 +74,8 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _summary(summary: Summary) -> Iterator[str]:
+    for price in summary.prices:
+        yield from (f"**What accuracy costs.** {plain(price.sentence)}", "")
     yield from (f"- {plain(sentence.text)}" for sentence in summary.sentences)
     if summary.missing:
         yield from ("", "Not run, stopped early, or neglected:", "")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from verify.pages.style import Panel
 from verify.pages.template import rendered
 from verify.pages.text import percent, seconds, symbols
 from verify.report import markdown
@@ -17,8 +18,9 @@ from verify.report.studies.included import IncludedSection
 from verify.report.studies.included import sections as shown
 from verify.report.studies.paper import section as paper_section
 from verify.report.summary import summarise
-from verify.studies.cost.figures import named
+from verify.studies.cost.figures import named, work_precision
 from verify.studies.cost.page import script as chart_script
+from verify.studies.cost.price import Price
 from verify.studies.effects.page import in_cell
 from verify.studies.hard.suite import totals
 
@@ -47,7 +49,7 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
     sections = tuple(section(report, f"scene-{i + 1}", between=few) for i, report in enumerate(findings.reports))
     planes = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(findings.planes))
     rates = plane_rates.section(findings.rates, "rates") if findings.rates else None
-    summary = summarise(sections, (*planes, *filter(None, [rates])))
+    summary = summarise(sections, (*planes, *filter(None, [rates])), findings.prices)
     studies = shown(findings.included, path.parent)
     page = rendered(
         "verify.report",
@@ -55,6 +57,7 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
         _FILTERS,
         sections=sections,
         summary=summary,
+        prices=[(price, _chart(price, f"price-{i + 1}")) for i, price in enumerate(summary.prices)],
         included=studies,
         scripts=_scripts(sections, studies),
         planes=planes,
@@ -73,10 +76,16 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
         path.with_suffix(".md").write_text("\n".join(lines), encoding="utf-8")
 
 
+def _chart(price: Price, key: str) -> Panel | None:
+    """The chart of a quick ladder; None where no run was measured."""
+    return work_precision(price.rows, key, "half") if any(row.measured for row in price.rows) else None
+
+
 def _scripts(sections: Sequence[Section], studies: Sequence[IncludedSection]) -> tuple[Markup, ...]:
     """The scripts that the page needs."""
-    stepper = (_HERE / "stepper.js").read_text(encoding="utf-8")
+    stepper, folds = ((_HERE / name).read_text(encoding="utf-8") for name in ("stepper.js", "folds.js"))
     return (
+        Markup(folds),
         *((Markup(stepper),) if any(s.frames for s in sections) else ()),
         *((chart_script(),) if any(s.chart for s in studies) else ()),
     )

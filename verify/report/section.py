@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from operator import itemgetter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from verify.pages.style import IN_TABLES, Panel
 from verify.pages.text import NO_VALUE, Units, inputs, modelled, number, percent, quantity, seconds, sentence
-from verify.report import converged, cost, matched, published, zones
+from verify.report import converged, cost, matched, published, toughness, zones
 from verify.report.figures import curves, drawing, fields, meshes, opening, undeformed
 from verify.report.figures.entry import Entry, entries
 from verify.report.tally import EVIDENCE, Tally, headline, tally
@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
 
+#: Title of the figures that every reader sees.
+LOADS = "Load and opening"
+
+
 @dataclass(frozen=True)
 class Figures:
     """Panels that share a heading."""
@@ -27,6 +31,7 @@ class Figures:
     title: str
     panels: tuple[Panel, ...]
     legend: tuple[Entry, ...] = ()
+    folded: bool = True
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,14 @@ class CheckGroup:
     name: str
     meaning: str
     rows: tuple[CheckRow, ...]
+
+    @property
+    def holds(self) -> bool:
+        return all(row.check.state == "holds" for row in self.rows)
+
+
+#: Checks of every kind, by name.
+Kinds: TypeAlias = tuple[tuple[Tally, tuple[CheckGroup, ...]], ...]
 
 
 @dataclass(frozen=True)
@@ -85,12 +98,13 @@ class Section:
     frames: tuple[opening.Frame, ...]
     convergence: tuple[converged.ConvergenceTable, ...]
     figures: tuple[Figures, ...]
-    checks: tuple[tuple[Tally, tuple[CheckGroup, ...]], ...]
+    checks: Kinds
     rows: tuple[RunRow, ...]
     matched: tuple[str, ...]  # sentences on the error of matched interfaces
     zones: tuple[zones.ZoneRow, ...]
     published: tuple[published.PublishedRow, ...]
     compared: tuple[Entry, ...]  # columns of the table of published values
+    toughness: toughness.ToughnessTable | None
     notes: tuple[str, ...]
 
     @property
@@ -100,6 +114,31 @@ class Section:
     @property
     def counts(self) -> Counts:
         return counted(self.report.checks)
+
+    @property
+    def open_checks(self) -> Kinds:
+        """The checks of a name of which one does not hold."""
+        return self._checks(held=False)
+
+    @property
+    def held_checks(self) -> Kinds:
+        """The checks of a name that all hold."""
+        return self._checks(held=True)
+
+    def _checks(self, held: bool) -> Kinds:
+        kept = ((kind, tuple(group for group in groups if group.holds is held)) for kind, groups in self.checks)
+        return tuple((kind, groups) for kind, groups in kept if groups)
+
+    @property
+    def coarse(self) -> bool:
+        """Whether a run has too few elements in the process zone."""
+        return any(not row.resolved for row in self.zones)
+
+    @property
+    def stopped(self) -> bool:
+        """Whether a run has failed or has not come to the end of its programme."""
+        runs = [entry.run for entry in self.entries]
+        return any(run.left_out.startswith("failed") if run.result is None else not run.result.complete for run in runs)
 
 
 def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
@@ -125,6 +164,7 @@ def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
         zones=zones.rows(report.scene, found),
         published=published.rows(report.scene, found),
         compared=published.compared(found),
+        toughness=toughness.table(report.scene, found),
         notes=(*_notes(found), *report.remarks),
     )
 
@@ -149,13 +189,10 @@ def _figures(
     base = next((entry for entry in drawn if entry.is_reference), None)
     ledger = next((e for e in sorted(drawn, key=lambda e: e.method != "nurbs") if e.method != "lefm"), None)
     groups = [group for group in groups if group]
-    load: list[Panel | None] = [
-        curves.load_opening(scene, drawn, f"{anchor}-load"),
-        curves.peak(scene, drawn, f"{anchor}-peak"),
-    ]
+    load = [curves.load_opening(scene, drawn, f"{anchor}-load"), curves.peak(scene, drawn, f"{anchor}-peak")]
+    finer = [curves.j_figure(scene, drawn, f"{anchor}-j")]
     if base is not None and any(e is not base and e.method != "lefm" for e in drawn):
-        load.append(curves.oscillation(scene, drawn, base, f"{anchor}-oscillation"))
-    load.append(curves.j_figure(scene, drawn, f"{anchor}-j"))
+        finer.insert(0, curves.oscillation(scene, drawn, base, f"{anchor}-oscillation"))
     small = len(groups) % 3 == 0
     interface = [fields.traction(scene, group, f"{anchor}-traction-{i}", small) for i, group in enumerate(groups)]
     plain = [
@@ -169,7 +206,8 @@ def _figures(
     if base is not None:
         times.append(cost.error_and_time(scene, drawn, base, f"{anchor}-cost"))
     titled = (
-        ("Load and opening", load, drawn),
+        (LOADS, load, drawn),
+        ("Oscillation and J-integral", finer, drawn),
         ("Traction along the interface", interface, [entry for entry in drawn if entry.result.snapshots]),
         ("Meshes", plain, ()),
         ("Deformed meshes and stress", deformed, ()),
@@ -177,7 +215,7 @@ def _figures(
         ("Cost", times, ()),
     )
     kept = [(title, tuple(p for p in panels if p is not None), tuple(legend)) for title, panels, legend in titled]
-    return tuple(Figures(*figures) for figures in kept if figures[1])
+    return tuple(Figures(*figures, folded=figures[0] != LOADS) for figures in kept if figures[1])
 
 
 def _check_groups(kind: str, report: SceneReport) -> tuple[CheckGroup, ...]:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from verify.report.section import Section
     from verify.report.studies.plane import PlaneSection
     from verify.report.studies.plane_rates import RatesSection
+    from verify.studies.cost.price import Price
     from verify.verdict import Check
 
 
@@ -57,9 +58,12 @@ class Summary:
     columns: tuple[Column, ...]
     rows: tuple[tuple[Section, tuple[Cell, ...]], ...]
     not_held: tuple[tuple[str, str, Check], ...]  # anchor and name of the section, broken or unresolved checks
+    prices: tuple[Price, ...] = ()
 
 
-def summarise(sections: Sequence[Section], planes: Sequence[PlaneSection | RatesSection] = ()) -> Summary:
+def summarise(
+    sections: Sequence[Section], planes: Sequence[PlaneSection | RatesSection] = (), prices: Sequence[Price] = ()
+) -> Summary:
     """The part of the page above the first scene."""
     checks = [(s.anchor, s.report.scene.name, check) for s in sections for check in s.report.checks]
     checks += [(p.anchor, p.name, check) for p in planes for check in p.checks]
@@ -77,6 +81,7 @@ def summarise(sections: Sequence[Section], planes: Sequence[PlaneSection | Rates
         columns=tuple(Column(method, name) for method, _, name in columns),
         rows=tuple((section, tuple(_cell(section, *column[:2]) for column in columns)) for section in sections),
         not_held=not_held,
+        prices=tuple(prices),
     )
 
 

@@ -42,7 +42,7 @@ def seconds(scene: Scene, method: str) -> float:
 
 def steps(scene: Scene, method: str) -> int:
     """Estimated number of steps: at least those asked for, more where the process zone limits the step length."""
-    if scene.discretization.steps == "auto" and find(method).with_dofs:
+    if prepare(scene, method).by_accuracy:
         return STEP_COUNTS.chosen
     specimen = scene.specimen
     bond = specimen.extent - specimen.free_length

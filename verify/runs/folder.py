@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from verify.curves.middles import Middles
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, SLIDING_COLUMNS, Result, Snapshot, support_columns
 from verify.support.checked_files import ANY, NUMBER, Damaged, number, read_json
 
@@ -25,9 +26,12 @@ NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 
 
 class CurveWriter:
-    """Writes every row immediately, so that a killed run leaves a valid, shorter file."""
+    """Writes every row immediately, so that a killed run leaves a valid, shorter file.
 
-    def __init__(self, folder: Path) -> None:
+    ``evidence.csv`` has the converged points alone; ``curve.csv`` also the middle of every step, if it is asked for.
+    """
+
+    def __init__(self, folder: Path, middles: bool = False) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         for name in FILES:  # files of an earlier run must not be taken for those of this one
             (folder / name).unlink(missing_ok=True)
@@ -36,12 +40,18 @@ class CurveWriter:
         self._curve = _opened(folder / "curve.csv", self._curve_columns)
         self._evidence: FileIO | None = None
         self._columns: tuple[str, ...] = ()
+        self._middle_of = Middles() if middles else None
+        self.interpolated = 0
 
     def __call__(self, row: Mapping[str, float]) -> None:
+        middle = None if self._middle_of is None else self._middle_of(row)
+        if middle is not None:
+            self._drawn(middle)
+            self.interpolated += 1
         if self._evidence is None:
             self._begin(row)
         else:
-            _append(self._curve, self._curve_columns, dict.fromkeys(self._curve_columns, math.nan) | dict(row))
+            self._drawn(row)
         assert self._evidence is not None
         _append(self._evidence, self._columns, row)
 
@@ -54,7 +64,10 @@ class CurveWriter:
             self._curve.close()
             self._curve_columns = (*CURVE_COLUMNS, *SLIDING_COLUMNS)
             self._curve = _opened(self._folder / "curve.csv", self._curve_columns)
-        _append(self._curve, self._curve_columns, dict.fromkeys(self._curve_columns, 0.0))
+        self._drawn(dict.fromkeys(self._curve_columns, 0.0))
+
+    def _drawn(self, row: Mapping[str, float]) -> None:
+        _append(self._curve, self._curve_columns, dict.fromkeys(self._curve_columns, math.nan) | dict(row))
 
     def close(self) -> None:
         for stream in (self._curve, self._evidence):
@@ -109,9 +122,11 @@ _RESULT = {
     "peak_memory_mb": float,
     "seconds": {ANY: float},
     "ending?": str,
+    "counted_steps?": str,
     "condition?": NUMBER,
     "nonzeros?": float,
     "jit_seconds?": float,
+    "interpolated_rows?": int,
 }
 
 
@@ -138,6 +153,7 @@ def read_result(folder: Path) -> Result:
         steps=steps,
         status=known["status"],
         ending=known.get("ending", ""),
+        counted_steps=known.get("counted_steps", ""),
         condition=number(known.get("condition", 0.0)),
         dofs=known["dofs"],
         elements=known["elements"],
@@ -161,10 +177,10 @@ def damage(folder: Path, proof: str) -> str:
         if proof.endswith(".json"):
             about = json.loads(content)
         whole = proof == "result.json" and about["status"] == "complete"
-        for name in ("curve.csv", "evidence.csv"):
+        for name, between in (("curve.csv", about.get("interpolated_rows", 0)), ("evidence.csv", 0)):
             if whole or (folder / name).exists():
                 rows = min(map(len, read_columns(folder / name).values()))
-                if whole and rows != about["steps"] + 1:
+                if whole and rows != about["steps"] + 1 + between:
                     return name
     except Damaged as error:
         return error.path.name

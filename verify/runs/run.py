@@ -103,14 +103,15 @@ class _Run:
     folder: Path
     keep: Keep
 
-    def finish(self, result: Result) -> tuple[Check, ...]:
-        """Compute the checks of a result, and write both."""
+    def finish(self, result: Result, interpolated: int) -> tuple[Check, ...]:
+        """Compute the checks of a result, and write both; so many rows of the curve are ``interpolated``."""
         checks = checks_of(self.prepared, result)
         if self.keep.fields and result.snapshots:
             write_fields(self.folder / "fields.npz", result.snapshots)
         if self.keep.fields and result.between:
             write_fields(self.folder / "moments.npz", result.between)
-        write_json(self.folder / "result.json", summary(self.prepared, result, checks))
+        about = summary(self.prepared, result, checks)
+        write_json(self.folder / "result.json", about | {"interpolated_rows": interpolated})
         return checks
 
     def stopped(self, rows: list[Row], why: str) -> Result:
@@ -123,7 +124,7 @@ def _recorded(
     one: _Run, on_step: OnRow | None, solving: Callable[[OnRow | None], Result]
 ) -> tuple[Result, tuple[Check, ...]]:
     cleared(one.folder)
-    writer = CurveWriter(one.folder)
+    writer = CurveWriter(one.folder, one.prepared.by_accuracy)
     rows: list[Row] = []
 
     def record(row: Row) -> None:
@@ -135,7 +136,7 @@ def _recorded(
     try:
         result = _with_warning(one.prepared, solving(record))
     except KeyboardInterrupt:
-        one.finish(one.stopped(rows, "interrupted"))
+        one.finish(one.stopped(rows, "interrupted"), writer.interpolated)
         raise
     except Exception as error:
         if isinstance(error, OSError) and error.errno in NO_ROOM:
@@ -146,11 +147,11 @@ def _recorded(
         why = _why(error)
         result = one.stopped(rows, why)
         if mpi_size() > 1:
-            one.finish(result)
+            one.finish(result, writer.interpolated)
             _take_down_all_ranks(why)
     finally:
         writer.close()
-    return result, one.finish(result)
+    return result, one.finish(result, writer.interpolated)
 
 
 def _why(error: Exception) -> str:
@@ -214,6 +215,7 @@ def summary(prepared: Prepared, result: Result, checks: tuple[Check, ...]) -> di
         "nonzeros": result.nonzeros,
         "effects": dict(prepared.effects),
         "decided": {one.key: one.why for one in prepared.decisions},
+        "counted_steps": prepared.counted or result.counted_steps,
         "neglected": neglected.summary(prepared, result),
         "process_zone": zone_resolution.summary(prepared, result),
         "matched_interface": matched.summary(prepared, result),

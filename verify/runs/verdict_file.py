@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, Protocol, get_args
 
 from verify.checks.judgement import Judgement
 from verify.runs.environment import machine, threads, versions
@@ -15,14 +15,33 @@ from verify.verdict import Check, Kind, SceneReport, counted, of_state
 VERDICT_FILE = "verdict.json"
 
 
-def write(out: Path, reports: Sequence[SceneReport], judgement: Judgement, included: Sequence[str] = ()) -> None:
+class Priced(Protocol):
+    """What accuracy costs on a scene (`verify.studies.cost.price`)."""
+
+    def summary(self) -> dict[str, Any]: ...
+
+
+def write(
+    out: Path,
+    reports: Sequence[SceneReport],
+    judgement: Judgement,
+    included: Sequence[str] = (),
+    prices: Sequence[Priced] = (),
+) -> None:
     """Write ``out``/verdict.json.
 
     Parameters
     ----------
     included : folders of studies that the report shows; they do not affect the verdict
+    prices : of accuracy, by quick ladders; they do not affect the verdict either
     """
-    write_json(out / VERDICT_FILE, content(reports, judgement, included))
+    write_json(out / VERDICT_FILE, content(reports, judgement, included) | {"price": _price(prices)})
+
+
+def _price(prices: Sequence[Priced]) -> dict[str, Any] | None:
+    """The first one, with the others in it."""
+    found = [price.summary() for price in prices]
+    return found[0] | {"others": found[1:]} if found else None
 
 
 def content(reports: Sequence[SceneReport], judgement: Judgement, included: Sequence[str] = ()) -> dict[str, Any]:

@@ -112,8 +112,8 @@ class Discretization(Section):
     """For tspline: elements follow the process zone, and dofs is the most at any time."""
     slave: Literal["upper", "lower"] = "upper"
     """The body whose points carry the interface."""
-    steps: int | Literal["auto"] = 150
-    """Equal opening increments; "auto": chosen by accuracy where the mesh resolves the process zone."""
+    steps: int | Literal["auto"] = "auto"
+    """Equal opening increments; "auto": chosen by accuracy where the mesh resolves the process zone, 150 elsewhere."""
     bend: float = Field(default=0.005, ge=1e-5, le=0.2)
     """For steps "auto": how far off its tangent the load may be, as a part of the peak load."""
 

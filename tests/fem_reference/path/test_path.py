@@ -14,10 +14,12 @@ from scipy.interpolate import CubicHermiteSpline
 
 from fem_reference.model.build import build_model
 from fem_reference.path import newton
-from fem_reference.path import path as following
+from fem_reference.path import step as stepping
 from fem_reference.path.control import front_of
-from fem_reference.path.path import Failure, departing, leaps, path
+from fem_reference.path.path import path
 from fem_reference.path.state import State
+from fem_reference.path.step import Failure, departing, leaps
+from fem_reference.path.stride import Counted
 from fem_reference.path.work import work_along
 from fem_reference.problem.dcb import Problem
 from fem_reference.problem.law import Law
@@ -191,7 +193,7 @@ def test_the_front_is_the_most_open_point_that_softens():
     softens_q = (last.g_q > model.law.g_peak) & (last.g_q < model.law.g_open)
     assert front.gap == np.max(last.g_q[softens_q])
     assert front.row_n @ last.u_n == pytest.approx(front.gap, rel=1e-12)
-    unloading = departing(model, last, 0.0)
+    unloading = departing(model, last, 0.0, Counted(0.02))
     assert unloading.heading == -1
     assert front_of(model, unloading, 0.02) is None
 
@@ -215,7 +217,7 @@ def test_a_step_onto_another_branch_is_a_failure(monkeypatch):
     before, after = next(states), next(states)
     assert not leaps(before, after)
     assert leaps(before, replace(after, bulk=0.8 * after.bulk)) and leaps(before, replace(after, work=1.2 * after.work))
-    monkeypatch.setattr(following, "leaps", lambda state, reached: True)
+    monkeypatch.setattr(stepping, "leaps", lambda state, reached: True)
     assert "energy leaps at opening" in next(states).reason
 
 

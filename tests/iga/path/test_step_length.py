@@ -32,20 +32,20 @@ def test_few_steps_or_none_are_chosen_by_accuracy() -> None:
 
 
 def test_a_counted_step_that_fails_changes_its_control_before_its_length() -> None:
-    lengths, seen = step_length(np.array([1.0]), 50).failed(), []
+    lengths, seen = step_length(np.array([1.0]), 50).failed(0.0), []
     assert lengths == Careful(Counted(0.02, 0.02)), "the same once more, but up to the kinks of the law"
     for _ in range(7):
         seen.append((CONTROLS[lengths.number], lengths.length / 0.02, lengths.front / 0.125))
-        lengths = lengths.failed()
+        lengths = lengths.failed(0.0)
     assert seen == [(name, half, half) for half in (1.0, 0.5, 0.25) for name in CONTROLS][:7]
     assert CONTROLS == ("front", "dissipation", "arc length")
 
 
 def test_a_counted_step_is_halved_a_dozen_times_and_no_more() -> None:
-    lengths, tried = step_length(np.array([1.0]), 50).failed(), []
+    lengths, tried = step_length(np.array([1.0]), 50).failed(0.0), []
     while lengths is not None:
         tried.append(lengths.length)
-        lengths = lengths.failed()
+        lengths = lengths.failed(0.0)
     assert len(tried) == 3 * 13 and tried[-1] == 0.02 / 4096
 
 
@@ -61,18 +61,18 @@ def test_a_step_by_accuracy_may_fail_three_times_in_a_row_and_is_then_counted() 
     lengths = step_length(np.array([3.0]), None)
     failed = [lengths]
     for _ in range(4):
-        failed.append(failed[-1].failed())
+        failed.append(failed[-1].failed(1.5))
     assert [now.length / lengths.length for now in failed[:4]] == [1.0, 0.5, 0.25, 0.125]
     assert [now.front for now in failed[:4]] == [1.0, 0.5, 0.25, 0.125]
     assert all(isinstance(now, ByAccuracy) and now.largest == lengths.largest for now in failed[:4])
-    assert failed[4] == Counted(0.02, 0.02, 0.005)
+    assert failed[4] == Counted(0.02, 0.02, 0.005, since=1.5)
 
 
 def test_every_step_by_accuracy_that_converged_makes_up_for_one_that_failed() -> None:
     """So that a path with a failure now and then is never counted, and its front goes as far as before."""
     lengths = start = step_length(np.array([10.0]), None)
     for _ in range(20):
-        lengths = lengths.failed().failed()
+        lengths = lengths.failed(0.0).failed(0.0)
         assert isinstance(lengths, ByAccuracy) and lengths.front == 0.25
         for front in (0.5, 1.0, 1.0):
             lengths = lengths.after(*ends(1.0, 0.1, 0.0), 4.0, Kept())
@@ -134,8 +134,22 @@ def test_a_step_that_is_not_accurate_is_cut_and_a_cornered_arc_ends_at_every_kin
     assert cornered.at_kinks == 0 and cornered.cuts == 0
 
 
+def test_a_path_that_crawls_from_point_to_point_counts_its_steps() -> None:
+    """As soon as attempts that get less far than counted steps outnumber the others; a front that opens is no crawl."""
+    start = lengths = replace(step_length(np.array([3.0]), None), length=0.1)
+    small = ends(1.0, 0.5 * start.counted.length, 0.0)
+    for opened, moved in ((0.5, small), (0.0, ends(1.0, 0.1, 0.0))):
+        for _ in range(2 * LENGTHS.crawl):
+            lengths = lengths.after(*moved, 4.0, Kept(opened=opened))
+        assert isinstance(lengths, ByAccuracy) and lengths.crawl == 0
+    for _ in range(LENGTHS.crawl // 2):
+        lengths = lengths.cut(Kept(part=0.5), 0.01).after(*small, 4.0, Kept(opened=0.0))
+    assert isinstance(lengths, ByAccuracy) and lengths.crawl == LENGTHS.crawl
+    assert lengths.after(*small, 4.0, Kept(opened=0.0)) == Counted(0.02, 0.02, since=1.01)
+
+
 def test_steps_that_are_counted_after_failures_are_accurate_and_those_of_the_user_as_they_are() -> None:
-    counted = replace(step_length(np.array([3.0]), None, 0.02), left=0).failed()
+    counted = replace(step_length(np.array([3.0]), None, 0.02), left=0).failed(0.0)
     assert isinstance(counted, Counted) and counted.bend == 0.02
     assert counted.cut(Kept(part=0.5), 0.02).after(*ends(1.0, 0.01, 0.0), 4.0, Kept()) == counted
     assert step_length(np.array([3.0]), 150).bend is None

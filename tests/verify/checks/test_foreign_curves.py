@@ -58,7 +58,7 @@ def test_a_file_becomes_a_method_of_the_report(
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
     only(monkeypatch, "beam", "lefm")
-    assert main(["verify", LINEAR, "--out", "out", "--jobs", "1", "--with", "mycode.csv", *AS]) == 0
+    assert main(["verify", LINEAR, "--no-ladder", "--out", "out", "--jobs", "1", "--with", "mycode.csv", *AS]) == 0
     said = capsys.readouterr().out
     assert re.search(r"beam-curve +analytical +\d\.\de-\d\d", said) and "mycode" in said.splitlines()[0]
     page = (folder / "out" / "report.html").read_text()
@@ -70,7 +70,7 @@ def test_a_file_becomes_a_method_of_the_report(
 
     before = sorted(path for path in (folder / "out" / STORE_FOLDER).iterdir() if path.is_dir())
     times = [path.stat().st_mtime_ns for path in before]
-    assert main(["verify", LINEAR, "--out", "out", "--jobs", "1", "--with", "off.csv", *AS]) == 1
+    assert main(["verify", LINEAR, "--no-ladder", "--out", "out", "--jobs", "1", "--with", "off.csv", *AS]) == 1
     said = capsys.readouterr()
     assert "2 of 2 runs are at hand" in said.err
     assert re.search(rf"broken +{LINEAR} +analytical +beam-curve +off / beam +2\.0\de-02", said.out)
@@ -81,7 +81,7 @@ def test_a_file_becomes_a_method_of_the_report(
 def test_a_curve_that_ends_too_early_fails(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     monkeypatch.setattr(verification, "write_page", lambda *what: None)
     only(monkeypatch, "lefm")
-    assert main(["verify", LINEAR, "--out", "out", "--jobs", "1", "--with", "mine=short.csv", *AS]) == 1
+    assert main(["verify", LINEAR, "--no-ladder", "--out", "out", "--jobs", "1", "--with", "mine=short.csv", *AS]) == 1
     assert re.search(r"broken .* cross-code +end +mine +3\.3\de-01", capsys.readouterr().out)
 
 

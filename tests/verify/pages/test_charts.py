@@ -52,11 +52,15 @@ def test_every_run_is_a_point_of_error_and_time(monkeypatch: pytest.MonkeyPatch)
     for method, ink, marker in (("nurbs", "nurbs", "o"), ("dolfinx", "dolfinx", "s")):
         expected = [(row.seconds, 100 * row.curve_error) for row in ROWS if row.method == method]
         assert alike(sorted(points(axes, ink, marker)), sorted(expected))
-    front = points(axes, "muted")
-    assert len(front) > 2
-    assert front == sorted(front) and [y for _, y in front] == sorted((y for _, y in front), reverse=True)
-    for x, y in front:
-        assert not any(row.seconds <= x and 100 * row.curve_error < y for row in ROWS)
+        own = [row for row in ROWS if row.method == method]
+        (front,) = [one for one in axes.lines if one.get_color() == colour(ink) and one.get_linestyle() == "-"]
+        x, y = front.get_data()
+        assert len(x) > 2 and list(x) == sorted(x) and list(y) == sorted(y, reverse=True)
+        for at, off in zip(x, y, strict=True):
+            assert not any(row.seconds <= at and 100 * row.curve_error < off for row in own)
+        for row in own:
+            assert any(at <= row.seconds and off <= 100 * row.curve_error for at, off in zip(x, y, strict=True))
+    assert legend(axes.figure) == ["DOLFINx, degree 2", "NURBS, degree 3"]
     levels = sorted(set(one.get_ydata()[0] for one in axes.lines if one.get_color() == colour("rule")))
     assert levels == pytest.approx([0.1, 0.3, 1.0])
     assert axes.get_xscale() == axes.get_yscale() == "log"

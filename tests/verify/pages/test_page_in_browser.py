@@ -67,7 +67,9 @@ def test_tables_have_captions_and_heads_have_scopes(browser: Browser) -> None:
 
 
 def test_slider_shows_one_opening_at_a_time_by_keyboard(browser: Browser) -> None:
-    shown = "[...document.querySelectorAll('.frame')].map((f) => f.getClientRects().length > 0)"
+    shown = "[...document.querySelectorAll('.frame')].map((f) => f.checkVisibility())"
+    assert browser.ask(shown) == [False, False, False]
+    browser.ask("document.querySelector('.stepper').closest('details').open = true")
     assert browser.ask(shown) == [False, False, True]
     browser.ask("document.querySelector('.stepper input').focus()")
     browser.press("ArrowLeft", 37)
@@ -91,9 +93,32 @@ def test_links_slider_and_runs_are_reached_by_tab_with_a_visible_focus(browser: 
         seen.append(what)
         assert outline not in ("none", ""), what
     tags = [what.split()[0] for what in seen]
-    links = browser.ask("[...document.querySelectorAll('a')].filter((a) => a.getClientRects().length).length")
+    links = browser.ask("[...document.querySelectorAll('a')].filter((a) => a.checkVisibility()).length")
     assert tags.count("A") == links and tags.count("INPUT") > 1 and "SELECT" in tags
     assert "path point" in seen  # the runs of the chart
+
+
+def test_a_link_opens_what_it_leads_to_and_print_opens_all(browser: Browser, page: Path) -> None:
+    browser.open(page)
+    open_ones = "[...document.querySelectorAll('details')].filter((d) => d.open).length"
+    row = "document.getElementById('scene-1-run-nurbs')"
+    assert not browser.ask(f"{row}.checkVisibility()")
+    browser.ask("location.hash = '#scene-1-run-nurbs'")
+    assert browser.ask(f"new Promise((done) => setTimeout(() => done({row}.checkVisibility()), 200))")
+    before = browser.ask(open_ones)
+    browser.ask("dispatchEvent(new Event('beforeprint'))")
+    assert browser.ask(open_ones) == browser.ask("document.querySelectorAll('details').length") > before
+    browser.ask("dispatchEvent(new Event('afterprint'))")
+    assert browser.ask(open_ones) == before
+
+
+def test_what_does_not_hold_is_not_folded(browser: Browser, page: Path) -> None:
+    """And what holds is, beside it too."""
+    browser.open(page)
+    seen = "[...document.querySelectorAll('.checks tr{state}')].map((row) => row.checkVisibility())"
+    assert browser.ask(seen.format(state=".broken")) == [True]
+    held = browser.ask(seen.format(state=".holds"))
+    assert held and not all(held)
 
 
 def test_letters_of_the_text_are_large_enough_on_a_phone(browser: Browser) -> None:

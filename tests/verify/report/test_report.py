@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
+from made_up_costs import SCENE, a_row, against  # noqa: E402
 from made_up_runs import ENVIRONMENT, made_up, scene_report  # noqa: E402
 
 from verify import report  # noqa: E402
@@ -24,6 +26,7 @@ from verify.report.figures.agreement import path  # noqa: E402
 from verify.report.tally import EVIDENCE  # noqa: E402
 from verify.result import CURVE_COLUMNS, Result  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
+from verify.studies.cost.price import Price  # noqa: E402
 from verify.verdict import Check, SceneReport  # noqa: E402
 
 
@@ -88,7 +91,8 @@ def test_asks_nothing_of_the_network(whole: tuple[str, Page]) -> None:
     text, parsed = whole
     assert all(a.startswith(("#", "data:image/webp;base64,", "./")) for a in parsed.addresses)
     assert not {"link", "iframe", "object", "embed"} & set(parsed.tags)
-    assert parsed.tags.count("script") == 1 and "stepper" in re.findall("<script>(.*?)</script>", text, re.DOTALL)[0]
+    folds, stepper = re.findall("<script>(.*?)</script>", text, re.DOTALL)
+    assert parsed.tags.count("script") == 2 and "details" in folds and "stepper" in stepper
     assert not re.search(r"fetch\(|XMLHttpRequest|WebSocket|import\(|sendBeacon", text)
     assert not re.search(r"url\((?!#)|@import|https?://(?!www\.w3\.org/)", text)
 
@@ -229,8 +233,15 @@ def test_texts_are_escaped(tmp_path: Path) -> None:
     scene = scene_report().scene.model_copy(update={"name": hostile, "units": f"N & {hostile}, mm, MPa"})
     given = replace(scene_report(), runs=changed(scene_report(), "nurbs", label=hostile, command=hostile).runs[0:4:3])
     text, parsed = page(tmp_path, replace(given, scene=scene))
-    assert text.count("<script") == 1 and parsed.tags.count("script") == 1  # our own
+    assert text.count("<script") == 2 and parsed.tags.count("script") == 2  # our own
     assert "<script>alert" not in text and hostile in parsed.text
+
+
+def test_a_ladder_of_which_nothing_was_measured_has_a_sentence_and_no_chart(tmp_path: Path) -> None:
+    price = Price(SCENE, against(), (a_row("nurbs", nan, nan), a_row("dolfinx", nan, nan, 540, 2)))
+    report.write(report.Findings((), ENVIRONMENT, prices=(price,)), tmp_path / "report.html")
+    text = (tmp_path / "report.html").read_text()
+    assert price.sentence in text and "Curve error against time" not in text and "<svg" not in text
 
 
 def test_numbers_read_well() -> None:

@@ -11,6 +11,7 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
+from made_up_costs import SCENE, a_row, against  # noqa: E402
 from made_up_runs import ENVIRONMENT, made_up, run, scene_report  # noqa: E402
 
 from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS  # noqa: E402
@@ -19,6 +20,7 @@ from verify.report import markdown  # noqa: E402
 from verify.report.section import Section, section  # noqa: E402
 from verify.report.summary import Summary, summarise
 from verify.report.tally import headline  # noqa: E402
+from verify.studies.cost.price import Price  # noqa: E402
 from verify.verdict import Check, Counts, Run, SceneReport  # noqa: E402
 
 FAILS = Check("j-integral", "lagrange", 0.02, 0.005, "exact", "J is the area under the traction law.")
@@ -190,6 +192,12 @@ def test_markdown_has_the_numbers_of_the_page(scenes: tuple[Section, ...], summa
     assert judged[2][1][2] == "ring" and judged[0][1][-1] == "✓ holds"
     assert "## a ring" in lines and "rates: as expected." in lines
     assert tables(lines)[-1][1:] == [[name, value] for name, value in ENVIRONMENT.items()]
+
+
+def test_markdown_begins_with_the_price(scenes: tuple[Section, ...]) -> None:
+    price = Price(SCENE, against(), (a_row("nurbs", 0.002, 0.2, 432, 2), a_row("dolfinx", 0.002, 0.8, 756, 2)))
+    lines = markdown.lines(summarise(scenes, (), (price,)), scenes, (), None, (), {})
+    assert lines[4] == f"**What accuracy costs.** {price.sentence}" and "4 × as long" in lines[4]
 
 
 def test_markdown_lines_repeat_every_run(scenes: tuple[Section, ...], summary: Summary) -> None:

@@ -24,7 +24,7 @@ from verify.methods.solve import prepare
 from verify.result import CURVE_COLUMNS, Result, Snapshot, steps_from_rows
 from verify.runs import environment
 from verify.runs import run as run_of
-from verify.runs.folder import CurveWriter, read_columns, read_result, write_json
+from verify.runs.folder import CurveWriter, damage, read_columns, read_result, write_json
 from verify.runs.run import Keep, run
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
@@ -35,7 +35,9 @@ RESULT_KEYS = {
     "scene", "method", "dofs", "elements", "steps", "newton_iterations", "rejected_steps", "peak_load", "peak_opening",
     "seconds", "peak_memory_mb", "effects", "checks", "versions", "machine", "threads", "status", "ending", "condition",
     "process_zone", "matched_interface", "decided", "neglected", "nonzeros", "jit_seconds",
+    "counted_steps", "interpolated_rows",
 }  # fmt: skip
+SHORT = ("load.opening=1.0", "discretization.dofs=800")
 SECONDS_KEYS = ["mesh", "basis", "assembly", "factor", "solve", "other", "total"]
 PROJECT = Path(__file__).resolve().parents[3]
 
@@ -96,6 +98,38 @@ def test_curve_csv_of_a_bond_that_slides_has_j_and_the_mode_ratio(tmp_path: Path
     writer.close()
     lines = (tmp_path / "curve.csv").read_text().splitlines()
     assert lines == [f"{HEADER},J_loads,J_bond,mode_ratio", ",".join("0" * 10), "1,1,1,1,1,1,1,2,3,0.5"]
+
+
+def test_the_middles_of_chosen_steps_are_in_the_curve_alone(tmp_path: Path) -> None:
+    """Evidence, steps and iterations are those of converged points; a file that lacks one row is damaged."""
+    chosen, counted = ([*SHORT, *more] for more in ((), ("discretization.steps=20",)))
+    for name, overrides in (("chosen", chosen), ("counted", counted)):
+        result, _ = run(prepare(load_scene("dcb-czm1-linear", overrides), "nurbs"), tmp_path / name)
+        about = json.loads((tmp_path / name / "result.json").read_text())
+        curve, evidence = (read_columns(tmp_path / name / file) for file in ("curve.csv", "evidence.csv"))
+        middles = curve["newton_iterations"][1:] == 0.0
+        assert about["steps"] + 1 == len(evidence["load"]) == len(result.load) == np.sum(~middles) + 1
+        assert about["interpolated_rows"] == np.sum(middles) == (about["steps"] if name == "chosen" else 0)
+        assert np.array_equal(curve["load"][1:][~middles], evidence["load"][1:])
+        assert about["newton_iterations"] == evidence["newton_iterations"].sum()
+        open_ = [
+            np.abs(one["external_work"] - one["stored_energy"] - one["dissipated_energy"]).max()
+            for one in (curve, evidence)
+        ]
+        assert open_[0] <= 1.001 * open_[1] and about["counted_steps"] == ""
+        assert damage(tmp_path / name, "result.json") == ""
+    file = tmp_path / "chosen" / "curve.csv"
+    file.write_text("".join(file.read_text().splitlines(keepends=True)[:-1]))
+    assert damage(tmp_path / "chosen", "result.json") == "curve.csv"
+
+
+def test_steps_that_cannot_be_chosen_are_counted_and_the_run_says_why(tmp_path: Path) -> None:
+    prepared = prepare(load_scene("dcb-czm2", ["discretization.dofs=280", "load.opening=0.1"]), "lagrange")
+    assert prepared.counted.endswith("interface points share the process zone, and steps by accuracy take 8")
+    run(prepared, tmp_path)
+    about = json.loads((tmp_path / "result.json").read_text())
+    assert about["counted_steps"] == prepared.counted and about["steps"] >= 150 and about["interpolated_rows"] == 0
+    assert prepare(load_scene("dcb-czm2"), "beam").counted == "", "which never chooses any"
 
 
 def test_result_json_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:

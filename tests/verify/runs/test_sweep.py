@@ -362,7 +362,9 @@ def test_a_path_takes_more_steps_where_its_front_asks_for_them() -> None:
     asked = ["discretization.steps=40"]
     assert steps(load_scene("dcb-czm1", asked), "nurbs") == pytest.approx(86, rel=0.1)
     assert steps(load_scene("peel-120", asked), "nurbs") == pytest.approx(200, rel=0.2)
-    assert steps(load_scene("dcb-czm1"), "nurbs") == steps(load_scene("dcb-czm1", ["load.opening=0.1"]), "nurbs") == 150
+    enough = ["discretization.steps=150"]
+    for more in ((), ("load.opening=0.1",)):
+        assert steps(load_scene("dcb-czm1", [*enough, *more]), "nurbs") == 150
     chosen = load_scene("dcb-czm1", ["discretization.steps=auto"])
     assert steps(chosen, "nurbs") < 86 and steps(chosen, "dolfinx") == 150
 

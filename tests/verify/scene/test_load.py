@@ -150,7 +150,7 @@ def test_a_useful_scene_is_short(tmp_path: Path) -> None:
     assert scene.name == "mine"
     assert scene.load.opening == (3.0,)
     assert scene.interface.penalty == pytest.approx(1e5)  # a hundred initial stiffnesses of p_max / g_max = 1000
-    assert scene.discretization.steps == 150
+    assert scene.discretization.steps == "auto"
 
 
 @pytest.mark.parametrize("name", packaged_scenes())

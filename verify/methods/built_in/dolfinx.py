@@ -26,7 +26,7 @@ from verify.methods.problems import common_keys, rectangles
 from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.scene.bond.mixed import mixed_bond
-from verify.scene.schema import Scene, counted_steps
+from verify.scene.schema import Scene
 from verify.support.timing import Stopwatch
 
 
@@ -48,7 +48,8 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
             on_base=scene.specimen.clamped,
             **common_keys(scene, effects),
             **_sliding(scene, effects),
-            steps=counted_steps(scene),
+            steps=None if scene.discretization.steps == "auto" else scene.discretization.steps,
+            bend=scene.discretization.bend,
             degree=mesh.degree,
             elements=mesh.elements,
             layers=mesh.layers,
@@ -104,6 +105,11 @@ def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Resu
     return result_of(prepared.method.name, solution, watch)
 
 
+def counts(prepared: Prepared) -> str:
+    """Why the path cannot choose its steps; empty where it can."""
+    return "damage follows in time" if prepared.effects["shear"] and prepared.scene.interface.viscosity else ""
+
+
 def _laws() -> tuple[str, ...]:
     from fem_reference.problem.law import MODELLED_LAWS
 
@@ -126,6 +132,7 @@ DOLFINX = Method(
     laws=_laws,
     fixed=_both_bodies,
     code="dolfinx",
+    counts=counts,
     slides=True,
     packages=("fem_reference",),
     ranks=True,

@@ -95,18 +95,25 @@ def mesh_facts(prepared: Prepared) -> MeshFacts:
 
 
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
-    """The path of a scene; steps are counted where too few interface points share the process zone to choose them."""
+    """The path of a scene; steps are counted where they cannot be chosen by accuracy."""
     solver, problem = prepared.problem
-    if problem.steps is None and not _smooth(prepared):
+    if prepared.counted:
         problem = replace(problem, steps=DEFAULT_STEPS)
     watch = Stopwatch()
     return result_of(prepared.method.name, solver.solve(problem, on_step, watch.phase, on_frame), watch)
 
 
-def _smooth(prepared: Prepared) -> bool:
-    """Whether few steps draw the curve: the mesh stays as it is, and many points share the process zone."""
-    mesh = prepared.scene.discretization
-    return not mesh.adaptive and mesh.interface_points * prepared.zone.elements >= LOOKING.smooth
+def counts(prepared: Prepared) -> str:
+    """Why few steps would not draw the curve; empty where they do."""
+    mesh, bond = prepared.scene.discretization, prepared.scene.interface
+    if mesh.adaptive:
+        return "elements follow the process zone"
+    if prepared.effects["shear"] and (bond.viscosity or bond.friction):
+        return "points stick and slip one after the other" if bond.friction else "damage follows in time"
+    points = mesh.interface_points * prepared.zone.elements
+    if points >= LOOKING.smooth:
+        return ""
+    return f"{points:.1f} interface points share the process zone, and steps by accuracy take {LOOKING.smooth}"
 
 
 def require(prepared: Prepared) -> None:
@@ -155,6 +162,7 @@ def _method(number: int, basis: Basis) -> Method:
         problem=partial(iga_problem, basis=basis.name),
         mesh=mesh_facts,
         require=require,
+        counts=counts,
         laws=_laws,
         code="iga",
         packages=("iga",),

@@ -35,6 +35,12 @@ class Entry:
         return METHOD_NAMES.get(self.run.method, self.run.method)
 
     @property
+    def beside_its_numbers(self) -> str:
+        """The label where its number of unknowns stands beside it."""
+        dofs = self.run.result.dofs if self.run.result is not None else 0
+        return self.label.removesuffix(f", {dofs} unknowns")
+
+    @property
     def legend(self) -> str:
         """The label, marked for LEFM, whose curve is a limit."""
         return f"{self.label} (limit)" if self.method == "lefm" else self.label

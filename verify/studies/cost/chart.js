@@ -43,15 +43,22 @@ for (const whole of document.querySelectorAll(".work-precision")) {
     make("text", { x: (L + W - R) / 2, y: H - 8, "text-anchor": "middle", fill: "var(--ink)", "font-size": 12 }, chart, across.selectedOptions[0].text);
     const turn = `rotate(-90 14 ${(T + H - B) / 2})`;
     make("text", { x: 14, y: (T + H - B) / 2, transform: turn, "text-anchor": "middle", fill: "var(--ink)", "font-size": 12 }, chart, up.selectedOptions[0].text);
-    const front = [];
-    for (const row of [...shown].sort((a, b) => value(a, across) - value(b, across)))
-      if (!front.length || value(row, up) < value(front.at(-1), up)) front.push(row);
-    const path = front.map((row, i) => `${i ? "L" : "M"}${x.at(value(row, across))} ${y.at(value(row, up))}`).join("");
-    make("path", { d: path, fill: "none", stroke: "var(--muted)", "stroke-width": 1 }, chart);
+    // A line a method and degree through the runs that none of its own beats in both; the others are faint.
+    const fronts = new Map();
+    for (const row of [...shown].sort((a, b) => value(a, across) - value(b, across))) {
+      const family = `${row.method} ${row.degree}`, front = fronts.get(family) || [];
+      if (!front.length || value(row, up) < value(front.at(-1), up)) fronts.set(family, [...front, row]);
+    }
+    for (const front of fronts.values()) {
+      const path = front.map((row, i) => `${i ? "L" : "M"}${x.at(value(row, across))} ${y.at(value(row, up))}`).join("");
+      make("path", { d: path, fill: "none", stroke: `var(--${data.colours[front[0].method]})`, "stroke-width": 1.4 }, chart);
+    }
+    const best = new Set([...fronts.values()].flat());
     for (const row of shown) {
       const place = `translate(${x.at(value(row, across))} ${y.at(value(row, up))})`;
       const point = make("path", { d: shapes[row.degree], transform: place, fill: `var(--${data.colours[row.method]})`, tabindex: 0, role: "img" }, chart);
       point.classList.add("point");
+      if (!best.has(row)) point.classList.add("faint");
       make("title", {}, point, row.words);
       for (const event of ["mouseenter", "focus", "click"]) point.addEventListener(event, () => { note.textContent = row.words; });
     }

@@ -35,19 +35,46 @@ def named(row: Row) -> str:
     return f"{name}, degree {row.degree}" if row.degree else name
 
 
-def work_precision(rows: Sequence[Row], key: str) -> Panel:
-    """Error against time, for a page without scripts: all runs, and the Pareto front."""
+def work_precision(rows: Sequence[Row], key: str, size: str = "wide") -> Panel:
+    """Error against time: a line through the best runs of every method and degree, the other runs faint.
+
+    Parameters
+    ----------
+    size : "wide", or "half" of a page
+    """
+    wide = size == "wide"
     with drawing():
-        figure, axes = panel(HALF * 1.5, 3.6)
-        for row in rows:
-            if row.measured:
-                axes.plot(row.seconds, 100 * row.curve_error, _MARKERS[row.degree], **_ink(row), markersize=4)
-        best = pareto(rows)
-        axes.plot([r.seconds for r in best], [100 * r.curve_error for r in best], color=colour("muted"), linewidth=0.8)
+        figure, axes = panel(HALF * (1.7 if wide else 1.0), 3.6 if wide else 2.8)
+        if wide:
+            box = axes.get_position()
+            axes.set_position((box.x0, box.y0, 0.68 * box.width, box.height))
+        for front, rest in fronts(rows):
+            marker = {"marker": _MARKERS[front[0].degree], **_ink(front[0])}
+            axes.plot(*_work(rest), linestyle="none", alpha=0.25, markersize=2.5, **marker)
+            axes.plot(*_work(front), linewidth=1.1, markersize=4, label=named(front[0]), **marker)
         _levels(axes, 100.0)
         logarithmic(axes, "seconds", "curve error (%)")
+        axes.legend(**({"loc": "center left", "bbox_to_anchor": (1.02, 0.5)} if wide else {"loc": "best"}))
         svg = to_svg(figure, key, "Curve error against time")
-    return Panel(svg, "Every run; the line joins those that no other beats in both error and time.", "wide")
+    caption = (
+        "Lower left is better. Each line joins the runs of one method and degree that none of their own beats in both "
+        "error and time; the others are faint. Grey lines: 1, 0.3 and 0.1 %."
+    )
+    return Panel(svg, caption, size)
+
+
+def fronts(rows: Sequence[Row]) -> list[tuple[list[Row], list[Row]]]:
+    """For every method and degree its Pareto front of error and time, and its other runs."""
+    found: dict[str, list[Row]] = {}
+    for row in rows:
+        if row.measured:
+            found.setdefault(row.family, []).append(row)
+    best = {name: pareto(ones) for name, ones in sorted(found.items())}
+    return [(front, [row for row in found[name] if row not in front]) for name, front in best.items()]
+
+
+def _work(rows: Sequence[Row]) -> tuple[list[float], list[float]]:
+    return [row.seconds for row in rows], [100.0 * row.curve_error for row in rows]
 
 
 def error_and_unknowns(rows: Sequence[Row], orders: Mapping[str, float], key: str) -> Panel:

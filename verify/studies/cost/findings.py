@@ -18,6 +18,9 @@ LEVELS: Mapping[str, float] = {"1%": 0.01, "0.3%": 0.003, "0.1%": 0.001}
 #: Methods with an error of their theory, which no mesh reduces: compared, but never the cheapest.
 THEORIES = ("beam",)
 
+#: The code of a method with a mesh; all others are bases of `iga`.
+CODES = {"dolfinx": "DOLFINx"}
+
 #: Number of finest meshes from which an order is fitted.
 RUNGS_OF_AN_ORDER = 4
 
@@ -32,6 +35,16 @@ class Cheapest:
     level: str
     best: Row | None
     of_method: Mapping[str, Row]
+
+    @property
+    def codes(self) -> dict[str, float]:
+        """Time of the quickest run of each code with a mesh over that of the quickest of all, by its name."""
+        quickest: dict[str, float] = {}
+        for method, row in self.of_method.items():
+            if method not in THEORIES:
+                code = CODES.get(method, "iga")
+                quickest[code] = min(row.seconds, quickest.get(code, row.seconds))
+        return {code: each / self.best.seconds for code, each in quickest.items()} if self.best else {}
 
     @property
     def ratio(self) -> dict[str, float]:
@@ -119,12 +132,28 @@ def _sizes(rows: Sequence[Row]) -> int:
     return len({row.dofs for row in rows if row.dofs})
 
 
+def peer(best: Cheapest, equal: Cheapest) -> str:
+    """How the two codes compare for an accuracy, each at its best and with the same number of steps asked of both.
+
+    Empty where only one of them is as accurate at its best.
+    """
+    told = []
+    for found, when in ((best, "each at its best"), (equal, f"with {LADDER.steps} steps asked of both")):
+        times = found.codes
+        if len(times) < 2:
+            told.append(f"nothing to compare {when}")
+            continue
+        slower, quicker = max(times, key=lambda code: times[code]), min(times, key=lambda code: times[code])
+        told.append(f"{slower} takes {times[slower]:.2g} × as long as {quicker} {when}")
+    return ", ".join(told) if len(best.codes) > 1 else ""
+
+
 def table(rows: Sequence[Row]) -> list[str]:
     """The cheapest run of every method for every accuracy, and its ratio to the cheapest of all."""
     lines = []
     for level in LEVELS:
         found, equal = cheapest(rows, level), cheapest(of_equal_steps(rows), level)
-        lines.append(f"curve error <= {level}")
+        lines.append(f"curve error <= {level}" + (f": {said}" if (said := peer(found, equal)) else ""))
         for method, row in found.of_method.items():
             ratio = row.seconds / found.best.seconds if found.best else nan
             same = equal.of_method.get(method)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -20,8 +20,8 @@ class Ladder:
 
     ratio, rungs : ratio of the numbers of elements of successive meshes, and number of meshes
     steps : number of steps of the first runs, enough for the sharp peak of ``peel-120``
-    few_steps : settings of the steps that are tried on accurate meshes to save time. ``iga`` chooses its steps; the
-        number after "auto" is the allowed distance from the tangent. DOLFINx counts steps and adds some for the zone
+    few_steps : for every accuracy settings of the steps that are tried on meshes which may be the cheapest for it; both
+        codes choose them. The number after "auto" is the allowed distance from the tangent
     other_steps : numbers of steps that are tried on the best meshes
     more_points : interface points per element beyond the degree, for the ``iga`` methods. They cost little: on
         ``dcb-czm1`` with 500 unknowns 5 points instead of 2 reduce the error of cubic NURBS from 0.43 to 0.17 %, of
@@ -30,10 +30,15 @@ class Ladder:
 
     ratio: float = 1.4
     rungs: int = 8
-    steps: int = 80
-    few_steps: tuple[str, ...] = ("auto", "auto-0.02", "auto-0.05", "auto-0.1")
-    few_steps_dolfinx: tuple[int, ...] = (20,)
-    other_steps: tuple[int, ...] = (40, 150)
+    steps: int | str = 80
+    few_steps: Mapping[str, tuple[str, ...]] = field(
+        default_factory=lambda: {
+            "1%": ("auto-0.05", "auto-0.1"),
+            "0.3%": ("auto-0.02", "auto-0.05"),
+            "0.1%": ("auto", "auto-0.02"),
+        }
+    )
+    other_steps: tuple[int | str, ...] = (40, 150)
     more_points: int = 2
 
 
@@ -93,41 +98,48 @@ class Try:
         own = _overrides(self.family, scene, self.size, self.steps)
         return Job(source, scene, self.family.solver, self.variant, (*given, *own), repeat=self.repeat)
 
-    def with_few_steps(self) -> Iterator[Try]:
-        """The same mesh with few steps."""
+    def with_few_steps(self, level: str) -> Iterator[Try]:
+        """The same mesh with the few steps that are tried for an accuracy."""
         if self.family is not BEAM_FAMILY:
-            yield from (replace(self, steps=few) for few in self._few_steps)
+            yield from (replace(self, steps=few) for few in LADDER.few_steps[level])
 
-    @property
-    def _few_steps(self) -> tuple[int | str, ...]:
-        return LADDER.few_steps_dolfinx if self.family.solver == "dolfinx" else LADDER.few_steps
-
-    def with_other_steps(self) -> Iterator[Try]:
-        """The same mesh with other numbers of steps."""
+    def with_other_steps(self, among: Sequence[int | str] | None = None) -> Iterator[Try]:
+        """The same mesh with other settings of the steps."""
         if self.family is not BEAM_FAMILY:
-            yield from (replace(self, steps=steps) for steps in LADDER.other_steps)
+            yield from (replace(self, steps=steps) for steps in among or LADDER.other_steps)
 
 
-def ladder(scene: Scene, family: Family) -> list[Try]:
-    """The meshes of a family on a scene, coarse to fine; empty where no mesh is possible."""
+def ladder(scene: Scene, family: Family, plan: Ladder | None = None) -> list[Try]:
+    """The meshes of a family on a scene by a plan, coarse to fine; empty where no mesh is possible."""
+    plan = plan or LADDER
     if family.solver == "beam":
-        return [Try(family, rung, 0, steps) for rung, steps in enumerate((LADDER.steps, *LADDER.other_steps))]
+        return [Try(family, rung, 0, steps) for rung, steps in enumerate((plan.steps, *plan.other_steps))]
     each = size_of_an_element(scene, family)
-    sizes = (
-        np.unique(np.rint(each * family.first * LADDER.ratio ** np.arange(LADDER.rungs))) if np.isfinite(each) else ()
-    )
-    return [Try(family, rung, int(size), LADDER.steps) for rung, size in enumerate(sizes)]
+    sizes = np.unique(np.rint(each * family.first * plan.ratio ** np.arange(plan.rungs))) if np.isfinite(each) else ()
+    return [Try(family, rung, int(size), plan.steps) for rung, size in enumerate(sizes)]
 
 
-def ladders(source: str, scene: Scene, given: Sequence[str]) -> tuple[dict[Family, list[Try]], list[str]]:
-    """The meshes of every family with at least one, and a sentence for every method that cannot solve the scene."""
+def ladders(
+    source: str,
+    scene: Scene,
+    given: Sequence[str],
+    families: Sequence[Family] | None = None,
+    plan: Ladder | None = None,
+) -> tuple[dict[Family, list[Try]], list[str]]:
+    """The meshes of every family with at least one, and a sentence for every method that cannot solve the scene.
+
+    Parameters
+    ----------
+    given : overrides of the whole study
+    families, plan : default: all, by `LADDER`
+    """
     found: dict[Family, list[Try]] = {}
     reasons: dict[str, str] = {}
-    for family in (*FAMILIES, BEAM_FAMILY):
+    for family in families or (*FAMILIES, BEAM_FAMILY):
         if family.adaptive and not scene.specimen.symmetric:
             reasons.setdefault(family.method, "left out: only the mesh of a dcb follows the process zone")
             continue
-        rungs = {one: left_out(one.job(source, scene, given)) for one in ladder(scene, family)}
+        rungs = {one: left_out(one.job(source, scene, given)) for one in ladder(scene, family, plan)}
         possible = [one for one, why in rungs.items() if not why]
         if possible:
             found[family] = possible

@@ -13,7 +13,7 @@ from markupsafe import Markup
 from verify.pages.style import Panel
 from verify.pages.text import percent, seconds
 from verify.studies.cost.figures import SHOWN, error_and_unknowns, named, phases, triple, work_precision
-from verify.studies.cost.findings import LEVELS, Cheapest, cheapest, growth, of_equal_steps, orders
+from verify.studies.cost.findings import LEVELS, Cheapest, cheapest, growth, of_equal_steps, orders, peer
 from verify.studies.cost.row import Row
 from verify.studies.page import write_study
 
@@ -54,7 +54,9 @@ class Level:
             return f"Curve error {self.name}: no run is that accurate."
         beaten = ", ".join(f"{SHOWN[m][0]} {ratio:.2g} ×" for m, ratio in self.best.ratio.items())
         took = f"{named(row)}, {row.dofs} unknowns, {row.steps} steps, {seconds(row.seconds)}"
-        return f"Curve error {self.name}: {took}. " + (f"Times of the others: {beaten}." if beaten else "")
+        others = f" Times of the others: {beaten}." if beaten else ""
+        codes = f" {said}." if (said := peer(self.best, self.equal)) else ""
+        return f"Curve error {self.name}: {took}.{others}{codes}"
 
 
 @dataclass(frozen=True)

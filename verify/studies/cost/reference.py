@@ -11,6 +11,7 @@ import numpy as np
 from verify.curves.convergence import GCI_SAFETY, assess
 from verify.curves.of_run import cubics, dissipated, distance, peak_load
 from verify.methods.dolfinx import dolfinx_installed
+from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.schema import Scene
@@ -21,14 +22,15 @@ from verify.studies.cost.ladder import Family, Try, size_of_an_element
 class Meshes:
     """Meshes of the reference.
 
-    zone, other_zone : elements in the process zone, of the reference and of the other code; both have degree 3
-    steps : number of steps
+    zone, other_zone : elements in the process zone, of the reference and of the other code, which may have none; both
+        have degree 3
+    steps : setting of the steps
     caution : factor on the distance of the two finest meshes where no order is observed (Roache 1994)
     """
 
     zone: tuple[float, ...] = (4.0, 8.0, 16.0)
     other_zone: tuple[float, ...] = (2.5, 5.0)
-    steps: int = 200
+    steps: int | str = 200
     caution: float = 3.0
 
 
@@ -37,9 +39,9 @@ MESHES = Meshes()
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """The result on the finest of three meshes.
+    """The result on the finest of its meshes.
 
-    uncertainty : relative, of curve, peak load and dissipated energy: grid convergence index of the three meshes
+    uncertainty : relative, of curve, peak load and dissipated energy: grid convergence index of the meshes
     order : observed order of the curve, NaN if none is observed
     apart : relative L2 distance of the other code's finest curve, NaN without another code
     other : uncertainty of that curve
@@ -86,40 +88,43 @@ class Reference:
         }
 
 
-def reference_jobs(source: str, scene: Scene, given: Sequence[str]) -> tuple[tuple[Job, ...], tuple[Job, ...]]:
+def reference_jobs(
+    source: str, scene: Scene, given: Sequence[str], meshes: Meshes | None = None
+) -> tuple[tuple[Job, ...], tuple[Job, ...]]:
     """Runs of the reference, coarse to fine, and of the other code; the latter empty without DOLFINx."""
+    meshes = meshes or MESHES
     one_arm = scene.specimen.symmetric and scene.discretization.mismatch == 1.0
     halved = ("effects.symmetry=true",) if one_arm else ()
-    own = _jobs(source, scene, Family("nurbs", "nurbs", 3, 0.0), MESHES.zone, (*given, *halved))
-    other = (
-        _jobs(source, scene, Family("dolfinx", "dolfinx", 3, 0.0), MESHES.other_zone, given)
-        if dolfinx_installed()
-        else ()
-    )
-    return own, other
+    own = _tries(scene, Family("nurbs", "nurbs", 3, 0.0), meshes.zone, meshes.steps)
+    zone = meshes.other_zone if dolfinx_installed() else ()
+    other = _tries(scene, Family("dolfinx", "dolfinx", 3, 0.0), zone, meshes.steps)
+    return _jobs(own, source, scene, (*given, *halved)), _jobs(other, source, scene, given)
 
 
-def _jobs(source: str, scene: Scene, family: Family, zone: Sequence[float], given: Sequence[str]) -> tuple[Job, ...]:
+def _tries(scene: Scene, family: Family, zone: Sequence[float], steps: int | str) -> tuple[Try, ...]:
     each = size_of_an_element(scene, family)
-    tries = (Try(family, i, int(round(each * elements)), MESHES.steps) for i, elements in enumerate(zone))
+    return tuple(Try(family, i, int(round(each * elements)), steps) for i, elements in enumerate(zone))
+
+
+def _jobs(tries: Sequence[Try], source: str, scene: Scene, given: Sequence[str]) -> tuple[Job, ...]:
     jobs = (one.job(source, scene, given) for one in tries)
     return tuple(Job(j.source, j.scene, j.method, j.variant.replace("cost/", "reference/"), j.overrides) for j in jobs)
 
 
 def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | None:
-    """The reference of these runs; None where one of its three runs is not complete."""
+    """The reference of these runs, coarse to fine; None where one of ``own`` is not complete."""
     results, second = _complete(own), _complete(other)
     if not results:
         return None
     finest, h = results[-1], [1.0 / result.elements for result in results]
-    order, index = _of_distances(h, [distance(cubics(result), finest) for result in results[:2]])
+    order, index = _of_distances(h, [distance(cubics(result), finest) for result in results[:-1]])
     values = {"peak": [peak_load(r) for r in results], "energy": [dissipated(r) for r in results]}
     sure = {"curve": index} | {name: _index(h, found) for name, found in values.items()}
     label = "cubic NURBS" + (", one arm" if finest.method == "nurbs" and "symmetry" in str(own[-1].job) else "")
     if not second:
         return Reference(label, finest, sure, order)
     coarse, fine = second[0], second[-1]
-    other_label = f"DOLFINx of degree 3 with {fine.dofs} unknowns"
+    other_label = f"DOLFINx of degree {reference_mesh(other[-1].job.solved).degree} with {fine.dofs} unknowns"
     apart, unsure = distance(cubics(fine), finest), distance(cubics(coarse), fine)
     return Reference(label, finest, sure, order, other_label, apart, unsure)
 
@@ -133,8 +138,11 @@ def _complete(outcomes: Sequence[Outcome]) -> list[Result]:
 def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, float]:
     """Order and grid convergence index from the distances of two coarser meshes to the finest one.
 
-    With errors e = C h^p of one shape the distances are e(h) - e(h_1), and their ratio determines p.
+    With errors e = C h^p of one shape the distances are e(h) - e(h_1), and their ratio determines p. One distance
+    determines none.
     """
+    if len(apart) < 2:
+        return nan, MESHES.caution * apart[-1]
     orders = np.linspace(0.5, 8.0, 751)
     ratio = (h[0] ** orders - h[2] ** orders) / (h[1] ** orders - h[2] ** orders)
     wanted = apart[0] / apart[1] if apart[1] > 0.0 else np.inf
@@ -146,7 +154,7 @@ def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, fl
 
 def _index(h: Sequence[float], values: Sequence[float]) -> float:
     """Grid convergence index of one number."""
-    found = assess(h, values)
-    if np.isfinite(found.gci) and found.asymptotic:
+    found = assess(h, values) if len(values) > 2 else None
+    if found is not None and np.isfinite(found.gci) and found.asymptotic:
         return found.gci
-    return MESHES.caution * max(abs(values[-1] - value) for value in values[:2]) / abs(values[-1])
+    return MESHES.caution * max(abs(values[-1] - value) for value in values[:-1]) / abs(values[-1])

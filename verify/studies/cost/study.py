@@ -14,6 +14,7 @@ from typing import ClassVar
 from verify.runs.jobs import Job, Outcome, run_all
 from verify.scene.schema import Scene
 from verify.studies import frame
+from verify.studies.cost.contenders import best, between, few_steps
 from verify.studies.cost.findings import LEVELS, cheapest, growth, of_equal_steps, orders, pareto, table
 from verify.studies.cost.ladder import BASIS_METHODS, Family, Try, ladders
 from verify.studies.cost.nonzeros import nonzeros
@@ -32,24 +33,22 @@ class Limits:
         method is as accurate in 1 / ``beaten`` of the time, or at a time of ``longest`` seconds
     climb, vary, repeat : seconds after which no run of the sequences, with other steps, or for repetition is begun; a
         second call continues from the stored runs
-    near : fewer steps are tried on meshes whose error is at most ``near`` times the coarsest level
     close, once, late, times : a run is timed ``times`` times if its time is at most ``close`` (``once`` if it was timed
         once) times that of the method's cheapest run for a level, plus ``late`` seconds. On a busy machine single times
         are off by half: 0.36 to 0.63 s were measured for equal runs
     """
 
     enough: float = 0.7
-    patience: float = 12.0
-    beaten: float = 2.5
-    longest: float = 120.0
+    patience: float = 6.0
+    beaten: float = 1.5
+    longest: float = 30.0
     climb: float = 1200.0
     vary: float = 1700.0
     repeat: float = 2000.0
-    near: float = 1.2
     close: float = 1.25
     once: float = 1.7
     late: float = 0.03
-    times: int = 5
+    times: int = 3
 
 
 LIMITS = Limits()
@@ -142,17 +141,14 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     runner = Runner(source, scene, tuple(given), out, against)
     whole = [
         climb(rungs, partial(runner, seconds=LIMITS.climb), lambda: runner.rows),
-        runner(_between(runner.rows), LIMITS.vary),
-        runner(
-            [other for one, row in runner.rows.items() if _nearly_accurate(row) for other in one.with_few_steps()],
-            LIMITS.vary,
-        ),
-        runner([other for one in _best(runner.rows) for other in one.with_other_steps()], LIMITS.vary),
+        runner(between(runner.rows), LIMITS.vary),
+        runner(few_steps(runner.rows), LIMITS.vary),
+        runner([other for one in best(runner.rows) for other in one.with_other_steps()], LIMITS.vary),
     ]
     for repeat in range(1, LIMITS.times):
         whole.append(
             runner(
-                [replace(one, repeat=repeat) for one in _best(runner.rows, LIMITS.close, LIMITS.once, LIMITS.late)],
+                [replace(one, repeat=repeat) for one in best(runner.rows, LIMITS.close, LIMITS.once, LIMITS.late)],
                 LIMITS.repeat,
             )
         )
@@ -202,38 +198,6 @@ def _finished(last: Row, rows: Sequence[Row]) -> bool:
     return too_slow or beaten or last.curve_error <= LIMITS.enough * finest
 
 
-def _nearly_accurate(found: Row) -> bool:
-    """Whether a run is accurate enough that fewer steps may make it the cheapest for a level."""
-    return found.curve_error <= LIMITS.near * max(LEVELS.values())
-
-
-def _best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late: float = 0.0) -> list[Try]:
-    """The cheapest runs of every method for every level, and those whose time is nearly the same.
-
-    Nearly: at most the factor ``within``, or ``once`` for runs that were timed once, plus ``late`` seconds.
-    """
-    chosen: dict[Try, None] = {}
-    for level, error in LEVELS.items():
-        for method, best in cheapest(list(rows.values()), level).of_method.items():
-            for one, found in rows.items():
-                most = (once if found.times == 1 else within) * best.seconds + late
-                if found.method == method and found.curve_error <= error and found.seconds <= most:
-                    chosen[one] = None
-    return list(chosen)
-
-
-def _between(rows: Mapping[Try, Row]) -> list[Try]:
-    """Meshes between the last that misses a level and the first that reaches it, for every method's best family."""
-    chosen: dict[Try, None] = {}
-    for error in LEVELS.values():
-        for one in _best(rows):
-            coarser = [other for other in rows if other.family == one.family and other.size < one.size]
-            below = max(coarser, key=lambda other: other.size, default=None)
-            if below is not None and rows[one].curve_error <= error < rows[below].curve_error:
-                chosen[replace(one, size=round((one.size * below.size) ** 0.5))] = None
-    return list(chosen)
-
-
 def _with_nonzeros(runner: Runner) -> Iterable[Row]:
     """Rows with the numbers of nonzeros, which ``iga`` runs do not report."""
     for one, found in runner.rows.items():
@@ -247,5 +211,7 @@ def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: 
     rungs, reasons = ladders(source, scene, given)
     plan: list[Job] = [job for jobs_of in reference_jobs(source, scene, given) for job in jobs_of]
     plan += [one.job(source, scene, given) for ones in rungs.values() for one in ones]
-    note = "ladders end where they are accurate enough; the best runs are made again with other steps, and repeated"
+    note = (
+        "ladders end where they are accurate enough; the best meshes run again with other steps, and what may win again"
+    )
     return frame.would_run(plan, [note, *reasons], out, jobs)

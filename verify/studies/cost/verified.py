@@ -33,7 +33,7 @@ from verify.runs import estimate
 from verify.runs.folder import FILES, write_json
 from verify.runs.store import alone_in
 from verify.scene.parse import parse_scene
-from verify.scene.schema import Scene
+from verify.scene.schema import Scene, counted_steps
 from verify.studies.cost.accuracy import Choice, with_elements
 from verify.support.checked_files import read_json
 from verify.support.programme import only_opens, turns
@@ -268,8 +268,9 @@ def finer(scene: Scene, method: str, overrides: Sequence[str], more: float = REF
         layers = own.layers + (degree == own.degree)
         finest = {"degree": degree, "elements": ceil(REFINEMENT.ratio * own.elements), "layers": layers}
         mesh = tuple(f"dolfinx.{key}={value}" for key, value in finest.items())
-    steps = f"discretization.steps={ceil(more * asked.steps)}" if asked.steps != "auto" else ""
-    pace = steps or f"discretization.bend={max(asked.bend / more**2, 1e-5)!r}"
+    counted, closer = ceil(more * counted_steps(scene)), max(asked.bend / more**2, 1e-5)
+    chooses = prepare(scene, method).by_accuracy
+    pace = f"discretization.bend={closer!r}" if chooses else f"discretization.steps={counted}"
     found = {one.partition("=")[0]: one for one in (*overrides, pace, *mesh)}
     return tuple(found.values())
 
@@ -288,7 +289,7 @@ def growth(scene: Scene, following: Scene, method: str) -> float:
     the unknowns on random scenes.
     """
     unknowns, steps = (of(following, method) / of(scene, method) for of in (estimate.unknowns, estimate.steps))
-    if scene.discretization.steps == "auto":
+    if prepare(scene, method).by_accuracy:
         steps *= (scene.discretization.bend / following.discretization.bend) ** 0.5
     condensed = method in WITH_DOFS and prepare(scene, method).effects["kinematics"] == "linear"
     return steps * unknowns ** (REFINEMENT.condensed if condensed else 1.0)

@@ -21,6 +21,7 @@ from verify.studies import frame
 from verify.studies.cost import ladder as ladder_of
 from verify.studies.cost import reference as reference_of
 from verify.studies.cost import study as study_of
+from verify.studies.cost.contenders import best, between, few_steps
 from verify.studies.cost.findings import LEVELS, cheapest
 from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES, LADDER, Family, Try, ladder, ladders
 from verify.studies.cost.reference import reference_jobs
@@ -97,8 +98,8 @@ def test_a_ladder_ends_where_it_is_accurate_or_too_slow() -> None:
 
 def test_a_degree_that_another_beats_by_far_goes_no_further() -> None:
     last = a_row("dolfinx", 0.004, 10.0, degree=4)
-    assert study_of._finished(last, [last, a_row("dolfinx", 0.004, 3.9, degree=2)])
-    assert not study_of._finished(last, [last, a_row("dolfinx", 0.004, 4.1, degree=2)])
+    assert study_of._finished(last, [last, a_row("dolfinx", 0.004, 6.5, degree=2)])
+    assert not study_of._finished(last, [last, a_row("dolfinx", 0.004, 6.8, degree=2)])
     assert not study_of._finished(last, [last, a_row("nurbs", 0.004, 1.0)]), "methods do not end each other"
 
 
@@ -121,18 +122,40 @@ def test_a_ladder_has_patience_with_the_quickest_accurate_run() -> None:
 def test_more_is_tried_where_it_may_pay() -> None:
     tries = {Try(NURBS, i, size, 80): a_row("nurbs", e, t, size) for i, (size, e, t) in enumerate(
         [(300, 0.02, 1.0), (420, 0.008, 1.2), (590, 0.002, 1.5), (830, 0.0008, 1.7)])}  # fmt: skip
-    sizes = [one.size for one in study_of._best(tries)]
+    sizes = [one.size for one in best(tries)]
     assert sizes == [420, 590, 830]
-    assert [one.size for one in study_of._best(tries, 1.3)] == [420, 590, 830]
-    assert [one.size for one in study_of._between(tries)] == [355, 498, 700]
+    assert [one.size for one in best(tries, 1.3)] == [420, 590, 830]
+    assert [one.size for one in between(tries)] == [355, 498, 700]
     first = next(iter(tries))
-    assert [one.steps for one in first.with_few_steps()] == ["auto", "auto-0.02", "auto-0.05", "auto-0.1"]
+    assert [one.steps for one in first.with_few_steps("0.1%")] == ["auto", "auto-0.02"]
     assert [one.steps for one in first.with_other_steps()] == [40, 150]
     job = replace(first, steps="auto-0.02").job("dcb-czm1", SCENE)
     fewer = load_scene(job.source, job.overrides)
     assert fewer.discretization.steps == "auto" and fewer.discretization.bend == 0.02 and fewer.effects.search == "auto"
-    assert [study_of._nearly_accurate(found) for found in tries.values()] == [False, True, True, True]
-    assert [*Try(BEAM_FAMILY, 0, 0, 80).with_few_steps(), *Try(BEAM_FAMILY, 0, 0, 80).with_other_steps()] == []
+    assert [*Try(BEAM_FAMILY, 0, 0, 80).with_few_steps("1%"), *Try(BEAM_FAMILY, 0, 0, 80).with_other_steps()] == []
+
+
+def test_few_steps_are_tried_on_the_coarsest_meshes_that_may_win() -> None:
+    """For every accuracy the two coarsest of a family, none that is twice as slow as the method's quickest."""
+    slow = Family("nurbs", "nurbs", 4, 1.0)
+    tries = {
+        Try(NURBS, i, size, 80): a_row("nurbs", error, seconds, size)
+        for i, (size, error, seconds) in enumerate(
+            [(300, 0.02, 1.0), (420, 0.011, 1.2), (590, 0.002, 1.5), (830, 0.0011, 1.7), (900, 0.0009, 2.0)]
+        )
+    } | {
+        Try(slow, 0, 500, 80): a_row("nurbs", 0.002, 2.9, 500, 4),
+        Try(slow, 1, 700, 80): a_row("nurbs", 0.001, 3.6, 700, 4),
+    }
+    tried = {(one.family.degree, one.size, one.steps) for one in few_steps(tries)}
+    assert tried == {
+        *((3, size, steps) for size in (420, 590) for steps in LADDER.few_steps["1%"]),
+        *((3, size, steps) for size in (590, 830) for steps in LADDER.few_steps["0.3%"]),
+        *((3, size, steps) for size in (830, 900) for steps in LADDER.few_steps["0.1%"]),
+        *((4, 500, steps) for steps in LADDER.few_steps["0.3%"]),
+    }
+    coarse, counted = Try(NURBS, 0, 9, 80), Try(NURBS, 0, 8, 40)
+    assert few_steps({coarse: a_row("nurbs", 0.5, 1.0), counted: a_row("nurbs", 0.001, 1.0, asked="40")}) == []
 
 
 def test_a_scene_that_is_none_is_refused_and_a_dry_run_leaves_nothing(tmp_path: Path, capsys, monkeypatch) -> None:
@@ -170,8 +193,8 @@ def test_a_study_from_ladder_to_files(seconds: float, tmp_path: Path, monkeypatc
         assert any("The time allowed" in text for text in found.left_out) and len(asked) < 12
         return
     assert found.left_out == () and len({job.place for job in asked}) == len(asked)
-    best = cheapest(rows, "0.1%").of_method["nurbs"]
-    assert best.times == study_of.LIMITS.times and best.dofs >= 580
+    cheap = cheapest(rows, "0.1%").of_method["nurbs"]
+    assert cheap.times == study_of.LIMITS.times and cheap.dofs >= 580
     few = {"auto", "auto-0.02", "auto-0.05", "auto-0.1"}
     assert {one.asked for one in rows if one.method == "nurbs"} == {"80", *few, "40", "150"}
 

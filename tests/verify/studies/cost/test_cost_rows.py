@@ -72,14 +72,6 @@ def test_the_reference_is_one_arm_where_the_arms_are_alike(monkeypatch: pytest.M
         assert sizes == sorted(set(sizes)), "from coarse to fine"
 
 
-def test_few_steps_are_tried_where_a_run_comes_near_the_coarsest_level() -> None:
-    near = study_of.LIMITS.near * 0.01
-    assert near > 0.01 and [study_of._nearly_accurate(a_row("nurbs", part * near, 1.0)) for part in (0.99, 1.01)] == [
-        True,
-        False,
-    ]
-
-
 def test_what_is_timed_runs_alone_and_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Until the time is over: what has begun comes to its end, nothing else is begun."""
     asked, now = [], [0.0]

@@ -20,6 +20,7 @@ from verify.runs.run import run
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
 from verify.scene.random_scenes import random_scene
+from verify.scene.schema import counted_steps
 from verify.studies.cost import accuracy
 from verify.studies.cost.accuracy import Choice
 from verify.studies.cost.verified import REFINEMENT, apart, bound, finer, verified
@@ -30,7 +31,7 @@ FIRST = Choice("nurbs", ("discretization.dofs=300", "discretization.degree=2"), 
 
 def a_curve(error: float, scene, method: str, on_step=None, stop: bool = False) -> Result:
     """A parabola of which all loads are off by ``error``; half of it where the run stops."""
-    x = np.linspace(0.0, 0.5 if stop else 1.0, 2 * scene.discretization.steps + 1)
+    x = np.linspace(0.0, 0.5 if stop else 1.0, 2 * counted_steps(scene) + 1)
     rows = []
     for t in x:
         row = dict.fromkeys(CURVE_COLUMNS, 0.0) | {"opening": t, "load": (1.0 + error) * t * (1.5 - t)}
@@ -165,19 +166,23 @@ def test_where_there_is_no_finer_mesh_it_says_so(solving, tmp_path: Path, monkey
     assert "no mesh is finer than that of level-1" in capsys.readouterr().err
 
 
+#: Steps so short that they leave next to no error.
+PACE = "discretization.steps=150"
+
+
 def test_a_wrong_thickness_is_not_shared_by_two_levels(tmp_path: Path) -> None:
     """One quadratic element through the arms of `random-114` is 0.57 % off, however many there are along."""
     scene = random_scene(114)
-    first = Choice("nurbs", ("discretization.dofs=430", "discretization.degree=2"), 1.0, "a guess")
+    first = Choice("nurbs", ("discretization.dofs=430", "discretization.degree=2", PACE), 1.0, "a guess")
     found = verified(scene, first, 0.003, tmp_path, lambda one, method, folder, _: run(prepare(one, method), folder))
-    exact = solve(parse_scene(scene.model_dump(), accuracy.with_elements(scene, "nurbs", 4, 9.0)), "nurbs")
+    exact = solve(parse_scene(scene.model_dump(), (PACE, *accuracy.with_elements(scene, "nurbs", 4, 9.0))), "nurbs")
     off = [apart(level.result, exact, scene.load.opening) for level in found.levels]
     assert off[0] > 0.005 and len(off) == 3 and found.levels[1].distance > 0.005, "seen, and not accepted"
     assert found.holds and off[2] < 3e-4 and found.reached[1] < 3e-4
 
 
 def test_every_level_is_finer_and_keeps_the_effects() -> None:
-    scene = load_scene("dcb-czm1", ["effects.search=true"])
+    scene = load_scene("dcb-czm1", ["effects.search=true", "discretization.steps=150"])
     overrides, degrees = FIRST.overrides, []
     for _ in range(5):
         now = parse_scene(scene.model_dump(), overrides)
@@ -194,6 +199,7 @@ def test_every_level_is_finer_and_keeps_the_effects() -> None:
     assert (last.dolfinx.degree, last.dolfinx.layers) == (4, 2), "what cannot have a higher degree has more layers"
     chosen = load_scene("dcb-czm1", ['discretization.steps="auto"'])
     assert finer(chosen, "tspline", ())[0] == f"discretization.bend={0.005 / 1.1**2!r}"
+    assert finer(chosen, "dolfinx", ())[0] == "discretization.steps=165", "which counts them"
 
 
 def test_curves_of_programmes_are_apart_by_their_worst_leg() -> None:

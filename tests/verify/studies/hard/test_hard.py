@@ -95,7 +95,7 @@ def test_every_row_is_a_case_with_a_sentence() -> None:
 def test_no_case_sets_its_own_steps(name: str) -> None:
     variants = CASES[name].variants()
     steps = {v.scene.discretization.steps for v in variants}
-    assert steps == ({5, 5000} if name == "big-steps" else {150})
+    assert steps == ({5, 5000} if name == "big-steps" else {"auto"})
     assert len({v.name for v in variants}) == len(variants)
 
 

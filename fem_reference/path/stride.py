@@ -1,0 +1,271 @@
+"""How far the next step goes: counted steps, all of one length, or steps as long as the curve allows.
+
+Every kind has ``reach``, the largest change of the opening in the next step, and ``front``, the largest change of the
+front's measure in its units; says what follows a step that has ``failed``, that is, has not converged; and judges one
+that has (``judged``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from fem_reference.path.state import State
+
+
+@dataclass(frozen=True)
+class CountedSteps:
+    """Steps of one length; larger ones pass kinks of more points at once.
+
+    front : largest change of the front's gap in one step, in units of g_u, or of its scaled jump.
+    halvings : how often a step is halved before the run stops.
+    instead : number of steps where the path may not choose them, since time counts by the opening.
+    """
+
+    front: float = 0.125
+    halvings: int = 12
+    instead: int = 150
+
+
+COUNTED_STEPS = CountedSteps()
+
+
+@dataclass(frozen=True)
+class ChosenSteps:
+    """Steps by accuracy; looser bounds make fewer steps and a poorer curve.
+
+    first, largest : length of the first step and of the longest, in parts of the programme.
+    front : largest change of the front's measure in one step, in its units, at the ``bend`` ``usual``; grows with its
+        root.
+    chord : distance from the straight line between its ends, in parts of ``bend``, from which a step is too long, and
+        ``tangent`` that the next one is made for: a parabola leaves its tangent by four times as much.
+    strayed : by how much the cubic may leave the path in the mean of a step, in parts of ``bend``, and ``most`` of the
+        peak in any case.
+    top : by how much the cubic may rise above the ends of a step, in parts of ``bend`` of the peak.
+    spare : the next step is made for this part of ``strayed`` and ``top``.
+    grow, shortest, longest : bounds of the length of a step over that of the one before, or of the first attempt.
+    past : length of the step that follows on one which ends at a kink, in parts of the programme.
+    cut_off : how much longer a step may have been meant to be than it has become, where it ended at an edge or a kink,
+        for the next one to be made from what was meant.
+    forget : growth from step to step of the largest step of the front after one that has failed.
+    early : residual over the force scale at which iterations stop before the last correction, whose tangent is that of
+        the path: it is off by about as much.
+    digits : decimals of the ratio of two lengths: differences of energies are subject to rounding, and steps are to be
+        the same on any number of ranks.
+    finest : number of counted steps as short as which steps are not judged, at the ``usual`` bend: what is left then
+        are the teeth of the mesh. Their number grows with the root of a smaller one.
+    """
+
+    first: float = 1.0 / 30.0
+    largest: float = 0.25
+    front: float = 3.0
+    usual: float = 0.005
+    chord: float = 0.8
+    tangent: float = 0.25
+    strayed: float = 0.25
+    most: float = 4e-3
+    top: float = 0.2
+    spare: float = 0.5
+    grow: float = 2.0
+    shortest: float = 0.25
+    longest: float = 0.75
+    past: float = 1.0 / 300.0
+    cut_off: float = 2.0
+    forget: float = 1.2
+    early: float = 1e-4
+    digits: int = 2
+    finest: int = 600
+
+
+CHOSEN_STEPS = ChosenSteps()
+
+
+@dataclass(frozen=True)
+class Counted:
+    """Steps of an ``increment`` of the opening, or of a ``part`` of it after failures, which are made up for."""
+
+    increment: float
+    part: float = 1.0
+
+    @property
+    def reach(self) -> float:
+        return self.part * self.increment
+
+    @property
+    def lands(self) -> bool:
+        """Whether steps end at edges between elements, and where damage begins to grow."""
+        return False
+
+    @property
+    def early(self) -> float:
+        """Residual at which iterations stop before the last correction; 0: at the tolerance."""
+        return 0.0
+
+    @property
+    def patience(self) -> bool:
+        """Whether a second attempt follows where iterations fail."""
+        return True
+
+    @property
+    def front(self) -> float:
+        return self.part * COUNTED_STEPS.front
+
+    def failed(self) -> Counted | None:
+        """What follows a step that has not converged; None where it cannot be any shorter."""
+        shorter = replace(self, part=0.5 * self.part)
+        return None if shorter.part < 0.5**COUNTED_STEPS.halvings else shorter
+
+    def judged(self, before: State, reached: State) -> tuple[bool, Counted]:
+        """Whether a step is accurate, and what follows it: any that converges is."""
+        return True, replace(self, part=min(1.0, 2 * self.part))
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """Steps as long as the curve allows: cubics by the slopes at their ends are judged by chord, energy and maximum.
+
+    Parameters
+    ----------
+    whole, bend : length of the programme in the opening, and the allowed distance from the tangent over the peak.
+    reach : largest change of the opening in the next step.
+    slow : 1, or how much less far the front goes after steps that have failed or were not accurate; it is no more than
+        ``most``, which remembers failures for longer.
+    size : opening at the largest load so far, and that load.
+    """
+
+    whole: float
+    bend: float
+    reach: float
+    slow: float = 1.0
+    most: float = 1.0
+    size: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def lands(self) -> bool:
+        """Whether steps end at edges between elements, and where damage begins to grow."""
+        return True
+
+    @property
+    def early(self) -> float:
+        """Residual at which iterations stop before the last correction."""
+        return CHOSEN_STEPS.early
+
+    @property
+    def patience(self) -> bool:
+        """Whether a second attempt follows where iterations fail: of short steps; long ones are halved at once."""
+        return self.front <= COUNTED_STEPS.front
+
+    @property
+    def front(self) -> float:
+        return self.slow * CHOSEN_STEPS.front * (self.bend / CHOSEN_STEPS.usual) ** 0.5
+
+    def failed(self) -> Chosen | None:
+        """What follows a step that has not converged; None where it cannot be any shorter."""
+        shorter = replace(self, reach=0.5 * self.reach, slow=0.5 * self.slow, most=0.5 * self.slow)
+        return None if shorter.slow < 0.5**COUNTED_STEPS.halvings else shorter
+
+    def past_kink(self) -> Chosen:
+        """What follows a step that has ended at a kink, with the slope of its arrival, from which no cubic goes on."""
+        return replace(self, reach=min(self.reach, CHOSEN_STEPS.past * self.whole))
+
+    def judged(self, before: State, reached: State) -> tuple[bool, Chosen]:
+        """Whether a step is accurate, and what follows it."""
+        size, here = self.size, self
+        if reached.opening > 0.0 and abs(reached.load) > size[1]:  # pressed faces set no scale
+            size = reached.opening, abs(reached.load)
+            here = replace(self, size=size)
+        if not all(size):
+            return True, here
+        drawn = _drawn(before, reached, size)
+        ratio = self._ratio(drawn)
+        gone = abs(reached.opening - before.opening)
+        if self._too_long(drawn) and not self._fine(drawn.length * size[0]):
+            part = float(np.clip(ratio, CHOSEN_STEPS.shortest, CHOSEN_STEPS.longest))
+            return False, replace(
+                self, reach=part * min(self.reach, max(gone, 0.1 * self.reach)), slow=part * self.slow
+            )
+        grown = float(np.clip(ratio, 1.0 / CHOSEN_STEPS.grow, CHOSEN_STEPS.grow))
+        # a step that has ended at an edge or a kink is shorter than it might have been
+        reach = grown * max(gone, min(self.reach, CHOSEN_STEPS.cut_off * gone))
+        most = min(1.0, CHOSEN_STEPS.forget * self.most)
+        slow = min(most, max(1.0, grown) * self.slow)
+        return True, replace(here, reach=min(reach, CHOSEN_STEPS.largest * self.whole), slow=slow, most=most)
+
+    def _too_long(self, drawn: Drawn) -> bool:
+        return max(self._excess(drawn)) > 1.0
+
+    def _excess(self, drawn: Drawn) -> tuple[float, float, float]:
+        """Distances from chord and path, and rise between the ends, over what is allowed of each."""
+        straying = min(CHOSEN_STEPS.strayed * self.bend, CHOSEN_STEPS.most)
+        return (
+            drawn.from_chord / (CHOSEN_STEPS.chord * self.bend),
+            drawn.strayed / straying,
+            drawn.over / (CHOSEN_STEPS.top * self.bend),
+        )
+
+    def _ratio(self, drawn: Drawn) -> float:
+        """Length over that of a step for which it would be as accurate as is aimed at."""
+        chord, strayed, over = self._excess(drawn)
+        spare = CHOSEN_STEPS.spare
+        bounds = (CHOSEN_STEPS.tangent / CHOSEN_STEPS.chord, chord, 2), (spare, strayed, 3), (spare, over, 2)
+        ratio = min((aim / max(excess, 1e-9)) ** (1.0 / order) for aim, excess, order in bounds)
+        return round(ratio, CHOSEN_STEPS.digits)
+
+    def _fine(self, length: float) -> bool:
+        """Whether a step of this length in the plane of opening and load is so short that it is not judged."""
+        finer = min(1.0, self.bend / CHOSEN_STEPS.usual) ** 0.5
+        return self.front <= finer * COUNTED_STEPS.front or length <= finer * self.whole / CHOSEN_STEPS.finest
+
+
+Stride = Counted | Chosen
+
+
+def chosen(whole: float, bend: float) -> Chosen:
+    """The first step by accuracy of a programme of the length ``whole`` in the opening."""
+    return Chosen(whole, bend, CHOSEN_STEPS.first * whole)
+
+
+class Drawn(NamedTuple):
+    """A step as it is drawn, in the plane of opening and load over their sizes.
+
+    ``length`` is that of its chord. The energies of a step are the area below the true path, however many points break
+    on it: ``from_chord`` is the largest distance of a parabola with that area from the chord, and ``strayed`` the mean
+    distance of the cubic from the path over the mean load. ``over``: how far the cubic rises above both ends.
+    """
+
+    length: float
+    from_chord: float
+    strayed: float
+    over: float
+
+
+_S = np.linspace(0.0, 1.0, 17)
+
+#: Load over the peak below which a step need not be more accurate for being under less load.
+_LIGHT = 0.25
+
+
+def _drawn(before: State, reached: State, size: tuple[float, float]) -> Drawn:
+    """A step as it is drawn; ``size`` are opening and load at the largest load."""
+    ends = np.array([[at.opening, at.load] for at in (before, reached)]) / size
+    along = ends[1] - ends[0]
+    length = float(np.hypot(*along))
+    if length == 0.0:
+        return Drawn(0.0, 0.0, 0.0, 0.0)
+    spent, worked = (
+        (b - a) / (size[0] * size[1]) for a, b in ((before.energy, reached.energy), (before.work, reached.work))
+    )
+    below_chord = 0.5 * (ends[0, 1] + ends[1, 1]) * along[0]
+    sign = np.sign(ends[1, 1] or ends[0, 1])
+    over = float(np.max(sign * (ends[0, 1] + _cubic(before, reached, size, along)))) - float(np.max(sign * ends[:, 1]))
+    strayed = abs(worked - spent) / length / max(0.5 * abs(ends[0, 1] + ends[1, 1]), _LIGHT)
+    return Drawn(length, 1.5 * abs(spent - below_chord) / length, strayed, over)
+
+
+def _cubic(before: State, reached: State, size: tuple[float, float], along: np.ndarray) -> np.ndarray:
+    """Load (n_s,) from the start of a step on, of the cubic with the directions at both ends, as long as the chord."""
+    angle_e = np.arctan(np.array([before.slope, reached.slope]) * size[0] / size[1])
+    first, last = float(np.hypot(*along)) * np.array([before.heading, reached.heading]) * np.sin(angle_e)
+    return along[1] * _S**2 * (3.0 - 2.0 * _S) + first * _S * (1.0 - _S) ** 2 - last * _S**2 * (1.0 - _S)

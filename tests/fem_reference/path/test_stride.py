@@ -1,0 +1,159 @@
+"""Steps that the path chooses: the curve of many counted steps by few, kinks and tops that none leaps over."""
+
+import json
+from contextlib import nullcontext
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from ranks import on_ranks
+
+pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
+
+from mpi4py import MPI
+from scipy.interpolate import CubicHermiteSpline
+
+from fem_reference.model.build import build_model
+from fem_reference.model.model import BondEnergies
+from fem_reference.path.path import path
+from fem_reference.path.state import State
+from fem_reference.path.stride import CHOSEN_STEPS, chosen
+from fem_reference.problem.dcb import Problem
+from fem_reference.solve import solve_debonding
+
+DCB = Problem(
+    length=14.0,
+    arm_thickness=0.2,
+    precrack=4.0,
+    E1=120e3,
+    E2=120e3,
+    G12=50e3,
+    nu12=0.2,
+    strength=4.0,
+    toughness=0.1,
+    ductility=12.5,
+    elements=56,
+    kinematics="linear",
+)
+
+
+@cache
+def solve(problem):
+    solution = solve_debonding(problem)
+    assert solution.status == "complete"
+    return solution, {name: np.array([row[name] for row in solution.rows]) for name in solution.rows[0]}
+
+
+@pytest.mark.parametrize("kinematics", ["linear", "finite"])
+def test_few_chosen_steps_draw_the_curve_of_many_counted_ones(kinematics):
+    problem = replace(DCB, kinematics=kinematics)
+    solution, few = solve(replace(problem, steps=None))
+    _, many = solve(replace(problem, steps=300))
+    assert len(solution.rows) < 60 < 300 < many["load"].size
+    at = np.linspace(0.02, 3.0, 200)
+    drawn = CubicHermiteSpline(few["opening"], few["load"], few["load_slope"])(at)
+    known = np.interp(at, many["opening"], many["load"])
+    assert np.linalg.norm(drawn - known) < 2e-3 * np.linalg.norm(known)
+    assert few["load"].max() == pytest.approx(many["load"].max(), rel=1e-3)
+    assert few["external_work"][-1] == pytest.approx(many["external_work"][-1], rel=1e-3)
+    gap = few["external_work"] - few["stored_energy"] - few["dissipated_energy"]
+    assert np.max(np.abs(gap)) < 1e-3 * few["external_work"][-1]
+
+
+def test_a_larger_bend_takes_fewer_steps():
+    counts = [len(solve(replace(DCB, steps=None, bend=bend))[0].rows) for bend in (0.002, 0.005, 0.05)]
+    assert counts[0] > counts[1] > counts[2]
+
+
+def test_unloading_is_straight_and_the_path_lands_where_damage_grows_again():
+    """One row stands where the envelope is met, with the secant of unloading; the row before is far away."""
+    _, run = solve(replace(DCB, steps=None, opening=(1.5, 0.3, 3.0)))
+    turn, back = (int(np.flatnonzero(run["opening"] == opening)[0]) for opening in (1.5, 0.3))
+    lost = run["dissipated_energy"]
+    assert lost[back] == pytest.approx(lost[turn], rel=1e-12) and back - turn <= 8
+    landed = back + int(np.argmax(lost[back:] > lost[turn] * (1 + 1e-9))) - 1
+    assert run["opening"][landed] == pytest.approx(1.5, rel=1e-4)
+    assert run["load"][landed] == pytest.approx(run["load"][turn], rel=1e-4)
+    assert run["opening"][landed + 1] - run["opening"][landed] < 0.02
+    _, straight = solve(replace(DCB, steps=None))
+    assert run["load"][-1] == pytest.approx(straight["load"][-1], rel=1e-4)
+
+
+def test_snap_backs_are_followed_by_chosen_steps():
+    solution, run = solve(replace(DCB, strength=6.0, elements=14, steps=None))
+    assert solution.ending == "" and run["opening"][-1] == 3.0
+    assert np.any(np.diff(run["opening"]) < 0)
+    gap = run["external_work"] - run["stored_energy"] - run["dissipated_energy"]
+    assert np.max(np.abs(gap)) < 2e-3 * run["dissipated_energy"][-1]
+
+
+def test_cracks_grow_from_edge_to_edge_of_elements():
+    """There all slopes of a long step belong to the same place between two points that break."""
+    model = build_model(replace(DCB, steps=None), lambda name: nullcontext(), MPI.COMM_SELF)
+    order, ends = np.argsort(model.X_q), []
+    for point in path(model):
+        if isinstance(point, State) and 0.8 < point.opening < 3.0:
+            open_q = point.g_q[order] >= model.failure
+            ends.append(model.X_q[order][np.count_nonzero(open_q) - 1 : np.count_nonzero(open_q) + 1].mean())
+    from_edge = np.abs(np.array(ends)[:, None] - model.specimen.X).min(axis=1)
+    assert len(ends) > 5 and np.median(from_edge) < 1e-9
+
+
+def state(opening, load, slope, work, energy, heading=1.0):
+    none = np.zeros(0)
+    return State(none, load, opening, none, none, none, slope, heading, load, work, energy, BondEnergies(), 1)
+
+
+def test_a_step_is_too_long_where_chord_energy_or_maximum_say_so():
+    stride = replace(chosen(3.0, 0.005), size=(1.0, 1.0), reach=0.5)
+    start = state(1.0, 1.0, -1.0, 1.0, 1.0)
+    area = 0.9 * 0.2
+    straight = state(1.2, 0.8, -1.0, 1.0 + area, 1.0 + area)
+    kept, longer = stride.judged(start, straight)
+    assert kept and longer.reach > stride.reach * 0.8
+    for energy, slope in ((area + 0.004, -1.0), (area, 2.0)):
+        kept, shorter = stride.judged(start, state(1.2, 0.8, slope, 1.0 + energy, 1.0 + energy))
+        assert kept == (slope == 2.0) and (kept or shorter.reach < stride.reach)
+    kept, shorter = stride.judged(start, state(1.2, 0.8, -1.0, 1.0 + area + 0.001, 1.0 + area))
+    assert not kept and shorter.reach < stride.reach and shorter.slow < 1.0
+    rising = state(0.8, 0.97, 0.5, 1.0, 1.0)
+    kept, _ = stride.judged(rising, state(1.0, 0.97, -0.5, 1.0 + 0.1956, 1.0 + 0.1956))
+    assert not kept, "the cubic rises by more than a part of the peak above both ends"
+    tiny = replace(stride, slow=0.125 / CHOSEN_STEPS.front)
+    assert tiny.judged(start, state(1.2, 0.8, -1.0, 1.0 + area + 0.001, 1.0 + area))[0], "the teeth of the mesh"
+
+
+def test_a_failure_is_remembered_for_some_steps():
+    stride = chosen(3.0, 0.005).failed()
+    assert stride.front == 0.5 * chosen(3.0, 0.005).front and stride.reach == 0.5 * chosen(3.0, 0.005).reach
+    here = state(0.0, 0.0, 1.0, 0.0, 0.0)
+    for n in range(3):
+        ahead = state(0.01 * (n + 1), 0.01 * (n + 1), 1.0, 0.5e-4 * (n + 1) ** 2, 0.5e-4 * (n + 1) ** 2)
+        _, stride = stride.judged(here, ahead)
+        here = ahead
+    assert 0.5 < stride.slow < 0.9
+    while stride is not None:
+        last, stride = stride, stride.failed()
+    assert last.slow < 1e-3 and last.patience and not chosen(3.0, 0.005).patience
+
+
+PROGRAM = """
+import json
+from fem_reference.problem.dcb import Problem
+from fem_reference.solve import solve_debonding
+from mpi4py import MPI
+problem = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, E2=120e3, G12=50e3, nu12=0.2, strength=4.0,
+                  toughness=0.1, ductility=12.5, elements=28, opening=(0.9, 0.5, 1.0), steps=None)
+solution = solve_debonding(problem)
+if MPI.COMM_WORLD.rank == 0:
+    print("RESULT" + json.dumps({"rows": solution.rows, "rejected": solution.rejected_steps}))
+"""
+
+
+def test_two_ranks_choose_the_steps_of_one():
+    alone, together = (json.loads(on_ranks(n, "-c", PROGRAM).split("RESULT")[1]) for n in (1, 2))
+    assert together["rejected"] == alone["rejected"] and len(together["rows"]) == len(alone["rows"])
+    for name in ("opening", "load", "load_slope", "external_work", "dissipated_energy"):
+        a, b = (np.array([row[name] for row in run["rows"]]) for run in (alone, together))
+        assert b == pytest.approx(a, rel=1e-7, abs=1e-7 * np.max(np.abs(a))), name

@@ -1,0 +1,149 @@
+"""Every scheme on curves that its formula describes exactly."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_up_tests import NOISY, TESTS, Rig, recorded, specimen
+
+from verify.reduction.corrections import smooth
+from verify.reduction.data import Measured
+from verify.reduction.dcb import factors
+from verify.reduction.reduce import reduce
+from verify.reduction.scheme import Settings
+from verify.scene.load import load_scene
+from verify.support.refusal import Refusal
+from verify.theory.lefm import LefmProblem, solve
+
+G = 0.3
+
+
+def values(found):
+    return {one.name: one.propagation.value for one in found.schemes if not one.missing}
+
+
+def curve(C, dC, cracks, b=20.0):
+    """A crack that grows at G along a compliance C(a); its first length is the precrack."""
+    P = np.sqrt(2.0 * b * G / dC(cracks))
+    start = np.linspace(0.0, 1.0, 40, endpoint=False)
+    d = np.concatenate([start * C(cracks[0]) * P[0], C(cracks) * P])
+    return Measured("made", d, np.append(start * P[0], P), np.append(np.full(40, cracks[0]), cracks))
+
+
+@pytest.fixture
+def dcb():
+    return replace(specimen("dcb"), width=20.0, precrack=50.0, length=150.0)
+
+
+CRACKS = np.linspace(50.0, 90.0, 60)
+
+
+def test_modified_beam_theory_and_modified_calibration_are_exact_for_a_cubic(dcb):
+    m, delta = 2e-6, 4.0
+    test = curve(lambda a: m * (a + delta) ** 3, lambda a: 3 * m * (a + delta) ** 2, CRACKS)
+    found = reduce(test, dcb)
+    mbt, _, mcc, *_ = found.schemes
+    assert mbt.propagation.value == pytest.approx(G, rel=1e-10) and mbt.constants["Delta"].value == pytest.approx(4.0)
+    assert mcc.propagation.value == pytest.approx(G, rel=1e-10)
+    assert mcc.constants["A1"].value == pytest.approx(1.0 / (2.0 * dcb.h * np.cbrt(m)))
+    assert mbt.initiation["VIS"].value == pytest.approx(G) and mbt.scatter < 1e-10
+
+
+def test_compliance_calibration_is_exact_for_a_power(dcb):
+    found = reduce(curve(lambda a: 3e-6 * a**2.8, lambda a: 2.8 * 3e-6 * a**1.8, CRACKS), dcb)
+    cc = found.schemes[1]
+    assert cc.propagation.value == pytest.approx(G, rel=1e-10) and cc.constants["n"].value == pytest.approx(2.8)
+
+
+def test_calibration_of_an_enf_is_exact_for_a_cubic_with_a_constant():
+    enf = replace(specimen("enf"), width=20.0, precrack=38.0)
+    cracks = np.linspace(38.0, 47.0, 40)
+    test = curve(lambda a: 2e-3 + 4e-8 * a**3, lambda a: 1.2e-7 * a**2, cracks)
+    assert values(reduce(test, enf))["CC"] == pytest.approx(G, rel=1e-10)
+    of_precracks = tuple((a, 2e-3 + 4e-8 * a**3) for a in (20.0, 30.0, 40.0))
+    unread = replace(test, crack=np.full(test.crack.size, np.nan))
+    cc = reduce(unread, enf, Settings(calibration=of_precracks)).schemes[0]
+    assert cc.constants["m"].value == pytest.approx(4e-8) and cc.constants["A"].value == pytest.approx(2e-3)
+    assert cc.initiation["5%/max"].value == pytest.approx(G, rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", TESTS)
+def test_the_compliance_gives_toughness_and_modulus_back(kind):
+    """No crack length is read, the modulus of the scene is wrong by 10 %, and the machine gives way."""
+    test = recorded(kind, Rig(modulus=0.9, machine=2e-4, toe=0.2, readings=2))
+    found = reduce(replace(test, crack=np.full(test.crack.size, np.nan)), specimen(kind), Settings(machine=2e-4))
+    cbbm = next(one for one in found.schemes if one.name == "CBBM")
+    assert cbbm.propagation.value == pytest.approx(TESTS[kind][1], rel=1e-4)
+    assert cbbm.constants["E_f"].value == pytest.approx(0.9 * found.coupon.young, rel=1e-4)
+    assert found.toe == pytest.approx(0.2, rel=1e-3)
+    assert cbbm.initiation["5%/max"].value == pytest.approx(TESTS[kind][1], rel=5e-3)
+    assert {one.name for one in found.schemes if one.missing} == {"MBT", "CC", "MCC", "J"} & {
+        s.name for s in found.schemes
+    }
+
+
+def test_a_machine_that_is_not_taken_off_shows(capsys):
+    test = recorded("dcb", Rig(machine=2e-3))
+    off = values(reduce(test, specimen("dcb")))["CBBM"] / TESTS["dcb"][1] - 1.0
+    assert abs(off) > 0.01
+
+
+def test_factors_of_large_openings_are_those_of_the_theory():
+    """A crack that grows by the LEFM theory with F and N, which are 3 % and more."""
+    scene = load_scene("dcb-as4peek")
+    dcb = specimen("dcb")
+    problem = LefmProblem(
+        dcb.length, dcb.h, dcb.precrack, dcb.width, dcb.young, dcb.transverse, dcb.shear, scene.interface.toughness,
+        30.0, "finite", "factors",
+    )  # fmt: skip
+    rows = solve(problem).rows
+    d, P, a = (np.array([row[key] for row in rows]) for key in ("opening", "load", "crack_length"))
+    test = Measured("lefm", d, P, a)
+    with_them = reduce(test, dcb, Settings((0.02, 0.2), toe=False, large=True))
+    without = values(reduce(test, dcb, Settings((0.02, 0.2), toe=False)))
+    for name in ("MBT", "MCC", "CBT"):
+        assert values(with_them)[name] == pytest.approx(scene.interface.toughness, rel=2e-3)
+    assert abs(without["CBT"] / scene.interface.toughness - 1.0) > 0.02
+
+
+def test_factors_of_blocks():
+    """ASTM D5528, annex A1, at one point, by hand."""
+    F, N = factors(10.0, 50.0, True, (5.0, 8.0))
+    assert F == pytest.approx(1.0 - 0.3 * 0.04 - 1.5 * 50.0 / 2500.0)
+    assert N == pytest.approx(1.0 - 0.16**3 - 1.125 * (1.0 - 0.16**2) * 0.02 - 9.0 / 35.0 * 0.04)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_j_of_rotations(dcb, sign):
+    """Of a simple beam: theta = 6 P a^2 / (E b h^3), on either side of the specimen."""
+    from verify.reduction.data import _turn
+
+    theta = np.linspace(0.0, 0.3, 7)
+    both = _turn(sign * np.array([-theta, theta]))
+    assert both == pytest.approx(2.0 * np.sin(theta)) and _turn(sign * theta[None]) == pytest.approx(both)
+
+
+def test_rows_on_which_the_specimen_unloads_do_not_count(dcb):
+    test = curve(lambda a: 2e-6 * (a + 4.0) ** 3, lambda a: 6e-6 * (a + 4.0) ** 2, CRACKS)
+    middle = 70
+    back = np.append(np.linspace(1.0, 0.2, 20), np.linspace(0.2, 1.0, 20))
+    there = [np.insert(one, middle, back * one[middle - 1]) for one in (test.opening, test.load)]
+    crack = np.insert(test.crack, middle, np.full(40, test.crack[middle - 1]))
+    unloaded = replace(test, opening=there[0], load=there[1], crack=crack)
+    whole, found = reduce(test, dcb), reduce(unloaded, dcb)
+    assert values(found) == pytest.approx(values(whole), rel=2e-3)
+    assert found.grown.sum() <= whole.grown.sum() + 2
+
+
+def test_noise_is_told_from_the_curve():
+    found = smooth(recorded("dcb", NOISY))
+    peak = found.rows.load.max()
+    assert found.noise == pytest.approx(0.003 * peak, rel=0.1) and found.width == 13
+    assert smooth(recorded("dcb", Rig())).width == 1
+
+
+def test_a_curve_that_stays_linear_is_refused():
+    test = recorded("dcb", Rig())
+    top = int(np.argmax(test.load))
+    with pytest.raises(Refusal, match="until the crack grows"):
+        reduce(test.at(np.arange(top - 5)), specimen("dcb"))

@@ -1,0 +1,38 @@
+"""Fits of strength and toughness to curves: what went in comes back, and what a curve does not tell is said."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_up_tests import NOISY, TESTS, recorded, specimen
+
+from verify.methods.solve import solve
+from verify.reduction.coupon import coupon
+from verify.reduction.reduce import reduce
+from verify.reduction.scheme import Settings
+from verify.scene.load import load_scene
+from verify.studies.reduce.bias import of_run
+from verify.studies.reduce.fit import fitted
+
+
+@pytest.mark.slow
+def test_strength_and_toughness_come_back_from_a_run() -> None:
+    """From a start 40 % off; the run has a tenth more modulus than the scene of the fit."""
+    truth = load_scene("dcb-as4peek", ("interface.strength=30", "material.E1=134970.0"))
+    start = load_scene("dcb-as4peek", ("interface.strength=50",))
+    rows = of_run(truth, solve(truth, "beam"))
+    assert rows is not None
+    fit = fitted(replace(rows, coupon=coupon(start)), start)
+    assert fit.strength.value == pytest.approx(30.0, rel=0.01) and fit.toughness.value == pytest.approx(0.969, rel=2e-3)
+    assert fit.strength.half < 0.02 * 30.0 and "cannot be identified" not in " ".join(fit.sentences)
+
+
+@pytest.mark.slow
+def test_a_brittle_curve_does_not_tell_the_strength() -> None:
+    """Of fracture mechanics, with noise: infinite strength fits as well as a large one."""
+    test = recorded("dcb", replace(NOISY, noise=0.02, rows=300))
+    found = reduce(test, specimen("dcb"), Settings(machine=NOISY.machine))
+    scene = load_scene("dcb-as4peek", ("interface.strength=100", 'effects.kinematics="linear"'))
+    fit = fitted(found, scene)
+    assert abs(fit.toughness.value - TESTS["dcb"][1]) < max(fit.toughness.half, 0.02)
+    assert "the strength cannot be identified" in fit.sentences[-1] and np.isfinite(fit.misfit)

@@ -1,0 +1,159 @@
+"""What a test measured: opening, load, and where there are any crack lengths and rotations of the arms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from verify.curves.read import Column, CurveError, Reading, read_with_more
+from verify.reduction.coupon import Coupon
+from verify.support.refusal import Refusal
+
+#: Columns of a run, beside opening and load.
+CRACK_COLUMN = "crack_length"
+_ROTATIONS = "face_slope_bottom", "face_slope_top"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Rows of a test, in the order in which they were taken.
+
+    Parameters
+    ----------
+    opening, load : (n,) both above 0 on loading
+    crack : (n,) length from the load line, or the left support; NaN where none was read
+    J : (n,) J-integral from rotations or of a run, None without
+    front : (n,) where damage begins, of a run; None of a test
+    virtual : whether it is a run of this project
+    """
+
+    source: str
+    opening: np.ndarray
+    load: np.ndarray
+    crack: np.ndarray
+    J: np.ndarray | None = None
+    front: np.ndarray | None = None
+    virtual: bool = False
+
+    @property
+    def has_cracks(self) -> bool:
+        return bool(np.isfinite(self.crack).any())
+
+    @property
+    def compliance(self) -> np.ndarray:
+        """Opening over load (n,), NaN without load."""
+        return self.opening / np.where(self.load > 0.0, self.load, np.nan)
+
+    def at(self, rows: np.ndarray) -> Measured:
+        """Some of the rows, by index or mask."""
+        J, front = (None if one is None else one[rows] for one in (self.J, self.front))
+        return replace(self, opening=self.opening[rows], load=self.load[rows], crack=self.crack[rows], J=J, front=front)
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Where a table has what: opening and load as `Reading` says, and the columns that only a reduction reads.
+
+    ``rotations`` are those of both loaded ends, or of one for both, anticlockwise or both in the other sense.
+
+    Raises
+    ------
+    CurveError : a scale that is 0 or not finite, more than two rotations.
+    """
+
+    reading: Reading = Reading()
+    crack: Column | None = None
+    crack_scale: float = 1.0
+    rotations: tuple[Column, ...] = ()
+    rotation_scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("crack_scale", "rotation_scale"):
+            if getattr(self, name) == 0 or not np.isfinite(getattr(self, name)):
+                raise CurveError(f"{name}: must be a finite number other than 0, got {getattr(self, name):g}")
+        if len(self.rotations) > 2:
+            raise CurveError(f"rotations: must be one column or two, got {len(self.rotations)}")
+
+
+def read_measured(path: Path, columns: Columns, coupon: Coupon) -> Measured:
+    """Rows of a text file, or of the curve.csv in a folder.
+
+    A column named crack_length counts without being asked for.
+
+    Raises
+    ------
+    CurveError, Refusal : no curve, no such column, rotations of a kind that has no use for them, or crack lengths that
+        cannot be: not above 0, shorter than the precrack, beyond the specimen, or decreasing.
+    """
+    if columns.rotations and coupon.kind not in ("dcb", "adcb"):
+        raise Refusal(f"rotations: must be of a dcb or adcb, whose J they give, got the kind {coupon.kind!r}")
+    d, P, more = _read(path, columns)
+    crack = columns.crack_scale * more[0] if len(more) > len(columns.rotations) else np.full(d.size, np.nan)
+    crack = np.where((crack == 0.0) & (d == 0.0), np.nan, crack)  # the first row of a curve.csv is all zeros
+    rotations = columns.rotation_scale * more[len(more) - len(columns.rotations) :]
+    J = P * _turn(rotations) / coupon.width if columns.rotations else None
+    if not P.max() > 0.0:
+        raise CurveError(f"{path}: the loads must go above 0, got at most {P.max():g}; a load scale of -1 turns signs")
+    return _sound_cracks(Measured(str(path), d, P, crack, J), coupon)
+
+
+def _read(path: Path, columns: Columns) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Opening, load, and more: crack lengths, if any, and rotations."""
+    if columns.crack is None:
+        try:
+            return read_with_more(path, replace(columns.reading, more=(CRACK_COLUMN, *columns.rotations)))
+        except CurveError:
+            return read_with_more(path, replace(columns.reading, more=columns.rotations))
+    return read_with_more(path, replace(columns.reading, more=(columns.crack, *columns.rotations)))
+
+
+def _turn(rotations: np.ndarray) -> np.ndarray:
+    """sin(theta_2) - sin(theta_1) (n,) of anticlockwise rotations, above 0 where the arms open.
+
+    J = P (sin theta_2 - sin theta_1) / w: Paris and Paris (1988), Int. J. Fract. 38, R19-R21, for small rotations; with
+    sines exact for large ones (Nilsson 2006, Eng. Fract. Mech. 73, 2101-2112). Both signs turn with the side that is
+    looked at, so the sign is the one that makes J grow.
+    """
+    sines = np.sin(rotations)
+    turn = 2.0 * sines[0] if len(sines) == 1 else sines[1] - sines[0]
+    return turn * np.sign(np.nansum(turn) or 1.0)
+
+
+def of_steps(source: str, steps: Mapping[str, np.ndarray], coupon: Coupon) -> Measured:
+    """A run of this project: all its rows, its crack length, and its J where it has one.
+
+    J of end faces is P (s_2 - s_1) / w without their own strain energy, as rotations in a laboratory give it.
+    """
+    d, P = steps["opening"], steps["load"]
+    J = steps.get("J_loads")
+    if J is None and set(_ROTATIONS) <= set(steps):
+        J = P * (steps[_ROTATIONS[0]] - steps[_ROTATIONS[1]]) / coupon.width
+    crack = steps.get(CRACK_COLUMN, np.full(d.size, np.nan))
+    return Measured(source, d, P, crack, J, steps.get("damage_front"), virtual=True)
+
+
+def _sound_cracks(measured: Measured, coupon: Coupon) -> Measured:
+    """The rows, if crack lengths can be what they are called."""
+    at = np.flatnonzero(np.isfinite(measured.crack))
+    crack, where = measured.crack[at], f"{measured.source}: the crack length"
+    if not at.size:
+        return measured
+    shortest, longest = float(crack.min()), float(crack.max())
+    if shortest <= 0.0:
+        raise CurveError(f"{where} must be above 0, got {shortest:g} in point {at[np.argmin(crack)] + 1}")
+    if shortest < coupon.precrack * (1.0 - SLACK):
+        raise CurveError(f"{where} must be >= specimen.precrack = {coupon.precrack:g}, got {shortest:g}; units?")
+    if longest > coupon.length:
+        raise CurveError(f"{where} must be <= specimen.length = {coupon.length:g}, got {longest:g}; units?")
+    back = np.maximum.accumulate(crack) - crack
+    if back.max() > SLACK * longest:
+        i = int(np.argmax(back))
+        raise CurveError(f"{where} must not decrease, got {crack[i]:g} in point {at[i] + 1} after {crack[:i].max():g}")
+    return measured
+
+
+#: How far readings of a crack length may go back, or fall short of the precrack, in parts of it.
+SLACK = 0.05

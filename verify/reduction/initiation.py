@@ -1,0 +1,101 @@
+"""Where a crack begins to grow (NL, 5 %/max, VIS), and the rows on which it grows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from verify.reduction.corrections import LinearPart
+from verify.reduction.data import Measured
+from verify.reduction.scheme import Settings
+
+#: Names of initiation values: ASTM D5528, 11.6; ISO 15024, 9.2.
+NL, FIVE, VIS = "NL", "5%/max", "VIS"
+
+
+@dataclass(frozen=True)
+class Onset:
+    """When a curve has left its line, and what counts as growth.
+
+    departs : opening beyond the line from which it is not linear, in parts of the opening there; what the eye tells
+    sigmas : and in standard deviations of the noise
+    softer : compliance of the 5 % line over that of the linear part, minus 1
+    settled : growth of the equivalent crack, in parts of the largest, from which G counts as propagation where no crack
+        length is read: less takes more of a rising R-curve into its mean
+    least_load : of rows that count, in parts of the largest load
+    reach : crack length, in parts of that up to which the formulas hold, beyond which rows do not count
+    stands : compliance, in parts of the largest so far, below which a row at smaller openings is one of unloading
+    """
+
+    departs: float = 0.01
+    sigmas: float = 5.0
+    softer: float = 0.05
+    settled: float = 0.2
+    least_load: float = 0.02
+    reach: float = 0.95
+    stands: float = 1.005
+
+
+ONSET = Onset()
+SAME_LENGTH = 1e-6
+
+
+def initiation(rows: Measured, part: LinearPart, noise: float, a0: float) -> dict[str, int]:
+    """Index of each initiation point; VIS only where crack lengths are read, NL and 5 % at the maximum at the latest.
+
+    NL: from there to the maximum the opening stays beyond the line by 1 % of it, or more where the load is noisy.
+    5 %/max: where the curve meets the line through the origin of 1.05 times the compliance, or the maximum before it.
+    VIS: the last row before a crack length exceeds the precrack, or the first one after it.
+    """
+    top = int(np.argmax(rows.load))
+    straight = part.compliance * rows.load[: top + 1]
+    beyond = rows.opening[: top + 1] - part.toe - straight
+    rough = ONSET.sigmas * part.compliance * noise
+    found = {
+        NL: _leaves(beyond, np.maximum(ONSET.departs * straight, rough), top),
+        FIVE: _leaves(beyond, ONSET.softer * straight, top),
+    }
+    read = np.flatnonzero(np.isfinite(rows.crack))
+    grown = read[rows.crack[read] > a0 * (1.0 + SAME_LENGTH)]
+    if grown.size:
+        before = read[(read < grown[0]) & (read > part.rows[-1])]
+        found[VIS] = int(before[-1] if before.size else grown[0])
+    return found
+
+
+def _leaves(beyond: np.ndarray, most: np.ndarray, top: int) -> int:
+    """The first index from which ``beyond`` stays above ``most`` up to the end, or the end."""
+    within = np.flatnonzero(beyond <= most)
+    return min(int(within[-1]) + 1 if within.size else 0, top)
+
+
+def growing(
+    rows: Measured, equivalent: np.ndarray, onset: dict[str, int], limit: float, a0: float, settings: Settings
+) -> np.ndarray:
+    """Rows (n,) on which G counts as propagation.
+
+    They come after the 5 %/max point and the first growth that was read, under load, before the crack meets a load or
+    an end, and not on unloading. ``equivalent`` are crack lengths by the compliance (n,), ``limit`` that up to which
+    the formulas hold.
+    """
+    index = np.arange(rows.load.size)
+    crack = np.where(np.isfinite(rows.crack), rows.crack, equivalent)
+    C = np.where(rows.load > ONSET.least_load * rows.load.max(), rows.compliance, np.nan)
+    so_far = np.fmax.accumulate(np.where(np.isfinite(C), C, 0.0))
+    unloads = (rows.opening < 0.99 * np.maximum.accumulate(rows.opening)) & (C < ONSET.stands * so_far)
+    unloads &= np.append(False, so_far[1:] <= so_far[:-1])
+    kept = np.isfinite(C) & (index >= onset[FIVE]) & (crack < ONSET.reach * limit) & ~unloads
+    if rows.front is not None:
+        kept &= rows.front < ONSET.reach * limit
+    growth = crack - a0
+    if settings.begin is not None:
+        kept &= growth >= settings.begin
+    elif rows.has_cracks:
+        first = np.flatnonzero(rows.crack > a0 * (1.0 + SAME_LENGTH))
+        kept &= index >= (first[0] if first.size else index.size)
+    elif kept.any():
+        kept &= growth >= ONSET.settled * growth[kept].max()
+    if settings.end is not None:
+        kept &= growth <= settings.end
+    return kept

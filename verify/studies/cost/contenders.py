@@ -1,0 +1,71 @@
+"""Which runs may still be the cheapest of their method for an accuracy: all others are not tried, and not repeated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
+from verify.studies.cost.ladder import Try
+from verify.studies.cost.row import Row
+
+
+@dataclass(frozen=True)
+class Contenders:
+    """Who contends; larger values try more runs and cost time.
+
+    near : few steps are tried on meshes whose error with equal steps is at most ``near`` times an accuracy: errors of
+        mesh and steps may cancel
+    behind : and whose time with equal steps is at most this many times that of the method's cheapest
+    meshes : the coarsest so many of each family, since no finer one is cheaper
+    """
+
+    near: float = 1.2
+    behind: float = 2.0
+    meshes: int = 2
+
+
+CONTENDERS = Contenders()
+
+
+def few_steps(rows: Mapping[Try, Row]) -> list[Try]:
+    """Runs with few steps on the meshes that may be the cheapest of their method for an accuracy."""
+    equal = {one: row for one, row in rows.items() if row in of_equal_steps([row]) and row.measured}
+    chosen: dict[Try, None] = {}
+    for level, error in LEVELS.items():
+        near = {one: row for one, row in equal.items() if row.curve_error <= CONTENDERS.near * error}
+        for method in {row.method for row in near.values()}:
+            quickest = min(row.seconds for row in near.values() if row.method == method)
+            for family in {one.family for one, row in near.items() if row.method == method}:
+                meshes = sorted((one for one in near if one.family == family), key=lambda one: one.size)
+                for one in meshes[: CONTENDERS.meshes]:
+                    if near[one].seconds <= CONTENDERS.behind * quickest:
+                        chosen.update(dict.fromkeys(one.with_few_steps(level)))
+    return sorted(chosen, key=lambda one: one.variant)
+
+
+def best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late: float = 0.0) -> list[Try]:
+    """The cheapest runs of every method for every level, and those whose time is nearly the same.
+
+    Nearly: at most the factor ``within``, or ``once`` for runs that were timed once, plus ``late`` seconds.
+    """
+    chosen: dict[Try, None] = {}
+    for level, error in LEVELS.items():
+        for method, cheap in cheapest(list(rows.values()), level).of_method.items():
+            for one, found in rows.items():
+                most = (once if found.times == 1 else within) * cheap.seconds + late
+                if found.method == method and found.curve_error <= error and found.seconds <= most:
+                    chosen[one] = None
+    return list(chosen)
+
+
+def between(rows: Mapping[Try, Row]) -> list[Try]:
+    """Meshes between the last that misses a level and the first that reaches it, for every method's best family."""
+    chosen: dict[Try, None] = {}
+    for error in LEVELS.values():
+        for one in best(rows):
+            coarser = [other for other in rows if other.family == one.family and other.size < one.size]
+            below = max(coarser, key=lambda other: other.size, default=None)
+            if below is not None and rows[one].curve_error <= error < rows[below].curve_error:
+                chosen[Try(one.family, one.rung, round((one.size * below.size) ** 0.5), one.steps)] = None
+    return list(chosen)

@@ -1,0 +1,128 @@
+"""The quick ladder of a verification: the study with few meshes of few families, whose steps follow the accuracy."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from time import monotonic
+
+from verify.runs.jobs import Job, Outcome
+from verify.scene.schema import Scene
+from verify.studies import frame
+from verify.studies.cost.contenders import best
+from verify.studies.cost.findings import LEVELS
+from verify.studies.cost.ladder import LADDER, Family, Ladder, Try, ladders
+from verify.studies.cost.price import UNFINISHED, Price
+from verify.studies.cost.reference import Meshes, reference, reference_jobs
+from verify.studies.cost.study import LIMITS, Runner, climb
+from verify.studies.frame import failure, one_thread
+from verify.support.say import say
+
+
+@dataclass(frozen=True)
+class Quick:
+    """Plan of the quick ladder.
+
+    families : each with the elements in the process zone of its coarsest mesh, so that four meshes lead from an error
+        of 2 to 0.05 % on ``dcb-czm1``; of every method the degree that reaches 0.3 % first there. Higher degrees of
+        DOLFINx would be compiled first
+    ladder : meshes and steps. A distance of 0.02 from the tangent leaves an error of 0.1 to 0.2 % between the steps, so
+        that few runs miss 0.3 % by their steps; the best meshes of the two methods that are compared are tried with
+        fewer, and with equal ones
+    meshes : of the reference, 0.02 % off on ``dcb-czm1``, where its uncertainty is 0.02 %
+    climb, vary, repeat : seconds after which no run of the ladder, with other steps, or for repetition is begun
+    times : how often the runs of the price are timed, and those that may only have come out late
+    """
+
+    families: tuple[Family, ...] = (
+        Family("nurbs", "nurbs", 2, 2.25),
+        Family("tspline", "tspline", 3, 2.4),
+        Family("lagrange", "lagrange", 2, 1.96),
+        Family("dolfinx", "dolfinx", 2, 1.4),
+    )
+    ladder: Ladder = Ladder(rungs=4, steps="auto-0.02", other_steps=("auto-0.05", LADDER.steps))
+    meshes: Meshes = Meshes(zone=(3.0, 5.0, 8.0), other_zone=(), steps="auto-0.002")
+    climb: float = 28.0
+    vary: float = 34.0
+    repeat: float = 37.0
+    times: int = 3
+
+
+QUICK = Quick()
+
+
+def quick(source: str, scene: Scene, out: Path, jobs: int, other: Sequence[Outcome] = ()) -> Price | None:
+    """Run the quick ladder on a scene into ``out``; None, with a message, where nothing can be measured.
+
+    Parameters
+    ----------
+    jobs : runs of the reference at a time; timed runs are done one at a time
+    other : runs of the other code on two meshes, coarse to fine, which the reference is held against
+    """
+    one_thread()
+    start = monotonic()
+    rungs, reasons = ladders(source, scene, (), QUICK.families, QUICK.ladder)
+    if not rungs:
+        say(f"no quick ladder on {scene.name}: {'; '.join(reasons)}")
+        return None
+    plan, _ = reference_jobs(source, scene, (), QUICK.meshes)
+    outcomes = frame.run(plan, out, jobs)
+    against = reference([outcomes[job] for job in plan], other)
+    if against is None:
+        why = next(filter(None, (failure(outcomes[job]) for job in plan)), "")
+        say(f"no quick ladder on {scene.name}: its reference is missing: {why}")
+        return None
+    runner = Runner(source, scene, (), out, against, start=start)
+    if not _measured(runner, rungs):
+        reasons.append(UNFINISHED)
+    price = _price(runner, reasons)
+    print(price.sentence, file=sys.stderr, flush=True)
+    return price
+
+
+def _measured(runner: Runner, rungs: dict[Family, list[Try]]) -> bool:
+    """Do the runs: the ladder, other steps on the best meshes, repetitions. Returns whether there was time for all."""
+    if not climb(rungs, partial(runner, seconds=QUICK.climb), lambda: runner.rows):
+        return False
+    for n in range(1, QUICK.times):
+        if not (runner(_other_steps(runner), QUICK.vary) and runner(_repeated(runner, n), QUICK.repeat)):
+            return False
+    return runner(_other_steps(runner), QUICK.repeat)  # a repetition may have changed who is the cheapest
+
+
+def _other_steps(runner: Runner) -> list[Try]:
+    """The meshes of the price with other steps."""
+    told = {row.run for row in _price(runner).pair}
+    chosen = [one for one in runner.rows if one.variant in told]
+    return [other for one in chosen for other in one.with_other_steps(QUICK.ladder.other_steps)]
+
+
+def _repeated(runner: Runner, n: int) -> list[Try]:
+    """The runs of the price, those at equal steps, and runs that may only have come out late, once more.
+
+    A run may have come out late where its method has part in the price, or where it is nearly as quick as the cheapest.
+    """
+    price, rows = _price(runner), runner.rows
+    told, methods = {row.run for row in (*price.pair, *price.equal)}, {row.method for row in price.pair}
+    enough, soon = LEVELS.get(price.level, 0.0), LIMITS.once * min((row.seconds for row in price.pair), default=0.0)
+    chosen = [one for one in rows if one.variant in told]
+    for one in best(rows, LIMITS.close, LIMITS.once, LIMITS.late):
+        if rows[one].curve_error <= enough and (rows[one].method in methods or rows[one].seconds <= soon):
+            chosen.append(one)
+    return [replace(one, repeat=n) for one in dict.fromkeys(chosen)]
+
+
+def _price(runner: Runner, reasons: Sequence[str] = ()) -> Price:
+    how = {one.variant: one.job(runner.source, runner.scene).overrides for one in runner.found}
+    return Price(runner.scene, runner.against, tuple(runner.rows.values()), tuple(reasons), how)
+
+
+def would_run(source: str, scene: Scene, out: Path) -> list[str]:
+    """One line per run of the ladder, with its expected time; nothing is run."""
+    rungs, reasons = ladders(source, scene, (), QUICK.families, QUICK.ladder)
+    plan: list[Job] = list(reference_jobs(source, scene, (), QUICK.meshes)[0]) if rungs else []
+    plan += [one.job(source, scene) for ones in rungs.values() for one in ones]
+    return frame.would_run(plan, reasons, out)

@@ -1,0 +1,168 @@
+"""Toughness, strength and modulus of a curve by least squares on solutions of the cohesive beam."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.stats import t as student
+
+from verify.curves.curve import load_at
+from verify.curves.of_run import cubics
+from verify.methods.solve import solve
+from verify.reduction.reduce import LEVEL, Reduction, Value
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
+from verify.studies.reduce.wording import with_interval
+from verify.support.progress import Progress
+from verify.support.refusal import Refusal
+
+
+@dataclass(frozen=True)
+class FitSettings:
+    """How a curve is fitted.
+
+    ``points`` openings at which the curve of a run is compared, that of a test at all its rows. ``step`` is the
+    relative change of a number for its derivative: below it the steps of the solver show, above it the curve bends.
+    ``steps`` of a solution and ``solutions`` at most bound the time.
+    """
+
+    points: int = 120
+    step: float = 0.02
+    steps: int = 60
+    solutions: int = 60
+    method: str = "beam"
+
+
+FITTING = FitSettings()
+#: Half width of an interval over the value from which a number counts as not identified.
+VAGUE = 0.25
+#: Kind -> keys of strength and toughness that its curve depends on.
+FITTED_KEYS = {
+    "dcb": ("strength", "toughness"),
+    "enf": ("shear_strength", "shear_toughness"),
+    "els": ("shear_strength", "shear_toughness"),
+    "4enf": ("shear_strength", "shear_toughness"),
+}
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What fits best, with 95 % intervals, and the curve of it.
+
+    ``misfit`` is the root mean square of what is left, over the largest load; ``felt`` that of the change by a tenth
+    more strength.
+    """
+
+    strength: Value
+    toughness: Value
+    modulus: Value
+    misfit: float
+    felt: float
+    solutions: int
+    opening: np.ndarray
+    load: np.ndarray
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """The numbers, and which of them the curve does not tell."""
+        values = (("toughness", self.toughness), ("strength", self.strength), ("modulus", self.modulus))
+        off = f"{100 * self.misfit:.2g} % of the peak"
+        said = [
+            ", ".join(f"{name} {with_interval(value)}" for name, value in values),
+            f"the curve is {off} off, root mean square, after {self.solutions} solutions",
+        ]
+        part = self.strength.half / abs(self.strength.value)
+        if not part <= VAGUE:
+            said.append(
+                f"the strength cannot be identified from this curve, its interval is ± {100 * part:.0f} %: a tenth "
+                f"more of it changes the load by {100 * self.felt:.2g} % of the peak, and {off} is noise"
+            )
+        return tuple(said)
+
+
+def fitted(found: Reduction, scene: Scene) -> Fit:
+    """Fit strength, toughness and modulus, from those of the scene and the toughness of the reduction.
+
+    Loads are compared at equal openings of the corrected curve, up to the last row of growth; a snap-back is a drop.
+    Intervals: t s sqrt(diag (J^T J)^-1), s^2 what is left per degree of freedom; they take what is left for noise.
+
+    Raises
+    ------
+    Refusal : a kind that fits no single toughness, or a curve without growth.
+    """
+    if found.coupon.kind not in FITTED_KEYS:
+        raise Refusal(f"--fit: must be for {', '.join(FITTED_KEYS)}, got the kind {found.coupon.kind!r}")
+    if not found.grown.any():
+        raise Refusal("--fit: needs rows on which the crack grows, got none")
+    data = _data(found)
+    with Progress("fit", FITTING.solutions) as progress:
+        return _fitted(_Solver(scene, found, data, progress), data[0].size)
+
+
+def _fitted(solver: _Solver, rows: int) -> Fit:
+    start = np.ones(3)
+    best = least_squares(
+        solver.left, start, bounds=([0.05, 0.2, 0.3], [20.0, 5.0, 3.0]), diff_step=FITTING.step, xtol=1e-4, ftol=1e-6,
+        max_nfev=FITTING.solutions // 4,
+    )  # fmt: skip
+    free = rows - 3
+    s2 = 2.0 * best.cost / free
+    spread = np.linalg.pinv(best.jac.T @ best.jac)
+    half = student.ppf(0.5 + LEVEL / 2.0, free) * np.sqrt(s2 * np.diag(spread))
+    values = [Value(base * float(x), base * float(h)) for base, x, h in zip(solver.base, best.x, half, strict=True)]
+    felt = 0.1 * best.x[0] * float(np.sqrt(np.mean(best.jac[:, 0] ** 2)))
+    curve = solver.curve(best.x)
+    return Fit(values[0], values[1], values[2], float(np.sqrt(s2)), felt, solver.count, *curve)
+
+
+def _data(found: Reduction) -> tuple[np.ndarray, np.ndarray]:
+    """Openings and loads from the linear part on: the rows of a test, and of a run points equally far apart."""
+    first, last = int(found.part.rows[0]), int(np.flatnonzero(found.grown)[-1])
+    d, P = found.rows.opening[first : last + 1], found.rows.load[first : last + 1]
+    if not found.rows.virtual:
+        return d, P
+    at = d[0] + (float(d.max()) - d[0]) * np.arange(1, FITTING.points + 1) / FITTING.points
+    at[-1] = d.max()
+    return at, load_at((d, P), at)
+
+
+class _Solver:
+    """Solutions of the scene with strength, toughness and modulus times ``x`` (3,)."""
+
+    def __init__(self, scene: Scene, found: Reduction, data: tuple[np.ndarray, np.ndarray], progress: Progress) -> None:
+        self._at, self._load = data
+        self._peak = float(self._load.max())
+        self._keys = FITTED_KEYS[found.coupon.kind]
+        self._table = scene.model_dump()
+        self._table["published"] = []
+        bond = self._table["interface"]
+        start = next(one.propagation.value for one in found.schemes if one.name == "CBBM")
+        self.base = (float(bond[self._keys[0]]), start, found.coupon.young)
+        self._end = 1.001 * float(self._at.max())
+        self.count = 0
+        self._progress = progress
+
+    def curve(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Opening and load, with points between the steps."""
+        strength, toughness, modulus = (float(part) for part in x)
+        bond = zip(self._keys, (strength * self.base[0], toughness * self.base[1]), strict=True)
+        names = [f"interface.{key}={value!r}" for key, value in bond]
+        moduli = [f"material.{key}={modulus * value!r}" for key, value in _moduli(self._table["material"]).items()]
+        settings = [f"load.opening={self._end!r}", f"discretization.steps={FITTING.steps}"]
+        scene = parse_scene(self._table, [*names, *moduli, *settings])
+        self.count += 1
+        self._progress.advance(min(self.count, FITTING.solutions), f"{self.count} solutions")
+        d, P = cubics(solve(scene, FITTING.method))
+        return np.asarray(d), np.asarray(P)
+
+    def left(self, x: np.ndarray) -> np.ndarray:
+        """Load minus that of the data, over its largest; 0 beyond the end of a run that has separated."""
+        return (np.nan_to_num(load_at(self.curve(np.asarray(x)), self._at)) - self._load) / self._peak
+
+
+def _moduli(material: Any) -> dict[str, float]:
+    """The modulus along the arms, by its key."""
+    return {key: float(material[key]) for key in ("young", "E1") if material.get(key) is not None}

@@ -1,0 +1,101 @@
+"""What is reduced: rows and specimen, from a file with a scene or from the folder of a run."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from verify.curves.read import Reading
+from verify.reduction.calibration import POWERS
+from verify.reduction.coupon import Coupon, coupon
+from verify.reduction.data import Columns, Measured, of_steps, read_measured
+from verify.reduction.equivalent_crack import LIKE_A_DCB
+from verify.reduction.scheme import Settings
+from verify.runs.folder import read_result
+from verify.scene.effects import simulated
+from verify.scene.load import load_scene
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
+from verify.support.checked_files import ANY, read_json
+from verify.support.refusal import Refusal
+
+#: Of a run, which has neither toe nor noise, the linear part ends before its process zone tells in the compliance.
+OF_RUNS = (0.0, 0.2)
+#: Numbers of a bond that a scene for a test may leave out.
+_SOME_BOND = ("interface.strength=1.0", "interface.toughness=1.0")
+_SOME_SHEAR = ("interface.shear_strength=1.0", "interface.shear_toughness=1.0")
+
+
+@dataclass(frozen=True)
+class Given:
+    """A test or a run. ``bonded``: whether the toughness of the scene is known, to hold the result against."""
+
+    measured: Measured
+    scene: Scene
+    coupon: Coupon
+    bonded: bool
+
+    def settings(self, asked: Settings, window: tuple[float, float] | None) -> Settings:
+        """The settings with what a run is known by: no toe, and large openings where it has finite rotations."""
+        if self.coupon.kind not in LIKE_A_DCB and (asked.large or asked.block != (0.0, 0.0)):
+            raise Refusal(f"--large, --block: must be left out for the kind {self.coupon.kind!r}: factors of a dcb")
+        if self.coupon.kind not in POWERS and asked.calibration:
+            raise Refusal(f"--calibration: must be left out for the kind {self.coupon.kind!r}, whose CC has none")
+        if not self.measured.virtual:
+            return asked if window is None else replace(asked, window=window)
+        large = self.coupon.kind in LIKE_A_DCB and simulated(self.scene)["kinematics"] == "finite"
+        return replace(asked, window=window or OF_RUNS, toe=False, large=asked.large or large)
+
+
+def given(path: Path, scene: str | None, overrides: Sequence[str], columns: Columns) -> Given:
+    """The rows of a file or run, and its specimen; without ``scene`` that which the run has solved.
+
+    Raises
+    ------
+    Refusal : no scene, or what `coupon` and `read_measured` refuse.
+    """
+    run = path / "result.json"
+    if scene is None and not run.exists():
+        raise Refusal(f"--scene: must name the specimen of {path}, a packaged scene or a file, as it is no run")
+    if scene is None:
+        known = _scene_of(run, overrides)
+        bonded = True
+    else:
+        known, bonded = scene_of_test(scene, overrides)
+    specimen = coupon(known)
+    if (path / "evidence.csv").exists() and columns == Columns(Reading()):
+        return Given(of_steps(str(path), read_result(path).steps, specimen), known, specimen, bonded)
+    return Given(read_measured(path, columns, specimen), known, specimen, bonded)
+
+
+def _scene_of(run: Path, overrides: Sequence[str]) -> Scene:
+    found = read_json(run, {"scene": {ANY: object}})["scene"]
+    return parse_scene(found, overrides, str(run))
+
+
+def scene_of_test(source: str, overrides: Sequence[str]) -> tuple[Scene, bool]:
+    """A scene, in which bond and load may be missing, and whether its bond is given."""
+    raw = _raw(Path(source))
+    missing = [] if raw is None or "interface" in raw or _sets("interface", overrides) else [*_SOME_BOND]
+    if missing and raw is not None:
+        specimen = raw.get("specimen")
+        kind, length = (specimen.get(key) if isinstance(specimen, dict) else None for key in ("kind", "length"))
+        missing += [] if kind == "dcb" else _SOME_SHEAR
+        if "load" not in raw and isinstance(length, int | float):
+            missing.append(f"load.opening={1e-3 * length}")
+    return load_scene(source, [*missing, *overrides]), not missing
+
+
+def _raw(path: Path) -> dict[str, Any] | None:
+    """The tables of a scene file; None for a packaged scene, or what `load_scene` will complain of."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError):
+        return None
+
+
+def _sets(table: str, overrides: Sequence[str]) -> bool:
+    return any(one.split("=")[0].split(".")[0] == table for one in overrides)
