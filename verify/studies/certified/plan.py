@@ -25,8 +25,8 @@ class Resolution:
     ratio : of the element lengths of successive meshes, 1.3 at least (Celik et al. 2008, J. Fluids Eng. 130, 078001)
     finer : elements of the finest mesh over those of the scene, in powers of ``ratio``: on the mesh of a scene the load
         goes up and down by 1e-3 as the front passes from element to element, which falls faster than any order
-    bend : `discretization.bend` of NURBS, which chooses its steps; a quarter of it halves them
-    counted : steps of DOLFINx; the 150 that it counts by itself leave up to 2e-3 between them. Twice as many halve them
+    bend : `discretization.bend` of the steps, which both codes choose; a quarter of it halves them. The 150 steps that
+        are counted elsewhere leave up to 2e-3 between them, and 1e-3 leaves 1e-4 to 1e-3 of a load
     degree : least degree of the DOLFINx elements: what one quadratic element through a slender arm leaves is larger
         than the uncertainties here
     parts : parts of the largest opening at which loads are certified where nothing else is said
@@ -35,7 +35,6 @@ class Resolution:
     ratio: float = 1.4
     finer: Mapping[str, int] = field(default_factory=lambda: {SEARCHING: 2, REFERENCE: 1})
     bend: float = 2.5e-4
-    counted: int = 300
     degree: int = 3
     parts: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0)
 
@@ -97,7 +96,7 @@ def planned(source: str, scene: Scene, at: Sequence[float] = (), given: Sequence
         raise Refusal(f"--at: must be > 0 and <= {end:g}, the largest opening, got {wrong[0]:g}")
     for method in (SEARCHING, REFERENCE):
         require(prepare(scene, method))
-    base = Job(source, scene, "", "certified", tuple(given), fields=False)
+    base = Job(source, scene, "", "certified", (*given, *_chosen(RESOLUTION.bend)), fields=False)
     codes = {SEARCHING: _of_nurbs(base, scene), REFERENCE: _of_dolfinx(base, scene)}
     finest = codes[SEARCHING].meshes[0]
     matched, remarks = _matched(finest, scene)
@@ -109,9 +108,9 @@ def planned(source: str, scene: Scene, at: Sequence[float] = (), given: Sequence
 
 
 def _of_nurbs(base: Job, scene: Scene) -> CodeRuns:
-    """Meshes by their unknowns, with chosen steps."""
+    """Meshes by their unknowns."""
     mesh, name = scene.discretization, SEARCHING
-    code = replace(base, method=name, overrides=(*base.overrides, *_chosen(RESOLUTION.bend)))
+    code = replace(base, method=name)
     sizes = [round(mesh.dofs * scale) for scale in _scales(name)]
     meshes = tuple(_checked(_varied(code, f"{name}-{n}", f"discretization.dofs={n}")) for n in sizes)
     rows = mesh.degree + mesh.layers  # of functions through an arm
@@ -121,13 +120,13 @@ def _of_nurbs(base: Job, scene: Scene) -> CodeRuns:
 
 
 def _of_dolfinx(base: Job, scene: Scene) -> CodeRuns:
-    """Meshes by their elements along the specimen, which are cubic, with counted steps."""
-    mesh, name, steps = reference_mesh(scene), REFERENCE, f"discretization.steps={RESOLUTION.counted}"
-    kept = f"dolfinx.degree={max(mesh.degree, RESOLUTION.degree)}", f"dolfinx.layers={mesh.layers}", steps
+    """Meshes by their elements along the specimen, which are cubic."""
+    mesh, name = reference_mesh(scene), REFERENCE
+    kept = f"dolfinx.degree={max(mesh.degree, RESOLUTION.degree)}", f"dolfinx.layers={mesh.layers}"
     code = replace(base, method=name, overrides=(*base.overrides, *kept))
     sizes = [round(mesh.elements * scale) for scale in _scales(name)]
     meshes = tuple(_checked(_varied(code, f"{name}-{n}", f"dolfinx.elements={n}")) for n in sizes)
-    paced = _varied(meshes[0], "steps", f"discretization.steps={2 * RESOLUTION.counted}")
+    paced = _varied(meshes[0], "steps", *_chosen(RESOLUTION.bend / 4.0))
     return CodeRuns(meshes, paced, _able(_varied(meshes[0], "layers", f"dolfinx.layers={2 * mesh.layers}")))
 
 
