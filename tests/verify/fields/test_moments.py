@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -95,7 +96,7 @@ def test_pages_of_few_scenes_have_them(tmp_path: Path, monkeypatch: pytest.Monke
 
     asked: list[tuple[str, bool]] = []
     monkeypatch.setattr(page, "section", lambda report, anchor, between: asked.append((anchor, between)))
-    monkeypatch.setattr(page, "summarise", lambda sections, planes: None)
+    monkeypatch.setattr(page, "summarise", lambda sections, planes, prices: SimpleNamespace(prices=()))
     monkeypatch.setattr(page, "_scripts", lambda sections, studies: ())
     monkeypatch.setattr(page, "rendered", lambda *words, **parts: "page")
     for number, between in ((1, True), (5, True), (6, False)):

@@ -118,8 +118,8 @@ def test_what_is_not_given_is_as_it_is_written() -> None:
     law = {key: given["interface"][key] for key in ("strength", "toughness", "ductility", "penalty")}
     scene = parse_scene({**needed, "interface": law})
     mesh = {
-        "degree": 3, "dofs": 1956, "interface_rule": "gauss", "interface_points": 2, "mismatch": 1.0,
-        "adaptive": False, "slave": "upper", "steps": 150, "bend": 0.005,
+        "degree": 3, "dofs": 1956, "layers": 1, "interface_rule": "gauss", "interface_points": 2, "mismatch": 1.0,
+        "adaptive": False, "slave": "upper", "steps": "auto", "bend": 0.005,
     }  # fmt: skip
     effects = {
         "kinematics": "finite",
