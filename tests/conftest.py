@@ -42,3 +42,11 @@ def judged(report: Report) -> Report:
         if said := complaint(reason):
             report.outcome, report.longrepr = "failed", said
     return report
+
+
+@pytest.fixture
+def nothing_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For made-up runs that bear the name of a scene whose certified values they do not have."""
+    from verify.checks import certified
+
+    monkeypatch.setattr(certified, "certified", lambda scene: ())

@@ -117,8 +117,8 @@ def arrive(model: Model, state: State, equations: Step, guess: tuple[np.ndarray,
     """Equilibrium and the path through it.
 
     The tangent that gives the direction of the path also gives one more correction, after which only rounding remains.
-    After iterations that have stopped early it is made anew for another one until that is so; where full corrections do
-    not get there, all begins again without stopping early.
+    After iterations that have stopped early it is made anew for another one until little is left, of which the same
+    tangent then leaves rounding; where full corrections do not get there, all begins again without stopping early.
     """
     attempt = find_equilibrium(model, equations, *guess)
     if not attempt.converged:
@@ -135,7 +135,8 @@ def arrive(model: Model, state: State, equations: Step, guess: tuple[np.ndarray,
         r_n = model.residual(u_n, load, state.k_q)
         scale, target = scale_and_target(model, equations, u_n, load)
         if model.norm(r_n) <= max(target, REFERENCE_STEP.closed) * scale:
-            return arrival
+            du_n, d_load = bordered_step(model, equations.control, u_n, r_n)
+            return replace(arrival, u_n=u_n + du_n, load=load + d_load)
     return arrive(model, state, replace(equations, early=0.0, patience=True), guess)
 
 

@@ -21,7 +21,8 @@ from verify.verdict import Check
 class CertifiedRule:
     """What certified values are, and how near a run must be.
 
-    whole : part of the last opening that a run must have reached to have a work, or else it bears no load any more
+    whole : part of an opening that a run must have reached to have a load there, and of the last one to have a work, or
+        else it bears no load any more
     gone : part of the peak load up to which a specimen bears none
     zone : part of the programme from which on the length of the process zone is averaged: one opening alone has that
         of the few points where the front stands
@@ -62,8 +63,15 @@ def measured(result: Result, kind: CertifiedKind, opening: float | None = None) 
         return peak((result.opening, result.load), result.steps.get("load_slope"))[0]
     assert opening is not None
     if kind == "load_at":
-        return float(load_at(from_origin(*sampled(result)), opening))
+        return _load(result, opening)
     return _work(result, opening) if kind == "work" else _zone(result, opening)
+
+
+def _load(result: Result, opening: float) -> float:
+    """At the last opening where a curve ends next to the one asked for."""
+    d, P = from_origin(*sampled(result))
+    last = float(np.max(d))
+    return float(load_at((d, P), last if CERTIFIED_RULE.whole * opening <= last < opening else opening))
 
 
 def _work(result: Result, end: float) -> float:

@@ -15,6 +15,8 @@ from verify.result import Result, steps_from_rows
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 
+pytestmark = pytest.mark.usefixtures("nothing_certified")
+
 
 @pytest.fixture(scope="module")
 def scene() -> Scene:

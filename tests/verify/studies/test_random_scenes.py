@@ -28,6 +28,8 @@ from verify.studies import campaign
 from verify.studies.campaign import LARGEST_DISTANCE, SOLVED_BY, Row, row, table
 from verify.verdict import Check, Run, SceneReport
 
+pytestmark = pytest.mark.usefixtures("nothing_certified")
+
 FINITE, LINEAR = load_scene("dcb-czm1"), load_scene("dcb-czm1-linear")
 
 
