@@ -52,8 +52,9 @@ class ChosenSteps:
     forget : growth from step to step of the largest step of the front after one that has failed.
     early : residual over the force scale at which iterations stop before the last correction, whose tangent is that of
         the path: it is off by about as much.
-    digits : decimals of the ratio of two lengths: differences of energies are subject to rounding, and steps are to be
-        the same on any number of ranks.
+    digits : decimals of the ratio of two lengths. Energies and openings are subject to rounding, which a length that
+        grows from step to step would multiply, and steps are to be the same on any number of ranks.
+    length_digits : significant digits of the length of a step, for the same reason.
     finest : number of counted steps as short as which steps are not judged, at the ``usual`` bend: what is left then
         are the teeth of the mesh. Their number grows with the root of a smaller one.
     """
@@ -76,6 +77,7 @@ class ChosenSteps:
     forget: float = 1.2
     early: float = 1e-4
     digits: int = 2
+    length_digits: int = 4
     finest: int = 600
 
 
@@ -191,7 +193,8 @@ class Chosen:
         reach = grown * max(gone, min(self.reach, CHOSEN_STEPS.cut_off * gone))
         most = min(1.0, CHOSEN_STEPS.forget * self.most)
         slow = min(most, max(1.0, grown) * self.slow)
-        return True, replace(here, reach=min(reach, CHOSEN_STEPS.largest * self.whole), slow=slow, most=most)
+        reach = _rounded(min(reach, CHOSEN_STEPS.largest * self.whole))
+        return True, replace(here, reach=reach, slow=slow, most=most)
 
     def _too_long(self, drawn: Drawn) -> bool:
         return max(self._excess(drawn)) > 1.0
@@ -245,6 +248,10 @@ _S = np.linspace(0.0, 1.0, 17)
 
 #: Load over the peak below which a step need not be more accurate for being under less load.
 _LIGHT = 0.25
+
+
+def _rounded(length: float) -> float:
+    return float(f"{length:.{CHOSEN_STEPS.length_digits}g}")
 
 
 def _drawn(before: State, reached: State, size: tuple[float, float]) -> Drawn:
