@@ -205,7 +205,11 @@ def variables(place: Place) -> dict[str, str]:
     env = {**defaults, **{name: text for name, text in os.environ.items() if name not in drop}}
     threads = env["OMP_NUM_THREADS"]
     env = {"OPENBLAS_NUM_THREADS": threads, "MKL_NUM_THREADS": threads, **env}
-    paths = [str(PROJECT), *(env["PYTHONPATH"].split(os.pathsep) if env.get("PYTHONPATH") else [])]
+    paths = [
+        str(PROJECT),
+        str(PROJECT / "verify" / "front"),
+        *(env["PYTHONPATH"].split(os.pathsep) if env.get("PYTHONPATH") else []),
+    ]
     env["PYTHONPATH"] = os.pathsep.join(dict.fromkeys(paths))
     programs = PATH_IN_ROOT if place.root else env.get("PATH", os.defpath)
     env["PATH"] = os.pathsep.join(dict.fromkeys([str(place.venv / "bin"), *programs.split(os.pathsep)]))

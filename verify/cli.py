@@ -36,6 +36,7 @@ from verify.command_line.commands import FAILED  # noqa: E402
 from verify.command_line.spelling import Help, parsed  # noqa: E402
 from verify.support.refusal import Refusal  # noqa: E402
 from verify.support.say import say  # noqa: E402
+from verify.version import __version__  # noqa: E402
 
 REFUSED, INTERRUPTED = 2, 130
 
@@ -88,6 +89,7 @@ def parser() -> Parser:
         formatter_class=Help,
         allow_abbrev=False,
     )
+    top.add_argument("--version", action="version", version=f"debond {__version__}")
     subs = top.add_subparsers(title="commands", required=True, metavar="COMMAND")
 
     def command(function: Callable[[argparse.Namespace], int], text: str, example: str, leaves: str) -> Parser:
