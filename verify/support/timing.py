@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import resource
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -57,7 +56,7 @@ class Stopwatch:
 
 
 def peak_memory_mb() -> float:
-    """Largest resident size of this process so far, in megabytes (1e6 bytes).
+    """Largest resident size of this process so far, in megabytes (1e6 bytes); 0 where the system does not tell.
 
     On Linux getrusage(2) includes the memory that the parent process had at the fork; proc(5) does not.
     """
@@ -68,5 +67,9 @@ def peak_memory_mb() -> float:
     own = re.search(r"^VmHWM:\s*(\d+) kB$", status, re.MULTILINE)
     if own:
         return int(own[1]) * 1024 / 1e6
+    try:
+        import resource
+    except ImportError:  # Windows
+        return 0.0
     unit = 1 if sys.platform == "darwin" else 1024  # bytes there, kilobytes elsewhere
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 import subprocess
 import sys
 
@@ -34,7 +35,7 @@ def test_without_proc_the_peak_is_that_of_getrusage(monkeypatch: pytest.MonkeyPa
         raise FileNotFoundError
 
     monkeypatch.setattr(timing.Path, "read_text", missing)
-    known = timing.resource.getrusage(timing.resource.RUSAGE_SELF).ru_maxrss
+    known = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     for platform, unit in (("linux", 1024), ("darwin", 1)):
         monkeypatch.setattr(timing.sys, "platform", platform)
         assert peak_memory_mb() == pytest.approx(known * unit / 1e6, rel=0.01)
