@@ -179,6 +179,8 @@ def _verify_options(sub: Parser) -> None:
     sub.add_argument("--strict", action="store_true", help="exit 1 where anything could not be judged")
     beside = "md writes report.md beside report.html: its numbers, for a terminal or a forge"
     sub.add_argument("--format", choices=("html", "md"), default="html", help=beside)
+    what = "write every check as a test case in JUnit XML there, which CI systems show"
+    sub.add_argument("--junit", type=Path, metavar="FILE", help=what)
     priced = "what accuracy costs there, by few runs of every method; default: a dcb of the scenes; repeatable"
     sub.add_argument("--ladder", action="append", default=[], metavar="SCENE", help=priced)
     sub.add_argument("--no-ladder", action="store_true", help="do not ask what accuracy costs")

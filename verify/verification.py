@@ -12,7 +12,7 @@ from verify.checks.judgement import NO_DEMANDS, Demands, judged
 from verify.checks.proof import REFERENCE, SECOND
 from verify.checks.table import check_table, not_held, overview
 from verify.report.findings import Findings
-from verify.runs import verdict_file
+from verify.runs import junit, verdict_file
 from verify.runs.environment import environment
 from verify.runs.jobs import Job, Outcome, dry_run, run_all
 from verify.scene.schema import Scene
@@ -69,6 +69,7 @@ def verify(
     scheduler: str | None = None,
     text: bool = False,
     demands: Demands = NO_DEMANDS,
+    junit_file: Path | None = None,
 ) -> bool:
     """Run everything, write ``out``/verdict.json and report.html, print the checks; whether the verification passes.
 
@@ -78,6 +79,7 @@ def verify(
     ----------
     jobs : runs at a time; with the address of a dask ``scheduler`` its workers do the runs
     text : whether report.md is written, too
+    junit_file : where the checks are written as JUnit XML, too
     """
     full, plates = subjects.full, subjects.plates
     plan, *figures = _plans(subjects)
@@ -97,6 +99,8 @@ def verify(
     judgement = judged(reports, others, demands)
     prices = _prices(subjects, out, jobs, list(outcomes.values()))
     verdict_file.write(out, reports, judgement, [os.path.relpath(study.folder, out) for study in studies], prices)
+    if junit_file is not None:
+        junit.write(junit_file, judgement)
     findings = Findings(reports, environment(), quadrature, paper, planes, bases, peels, studies, prices)
     written = write_page("verify.report.page", findings, page, text)
     tables = [line for found in planes for line in [*plane_lines(found), *check_table(found.checks), ""]]

@@ -202,8 +202,10 @@ def verify(options: argparse.Namespace) -> int:
     _folder(options.out)
     for remark in {remark for _, scene in scenes for remark in sliding.remarks(scene)}:
         say(remark)
+    _writable_file(options.junit, "--junit")
     text = options.format == "md"
-    return 0 if verify(subjects, options.out, options.jobs, options.scheduler, text, demands) else FAILED
+    passed = verify(subjects, options.out, options.jobs, options.scheduler, text, demands, options.junit)
+    return 0 if passed else FAILED
 
 
 def _ladders(options: argparse.Namespace, scenes: Sequence[tuple[str, Scene]]) -> Sequence[tuple[str, Scene]]:
@@ -542,6 +544,17 @@ def _folder(path: Path, option: str = "--out") -> None:
     except OSError as error:
         text = f"must be a folder that can be written to, got {str(path)!r}: {error.strerror}"
         raise Refusal(f"{option}: {text}") from None
+
+
+def _writable_file(path: Path | None, option: str) -> None:
+    """A file that cannot be written is refused before the work; one that is there keeps its content."""
+    if path is None:
+        return
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.open("ab").close()
+    except OSError as error:
+        raise Refusal(f"{option}: must be a file that can be written, got {str(path)!r}: {error.strerror}") from None
 
 
 def _not_run(error: NotRun) -> int:
