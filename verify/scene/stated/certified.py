@@ -58,6 +58,6 @@ def certified(scene: Scene) -> tuple[Certified, ...]:
 
 @cache
 def entries(path: Path = CERTIFIED_FILE) -> Mapping[str, Mapping[str, Any]]:
-    """Key of a problem -> its ``scene``, ``units``, and ``values``, fields of `Certified` each."""
+    """Key of a problem -> its ``scene``, ``units``, ``values`` as of `Certified`, and ``remarks``."""
     found: dict[str, Mapping[str, Any]] = json.loads(path.read_text())
     return found

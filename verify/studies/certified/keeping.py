@@ -9,6 +9,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from verify.scene.load import packaged_scenes
 from verify.scene.stated.certified import CERTIFIED_FILE, entries, problem_key
 from verify.studies.certified.study import Study
 from verify.support.refusal import Refusal
@@ -25,11 +26,14 @@ def require_checkout() -> None:
 
 
 def keep(study: Study, file: Path = CERTIFIED_FILE, page: Path = GUIDE_PAGE) -> None:
-    """Replace the entry of the problem, by none where no value is certified, and write the table anew."""
+    """Replace the entry of the problem by its values and the sentences for those it lacks; write the table anew."""
     known: dict[str, Any] = {key: one for key, one in entries(file).items() if key != problem_key(study.scene)}
-    if study.kept:
-        values = [asdict(one) for one in study.kept]
-        known[problem_key(study.scene)] = {"scene": study.scene.name, "units": study.scene.units, "values": values}
+    known[problem_key(study.scene)] = {
+        "scene": study.scene.name,
+        "units": study.scene.units,
+        "values": [asdict(one) for one in study.kept],
+        "remarks": study.remarks,
+    }
     ordered = dict(sorted(known.items(), key=lambda item: (item[1]["scene"], item[0])))
     file.write_text(json.dumps(ordered, indent=1) + "\n")
     entries.cache_clear()
@@ -44,12 +48,23 @@ def with_table(text: str, known: Mapping[str, Mapping[str, Any]]) -> str:
 
 
 def table(known: Iterable[Mapping[str, Any]]) -> list[str]:
-    """A line of Markdown for each value, with its uncertainty, and what keeping the pairs of points changes."""
+    """Lines of Markdown: each value with its uncertainty and what keeping the pairs of points changes, the remarks of
+    its scene, and every packaged scene that was not tried."""
     lines = ["| scene | quantity | value | U, 95 % | of the value | pairs kept |", "|---|---|---|---|---|---|"]
-    for scene, group in groupby(known, key=lambda one: one["scene"]):
-        shown = [(one["units"], value) for one in group for value in one["values"]]
-        for i, (units, one) in enumerate(shown):
-            name = f"`{scene}` ({units})" if i == 0 else ""
-            numbers = f"{one['value']:.6g} | {one['uncertainty']:.2g} | {one['uncertainty'] / abs(one['value']):.3%}"
-            lines.append(f"| {name} | {one['quantity']} | {numbers} | {one['matched']:+.2g} |")
+    rows = {scene: list(group) for scene, group in groupby(known, key=lambda one: str(one["scene"]))}
+    for scene in sorted({*rows, *packaged_scenes()}):
+        shown = [row for one in rows.get(scene, ()) for row in _rows(one)] or ["none: not tried | | | |"]
+        units = f" ({rows[scene][0]['units']})" if scene in rows else ""
+        names = [f"`{scene}`{units}", *[""] * (len(shown) - 1)]
+        lines += [f"| {name} | {row} |" for name, row in zip(names, shown, strict=True)]
     return lines
+
+
+def _rows(entry: Mapping[str, Any]) -> list[str]:
+    """Of one problem, without the column of its scene."""
+    values = [
+        f"{one['quantity']} | {one['value']:.6g} | {one['uncertainty']:.2g} | "
+        f"{one['uncertainty'] / abs(one['value']):.3%} | {one['matched']:+.2g}"
+        for one in entry["values"]
+    ]
+    return [*values, *(f"{remark} | | | |" for remark in entry.get("remarks", ()))]

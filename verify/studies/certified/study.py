@@ -73,6 +73,11 @@ class Study(frame.Study):
             if not one.why_not
         )
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What no budget has, and why a quantity has no certified value, a sentence each."""
+        return (*self.left_out, *(one.sentence for one in self.values if one.why_not))
+
     def about(self) -> dict[str, object]:
         return {
             "problem": problem_key(self.scene),

@@ -141,10 +141,11 @@ def test_what_is_kept_replaces_what_was_there(tmp_path: Path) -> None:
     assert page.read_text().count("`dcb-czm1`") == 1 and page.read_text().endswith("\n\nbelow\n")
     assert "| peak load | 0.24" in page.read_text()
     keeping.keep(study.judged(plan, answered(plan, off=0.5)), file, page)
-    assert {one["kind"] for one in json.loads(file.read_text())[problem_key(plan.scene)]["values"]} <= {
-        "peak_opening",
-        "zone",
-    }
+    apart = json.loads(file.read_text())[problem_key(plan.scene)]
+    assert {one["kind"] for one in apart["values"]} <= {"peak_opening", "zone"}
+    assert any("peak load: not certified: nurbs" in text for text in apart["remarks"])
+    assert "| peak load: not certified: nurbs" in page.read_text(), "the table says why a quantity lacks"
+    assert "| `peel-120` | none: not tried |" in page.read_text(), "and names every packaged scene"
 
 
 def test_the_guide_shows_what_the_package_has() -> None:
