@@ -49,6 +49,20 @@ def held_against(
     return comparison, comparison.loads_at(at)
 
 
+def explain(sources: tuple[Source, Source], tolerance: float | None) -> None:
+    """Say what explains the deviation of A from B best; where B is a run, with causes in its scene, too."""
+    from verify.diagnosis.classify import diagnose
+
+    a, b = sources
+    scene = load_scene(b.path / SCENE_FILE) if (b.path / SCENE_FILE).is_file() else None
+    curves = read_curve(a.path, a.reading), read_curve(b.path, b.reading)
+    if scene is not None and not only_opens(scene.load.opening):
+        return
+    found = diagnose(a.label, *curves, scene, CODE_TOLERANCE if tolerance is None else tolerance)
+    if found is not None:
+        say(found.sentence)
+
+
 def write(
     folder: Path,
     sources: tuple[Source, Source],
