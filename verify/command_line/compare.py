@@ -10,6 +10,7 @@ from verify.curves.compare import Comparison, Part, compare
 from verify.curves.read import Reading, read_curve
 from verify.curves.wording import remarks, rows
 from verify.runs.folder import write_json
+from verify.support.programme import only_opens
 from verify.support.say import say
 from verify.verdict import Check
 from verify.version import __version__
@@ -51,10 +52,13 @@ def held_against(
 
 def explain(sources: tuple[Source, Source], tolerance: float | None) -> None:
     """Say what explains the deviation of A from B best; where B is a run, with causes in its scene, too."""
+    from verify.checks.between_codes import CODE_TOLERANCE
     from verify.diagnosis.classify import diagnose
+    from verify.studies.reduce.source import scene_of_run
 
     a, b = sources
-    scene = load_scene(b.path / SCENE_FILE) if (b.path / SCENE_FILE).is_file() else None
+    about = b.path / "result.json"
+    scene = scene_of_run(about, ()) if about.is_file() else None
     curves = read_curve(a.path, a.reading), read_curve(b.path, b.reading)
     if scene is not None and not only_opens(scene.load.opening):
         return

@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.diagnosis.causes import NUMBERS, SWITCHES
 from verify.diagnosis.classify import sensitivity
-from verify.diagnosis.solutions import Solutions
+from verify.diagnosis.solutions import solutions
 from verify.diagnosis.wording import unseen
 from verify.scene.schema import Scene
 from verify.support.progress import Progress
@@ -19,22 +19,22 @@ SIZE = 0.01
 
 def blind_spots(name: str, scene: Scene, tolerance: float) -> str:
     """A sentence on what would move the curve by less than the tolerance; empty where that is not known or nothing."""
-    solutions = Solutions(scene, max(scene.load.opening))
-    base = solutions.load() if solutions.possible else None
+    solved = solutions(scene, max(scene.load.opening))
+    base = solved.load() if solved.possible else None
     if base is None:
         return ""
     size, words = float(np.linalg.norm(base)), []
     numbers = [one for one in NUMBERS if one.overrides(scene, 1.0)]
     with Progress("what a pass cannot see", len(numbers) + len(SWITCHES)) as progress:
         for done, number in enumerate(numbers):
-            slope = sensitivity(solutions, number)
+            slope = sensitivity(solved, number)
             moved = np.inf if slope is None else float(np.linalg.norm(slope)) * log1p(SIZE) / size
             if moved < tolerance:
                 words.append(f"{number.name} off by {100 * SIZE:g} % ({100 * moved:.1g} %)")
             progress.advance(done + 1, number.name)
         for switch in SWITCHES:
             made = switch.made(scene)
-            change = solutions.change([made[0]]) if made else None
+            change = solved.change([made[0]]) if made else None
             moved = np.inf if change is None else float(np.linalg.norm(change)) / size
             if made and moved < tolerance:
                 words.append(f"{made[1]} ({100 * moved:.1g} %)")

@@ -30,10 +30,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Switch:
-    """A choice of the scene made the other way; ``made`` returns the override and what the curve then has.
-
-    method : that solves it, where the beam does not know the choice
-    """
+    """A choice of the scene made the other way; ``made`` returns the override and what the curve then has."""
 
     name: str
     made: Callable[[Scene], tuple[str, str] | None]

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import exp, log
 
 import numpy as np
 
+from verify.curves.curve import Curve as AnyCurve
 from verify.diagnosis.causes import NUMBERS, SWITCHES, Number
 from verify.diagnosis.on_curve import Curve, Reference, undone
-from verify.diagnosis.solutions import Solutions
+from verify.diagnosis.solutions import Solutions, solutions
 from verify.diagnosis.wording import of_number, sentence
 from verify.scene.schema import Scene
 from verify.support.progress import Progress
@@ -49,7 +50,7 @@ class Settings:
 SETTINGS = Settings()
 
 
-def diagnose(name: str, curve: Curve, expected: Curve, scene: Scene | None, tolerance: float) -> Diagnosis | None:
+def diagnose(name: str, curve: AnyCurve, expected: AnyCurve, scene: Scene | None, tolerance: float) -> Diagnosis | None:
     """Which single cause explains the deviation of a curve best; None where there is hardly any.
 
     Parameters
@@ -71,54 +72,62 @@ def diagnose(name: str, curve: Curve, expected: Curve, scene: Scene | None, tole
     end = min(reference.end, float(np.max(given[0])))
     certain = any(one.error_with <= SETTINGS.certain * min(without, tolerance) for one in found)
     if scene is not None and not certain and 2.0 * end > reference.end:
-        found += _in_the_scene(Solutions(scene, end), reference, given, without, tolerance)
+        found += _in_the_scene(solutions(scene, end), reference, given, without, tolerance)
     return _ranked(name, found, without, tolerance)
 
 
-def _in_the_scene(solutions: Solutions, reference: Reference, given: Curve, without: float, tolerance: float) -> list[Explanation]:
+def _in_the_scene(
+    solved: Solutions, reference: Reference, given: Curve, without: float, tolerance: float
+) -> list[Explanation]:
     """Causes that are another scene, by its change of the solution of the beam."""
-    if not solutions.possible or solutions.load() is None:
+    if not solved.possible or solved.load() is None:
         return []
     _, off, load = reference.deviation(given)
     size = float(np.sqrt(np.sum(load**2)))
     found = []
-    numbers = [one for one in NUMBERS if one.overrides(solutions.scene, 1.0)]
+    numbers = [one for one in NUMBERS if one.overrides(solved.scene, 1.0)]
     with Progress("diagnosis", len(numbers) + len(SWITCHES) + SETTINGS.steps * SETTINGS.refined) as progress:
         lines = []
         for done, number in enumerate(numbers):
-            slope = sensitivity(solutions, number)
+            slope = sensitivity(solved, number)
             if slope is not None and np.linalg.norm(slope) * SETTINGS.probe > SETTINGS.felt * tolerance * size:
                 amount = float(np.clip(off @ slope / (slope @ slope), -log(SETTINGS.most), log(SETTINGS.most)))
                 lines.append((float(np.linalg.norm(off - amount * slope)), number, amount))
             progress.advance(done + 1, number.name)
         for _, number, amount in sorted(lines, key=lambda one: one[0])[: SETTINGS.refined]:
-            amount, left = _refined(solutions, number, amount, off)
+            amount, left = _refined(solved, number, amount, off, tolerance * size)
             words = of_number(number, exp(amount) - 1.0)
             found.append(Explanation(number.name, words, exp(amount) - 1.0, "part", left / size, without))
         for switch in SWITCHES:
-            made = switch.made(solutions.scene)
-            change = solutions.change([made[0]]) if made else None
+            made = switch.made(solved.scene)
+            change = solved.change([made[0]]) if made else None
             if made and change is not None:
                 left = float(np.linalg.norm(off - change)) / size
                 found.append(Explanation(switch.name, made[1], 1.0, "switch", left, without, fitted=False))
     return found
 
 
-def sensitivity(solutions: Solutions, number: Number) -> np.ndarray | None:
+def sensitivity(solved: Solutions, number: Number) -> np.ndarray | None:
     """Change of the load (n,) over that of the logarithm of a number."""
-    change = solutions.change(number.overrides(solutions.scene, exp(SETTINGS.probe)))
+    change = solved.change(number.overrides(solved.scene, exp(SETTINGS.probe)))
     return None if change is None else change / SETTINGS.probe
 
 
-def _refined(solutions: Solutions, number: Number, amount: float, off: np.ndarray) -> tuple[float, float]:
-    """Logarithm of the factor by Gauss-Newton with secants, and the norm of what is left; the best that was solved."""
+def _refined(solved: Solutions, number: Number, amount: float, off: np.ndarray, enough: float) -> tuple[float, float]:
+    """Logarithm of the factor by Gauss-Newton with secants, and the norm of what is left; the best that was solved.
+
+    ``enough``: norm of the tolerance, of which a part is not worth another solution.
+    """
     best, before, was = (0.0, float(np.linalg.norm(off))), 0.0, np.zeros_like(off)
     for _ in range(SETTINGS.steps + 1):
-        change = solutions.change(number.overrides(solutions.scene, exp(amount)))
-        if change is None or amount == before:
+        change = solved.change(number.overrides(solved.scene, exp(amount)))
+        if change is None:
             break
         left = off - change
+        settled = abs(float(np.linalg.norm(left)) - best[1]) < SETTINGS.enough * enough
         best = min(best, (amount, float(np.linalg.norm(left))), key=lambda one: one[1])
+        if settled:
+            break
         slope = (change - was) / (amount - before)
         before, was = amount, change
         amount = float(np.clip(amount + left @ slope / (slope @ slope), -log(SETTINGS.most), log(SETTINGS.most)))
@@ -140,7 +149,7 @@ def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: 
     return Diagnosis(name, tuple(order), explained, alike, sentence(raw))
 
 
-def _one_of_each(found, rank) -> list[Explanation]:
+def _one_of_each(found: Sequence[Explanation], rank: Callable[[Explanation], float]) -> list[Explanation]:
     best: dict[str, Explanation] = {}
     for one in found:
         if one.name not in best or rank(one) < rank(best[one.name]):

@@ -5,7 +5,7 @@ Each is undone on the curve, which is then as far from the reference as it would
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,7 +48,7 @@ class Reference:
         at, off, load = self.deviation(curve)
         return float(np.sqrt(np.sum(off**2) / np.sum(load**2))) if at.size else np.inf
 
-    def deviation(self, curve: Curve) -> Curve3:
+    def deviation(self, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Openings (n,), load of the curve minus that of the reference there, and the latter."""
         end = min(self.end, float(np.max(curve[0])))
         if not end > 0.0:
@@ -56,9 +56,6 @@ class Reference:
         at = end * np.arange(1, SAMPLES + 1) / SAMPLES
         load = sampled(self.curve, at)
         return at, sampled(curve, at) - load, load
-
-
-Curve3 = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -105,9 +102,11 @@ def _factors(curve: Curve, reference: Reference, width: float) -> Iterator[Undon
                 yield Undone(f"{name} x {factor:g}", f"{name}s {words}", factor, "factor", error, False)
 
 
-def _fitted(change, reference: Reference, most: float) -> tuple[float, float]:
+def _fitted(change: Callable[[float], Curve], reference: Reference, most: float) -> tuple[float, float]:
     """The amount within ``most`` that leaves least."""
-    best = minimize_scalar(lambda x: reference.error(change(x)), bounds=(-most, most), method="bounded", options={"xatol": 1e-5})
+    best = minimize_scalar(
+        lambda x: reference.error(change(x)), bounds=(-most, most), method="bounded", options={"xatol": 1e-5}
+    )
     return float(best.x), float(best.fun)
 
 

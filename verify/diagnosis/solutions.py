@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -61,3 +62,13 @@ class Solutions:
             return None
         d, P = cubics(result)
         return sampled((np.asarray(d), np.asarray(P)), self.grid) if result.complete else None
+
+
+def solutions(scene: Scene, end: float) -> Solutions:
+    """Of a scene up to an opening; several curves of one scene share them."""
+    return _of(scene.model_dump_json(), end)
+
+
+@lru_cache(maxsize=4)
+def _of(scene: str, end: float) -> Solutions:
+    return Solutions(Scene.model_validate_json(scene), end)

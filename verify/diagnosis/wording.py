@@ -35,7 +35,8 @@ def _left(one: Explanation) -> str:
 def unseen(curve: str, words: Sequence[str], tolerance: float) -> str:
     """What a pass does not show."""
     listed = "; ".join(words)
-    return f"{curve}: passes, and would with any of these, which move the curve by less than {_percent(tolerance)}: {listed}"
+    least = f"move the curve by less than {_percent(tolerance)}"
+    return f"{curve}: passes, and would pass with any of these, which {least}: {listed}"
 
 
 def _percent(part: float) -> str:
