@@ -70,6 +70,7 @@ FLOORS = (
     ("verify.studies.frame",),
     ("verify.runs",),
     ("verify.checks",),
+    ("verify.diagnosis",),
     ("verify.pages",),
     ("verify.fields",),
     ("verify.methods.built_in",),

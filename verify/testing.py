@@ -52,6 +52,7 @@ def assert_curves_close(
     programme: Sequence[float] | None = None,
     actual_as: Reading | None = None,
     expected_as: Reading | None = None,
+    scene: Scene | str | os.PathLike[str] | None = None,
 ) -> None:
     """Fail unless one load-opening curve is as close to another as the given tolerances ask.
 
@@ -82,6 +83,7 @@ def assert_curves_close(
         unloads. A path that snaps back does not unload: it comes back at smaller loads.
     actual_as, expected_as
         Which columns are opening and load, and what they are multiplied by; default: those of these names, unscaled.
+    scene : that both curves are of, its name or file: a failure then says which cause explains it best
 
     Raises
     ------
@@ -121,7 +123,20 @@ def assert_curves_close(
     if not all(check.passed for check in judged):
         broken = "; ".join([*complaints(found, judged), *remarks(found)])
         lines = [f"actual is not close to expected: {broken}", *table(found, (), judged)]
+        lines += [] if scene is None else _why(*curves, scene, curve)
         raise AssertionError("\n".join(lines))
+
+
+def _why(actual: Points, expected: Points, of: Scene | str | os.PathLike[str], curve: float | None) -> list[str]:
+    """A line on what explains the deviation best, where anything does."""
+    from verify.checks.between_codes import CODE_TOLERANCE
+    from verify.diagnosis.classify import diagnose
+    from verify.scene.load import load_scene
+    from verify.scene.schema import Scene
+
+    scene = of if isinstance(of, Scene) else load_scene(str(of))
+    found = diagnose("actual", actual, expected, scene, curve or CODE_TOLERANCE)
+    return [] if found is None else [found.sentence]
 
 
 def assert_law(

@@ -89,6 +89,35 @@ class Run:
 
 
 @dataclass(frozen=True)
+class Explanation:
+    """A cause of the deviation of a curve: by how much, and the curve error with it undone and as it is.
+
+    ``words`` name it with its amount, whose ``unit`` is "part" (relative), "factor", "switch", a count or a quantity;
+    ``fitted``: whether the amount was.
+    """
+
+    name: str
+    words: str
+    amount: float
+    unit: str
+    error_with: float
+    error_without: float
+    fitted: bool = True
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What explains the deviation of a curve: ``causes`` best first, whether the first one does, and the names of those
+    that the curve cannot tell from it."""
+
+    curve: str
+    causes: tuple[Explanation, ...]
+    explained: bool
+    alike: tuple[str, ...] = ()
+    sentence: str = ""
+
+
+@dataclass(frozen=True)
 class SceneReport:
     """Everything known about one scene; ``remarks`` say what is not judged, and why."""
 
@@ -96,6 +125,7 @@ class SceneReport:
     runs: tuple[Run, ...]
     checks: tuple[Check, ...]
     remarks: tuple[str, ...] = ()
+    diagnoses: tuple[Diagnosis, ...] = ()
 
     def judged(self, check: Check) -> tuple[Run, ...]:
         """The runs that a check is about, the one that it judges first; none for what is no run of this scene."""

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from verify.checks.explained import explained
 from verify.checks.foreign_curves import Curve, joined
 from verify.checks.judgement import NO_DEMANDS, Demands, judged
 from verify.checks.proof import REFERENCE, SECOND
@@ -86,6 +87,8 @@ def verify(
     outcomes = {outcome.job: outcome for outcome in run_all(_all_jobs(plan, *figures), out, jobs, scheduler)}
     done = [(scene, [outcomes[job] for job in plan if job.scene is scene]) for _, scene in subjects.scenes]
     reports = tuple(joined(scene_report(*runs, out), subjects.curves, out) for runs in done)
+    if subjects.curves:
+        reports = tuple(explained(report, [curve.name for curve in subjects.curves]) for report in reports)
     page = out / "report.html"
     with telling("studies", STUDIES_SECONDS * full + PLATE_SECONDS * len(plates)):
         quadrature = study() if full else None
@@ -105,6 +108,8 @@ def verify(
     written = write_page("verify.report.page", findings, page, text)
     tables = [line for found in planes for line in [*plane_lines(found), *check_table(found.checks), ""]]
     print("\n".join([*overview(reports), *tables, *convergence(reports), *not_held(judgement.checks)]))
+    for sentence in (one.sentence for report in reports for one in report.diagnoses):
+        say(sentence)
     if quadrature is not None:
         print(finding(quadrature))
     for title, found in (("Figures 6 to 8", paper), ("Figure 9", peels)):

@@ -403,7 +403,10 @@ def compare(options: argparse.Namespace) -> int:
         print(f"written: {options.out}")
     for complaint in complaints(comparison, found):
         say(complaint)
-    return 0 if all(check.passed for check in found) else FAILED
+    if not all(check.passed for check in found):
+        work.explain((a, b), options.curve_tol)
+        return FAILED
+    return 0
 
 
 def reduce(options: argparse.Namespace) -> int:

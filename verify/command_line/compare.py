@@ -10,6 +10,7 @@ from verify.curves.compare import Comparison, Part, compare
 from verify.curves.read import Reading, read_curve
 from verify.curves.wording import remarks, rows
 from verify.runs.folder import write_json
+from verify.support.programme import only_opens
 from verify.support.say import say
 from verify.verdict import Check
 from verify.version import __version__
@@ -47,6 +48,23 @@ def held_against(
     curves = read_curve(a.path, a.reading), read_curve(b.path, b.reading)
     comparison = compare(*curves, end, begin=begin, programme=programme)
     return comparison, comparison.loads_at(at)
+
+
+def explain(sources: tuple[Source, Source], tolerance: float | None) -> None:
+    """Say what explains the deviation of A from B best; where B is a run, with causes in its scene, too."""
+    from verify.checks.between_codes import CODE_TOLERANCE
+    from verify.diagnosis.classify import diagnose
+    from verify.studies.reduce.source import scene_of_run
+
+    a, b = sources
+    about = b.path / "result.json"
+    scene = scene_of_run(about, ()) if about.is_file() else None
+    curves = read_curve(a.path, a.reading), read_curve(b.path, b.reading)
+    if scene is not None and not only_opens(scene.load.opening):
+        return
+    found = diagnose(a.label, *curves, scene, CODE_TOLERANCE if tolerance is None else tolerance)
+    if found is not None:
+        say(found.sentence)
 
 
 def write(

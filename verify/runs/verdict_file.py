@@ -10,7 +10,7 @@ from typing import Any, Protocol, get_args
 from verify.checks.judgement import Judgement
 from verify.runs.environment import machine, threads, versions
 from verify.runs.folder import write_json
-from verify.verdict import Check, Kind, SceneReport, counted, of_state
+from verify.verdict import Check, Diagnosis, Kind, SceneReport, counted, of_state
 
 VERDICT_FILE = "verdict.json"
 
@@ -55,6 +55,7 @@ def content(reports: Sequence[SceneReport], judgement: Judgement, included: Sequ
         "not_judged": [asdict(gap) for gap in judgement.gaps],
         "runs": [_run(report, run) for report in reports for run in report.runs],
         "remarks": {report.scene.name: list(report.remarks) for report in reports if report.remarks},
+        "diagnosis": [_diagnosis(report.scene.name, one) for report in reports for one in report.diagnoses],
         "included": list(included),
         "versions": versions(),
         "machine": machine(),
@@ -86,6 +87,14 @@ def _check(scene: str, check: Check, report: SceneReport | None) -> dict[str, An
         "against": runs[1].folder if len(runs) > 1 else None,
         "meaning": check.meaning,
     }
+
+
+def _diagnosis(scene: str, found: Diagnosis) -> dict[str, Any]:
+    """The causes of the deviation of a curve, best first."""
+    causes = [
+        {key: value for key, value in asdict(one).items() if key not in ("words", "fitted")} for one in found.causes
+    ]
+    return {"scene": scene, **asdict(found), "causes": causes}
 
 
 def _run(report: SceneReport, run: Any) -> dict[str, Any]:

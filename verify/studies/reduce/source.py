@@ -61,7 +61,7 @@ def given(path: Path, scene: str | None, overrides: Sequence[str], columns: Colu
     if scene is None and not run.exists():
         raise Refusal(f"--scene: must name the specimen of {path}, a packaged scene or a file, as it is no run")
     if scene is None:
-        known = _scene_of(run, overrides)
+        known = scene_of_run(run, overrides)
         bonded = True
     else:
         known, bonded = scene_of_test(scene, overrides)
@@ -71,7 +71,7 @@ def given(path: Path, scene: str | None, overrides: Sequence[str], columns: Colu
     return Given(read_measured(path, columns, specimen), known, specimen, bonded)
 
 
-def _scene_of(run: Path, overrides: Sequence[str]) -> Scene:
+def scene_of_run(run: Path, overrides: Sequence[str]) -> Scene:
     found = read_json(run, {"scene": {ANY: object}})["scene"]
     return parse_scene(found, overrides, str(run))
 

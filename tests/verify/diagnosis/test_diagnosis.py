@@ -1,0 +1,89 @@
+"""Curves with one planted cause, drawn by NURBS; the diagnosis solves the beam."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from verify.curves.of_run import cubics
+from verify.diagnosis.classify import diagnose
+from verify.methods.solve import solve
+from verify.scene.load import load_scene
+
+SCENE = "dcb-czm1-linear"
+TOLERANCE = 0.005
+MESH = ("discretization.dofs=1400", "discretization.steps=60", "interface.penalty=1e5")
+
+
+@cache
+def curve(*overrides: str) -> tuple[np.ndarray, np.ndarray]:
+    d, P = cubics(solve(load_scene(SCENE, [*MESH, *overrides]), "nurbs"))
+    return np.asarray(d), np.asarray(P)
+
+
+def found(given):
+    return diagnose("mine", given, curve(), load_scene(SCENE, ["interface.penalty=1e5"]), TOLERANCE)
+
+
+def rows(n: int) -> tuple[np.ndarray, np.ndarray]:
+    at = np.linspace(0.0, 3.0, n)
+    return at, np.interp(at, *curve())
+
+
+#: Name -> overrides of the scene of the curve, and the amount that the diagnosis must state.
+IN_THE_SCENE = [
+    ("modulus", "material.young=112e3", -0.0667),
+    ("modulus", "material.young=140e3", 0.1667),
+    ("thickness", "specimen.arm_thickness=0.19", -0.05),
+    ("thickness", "specimen.arm_thickness=0.206", 0.03),
+    ("precrack", "specimen.precrack=4.1", 0.025),
+    ("precrack", "specimen.precrack=3.5", -0.125),
+    ("toughness", "interface.toughness=0.09", -0.1),
+    ("toughness", "interface.toughness=0.103", 0.03),
+    ("strength", "interface.strength=3.2", -0.2),
+    ("plane", "specimen.plane=strain", 1.0),
+]
+#: Name, curve, amount; the peak is at an opening of about 0.8.
+IN_THE_CURVE = [
+    ("toe", lambda d, P: (d + 0.03, P), 0.03),
+    ("toe", lambda d, P: (np.append(0.0, d + 0.1), np.append(0.0, P)), 0.1),
+    ("machine compliance", lambda d, P: (d + 0.1 * P, P), 0.1),
+    ("width", lambda d, P: (d, 1.03 * P), 0.03),
+    ("load x 2", lambda d, P: (d, 2.0 * P), 2.0),
+    ("load x 0.001", lambda d, P: (d, 1e-3 * P), 1e-3),
+    ("load x -1", lambda d, P: (d, -P), -1.0),
+    ("opening x 0.5", lambda d, P: (0.5 * d, P), 0.5),
+    ("opening x 0.001", lambda d, P: (1e-3 * d, P), 1e-3),
+    ("few steps", lambda d, P: rows(12), 12.0),
+]
+
+
+@pytest.mark.parametrize(("name", "override", "amount"), IN_THE_SCENE)
+def test_a_cause_in_the_scene_is_named_with_its_amount(name, override, amount):
+    """Modulus and thickness of slender arms do the same, E h^3; the sentence then names both."""
+    said = found(curve(override))
+    by_name = {one.name: one for one in said.causes}
+    assert said.explained and name in (said.causes[0].name, *said.alike), said
+    assert by_name[name].amount == pytest.approx(amount, rel=0.1, abs=0.002), said
+    assert by_name[name].words in said.sentence
+
+
+@pytest.mark.parametrize(("name", "change", "amount"), IN_THE_CURVE)
+def test_a_cause_in_the_curve_is_named_with_its_amount(name, change, amount):
+    said = found(change(*curve()))
+    assert said.explained and said.causes[0].name == name and not said.alike, said
+    assert said.causes[0].amount == pytest.approx(amount, rel=0.05), said
+
+
+def test_a_right_curve_has_no_diagnosis():
+    assert found(curve()) is None
+    assert found(rows(200)) is None
+
+
+def test_two_causes_are_not_explained_by_one():
+    d, P = curve("interface.toughness=0.115")
+    said = found((d + 0.06, P))
+    assert not said.explained
+    assert "no single cause explains" in said.sentence

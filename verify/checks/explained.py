@@ -1,0 +1,38 @@
+"""Curves of other codes in a verification: why one fails, and what a pass of one does not show."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from verify.checks.between_codes import CODE_TOLERANCE
+from verify.checks.proof import SEARCHING, sampled
+from verify.diagnosis.blind import blind_spots
+from verify.diagnosis.classify import diagnose
+from verify.support.programme import only_opens
+from verify.verdict import Diagnosis, Run, SceneReport
+
+
+def explained(report: SceneReport, names: Sequence[str]) -> SceneReport:
+    """The report with a diagnosis of every named curve that breaks a check, and a remark on the others.
+
+    Curves are held against the run of `SEARCHING`, along a programme that only opens.
+    """
+    right = next((run.result for run in report.runs if run.method == SEARCHING and run.result is not None), None)
+    if right is None or right.load.size < 2 or not only_opens(report.scene.load.opening):
+        return report
+    expected, found = sampled(right), []
+    remarks: list[str] = []
+    for run in (run for run in report.runs if run.name in names and run.result is not None):
+        if _broken(report, run):
+            assert run.result is not None
+            found.append(diagnose(run.name, (run.result.opening, run.result.load), expected, report.scene, CODE_TOLERANCE))
+        else:
+            remarks.append(blind_spots(run.name, report.scene, CODE_TOLERANCE))
+    diagnoses: tuple[Diagnosis, ...] = tuple(filter(None, found))
+    said = [*(one.sentence for one in diagnoses), *filter(None, remarks)]
+    return replace(report, diagnoses=diagnoses, remarks=(*report.remarks, *said))
+
+
+def _broken(report: SceneReport, run: Run) -> bool:
+    return any(check.state == "broken" and report.judged(check)[:1] == (run,) for check in report.checks)

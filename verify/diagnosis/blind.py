@@ -1,0 +1,41 @@
+"""What a pass cannot see: changes of the scene that move its curve by less than the tolerance."""
+
+from __future__ import annotations
+
+from math import log1p
+
+import numpy as np
+
+from verify.diagnosis.causes import NUMBERS, SWITCHES
+from verify.diagnosis.classify import sensitivity
+from verify.diagnosis.solutions import solutions
+from verify.diagnosis.wording import unseen
+from verify.scene.schema import Scene
+from verify.support.progress import Progress
+
+#: Size of a change of a number whose effect is stated.
+SIZE = 0.01
+
+
+def blind_spots(name: str, scene: Scene, tolerance: float) -> str:
+    """A sentence on what would move the curve by less than the tolerance; empty where that is not known or nothing."""
+    solved = solutions(scene, max(scene.load.opening))
+    base = solved.load() if solved.possible else None
+    if base is None:
+        return ""
+    size, words = float(np.linalg.norm(base)), []
+    numbers = [one for one in NUMBERS if one.overrides(scene, 1.0)]
+    with Progress("what a pass cannot see", len(numbers) + len(SWITCHES)) as progress:
+        for done, number in enumerate(numbers):
+            slope = sensitivity(solved, number)
+            moved = np.inf if slope is None else float(np.linalg.norm(slope)) * log1p(SIZE) / size
+            if moved < tolerance:
+                words.append(f"{number.name} off by {100 * SIZE:g} % ({100 * moved:.1g} %)")
+            progress.advance(done + 1, number.name)
+        for switch in SWITCHES:
+            made = switch.made(scene)
+            change = solved.change([made[0]]) if made else None
+            moved = np.inf if change is None else float(np.linalg.norm(change)) / size
+            if made and moved < tolerance:
+                words.append(f"{made[1]} ({100 * moved:.1g} %)")
+    return unseen(name, words, tolerance) if words else ""

@@ -1,0 +1,75 @@
+"""Causes that are another scene: a number that is off by a factor, or a choice made the other way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from verify.scene.effects import simulated
+from verify.scene.schema import Scene
+from verify.scene.stated.uncertainty import number_at, scaled
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of the scene times a factor; ``keys``: the dotted keys that it has in scenes, those present are scaled.
+
+    more, less : its comparatives, as in "4.1 % lower"
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    more: str = "higher"
+    less: str = "lower"
+
+    def overrides(self, scene: Scene, factor: float) -> list[str]:
+        """The scene with the factor, as overrides; empty where it has no such number."""
+        found = {key: number_at(dict(scene), key) for key in self.keys}
+        return [f"{key}={scaled(value, factor)}" for key, value in found.items() if value is not None]
+
+
+@dataclass(frozen=True)
+class Switch:
+    """A choice of the scene made the other way; ``made`` returns the override and what the curve then has."""
+
+    name: str
+    made: Callable[[Scene], tuple[str, str] | None]
+
+
+def _plane(scene: Scene) -> tuple[str, str]:
+    other = {"stress": "strain", "strain": "stress"}[scene.specimen.plane]
+    return f"specimen.plane={other}", f"plane {other} in place of plane {scene.specimen.plane}"
+
+
+def _kinematics(scene: Scene) -> tuple[str, str]:
+    here = simulated(scene)["kinematics"]
+    other = {"finite": "linear", "linear": "finite"}[here]
+    words = {"finite": "finite", "linear": "small"}
+    return f"effects.kinematics={other}", f"{words[other]} in place of {words[here]} strain"
+
+
+def _contact(scene: Scene) -> tuple[str, str] | None:
+    stiffness = scene.interface.bond_stiffness
+    ratio = scene.interface.penalty / stiffness
+    if abs(ratio - 1.0) < 1e-6:
+        return None
+    words = f"contact as stiff as the bond, {stiffness:.4g}, where the scene has {ratio:.3g} times that"
+    return f"interface.penalty={stiffness!r}", words
+
+
+NUMBERS = (
+    Number("modulus", ("material.young", "material.E1", "strip.young")),
+    Number("thickness", ("specimen.arm_thickness", "specimen.strip_thickness"), "larger", "smaller"),
+    Number("precrack", ("specimen.precrack",), "longer", "shorter"),
+    Number("strength", ("interface.strength",)),
+    Number("toughness", ("interface.toughness",)),
+    Number("shear strength", ("interface.shear_strength",)),
+    Number("shear toughness", ("interface.shear_toughness",)),
+    Number("initial stiffness of the bond", ("interface.stiffness", "interface.ductility")),
+    Number("initial shear stiffness of the bond", ("interface.shear_stiffness",)),
+)
+SWITCHES = (
+    Switch("contact stiffness", _contact),
+    Switch("plane", _plane),
+    Switch("kinematics", _kinematics),
+)

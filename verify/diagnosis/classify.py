@@ -1,0 +1,157 @@
+"""Every cause fitted to the deviation of a curve, best first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import exp, log
+
+import numpy as np
+
+from verify.curves.curve import Curve as AnyCurve
+from verify.diagnosis.causes import NUMBERS, SWITCHES, Number
+from verify.diagnosis.on_curve import Curve, Reference, undone
+from verify.diagnosis.solutions import Solutions, solutions
+from verify.diagnosis.wording import of_number, sentence
+from verify.scene.schema import Scene
+from verify.support.progress import Progress
+from verify.verdict import Diagnosis, Explanation
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How causes are fitted and ranked.
+
+    probe : relative change of a number for its derivative
+    most : largest factor of a number that is looked for
+    refined, steps : how many causes are solved again, the best of the linear ones, and how often
+    enough : part of the tolerance by which another solution must better a fit
+    felt : change of the curve by the probe, over the tolerance, below which a number is not identified
+    left : part of the deviation, or of the tolerance, up to which what is left counts as explained
+    same : the same, within which two causes cannot be told apart
+    free : part of the tolerance that a cause with a fitted amount must be better than one without
+    certain : part of deviation and tolerance up to which a cause in the curve leaves no room for one in the scene
+    listed : explanations that are kept
+    """
+
+    probe: float = 0.05
+    most: float = 3.0
+    refined: int = 4
+    enough: float = 0.02
+    steps: int = 2
+    felt: float = 0.02
+    left: tuple[float, float] = (0.1, 0.6)
+    same: tuple[float, float] = (0.02, 0.12)
+    free: float = 0.1
+    certain: float = 0.05
+    listed: int = 6
+
+
+SETTINGS = Settings()
+
+
+def diagnose(name: str, curve: AnyCurve, expected: AnyCurve, scene: Scene | None, tolerance: float) -> Diagnosis | None:
+    """Which single cause explains the deviation of a curve best; None where there is hardly any.
+
+    Parameters
+    ----------
+    curve, expected : opening (n,) and load (n,), of the code that is judged and of one that is right
+    scene : of both; without it only causes in the curve are tried
+    tolerance : relative L2 distance that the curve is allowed
+    """
+    reference = Reference((np.asarray(expected[0], dtype=float), np.asarray(expected[1], dtype=float)))
+    given = np.asarray(curve[0], dtype=float), np.asarray(curve[1], dtype=float)
+    without = reference.error(given)
+    if without <= 0.5 * tolerance:
+        return None
+    width = scene.specimen.width if scene is not None else 1.0
+    found = [
+        Explanation(one.name, one.words, one.amount, one.unit, one.error, without, one.free)
+        for one in undone(given, reference, width)
+    ]
+    end = min(reference.end, float(np.max(given[0])))
+    certain = any(one.error_with <= SETTINGS.certain * min(without, tolerance) for one in found)
+    if scene is not None and not certain and 2.0 * end > reference.end:
+        found += _in_the_scene(solutions(scene, end), reference, given, without, tolerance)
+    return _ranked(name, found, without, tolerance)
+
+
+def _in_the_scene(
+    solved: Solutions, reference: Reference, given: Curve, without: float, tolerance: float
+) -> list[Explanation]:
+    """Causes that are another scene, by its change of the solution of the beam."""
+    if not solved.possible or solved.load() is None:
+        return []
+    _, off, load = reference.deviation(given)
+    size = float(np.sqrt(np.sum(load**2)))
+    found = []
+    numbers = [one for one in NUMBERS if one.overrides(solved.scene, 1.0)]
+    with Progress("diagnosis", len(numbers) + len(SWITCHES) + SETTINGS.steps * SETTINGS.refined) as progress:
+        lines = []
+        for done, number in enumerate(numbers):
+            slope = sensitivity(solved, number)
+            if slope is not None and np.linalg.norm(slope) * SETTINGS.probe > SETTINGS.felt * tolerance * size:
+                amount = float(np.clip(off @ slope / (slope @ slope), -log(SETTINGS.most), log(SETTINGS.most)))
+                lines.append((float(np.linalg.norm(off - amount * slope)), number, amount))
+            progress.advance(done + 1, number.name)
+        for _, number, amount in sorted(lines, key=lambda one: one[0])[: SETTINGS.refined]:
+            amount, left = _refined(solved, number, amount, off, tolerance * size)
+            words = of_number(number, exp(amount) - 1.0)
+            found.append(Explanation(number.name, words, exp(amount) - 1.0, "part", left / size, without))
+        for switch in SWITCHES:
+            made = switch.made(solved.scene)
+            change = solved.change([made[0]]) if made else None
+            if made and change is not None:
+                left = float(np.linalg.norm(off - change)) / size
+                found.append(Explanation(switch.name, made[1], 1.0, "switch", left, without, fitted=False))
+    return found
+
+
+def sensitivity(solved: Solutions, number: Number) -> np.ndarray | None:
+    """Change of the load (n,) over that of the logarithm of a number."""
+    change = solved.change(number.overrides(solved.scene, exp(SETTINGS.probe)))
+    return None if change is None else change / SETTINGS.probe
+
+
+def _refined(solved: Solutions, number: Number, amount: float, off: np.ndarray, enough: float) -> tuple[float, float]:
+    """Logarithm of the factor by Gauss-Newton with secants, and the norm of what is left; the best that was solved.
+
+    ``enough``: norm of the tolerance, of which a part is not worth another solution.
+    """
+    best, before, was = (0.0, float(np.linalg.norm(off))), 0.0, np.zeros_like(off)
+    for _ in range(SETTINGS.steps + 1):
+        change = solved.change(number.overrides(solved.scene, exp(amount)))
+        if change is None:
+            break
+        left = off - change
+        settled = abs(float(np.linalg.norm(left)) - best[1]) < SETTINGS.enough * enough
+        best = min(best, (amount, float(np.linalg.norm(left))), key=lambda one: one[1])
+        if settled:
+            break
+        slope = (change - was) / (amount - before)
+        before, was = amount, change
+        amount = float(np.clip(amount + left @ slope / (slope @ slope), -log(SETTINGS.most), log(SETTINGS.most)))
+    return best
+
+
+def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: float) -> Diagnosis:
+    """Best first; a cause without a fitted amount comes first among equals."""
+
+    def rank(one: Explanation) -> float:
+        return one.error_with + SETTINGS.free * tolerance * one.fitted
+
+    order = sorted(_one_of_each(found, rank), key=rank)[: SETTINGS.listed]
+    limit = max(SETTINGS.left[0] * without, SETTINGS.left[1] * tolerance)
+    explained = bool(order) and order[0].error_with <= limit
+    near = order[0].error_with + max(SETTINGS.same[0] * without, SETTINGS.same[1] * tolerance) if order else 0.0
+    alike = tuple(one.name for one in order[1:] if explained and one.error_with <= near)
+    raw = Diagnosis(name, tuple(order), explained, alike)
+    return Diagnosis(name, tuple(order), explained, alike, sentence(raw))
+
+
+def _one_of_each(found: Sequence[Explanation], rank: Callable[[Explanation], float]) -> list[Explanation]:
+    best: dict[str, Explanation] = {}
+    for one in found:
+        if one.name not in best or rank(one) < rank(best[one.name]):
+            best[one.name] = one
+    return list(best.values())
