@@ -78,13 +78,19 @@ class Band:
         return replace(self, k=max(self.k, self.reach(row, column)))
 
     def cholesky(self, half: np.ndarray) -> BandCholesky | None:
-        """Factor of the matrix with this lower half (``size``,); None where it is not positive definite."""
-        factor, info = dpbtrf(half[:-1].reshape(self.n, self.k + 1).T, lower=True)
+        """Factor of the matrix with this lower half (``size``,); None where it is not positive definite.
+
+        The factor takes the place of ``half``.
+        """
+        factor, info = dpbtrf(half[:-1].reshape(self.n, self.k + 1).T, lower=True, overwrite_ab=True)
         return BandCholesky(self, factor) if info == 0 else None
 
     def lu(self, half: np.ndarray, skew: Skew | None = None) -> BandLU | None:
         """LU of the matrix with this lower half, and what is skew about it; None where a pivot is exactly zero."""
-        lu, pivots, info = dgbtrf(self._whole(half, skew), self.k, self.k, overwrite_ab=True)
+        return self._lu(self._whole(half, skew))
+
+    def _lu(self, whole: np.ndarray) -> BandLU | None:
+        lu, pivots, info = dgbtrf(whole, self.k, self.k, overwrite_ab=True)
         return BandLU(self, lu, pivots) if info == 0 else None
 
     def _whole(self, half: np.ndarray, skew: Skew | None) -> np.ndarray:
@@ -106,8 +112,9 @@ class Band:
         The norm of the inverse is estimated from a few solutions (Higham and Tisseur 2000), mostly within a factor of
         two.
         """
-        norm = float(np.abs(self._whole(half, skew)).sum(0).max())
-        factors = self.lu(half, skew)
+        whole = self._whole(half, skew)
+        norm = max(float(np.abs(whole[:, j : j + 1024]).sum(0).max()) for j in range(0, self.n, 1024))
+        factors = self._lu(whole)
         if factors is None:
             return float("inf")
 

@@ -39,8 +39,11 @@ class Dense:
         return self
 
     def cholesky(self, half: np.ndarray) -> DenseCholesky | None:
-        """Factor of the matrix with this lower half (``size``,); None where it is not positive definite."""
-        factor, info = dpotrf(half.reshape(self.n, self.n).T, lower=True, clean=False)
+        """Factor of the matrix with this lower half (``size``,); None where it is not positive definite.
+
+        The factor takes the place of ``half``.
+        """
+        factor, info = dpotrf(half.reshape(self.n, self.n).T, lower=True, clean=False, overwrite_a=True)
         return DenseCholesky(factor) if info == 0 else None
 
     def lu(self, half: np.ndarray, skew: Skew | None = None) -> DenseLU | None:

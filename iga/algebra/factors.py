@@ -47,7 +47,7 @@ def held_inverse(
 ) -> Inverse | None:
     """By Cholesky, where the matrix with the lower half (size,), the spring in it, is positive definite; else None.
 
-    ``rows_d`` are the load and the row (n_dof,) of the spring.
+    ``rows_d`` are the load and the row (n_dof,) of the spring. The factor takes the place of ``half``.
     """
     factors, (load_d, hold_d) = band.cholesky(half), rows_d
     if factors is None:

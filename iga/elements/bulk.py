@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from functools import cache
 
@@ -44,14 +44,28 @@ def element_stiffness(basis: BlockBasis, A_eqIpJ: np.ndarray) -> np.ndarray:
     One matrix product per element; the block (1, 0) is the transpose of (0, 1).
     """
     n_e, n_q, _, n_a = basis.dN_eqIa.shape
-    K_eapb = np.empty((n_e, n_a, 3, n_a))
-    for first in range(0, n_e, BATCH):
-        e = slice(first, first + BATCH)
-        AdV_eqIpJ = A_eqIpJ[e] * basis.dV_eq[e, :, None, None, None]
-        AdN = AdV_eqIpJ.reshape(-1, n_q, 6, 2) @ basis.dN_eqIa[e]
-        K = basis.dN_e_qI_a[e].swapaxes(1, 2) @ AdN.reshape(-1, n_q * 2, 3 * n_a)
-        K_eapb[e] = K.reshape(-1, n_a, 3, n_a)
-    return K_eapb
+    AdV_eqIpJ = A_eqIpJ * basis.dV_eq[:, :, None, None, None]
+    AdN = AdV_eqIpJ.reshape(n_e, n_q, 6, 2) @ basis.dN_eqIa
+    K = basis.dN_e_qI_a.swapaxes(1, 2) @ AdN.reshape(n_e, n_q * 2, 3 * n_a)
+    return K.reshape(n_e, n_a, 3, n_a)
+
+
+def stiffness_of_batches(
+    solid: Solid, moduli: Callable[[np.ndarray, np.ndarray], np.ndarray], H_iIeq: np.ndarray | None = None
+) -> Iterator[tuple[slice, np.ndarray]]:
+    """The elements of each of the `batches` of a solid and their stiffness (n_e, n_a, 3, n_a).
+
+    ``moduli`` are those of a `Kinematics`; without displacement gradients H (2, 2, n_e, n_q) the solid is undeformed.
+    """
+    for e in batches(len(solid.basis.dV_eq)):
+        basis = solid.basis.of(e)
+        H = np.zeros((2, 2, *basis.dV_eq.shape)) if H_iIeq is None else H_iIeq[:, :, e]
+        yield e, element_stiffness(basis, moduli(solid.D, H))
+
+
+def batches(n_e: int) -> Iterator[slice]:
+    """Elements by the `BATCH`: what is made of some is used before that of others is made."""
+    return (slice(first, first + BATCH) for first in range(0, n_e, BATCH))
 
 
 def stiffness_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -35,6 +35,10 @@ class BlockBasis:
         n_e, n_q, _, n_a = self.dN_eqIa.shape
         return self.dN_eqIa.reshape(n_e, 2 * n_q, n_a)
 
+    def of(self, e: slice) -> BlockBasis:
+        """That of some of the elements, which shares the arrays."""
+        return BlockBasis(self.conn_ea[e], self.N_eqa[e], self.dN_eqIa[e], self.dV_eq[e], self.X_eqI[e])
+
 
 def block_basis(
     mesh: Mesh, block: ElementBlock, points_q: np.ndarray, weights_q: np.ndarray, width: float = 1.0

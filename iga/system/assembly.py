@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array
 
 from iga.algebra.banded import Band, Skew
 from iga.algebra.dense import Dense
-from iga.elements.bulk import half_entries, half_places
+from iga.elements.bulk import batches, half_entries, half_places
 from iga.interface.interface import Interface, stiffness, unsymmetric
 from iga.system.state import Response
 
@@ -53,10 +52,10 @@ class Pattern:
     """Where all entries of the tangent go in its lower half, while the points depend on the unknowns ``dof_qd``.
 
     ``band`` is the numbering of the equations, ``held`` the places of the spring that holds the opening. ``bulk`` makes
-    the lower half of the stiffness of the bulk from its displacement gradients; ``positions`` are the places of
-    interface and springs, and ``values`` the entries of the springs. ``twice`` are the entries of the interface that
-    stand for two: off the diagonal of a point's own matrix but on that of the whole, as an unknown that two sides of a
-    way share is named by both.
+    the lower half of the stiffness of the bulk from its displacement gradients, a new array each time; ``positions``
+    are the places of interface and springs, and ``values`` the entries of the springs. ``twice`` are the entries of the
+    interface that stand for two: off the diagonal of a point's own matrix but on that of the whole, as an unknown that
+    two sides of a way share is named by both.
     """
 
     dof_qd: np.ndarray
@@ -97,8 +96,8 @@ class Pattern:
         i, j = _tril(K_qdd.shape[1])
         entries = np.concatenate([K_qdd[:, i, j].ravel(), self.values])
         entries[self.twice] *= 2.0
-        half = np.bincount(self.positions, entries, self.band.size)
-        half += self.bulk(response.gradients)
+        half = self.bulk(response.gradients)
+        np.add.at(half, self.positions, entries)
         q = unsymmetric(touch, response.pull)
         return half, skew_part(touch.dof_qd[q], K_qdd[q]) if q.size else None
 
@@ -122,21 +121,20 @@ class DensePattern:
 TangentPattern = Pattern | DensePattern
 
 
-def element_sums(conns: Sequence[np.ndarray], band: Band | Dense) -> csr_array:
-    """Matrix (band.size, n_values) that sums the entries of the element stiffness, one of each symmetric pair."""
-    places, columns, first = [], [], 0
-    for conn_ea in conns:
-        n_e, n_a = conn_ea.shape
-        places.append(_positions(band, half_entries(conn_ea)))
-        columns.append((first + np.arange(n_e)[:, None] * 3 * n_a**2 + half_places(n_a)).ravel())
-        first += 3 * n_e * n_a**2
-    place, column = (np.concatenate(parts).astype(np.int32) for parts in (places, columns))
-    return coo_array((np.ones(place.size), (place, column)), shape=(band.size, first)).tocsr()
+def element_places(conn_ea: np.ndarray, band: Band | Dense) -> np.ndarray:
+    """Where the entries `half_places` (n_e, n_h) of the stiffness of elements go in the lower half of the tangent."""
+    (n_e, n_a), numbers = conn_ea.shape, np.int32 if band.size <= np.iinfo(np.int32).max else np.int64
+    place_eh = np.empty((n_e, half_places(n_a).size), numbers)
+    for e in batches(n_e):
+        place_eh[e] = band.positions(*half_entries(conn_ea[e]))
+    return place_eh
 
 
-def element_values(parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Entries (n_values,) of the element stiffness of all blocks."""
-    return parts[0].ravel() if len(parts) == 1 else np.concatenate([K.ravel() for K in parts])
+def add_elements(half: np.ndarray, place_eh: np.ndarray, parts: Iterable[tuple[slice, np.ndarray]]) -> None:
+    """Add the stiffness (n_e, n_a, 3, n_a) of some elements after others to the lower half (band.size,) in place."""
+    for e, K_eapb in parts:
+        entries_eh = K_eapb.reshape(len(K_eapb), -1).take(half_places(K_eapb.shape[1]), axis=1)
+        np.add.at(half, place_eh[e].ravel(), entries_eh.ravel())
 
 
 def skew_part(dof_qd: np.ndarray, K_qdd: np.ndarray) -> Skew:

@@ -16,10 +16,10 @@ import numpy as np
 
 from iga.algebra.banded import Band, number
 from iga.algebra.dense import Dense
-from iga.elements.bulk import Solid, element_forces, element_stiffness, energy, full_matrices, gradient, relative
+from iga.elements.bulk import Solid, element_forces, energy, full_matrices, gradient, relative, stiffness_of_batches
 from iga.elements.kinematics import FINITE, LINEAR, Kinematics
 from iga.interface.contact import dofs
-from iga.system.assembly import DensePattern, Gradients, Pattern, Springs, TangentPattern, element_sums, element_values
+from iga.system.assembly import DensePattern, Gradients, Pattern, Springs, TangentPattern, add_elements, element_places
 
 
 @dataclass(frozen=True)
@@ -92,21 +92,17 @@ class ElementBulk(ABC):
         return tuple(dofs(conn_ea) for conn_ea in self.connectivity)
 
     @cached_property
-    def unloaded_stiffness(self) -> list[np.ndarray]:
-        """Element stiffness (n_e, n_a, 3, n_a) of each block in the reference configuration."""
-        return self.element_stiffness([np.zeros((2, 2, *solid.basis.dV_eq.shape)) for solid in self.solids])
-
-    @cached_property
     def stiffest(self) -> tuple[np.ndarray, ...]:
-        """Largest entry (n_e,) of the stiffness of each element."""
-        return tuple(np.abs(K).max((1, 2, 3)) for K in self.unloaded_stiffness)
+        """Largest entry (n_e,) of the stiffness of each element in the reference configuration."""
+        moduli = self.kinematics.moduli
+        return tuple(
+            np.concatenate([np.abs(K).max((1, 2, 3)) for _, K in stiffness_of_batches(solid, moduli)])
+            for solid in self.solids
+        )
 
-    def element_stiffness(self, gradients: Sequence[np.ndarray]) -> list[np.ndarray]:
-        """Element stiffness (n_e, n_a, 3, n_a) of each block at displacement gradients."""
-        return [
-            element_stiffness(solid.basis, self.kinematics.moduli(solid.D, H))
-            for solid, H in zip(self.solids, gradients, strict=True)
-        ]
+    def places(self, band: Band | Dense) -> list[np.ndarray]:
+        """Where the entries of the elements (n_e, n_h) of each block go in the lower half of the tangent."""
+        return [element_places(conn_ea, band) for conn_ea in self.connectivity]
 
     def rounding(self, u_d: np.ndarray) -> float:
         """Long thin elements are stiff across, and make much of the rounding of the displacements."""
@@ -157,8 +153,15 @@ class FiniteBulk(ElementBulk):
         return sum(energy(solid.basis, stress(solid.D, gradient(solid.basis, u_Ai))[1]) for solid in self.solids)
 
     def assembler(self, band: Band | Dense) -> Callable[[Gradients], np.ndarray]:
-        sums = element_sums(self.connectivity, band)
-        return lambda gradients: sums @ element_values(self.element_stiffness(gradients))
+        places = self.places(band)
+
+        def assemble(gradients: Gradients) -> np.ndarray:
+            half = np.zeros(band.size)
+            for solid, place_eh, H in zip(self.solids, places, gradients, strict=True):
+                add_elements(half, place_eh, stiffness_of_batches(solid, self.kinematics.moduli, H))
+            return half
+
+        return assemble
 
 
 @dataclass(frozen=True)
@@ -170,7 +173,10 @@ class LinearBulk(ElementBulk):
     @cached_property
     def matrices(self) -> tuple[np.ndarray, ...]:
         """Element stiffness (n_e, 2 n_a, 2 n_a) of each block."""
-        return tuple(full_matrices(K) for K in self.unloaded_stiffness)
+        moduli = self.kinematics.moduli
+        return tuple(
+            np.concatenate([full_matrices(K) for _, K in stiffness_of_batches(solid, moduli)]) for solid in self.solids
+        )
 
     def respond(self, u_d: np.ndarray) -> BulkResponse:
         internal_d, square = np.zeros(u_d.size), 0.0
@@ -188,8 +194,10 @@ class LinearBulk(ElementBulk):
         return 0.5 * doubled
 
     def assembler(self, band: Band | Dense) -> Callable[[Gradients], np.ndarray]:
-        half = element_sums(self.connectivity, band) @ element_values(self.unloaded_stiffness)
-        return lambda _: half
+        half = np.zeros(band.size)
+        for solid, place_eh in zip(self.solids, self.places(band), strict=True):
+            add_elements(half, place_eh, stiffness_of_batches(solid, self.kinematics.moduli))
+        return lambda _: half.copy()
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from paths import BOTH, CZM1, ledger, loads, run, stops
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import spsolve
 
-from iga.elements.bulk import full_matrices
+from iga.elements.bulk import full_matrices, stiffness_of_batches
 from iga.path.point import End
 from iga.system.system import respond
 
@@ -31,8 +31,10 @@ def test_little_load_alone_is_no_separation(programme):
 
 def stiffness(system, closed_q, k_q):
     """Matrix of the reference configuration with frozen damage, put together from its parts."""
-    shape, matrices = (system.n_dof, system.n_dof), [full_matrices(K) for K in system.bulk.unloaded_stiffness]
-    parts = [_scattered(K, d, shape) for K, d in zip(matrices, system.bulk.element_dofs, strict=True)]
+    shape, bulk, parts = (system.n_dof, system.n_dof), system.bulk, []
+    for solid, d in zip(bulk.solids, bulk.element_dofs, strict=True):
+        for e, K in stiffness_of_batches(solid, bulk.kinematics.moduli):
+            parts.append(_scattered(full_matrices(K), d[e], shape))
     interface, start = system.interface, system.start()
     touch = respond(system, start, decide=False).contact
     secant_q = np.where(closed_q, interface.law.penalty, interface.law.secant(k_q)) * interface.dA_q
