@@ -9,7 +9,7 @@ from math import exp, log
 import numpy as np
 
 from verify.curves.curve import Curve as AnyCurve
-from verify.diagnosis.causes import NUMBERS, SWITCHES, Number
+from verify.diagnosis.causes import CHOICES, SCALED_NUMBERS, Number
 from verify.diagnosis.on_curve import Curve, Reference, undone
 from verify.diagnosis.solutions import Solutions, solutions
 from verify.diagnosis.wording import of_number, sentence
@@ -85,8 +85,8 @@ def _in_the_scene(
     _, off, load = reference.deviation(given)
     size = float(np.sqrt(np.sum(load**2)))
     found = []
-    numbers = [one for one in NUMBERS if one.overrides(solved.scene, 1.0)]
-    with Progress("diagnosis", len(numbers) + len(SWITCHES) + SETTINGS.steps * SETTINGS.refined) as progress:
+    numbers = [one for one in SCALED_NUMBERS if one.overrides(solved.scene, 1.0)]
+    with Progress("diagnosis", len(numbers) + len(CHOICES) + SETTINGS.steps * SETTINGS.refined) as progress:
         lines = []
         for done, number in enumerate(numbers):
             slope = sensitivity(solved, number)
@@ -98,7 +98,7 @@ def _in_the_scene(
             amount, left = _refined(solved, number, amount, off, tolerance * size)
             words = of_number(number, exp(amount) - 1.0)
             found.append(Explanation(number.name, words, exp(amount) - 1.0, "part", left / size, without))
-        for switch in SWITCHES:
+        for switch in CHOICES:
             made = switch.made(solved.scene)
             change = solved.change([made[0]]) if made else None
             if made and change is not None:
@@ -141,9 +141,10 @@ def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: 
         return one.error_with + SETTINGS.free * tolerance * one.fitted
 
     order = sorted(_one_of_each(found, rank), key=rank)[: SETTINGS.listed]
-    limit = max(SETTINGS.left[0] * without, SETTINGS.left[1] * tolerance)
+    size = min(without, 1.0)  # beyond 1 it is the size of a wrong unit
+    limit = max(SETTINGS.left[0] * size, SETTINGS.left[1] * tolerance)
     explained = bool(order) and order[0].error_with <= limit
-    near = order[0].error_with + max(SETTINGS.same[0] * without, SETTINGS.same[1] * tolerance) if order else 0.0
+    near = order[0].error_with + max(SETTINGS.same[0] * size, SETTINGS.same[1] * tolerance) if order else 0.0
     alike = tuple(one.name for one in order[1:] if explained and one.error_with <= near)
     raw = Diagnosis(name, tuple(order), explained, alike)
     return Diagnosis(name, tuple(order), explained, alike, sentence(raw))

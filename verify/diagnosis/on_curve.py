@@ -27,10 +27,12 @@ FACTORS = {
 }
 #: Part of the reference that an undone curve must cover, and by how much it may go beyond.
 COVERS = (0.6, 1.7)
+#: The same of a curve that is not off by a factor: openings of another unit have no offset.
+REACHES = (0.3, 3.0)
 #: Rows below which straight lines between them may matter.
-FEW = 100
+FEW_ROWS = 100
 #: Waves of a coarse mesh: windows of the mean, over the largest opening, and the least number of crossings.
-WINDOWS, CROSSINGS = (0.01, 0.02, 0.04, 0.07, 0.1), 8
+WAVE_WINDOWS, WAVE_CROSSINGS = (0.01, 0.02, 0.04, 0.07, 0.1), 8
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,8 @@ def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[U
     """Every cause in the curve, with the error that is left without it."""
     d, P = curve
     yield from _factors(curve, reference, width)
+    if not REACHES[0] <= float(np.max(d)) / reference.end <= REACHES[1]:
+        return
     peak = int(np.argmax(sampled(reference.curve, np.linspace(0.0, reference.end, SAMPLES + 1))))
     at_peak = reference.end * peak / SAMPLES
     toe, error = _fitted(lambda x: (d - x * at_peak, P), reference, 0.3)
@@ -86,7 +90,7 @@ def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[U
     part, error = _fitted(lambda x: (d, P / (1.0 + x)), reference, 0.4)
     words = f"all loads {100 * abs(part):.2g} % {'higher' if part > 0 else 'lower'}, as by another width"
     yield Undone("width", words, part, "part", error)
-    if d.size < FEW:
+    if d.size < FEW_ROWS:
         words = f"straight lines between its {d.size} rows"
         yield Undone("few steps", words, d.size, "rows", _few(curve, reference), False)
     yield from _waves(curve, reference, at_peak)
@@ -122,11 +126,11 @@ def _waves(curve: Curve, reference: Reference, at_peak: float) -> Iterator[Undon
     behind = at > PROPAGATION * at_peak
     if np.count_nonzero(behind) < 40:
         return
-    for window in WINDOWS:
+    for window in WAVE_WINDOWS:
         mean = uniform_filter1d(off, max(3, int(window * SAMPLES)), mode="nearest")
         wave = (off - mean)[behind]
         crossings = int(np.count_nonzero(np.diff(np.sign(wave)) != 0))
-        if crossings >= CROSSINGS:
+        if crossings >= WAVE_CROSSINGS:
             left = np.where(behind, mean, off)
             error = float(np.sqrt(np.sum(left**2) / np.sum(load**2)))
             words = f"about {crossings // 2} waves behind the peak, as the elements of a coarse mesh make them"
