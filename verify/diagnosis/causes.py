@@ -68,7 +68,7 @@ SCALED_NUMBERS = (
     Number("initial stiffness of the bond", ("interface.stiffness", "interface.ductility")),
     Number("initial shear stiffness of the bond", ("interface.shear_stiffness",)),
 )
-CHOICES = (
+OTHER_CHOICES = (
     Switch("contact stiffness", _contact),
     Switch("plane", _plane),
     Switch("kinematics", _kinematics),

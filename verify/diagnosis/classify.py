@@ -9,7 +9,7 @@ from math import exp, log
 import numpy as np
 
 from verify.curves.curve import Curve as AnyCurve
-from verify.diagnosis.causes import CHOICES, SCALED_NUMBERS, Number
+from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS, Number
 from verify.diagnosis.on_curve import Curve, Reference, undone
 from verify.diagnosis.solutions import Solutions, solutions
 from verify.diagnosis.wording import of_number, sentence
@@ -86,7 +86,7 @@ def _in_the_scene(
     size = float(np.sqrt(np.sum(load**2)))
     found = []
     numbers = [one for one in SCALED_NUMBERS if one.overrides(solved.scene, 1.0)]
-    with Progress("diagnosis", len(numbers) + len(CHOICES) + SETTINGS.steps * SETTINGS.refined) as progress:
+    with Progress("diagnosis", len(numbers) + len(OTHER_CHOICES) + SETTINGS.steps * SETTINGS.refined) as progress:
         lines = []
         for done, number in enumerate(numbers):
             slope = sensitivity(solved, number)
@@ -98,7 +98,7 @@ def _in_the_scene(
             amount, left = _refined(solved, number, amount, off, tolerance * size)
             words = of_number(number, exp(amount) - 1.0)
             found.append(Explanation(number.name, words, exp(amount) - 1.0, "part", left / size, without))
-        for switch in CHOICES:
+        for switch in OTHER_CHOICES:
             made = switch.made(solved.scene)
             change = solved.change([made[0]]) if made else None
             if made and change is not None:
