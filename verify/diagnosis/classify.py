@@ -13,6 +13,7 @@ from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS, Number
 from verify.diagnosis.on_curve import Curve, Reference, undone
 from verify.diagnosis.solutions import Solutions, solutions
 from verify.diagnosis.wording import of_number, sentence
+from verify.scene.magnitudes import LARGEST_NUMBER, SMALLEST_NUMBER
 from verify.scene.schema import Scene
 from verify.support.progress import Progress
 from verify.verdict import Diagnosis, Explanation
@@ -61,8 +62,10 @@ def diagnose(name: str, curve: AnyCurve, expected: AnyCurve, scene: Scene | None
     """
     reference = Reference((np.asarray(expected[0], dtype=float), np.asarray(expected[1], dtype=float)))
     given = np.asarray(curve[0], dtype=float), np.asarray(curve[1], dtype=float)
+    if not (_usable(given) and _usable(reference.curve)):
+        return None
     without = reference.error(given)
-    if without <= 0.5 * tolerance:
+    if not 0.5 * tolerance < without < np.inf:
         return None
     width = scene.specimen.width if scene is not None else 1.0
     found = [
@@ -74,6 +77,12 @@ def diagnose(name: str, curve: AnyCurve, expected: AnyCurve, scene: Scene | None
     if scene is not None and not certain and 2.0 * end > reference.end:
         found += _in_the_scene(solutions(scene, end), reference, given, without, tolerance)
     return _ranked(name, found, without, tolerance)
+
+
+def _usable(curve: Curve) -> bool:
+    """Whether squares of its numbers stay in the range, and it opens and bears something."""
+    opens = float(np.max(curve[0])) >= SMALLEST_NUMBER and float(np.max(np.abs(curve[1]))) >= SMALLEST_NUMBER
+    return opens and float(np.max(np.abs(curve))) <= LARGEST_NUMBER
 
 
 def _in_the_scene(

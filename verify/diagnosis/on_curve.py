@@ -14,6 +14,7 @@ from scipy.optimize import minimize_scalar
 
 from verify.curves.curve import PROPAGATION, SAMPLES
 from verify.diagnosis.solutions import sampled
+from verify.scene.magnitudes import LARGEST_NUMBER
 
 Curve = tuple[np.ndarray, np.ndarray]
 
@@ -47,8 +48,9 @@ class Reference:
 
     def error(self, curve: Curve) -> float:
         """Relative L2 distance over the openings that both have."""
-        at, off, load = self.deviation(curve)
-        return float(np.sqrt(np.sum(off**2) / np.sum(load**2))) if at.size else np.inf
+        _, off, load = self.deviation(curve)
+        size = float(np.sum(load**2))
+        return float(np.sqrt(np.sum(off**2) / size)) if size > 0.0 else np.inf
 
     def deviation(self, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Openings (n,), load of the curve minus that of the reference there, and the latter."""
@@ -83,10 +85,12 @@ def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[U
     toe, error = _fitted(lambda x: (d - x * at_peak, P), reference, 0.3)
     yield Undone("toe", f"an offset of the opening by {toe * at_peak:+.3g}", toe * at_peak, "length", error)
     first = at_peak / 20.0
-    compliance = first / float(sampled(reference.curve, np.array([first]))[0])
-    soft, error = _fitted(lambda x: (d - x * compliance * P, P), reference, 0.6)
-    words = f"a compliance of {soft * compliance:.3g} in series, {100 * soft:.2g} % of that of the specimen"
-    yield Undone("machine compliance", words, soft * compliance, "length/force", error)
+    stiff = float(sampled(reference.curve, np.array([first]))[0])
+    if first > 0.0 and stiff > 0.0:
+        compliance = first / stiff
+        soft, error = _fitted(lambda x: (d - x * compliance * P, P), reference, 0.6)
+        words = f"a compliance of {soft * compliance:.3g} in series, {100 * soft:.2g} % of that of the specimen"
+        yield Undone("machine compliance", words, soft * compliance, "length/force", error)
     part, error = _fitted(lambda x: (d, P / (1.0 + x)), reference, 0.4)
     words = f"all loads {100 * abs(part):.2g} % {'higher' if part > 0 else 'lower'}, as by another width"
     yield Undone("width", words, part, "part", error)
@@ -109,7 +113,10 @@ def _factors(curve: Curve, reference: Reference, width: float) -> Iterator[Undon
 def _fitted(change: Callable[[float], Curve], reference: Reference, most: float) -> tuple[float, float]:
     """The amount within ``most`` that leaves least."""
     best = minimize_scalar(
-        lambda x: reference.error(change(x)), bounds=(-most, most), method="bounded", options={"xatol": 1e-5}
+        lambda x: min(reference.error(change(x)), LARGEST_NUMBER),
+        bounds=(-most, most),
+        method="bounded",
+        options={"xatol": 1e-5},
     )
     return float(best.x), float(best.fun)
 
