@@ -26,7 +26,8 @@ def explained(report: SceneReport, names: Sequence[str]) -> SceneReport:
     for run in (run for run in report.runs if run.name in names and run.result is not None):
         if _broken(report, run):
             assert run.result is not None
-            found.append(diagnose(run.name, (run.result.opening, run.result.load), expected, report.scene, CODE_TOLERANCE))
+            curve = (run.result.opening, run.result.load)
+            found.append(diagnose(run.name, curve, expected, report.scene, CODE_TOLERANCE))
         else:
             remarks.append(blind_spots(run.name, report.scene, CODE_TOLERANCE))
     diagnoses: tuple[Diagnosis, ...] = tuple(filter(None, found))

@@ -6,7 +6,7 @@ from math import log1p
 
 import numpy as np
 
-from verify.diagnosis.causes import NUMBERS, SWITCHES
+from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS
 from verify.diagnosis.classify import sensitivity
 from verify.diagnosis.solutions import solutions
 from verify.diagnosis.wording import unseen
@@ -24,15 +24,15 @@ def blind_spots(name: str, scene: Scene, tolerance: float) -> str:
     if base is None:
         return ""
     size, words = float(np.linalg.norm(base)), []
-    numbers = [one for one in NUMBERS if one.overrides(scene, 1.0)]
-    with Progress("what a pass cannot see", len(numbers) + len(SWITCHES)) as progress:
+    numbers = [one for one in SCALED_NUMBERS if one.overrides(scene, 1.0)]
+    with Progress("what a pass cannot see", len(numbers) + len(OTHER_CHOICES)) as progress:
         for done, number in enumerate(numbers):
             slope = sensitivity(solved, number)
             moved = np.inf if slope is None else float(np.linalg.norm(slope)) * log1p(SIZE) / size
             if moved < tolerance:
                 words.append(f"{number.name} off by {100 * SIZE:g} % ({100 * moved:.1g} %)")
             progress.advance(done + 1, number.name)
-        for switch in SWITCHES:
+        for switch in OTHER_CHOICES:
             made = switch.made(scene)
             change = solved.change([made[0]]) if made else None
             moved = np.inf if change is None else float(np.linalg.norm(change)) / size

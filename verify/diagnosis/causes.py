@@ -57,7 +57,7 @@ def _contact(scene: Scene) -> tuple[str, str] | None:
     return f"interface.penalty={stiffness!r}", words
 
 
-NUMBERS = (
+SCALED_NUMBERS = (
     Number("modulus", ("material.young", "material.E1", "strip.young")),
     Number("thickness", ("specimen.arm_thickness", "specimen.strip_thickness"), "larger", "smaller"),
     Number("precrack", ("specimen.precrack",), "longer", "shorter"),
@@ -68,7 +68,7 @@ NUMBERS = (
     Number("initial stiffness of the bond", ("interface.stiffness", "interface.ductility")),
     Number("initial shear stiffness of the bond", ("interface.shear_stiffness",)),
 )
-SWITCHES = (
+OTHER_CHOICES = (
     Switch("contact stiffness", _contact),
     Switch("plane", _plane),
     Switch("kinematics", _kinematics),

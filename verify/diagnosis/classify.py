@@ -9,10 +9,11 @@ from math import exp, log
 import numpy as np
 
 from verify.curves.curve import Curve as AnyCurve
-from verify.diagnosis.causes import NUMBERS, SWITCHES, Number
+from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS, Number
 from verify.diagnosis.on_curve import Curve, Reference, undone
 from verify.diagnosis.solutions import Solutions, solutions
 from verify.diagnosis.wording import of_number, sentence
+from verify.scene.magnitudes import LARGEST_NUMBER, SMALLEST_NUMBER
 from verify.scene.schema import Scene
 from verify.support.progress import Progress
 from verify.verdict import Diagnosis, Explanation
@@ -61,8 +62,10 @@ def diagnose(name: str, curve: AnyCurve, expected: AnyCurve, scene: Scene | None
     """
     reference = Reference((np.asarray(expected[0], dtype=float), np.asarray(expected[1], dtype=float)))
     given = np.asarray(curve[0], dtype=float), np.asarray(curve[1], dtype=float)
+    if not (_usable(given) and _usable(reference.curve)):
+        return None
     without = reference.error(given)
-    if without <= 0.5 * tolerance:
+    if not 0.5 * tolerance < without < np.inf:
         return None
     width = scene.specimen.width if scene is not None else 1.0
     found = [
@@ -76,6 +79,12 @@ def diagnose(name: str, curve: AnyCurve, expected: AnyCurve, scene: Scene | None
     return _ranked(name, found, without, tolerance)
 
 
+def _usable(curve: Curve) -> bool:
+    """Whether squares of its numbers stay in the range, and it opens and bears something."""
+    opens = float(np.max(curve[0])) >= SMALLEST_NUMBER and float(np.max(np.abs(curve[1]))) >= SMALLEST_NUMBER
+    return opens and float(np.max(np.abs(curve))) <= LARGEST_NUMBER
+
+
 def _in_the_scene(
     solved: Solutions, reference: Reference, given: Curve, without: float, tolerance: float
 ) -> list[Explanation]:
@@ -85,8 +94,8 @@ def _in_the_scene(
     _, off, load = reference.deviation(given)
     size = float(np.sqrt(np.sum(load**2)))
     found = []
-    numbers = [one for one in NUMBERS if one.overrides(solved.scene, 1.0)]
-    with Progress("diagnosis", len(numbers) + len(SWITCHES) + SETTINGS.steps * SETTINGS.refined) as progress:
+    numbers = [one for one in SCALED_NUMBERS if one.overrides(solved.scene, 1.0)]
+    with Progress("diagnosis", len(numbers) + len(OTHER_CHOICES) + SETTINGS.steps * SETTINGS.refined) as progress:
         lines = []
         for done, number in enumerate(numbers):
             slope = sensitivity(solved, number)
@@ -98,7 +107,7 @@ def _in_the_scene(
             amount, left = _refined(solved, number, amount, off, tolerance * size)
             words = of_number(number, exp(amount) - 1.0)
             found.append(Explanation(number.name, words, exp(amount) - 1.0, "part", left / size, without))
-        for switch in SWITCHES:
+        for switch in OTHER_CHOICES:
             made = switch.made(solved.scene)
             change = solved.change([made[0]]) if made else None
             if made and change is not None:
@@ -141,9 +150,10 @@ def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: 
         return one.error_with + SETTINGS.free * tolerance * one.fitted
 
     order = sorted(_one_of_each(found, rank), key=rank)[: SETTINGS.listed]
-    limit = max(SETTINGS.left[0] * without, SETTINGS.left[1] * tolerance)
+    size = min(without, 1.0)  # beyond 1 it is the size of a wrong unit
+    limit = max(SETTINGS.left[0] * size, SETTINGS.left[1] * tolerance)
     explained = bool(order) and order[0].error_with <= limit
-    near = order[0].error_with + max(SETTINGS.same[0] * without, SETTINGS.same[1] * tolerance) if order else 0.0
+    near = order[0].error_with + max(SETTINGS.same[0] * size, SETTINGS.same[1] * tolerance) if order else 0.0
     alike = tuple(one.name for one in order[1:] if explained and one.error_with <= near)
     raw = Diagnosis(name, tuple(order), explained, alike)
     return Diagnosis(name, tuple(order), explained, alike, sentence(raw))

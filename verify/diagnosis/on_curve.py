@@ -14,6 +14,7 @@ from scipy.optimize import minimize_scalar
 
 from verify.curves.curve import PROPAGATION, SAMPLES
 from verify.diagnosis.solutions import sampled
+from verify.scene.magnitudes import LARGEST_NUMBER
 
 Curve = tuple[np.ndarray, np.ndarray]
 
@@ -27,10 +28,12 @@ FACTORS = {
 }
 #: Part of the reference that an undone curve must cover, and by how much it may go beyond.
 COVERS = (0.6, 1.7)
+#: The same of a curve that is not off by a factor: openings of another unit have no offset.
+REACHES = (0.3, 3.0)
 #: Rows below which straight lines between them may matter.
-FEW = 100
+FEW_ROWS = 100
 #: Waves of a coarse mesh: windows of the mean, over the largest opening, and the least number of crossings.
-WINDOWS, CROSSINGS = (0.01, 0.02, 0.04, 0.07, 0.1), 8
+WAVE_WINDOWS, WAVE_CROSSINGS = (0.01, 0.02, 0.04, 0.07, 0.1), 8
 
 
 @dataclass(frozen=True)
@@ -45,8 +48,9 @@ class Reference:
 
     def error(self, curve: Curve) -> float:
         """Relative L2 distance over the openings that both have."""
-        at, off, load = self.deviation(curve)
-        return float(np.sqrt(np.sum(off**2) / np.sum(load**2))) if at.size else np.inf
+        _, off, load = self.deviation(curve)
+        size = float(np.sum(load**2))
+        return float(np.sqrt(np.sum(off**2) / size)) if size > 0.0 else np.inf
 
     def deviation(self, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Openings (n,), load of the curve minus that of the reference there, and the latter."""
@@ -74,19 +78,23 @@ def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[U
     """Every cause in the curve, with the error that is left without it."""
     d, P = curve
     yield from _factors(curve, reference, width)
+    if not REACHES[0] <= float(np.max(d)) / reference.end <= REACHES[1]:
+        return
     peak = int(np.argmax(sampled(reference.curve, np.linspace(0.0, reference.end, SAMPLES + 1))))
     at_peak = reference.end * peak / SAMPLES
     toe, error = _fitted(lambda x: (d - x * at_peak, P), reference, 0.3)
     yield Undone("toe", f"an offset of the opening by {toe * at_peak:+.3g}", toe * at_peak, "length", error)
     first = at_peak / 20.0
-    compliance = first / float(sampled(reference.curve, np.array([first]))[0])
-    soft, error = _fitted(lambda x: (d - x * compliance * P, P), reference, 0.6)
-    words = f"a compliance of {soft * compliance:.3g} in series, {100 * soft:.2g} % of that of the specimen"
-    yield Undone("machine compliance", words, soft * compliance, "length/force", error)
+    stiff = float(sampled(reference.curve, np.array([first]))[0])
+    if first > 0.0 and stiff > 0.0:
+        compliance = first / stiff
+        soft, error = _fitted(lambda x: (d - x * compliance * P, P), reference, 0.6)
+        words = f"a compliance of {soft * compliance:.3g} in series, {100 * soft:.2g} % of that of the specimen"
+        yield Undone("machine compliance", words, soft * compliance, "length/force", error)
     part, error = _fitted(lambda x: (d, P / (1.0 + x)), reference, 0.4)
     words = f"all loads {100 * abs(part):.2g} % {'higher' if part > 0 else 'lower'}, as by another width"
     yield Undone("width", words, part, "part", error)
-    if d.size < FEW:
+    if d.size < FEW_ROWS:
         words = f"straight lines between its {d.size} rows"
         yield Undone("few steps", words, d.size, "rows", _few(curve, reference), False)
     yield from _waves(curve, reference, at_peak)
@@ -105,7 +113,10 @@ def _factors(curve: Curve, reference: Reference, width: float) -> Iterator[Undon
 def _fitted(change: Callable[[float], Curve], reference: Reference, most: float) -> tuple[float, float]:
     """The amount within ``most`` that leaves least."""
     best = minimize_scalar(
-        lambda x: reference.error(change(x)), bounds=(-most, most), method="bounded", options={"xatol": 1e-5}
+        lambda x: min(reference.error(change(x)), LARGEST_NUMBER),
+        bounds=(-most, most),
+        method="bounded",
+        options={"xatol": 1e-5},
     )
     return float(best.x), float(best.fun)
 
@@ -122,11 +133,11 @@ def _waves(curve: Curve, reference: Reference, at_peak: float) -> Iterator[Undon
     behind = at > PROPAGATION * at_peak
     if np.count_nonzero(behind) < 40:
         return
-    for window in WINDOWS:
+    for window in WAVE_WINDOWS:
         mean = uniform_filter1d(off, max(3, int(window * SAMPLES)), mode="nearest")
         wave = (off - mean)[behind]
         crossings = int(np.count_nonzero(np.diff(np.sign(wave)) != 0))
-        if crossings >= CROSSINGS:
+        if crossings >= WAVE_CROSSINGS:
             left = np.where(behind, mean, off)
             error = float(np.sqrt(np.sum(left**2) / np.sum(load**2)))
             words = f"about {crossings // 2} waves behind the peak, as the elements of a coarse mesh make them"

@@ -17,7 +17,7 @@ from verify.scene.schema import Scene
 #: The solver: seconds, no mesh of its own, and no code shared with most of those that are diagnosed.
 METHOD = "beam"
 #: Steps of a solution; cubics through their slopes make a smooth curve of them.
-STEPS = 30
+SOLUTION_STEPS = 30
 
 
 def sampled(curve: tuple[np.ndarray, np.ndarray], at: np.ndarray) -> np.ndarray:
@@ -31,7 +31,7 @@ class Solutions:
     def __init__(self, scene: Scene, end: float) -> None:
         self.scene, self.grid = scene, end * np.arange(1, SAMPLES + 1) / SAMPLES
         self._table = {**scene.model_dump(), "published": [], "uncertainty": {}}
-        self._settings = [f"load.opening={end!r}", f"discretization.steps={STEPS}"]
+        self._settings = [f"load.opening={end!r}", f"discretization.steps={SOLUTION_STEPS}"]
         self._known: dict[tuple[str, ...], np.ndarray | None] = {}
 
     @property

@@ -1,0 +1,53 @@
+"""Curves of other codes in a report: a diagnosis after a failure, what a pass cannot show after a pass."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from verify.checks.explained import explained
+from verify.checks.judgement import NO_DEMANDS, judged
+from verify.methods.solve import solve
+from verify.result import Result
+from verify.runs import verdict_file
+from verify.scene.load import load_scene
+from verify.testing import assert_curves_close
+from verify.verdict import Check, Run, SceneReport
+
+SCENE = load_scene("dcb-czm1-linear", ["discretization.dofs=1400", "discretization.steps=60"])
+
+
+@pytest.fixture(scope="module")
+def right() -> Result:
+    return solve(SCENE, "nurbs")
+
+
+def report(right: Result, opening: np.ndarray, off: float) -> SceneReport:
+    runs = [Run("NURBS", "nurbs", right), Run("mine", "mine", Result("mine", {"opening": opening, "load": right.load}))]
+    check = Check("curve", "mine / nurbs", off, 0.005, "cross-code", "")
+    return explained(SceneReport(SCENE, tuple(runs), (check,)), ["mine"])
+
+
+def test_a_curve_that_fails_has_a_diagnosis_in_remarks_and_verdict(right, tmp_path):
+    found = report(right, right.opening + 0.04, 0.05)
+    assert [one.causes[0].name for one in found.diagnoses] == ["toe"]
+    assert found.diagnoses[0].sentence in found.remarks
+    verdict_file.write(tmp_path, [found], judged([found], [], NO_DEMANDS))
+    (said,) = json.loads((tmp_path / "verdict.json").read_text())["diagnosis"]
+    assert said["scene"] == SCENE.name and said["causes"][0]["name"] == "toe"
+    assert set(said["causes"][0]) == {"name", "amount", "unit", "error_with", "error_without"}
+
+
+def test_a_curve_that_passes_is_told_what_it_cannot_show(right):
+    found = report(right, right.opening, 0.0)
+    assert not found.diagnoses
+    (remark,) = found.remarks
+    assert "finite in place of small strain" in remark and "strength off by 1 %" in remark
+    assert "precrack off" not in remark or "plane strain" not in remark
+
+
+def test_a_test_of_other_projects_says_why(right):
+    with pytest.raises(AssertionError, match="best explained by all loads 5 % higher"):
+        assert_curves_close((right.opening, 1.05 * right.load), right, curve=0.005, scene=SCENE)
