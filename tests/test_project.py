@@ -10,7 +10,9 @@ from pathlib import Path
 import pytest
 
 import verify
+from verify.cli import parser
 from verify.command_line import doctor
+from verify.command_line.spelling import parsed
 
 PROJECT = Path(__file__).resolve().parent.parent
 
@@ -90,3 +92,13 @@ def test_hooks_run_what_is_here() -> None:
 def test_type_checkers_of_users_are_told_that_there_are_types() -> None:
     wheel = tomllib.loads((PROJECT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]["wheel"]
     assert all((PROJECT / name / "py.typed").is_file() for name in (*wheel["only-include"], "verify/front/debond"))
+
+
+def test_the_workflow_for_users_has_options_that_exist() -> None:
+    """It cannot be run here; what it says to debond can be read."""
+    yaml = pytest.importorskip("yaml")
+    file = PROJECT / "examples" / "regression_test" / ".github" / "workflows" / "curves.yml"
+    steps = yaml.safe_load(file.read_text())["jobs"]["verify"]["steps"]
+    (command,) = [step["run"].split() for step in steps if step.get("run", "").startswith("debond ")]
+    options = parsed(parser(), command[1:])
+    assert options.require == ["dolfinx"] and str(options.junit) in str(steps[-1]) and options.format == "md"

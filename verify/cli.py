@@ -32,13 +32,13 @@ from verify.command_line.arguments import (  # noqa: E402
     scales_of,
     seeds,
 )
-from verify.command_line.commands import FAILED  # noqa: E402
 from verify.command_line.spelling import Help, parsed  # noqa: E402
 from verify.support.refusal import Refusal  # noqa: E402
 from verify.support.say import say  # noqa: E402
 from verify.version import __version__  # noqa: E402
 
-REFUSED, INTERRUPTED = 2, 130
+#: Other exit codes than 0 and `FAILED`; 3 is that of an environment that cannot be set up.
+REFUSED, NOT_WRITTEN, INTERRUPTED = 2, 4, 130
 
 #: The beginning of a negative number: argparse takes -1 and -0.5 for numbers, but -1e-3 for an option.
 NEGATIVE = re.compile(r"-\.?\d")
@@ -47,7 +47,10 @@ Parser = argparse.ArgumentParser
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; its exit code: 0 fine, 1 something failed, 2 bad input, 130 interrupted."""
+    """Run one command; its exit code.
+
+    0: fine; 1: something failed; 2: bad input; 4: the output could not be written; 130: interrupted.
+    """
     options = None
     try:
         options = parsed(parser(), sys.argv[1:] if arguments is None else arguments)
@@ -60,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return INTERRUPTED
     except BrokenPipeError:  # the reader of the output has closed it: write no more, and no message at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FAILED
+        return NOT_WRITTEN
     except OSError as error:
         from verify.runs.folder import NO_ROOM  # here, as it imports NumPy
 
@@ -69,7 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         say(f"{error.filename or 'the output'}: cannot be written: {error.strerror}{_how_to_go_on(options)}")
         if error.filename is None:  # possibly standard output itself, which must not be flushed at exit
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FAILED
+        return NOT_WRITTEN
 
 
 def _how_to_go_on(options: argparse.Namespace | None) -> str:

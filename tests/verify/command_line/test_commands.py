@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,7 +13,7 @@ import pytest
 
 from iga.delamination import solution
 from iga.delamination.problem import Problem
-from verify.cli import INTERRUPTED, REFUSED, main
+from verify.cli import INTERRUPTED, NOT_WRITTEN, REFUSED, main
 from verify.command_line import commands, compare
 from verify.command_line.commands import FAILED
 from verify.command_line.compare import Source
@@ -141,7 +142,8 @@ def test_an_accuracy_becomes_a_method_and_a_mesh(
 
 @pytest.mark.parametrize("name", ["solve", "cost"])
 @pytest.mark.parametrize(
-    ("number", "code"), [(errno.ENOSPC, FAILED), (errno.EACCES, FAILED), (errno.EDQUOT, FAILED), (errno.EBADF, None)]
+    ("number", "code"),
+    [(errno.ENOSPC, NOT_WRITTEN), (errno.EACCES, NOT_WRITTEN), (errno.EDQUOT, NOT_WRITTEN), (errno.EBADF, None)],
 )
 def test_a_disk_that_takes_no_more_is_a_sentence_and_anything_else_an_error(
     name: str, number: int, code: int | None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
@@ -158,6 +160,13 @@ def test_a_disk_that_takes_no_more_is_a_sentence_and_anything_else_an_error(
     assert main([name, "dcb-czm1", "--out", "there"]) == code
     said = capsys.readouterr().err
     assert "curve.csv: cannot be written: it is so; " in said and "the same command again" in said
+
+
+def test_the_guide_has_every_exit_code() -> None:
+    page = Path(__file__).parents[3] / "docs" / "pages" / "guide" / "running.md"
+    table = page.read_text().partition("## Exit codes")[2].partition("\n## ")[0]
+    codes = [int(code) for code in re.findall(r"^\| (\d+) \|", table, re.MULTILINE)]
+    assert codes == [0, FAILED, REFUSED, 3, NOT_WRITTEN, INTERRUPTED]
 
 
 @pytest.mark.parametrize(

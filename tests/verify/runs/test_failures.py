@@ -60,7 +60,7 @@ def mounted(folder: Path, *options: str) -> bool:
 @pytest.mark.parametrize("most", [700, 2000])
 def test_a_full_disk_leaves_whole_rows_and_a_sentence(most: int, tmp_path: Path) -> None:
     ended = program(*SOLVE, "--out", str(tmp_path), most=most)
-    assert ended.returncode == 1 and "Traceback" not in ended.stderr
+    assert ended.returncode == 4 and "Traceback" not in ended.stderr
     assert "cannot be written: File too large" in ended.stderr and str(tmp_path) in ended.stderr
     assert not (tmp_path / "result.json").exists() and not (tmp_path / "error.log").exists()
     text = (tmp_path / "curve.csv").read_text()
@@ -76,7 +76,7 @@ def test_a_small_disk_that_is_really_full(tmp_path: Path) -> None:
         pytest.skip("no right to mount")
     try:
         ended = program(*SOLVE, "--out", str(disk / "run"))
-        assert ended.returncode == 1 and "cannot be written: No space left on device" in ended.stderr
+        assert ended.returncode == 4 and "cannot be written: No space left on device" in ended.stderr
         assert "Traceback" not in ended.stderr and not (disk / "run" / "result.json").exists()
         assert (disk / "run" / "curve.csv").read_text().endswith("\n")
         subprocess.run(["mount", "-o", "remount,ro", str(disk)], check=True)
@@ -108,7 +108,7 @@ def test_half_a_row_is_taken_back(tmp_path: Path) -> None:
 def test_an_output_that_takes_nothing() -> None:
     with open("/dev/full", "w") as full:
         ended = program("scenes", stdout=full)
-    assert ended.returncode == 1 and "Traceback" not in ended.stderr and "Exception ignored" not in ended.stderr
+    assert ended.returncode == 4 and "Traceback" not in ended.stderr and "Exception ignored" not in ended.stderr
     assert "cannot be written: No space left on device" in ended.stderr
 
 

@@ -56,30 +56,28 @@ __all__ = [
 def main() -> int:
     """The command `debond`; its exit code."""
     try:
-        for name in ("iga", "verify"):
-            own(name)
+        own("iga")
+        command = own("verify.cli").main
     except ImportError as error:
         sys.stderr.write(f"debond: {error}\n")
         return 3
-    code: int = import_module("verify.cli").main()
+    code: int = command()
     return code
 
 
 def own(name: str) -> ModuleType:
-    """The package `iga` or `verify` of debond.
+    """A module of `iga` or `verify`, as they are in debond.
 
     Raises
     ------
     ImportError : another package or file of this name is found first.
     """
-    found = import_module(name)
+    found = import_module(top := name.partition(".")[0])
     if not hasattr(found, "_HOMES"):
         file = getattr(found, "__file__", None) or ", ".join(found.__path__)
-        text = (
-            f"{name}: must be the package of debond, got {file}, which shadows it; rename, move or uninstall that one"
-        )
-        raise ImportError(text, name=name, path=file)
-    return found
+        text = f"{top}: must be the package of debond, got {file}, which shadows it; rename, move or uninstall that one"
+        raise ImportError(text, name=top, path=file)
+    return import_module(name)
 
 
 if not TYPE_CHECKING:  # a type checker knows the names above and no others
