@@ -6,7 +6,7 @@ Uncertainties are expanded, for 95 %, in the unit of the quantity.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import hypot, isfinite, nan
 
 import numpy as np
@@ -89,6 +89,7 @@ class Value:
 
     matched : what keeping the pairs of points changes, in the first code
     places : what another place of the load changes, in the first code; in no uncertainty
+    least : relative uncertainty below which it is not stated (`shared`)
     """
 
     quantity: str
@@ -97,6 +98,7 @@ class Value:
     codes: Mapping[str, OfCode]
     matched: float = 0.0
     places: Mapping[str, float] = field(default_factory=dict)
+    least: float = 0.0
 
     @property
     def value(self) -> float:
@@ -111,7 +113,7 @@ class Value:
         Two errors of meshes may have one sign: that there are two makes the mean no better than the better one.
         """
         least = min(one.uncertainty for one in self.codes.values())
-        return max(least, *(abs(one.value - self.value) for one in self.codes.values()))
+        return max(least, self.least * abs(self.value), *(abs(one.value - self.value) for one in self.codes.values()))
 
     @property
     def apart(self) -> float:
@@ -146,3 +148,13 @@ class Value:
         if self.why_not:
             return f"{self.quantity}: not certified: {self.why_not}"
         return f"{self.quantity}: {self.value:.6g} ± {self.uncertainty:.2g} ({self.relative:.3%})"
+
+
+def shared(values: Sequence[Value]) -> tuple[Value, ...]:
+    """The values, each load at an opening with the largest relative uncertainty of all that are certified.
+
+    The load goes up and down as the front passes from element to element. Three meshes may agree at one opening by
+    chance; what they leave at the others says so.
+    """
+    least = max((one.relative for one in values if one.kind == "load_at" and not one.why_not), default=0.0)
+    return tuple(replace(one, least=least) if one.kind == "load_at" else one for one in values)

@@ -16,7 +16,7 @@ from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.stated.certified import Certified, CertifiedKind, problem_key
 from verify.studies import frame
-from verify.studies.certified.budget import Seen, Value, of_code
+from verify.studies.certified.budget import Seen, Value, of_code, shared
 from verify.studies.certified.plan import CodeRuns, Plan
 
 #: Load, over the peak load, below which a load is not certified: relative errors say nothing of it.
@@ -115,7 +115,7 @@ def judged(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Study:
     if not failures:
         runs = {job: outcome.result for job, outcome in outcomes.items() if outcome.result is not None}
         wanted, missing = _wanted(plan, runs)
-        values = tuple(_value(plan, runs, one) for one in wanted)
+        values = shared([_value(plan, runs, one) for one in wanted])
     return Study(plan.scene, tuple(map(row, values)), (*plan.left_out, *missing), values, failures)
 
 

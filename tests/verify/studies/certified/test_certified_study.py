@@ -17,7 +17,7 @@ from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
 from verify.scene.stated.certified import entries, problem_key
 from verify.studies.certified import keeping, study
-from verify.studies.certified.budget import BUDGET_SHARES, OfCode, Seen, Value, of_code
+from verify.studies.certified.budget import BUDGET_SHARES, OfCode, Seen, Value, of_code, shared
 from verify.studies.certified.plan import RESOLUTION, Plan, planned
 from verify.support.refusal import Refusal
 
@@ -92,6 +92,16 @@ def test_the_value_lies_nearer_to_the_better_code_and_its_uncertainty_covers_bot
     assert one.uncertainty == pytest.approx(0.0008 * 4.0 / 5.0), "as far as the worse code is"
     assert both(code(1.0, 0.0005), code(1.0, 0.001)).uncertainty == 0.0005, "no better than the better code"
     assert not one.why_not and one.sentence == "peak load: 1.00016 ± 0.00064 (0.064%)"
+
+
+def test_a_load_has_at_least_the_uncertainty_of_the_others() -> None:
+    """Meshes that agree at one opening by chance certify no load there better than elsewhere."""
+    lucky, usual = both(code(2.0, 1e-6), code(2.0, 1e-6)), both(code(1.0, 1e-3), code(1.0, 1e-3))
+    bad = both(code(1.0, 1e-2), code(1.0, 1e-2))
+    loads = [replace(one, kind="load_at", opening=1.0) for one in (lucky, usual, bad)]
+    first, second, third, peak = shared([*loads, lucky])
+    assert first.uncertainty == pytest.approx(2e-3) and second.uncertainty == pytest.approx(1e-3)
+    assert third.why_not and peak.uncertainty == pytest.approx(1e-6)
 
 
 def test_codes_that_differ_by_more_than_they_say_certify_nothing() -> None:
