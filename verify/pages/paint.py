@@ -9,14 +9,16 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import TriMesh
 from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
 
 from verify.pages.strokes import sides, strokes
 from verify.pages.style import STRESS_MAP, colour
 
 _DPI = 150
-_CELLS = 2, 8  # colour cells per sampling interval, along the smaller and along the larger variation
+_CELLS = 2  # per sampling interval in each direction: two triangles are not a bilinear cell
+_BAND = 4  # grey levels of one colour: a quarter of the bytes, and no visible steps
 _MANY_ELEMENTS = 900  # above this number outlines become pixels
 
 Limits = tuple[float, float]
@@ -35,7 +37,7 @@ def paint(
     """
     x, y = frame
     levels = _grey_levels(x_euvi, value_euv, limit, frame, inches(axes), dpi)
-    pixels = STRESS_MAP(levels[..., 0] / 255.0)
+    pixels = STRESS_MAP(np.rint(levels[..., 0] / _BAND) * _BAND / 255.0)
     pixels[..., 3] *= levels[..., 3] > 0
     axes.imshow(pixels, extent=(*x, *y), aspect="auto", interpolation="none", zorder=1)
     many = len(x_euvi) > _MANY_ELEMENTS
@@ -63,34 +65,33 @@ def _grey_levels(
     dpi: int,
 ) -> np.ndarray:
     """Image (rows, columns, 4): grey from 0 at -limit to 255 at limit, alpha 0 where there is no element."""
-    steep_v = np.abs(np.diff(value_euv, axis=1)).sum() < np.abs(np.diff(value_euv, axis=2)).sum()
-    cells = _CELLS if steep_v else _CELLS[::-1]
-    x_fine, value = _finer(x_euvi, *cells), _finer(value_euv[..., None], *cells)[..., 0]
-    corners = np.stack([x_fine[:, :-1, :-1], x_fine[:, 1:, :-1], x_fine[:, 1:, 1:], x_fine[:, :-1, 1:]], axis=-2)
-    middle = (value[:, :-1, :-1] + value[:, 1:, :-1] + value[:, 1:, 1:] + value[:, :-1, 1:]) / 4
-    corners, middle = corners.reshape(-1, 4, 2), middle.ravel()
-    inside = seen(corners, frame)
+    x_ni, value_n = _finer(x_euvi).reshape(-1, 2), _finer(value_euv[..., None]).ravel()
+    corners_nk = _corners(len(x_euvi), _CELLS * (x_euvi.shape[1] - 1) + 1)
+    corners_nk = corners_nk[seen(x_ni[corners_nk], frame)]
+    triangles_tk = np.concatenate([corners_nk[:, :3], corners_nk[:, [0, 2, 3]]])
     figure = Figure(figsize=size, dpi=dpi, facecolor="none")
     axes = figure.add_axes((0, 0, 1, 1), xlim=frame[0], ylim=frame[1])
     axes.set_axis_off()
-    fill = PolyCollection(corners[inside], array=middle[inside], cmap="gray", clim=(-limit, limit))
-    fill.set(antialiased=False, edgecolor="face", linewidth=0.2)
-    axes.add_collection(fill, autolim=False)
+    if len(triangles_tk):
+        grid = Triangulation(*x_ni.T, triangles_tk)
+        axes.add_collection(TriMesh(grid, array=value_n, cmap="gray", clim=(-limit, limit)), autolim=False)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())
 
 
-def _finer(values: np.ndarray, cells_u: int, cells_v: int) -> np.ndarray:
-    """Bilinear refinement of the sampling grids (n_e, m, m, c), so many cells an interval in each direction."""
-    along, across = (_interpolation(values.shape[1], cells) for cells in (cells_u, cells_v))
-    return np.einsum("Uu,Vv,euvc->eUVc", along, across, values, optimize=True)
+def _corners(elements: int, points: int) -> np.ndarray:
+    """Points (n, 4) around every cell of as many grids, with so many ``points`` in each direction."""
+    at = np.arange(elements * points**2).reshape(elements, points, points)
+    return np.stack([at[:, :-1, :-1], at[:, 1:, :-1], at[:, 1:, 1:], at[:, :-1, 1:]], axis=-1).reshape(-1, 4)
 
 
-def _interpolation(points: int, cells: int) -> np.ndarray:
-    """Weights (cells (points - 1) + 1, points) of linear interpolation between equally spaced points."""
-    at = np.linspace(0, points - 1, cells * (points - 1) + 1)
-    return np.maximum(1 - np.abs(at[:, None] - np.arange(points)), 0)
+def _finer(values: np.ndarray) -> np.ndarray:
+    """Bilinear refinement of the sampling grids (n_e, m, m, c)."""
+    points = values.shape[1]
+    at = np.linspace(0, points - 1, _CELLS * (points - 1) + 1)
+    weights = np.maximum(1 - np.abs(at[:, None] - np.arange(points)), 0)
+    return np.einsum("Uu,Vv,euvc->eUVc", weights, weights, values, optimize=True)
 
 
 def seen(lines_nki: np.ndarray, frame: tuple[Limits, Limits]) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from markupsafe import Markup
@@ -23,6 +24,8 @@ from verify.studies.cost.page import script as chart_script
 from verify.studies.cost.price import Price
 from verify.studies.effects.page import in_cell
 from verify.studies.hard.suite import totals
+from verify.support.at_once import at_once
+from verify.verdict import SceneReport
 
 __all__ = ["write"]
 
@@ -46,7 +49,7 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     few = len(findings.reports) <= FEW
-    sections = tuple(section(report, f"scene-{i + 1}", between=few) for i, report in enumerate(findings.reports))
+    sections = at_once(partial(_section, few), list(enumerate(findings.reports, 1)))
     planes = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(findings.planes))
     rates = plane_rates.section(findings.rates, "rates") if findings.rates else None
     summary = summarise(sections, (*planes, *filter(None, [rates])), findings.prices)
@@ -74,6 +77,10 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
     if text:
         lines = markdown.lines(summary, sections, planes, rates, studies, findings.environment)
         path.with_suffix(".md").write_text("\n".join(lines), encoding="utf-8")
+
+
+def _section(few: bool, numbered: tuple[int, SceneReport]) -> Section:
+    return section(numbered[1], f"scene-{numbered[0]}", between=few)
 
 
 def _chart(price: Price, key: str) -> Panel | None:

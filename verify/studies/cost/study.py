@@ -98,6 +98,7 @@ class Runner:
     out: Path
     against: Reference
     found: dict[Try, Outcome] = field(default_factory=dict)
+    known: dict[tuple[Try, int], Row] = field(default_factory=dict)  # by run and times; its errors take a while
     start: float = field(default_factory=monotonic)
 
     def __call__(self, tries: Iterable[Try], seconds: float = inf) -> bool:
@@ -112,8 +113,13 @@ class Runner:
     @property
     def rows(self) -> dict[Try, Row]:
         """The row of every first run, with the times of its repetitions."""
-        firsts = [one for one in self.found if one.repeat == 0]
-        return {one: row(one, [self.found[same] for same in self.again(one)], self.against) for one in firsts}
+        return {one: self._row(one) for one in self.found if one.repeat == 0}
+
+    def _row(self, one: Try) -> Row:
+        runs = [self.found[same] for same in self.again(one)]
+        if (one, len(runs)) not in self.known:
+            self.known[one, len(runs)] = row(one, runs, self.against)
+        return self.known[one, len(runs)]
 
     def again(self, one: Try) -> list[Try]:
         """A run and its repetitions so far."""
