@@ -27,11 +27,15 @@ from iga.system.system import System
 class Sorting:
     """How points are sorted into those that load, unload and touch.
 
-    There are at most ``attempts``; gaps below ``closed``, in units of g_max, count as closed, and rates below ``still``
-    of the largest as rounding. A kink is rough where one slope is less than the part ``rough`` of the other.
+    There are at most ``attempts``, each with a tangent of its own; number ``patient`` sorts all points at once, which
+    takes as long as several tangents, where points times unknowns are no more than ``entries``. Gaps below ``closed``,
+    in units of g_max, count as closed, and rates below ``still`` of the largest as rounding. A kink is rough where one
+    slope is less than the part ``rough`` of the other.
     """
 
     attempts: int = 30
+    patient: int = 5
+    entries: int = 2_000_000
     closed: float = 1e-6
     still: float = 1e-9
     rough: float = 1.0 / 3.0
@@ -127,8 +131,10 @@ def tangent(
         touching_q = np.where(flat_q & turning, closing_q < 0.0, closed_q)
         if (agreeing_q == growing_q).all() and (touching_q == closed_q).all():
             return replace(found, agreed=True)
-        if attempt == 0 and turning:
-            sorted_ = _sorted(solver, state, direction, (soft_q, growing_q, flat_q))
+        few = np.count_nonzero(flat_q) * system.n_dof <= SORTING.entries
+        patient = attempt == SORTING.patient and few
+        if turning and (attempt == 0 or patient):
+            sorted_ = _sorted(solver, state, direction, (soft_q, growing_q, flat_q), patient)
             agreeing_q, touching_q = sorted_ or (agreeing_q, touching_q)
         tried.add(np.concatenate([growing_q, closed_q]).tobytes())
         if system.interface.slides and np.concatenate([agreeing_q, touching_q]).tobytes() in tried:
@@ -156,9 +162,14 @@ def _one_changed(
 
 
 def _sorted(
-    solver: Solver, state: State, direction: float, sets: tuple[np.ndarray, np.ndarray, np.ndarray]
+    solver: Solver,
+    state: State,
+    direction: float,
+    sets: tuple[np.ndarray, np.ndarray, np.ndarray],
+    patient: bool,
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Points that grow and points that touch, under a load that changes in a direction; None where that is not found.
+    """Points that grow and points that touch, under a load that changes in a direction; None where that is not found,
+    or, unless ``patient``, costs more than a new tangent.
 
     ``sets`` are the points (n_q,) that soften, those of them that are thought to grow, and those without a gap. As a
     rate has a slope where it opens and another where it closes, rates are gaps of a law with a kink at zero.
@@ -193,9 +204,8 @@ def _sorted(
     with solver.phase("solve"):
         load = Bordered(inverse, np.zeros(solver.system.n_dof), 1.0)
         linear_d = direction * np.append(inverse.under_load_d, 1.0)
-        rates = GapLaw(
-            interface, touch, tractions, np.zeros_like(touch.jump_qc), response.pull.slope_qcc, interface.slides
-        )
+        still_qc, patient = np.zeros_like(touch.jump_qc), patient or interface.slides
+        rates = GapLaw(interface, touch, tractions, still_qc, response.pull.slope_qcc, patient)
         step_d = settled_step(rates, linear_d, load)
     if step_d is None:
         return None

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
+import iga.path.tangent as path_tangent
 from iga.bases.names import BASES
 from iga.dcb import build
 from iga.path.control import Prescribed, gap_control, opening_control
@@ -13,7 +14,7 @@ from iga.path.follow import follow
 from iga.path.newton import equilibrium
 from iga.path.point import Point
 from iga.path.solver import Solver
-from iga.path.tangent import _one_changed, on_envelope, tangent
+from iga.path.tangent import SORTING, _one_changed, on_envelope, tangent
 from iga.system.system import respond
 
 #: The path is followed to a third of the opening that the mesh is made for: elements are so long that it snaps back.
@@ -201,3 +202,20 @@ def test_where_all_changes_at_once_lead_round_one_is_made_that_has_not_been_trie
         tried.add(np.concatenate([now, touching_q]).tobytes())
         went.append(now.tolist())
     assert went == [none.tolist(), second.tolist()]
+
+
+def test_all_points_sorted_at_once_are_those_sorted_one_by_one_with_a_half_of_the_tangents(monkeypatch):
+    system, made, factorise = build(replace(PAPER, dofs=1000)).system, [], Solver.factorise
+    monkeypatch.setattr(Solver, "factorise", lambda solver, response: made.append(1) or factorise(solver, response))
+
+    def leaving(attempts):
+        made.clear()
+        monkeypatch.setattr(path_tangent, "SORTING", replace(SORTING, patient=attempts))
+        start = system.start()
+        found = tangent(Solver(system), start, respond(system, start, decide=False), 1.0, turning=True)
+        return found, len(made)
+
+    (at_once, few), (one_by_one, many) = leaving(SORTING.patient), leaving(SORTING.attempts)
+    assert at_once.agreed and one_by_one.agreed and 2 * few <= many
+    assert np.array_equal(at_once.closed_q, one_by_one.closed_q)
+    assert at_once.slope == pytest.approx(one_by_one.slope, rel=1e-12)
