@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import basix.ufl
 import numpy as np
 import ufl
 from dolfinx import fem, mesh
 from dolfinx.fem import petsc
+from mpi4py import MPI
 from petsc4py import PETSc
 
 #: -O3 vectorises the loops over basis functions; -march=native with -ffast-math took a sixth off an iteration, but ties
 #: the forms to one CPU and changes last digits.
 JIT_OPTIONS = {"cffi_extra_compile_args": ["-O3"]}
 
+_POINTS_FIRST = list(inspect.signature(mesh.create_mesh).parameters)[2] == "x"  # until 0.9
 _HAS_ENTITY_MAP = hasattr(mesh, "EntityMap")  # since 0.10
 _HAS_BLOCK_FUNCTIONS = hasattr(petsc, "create_matrix_block")  # until 0.9
 
@@ -27,6 +31,18 @@ class Submesh:
     mesh: mesh.Mesh
     parent_of_cell: np.ndarray  # (n_cells,) owned and ghosts
     entity_map: Any  # as ``mesh.create_submesh`` returns it
+
+
+def create_mesh(comm: MPI.Intracomm, X_nI: np.ndarray, conn_ea: np.ndarray) -> mesh.Mesh:
+    """Mesh of straight triangles or quadrilaterals, given on every rank with corners counter-clockwise."""
+    cell, order = {3: ("triangle", [0, 1, 2]), 4: ("quadrilateral", [0, 1, 3, 2])}[conn_ea.shape[1]]
+    element = ufl.Mesh(basix.ufl.element("Lagrange", cell, 1, shape=(2,)))
+    first = comm.rank == 0
+    points = np.ascontiguousarray(X_nI if first else X_nI[:0])
+    cells = np.ascontiguousarray((conn_ea if first else conn_ea[:0])[:, order], dtype=np.int64)
+    shared = mesh.create_cell_partitioner(mesh.GhostMode.shared_facet)
+    given = (points, element) if _POINTS_FIRST else (element, points)
+    return mesh.create_mesh(comm, cells, *given, partitioner=shared)
 
 
 def create_submesh(parent: mesh.Mesh, dim: int, entities: np.ndarray) -> Submesh:

@@ -14,7 +14,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 LEFT_TO_THE_BASE = ("numpy", "scipy")
 EXTRAS = ("report", "dev")
-EXTRAS_OF_TESTS = ("distributed", "docs", "fields", "tests")
+EXTRAS_OF_TESTS = ("distributed", "docs", "fields", "meshes")
 
 
 def requirements(tests: bool) -> list[str]:

@@ -78,6 +78,7 @@ FLOORS = (
     ("verify.reduction",),
     ("verify.curves",),
     ("verify.verdict",),
+    ("verify.meshes",),
     ("verify.scene",),
     ("verify.result",),
     ("verify.theory.arms",),

@@ -53,7 +53,7 @@ def test_without_the_launcher_everything_may_be_skipped(tmp_path: Path) -> None:
         ("Skipped: there is no Chromium", False, True),
         ("Skipped: needs fish", False, True),
         ("Skipped: could not import 'pyvista': libX11.so.6: cannot open shared object file", False, True),
-        ("Skipped: could not import 'meshio': No module named 'meshio'", False, False),
+        ("Skipped: could not import 'vtk': No module named 'vtk'", False, False),
         ("Skipped: no right to mount", True, True),
         ("Skipped: got empty parameter set for (name)", False, False),
     ],

@@ -8,7 +8,7 @@ import numpy as np
 from dolfinx import mesh
 from mpi4py import MPI
 
-from fem_reference.dolfinx_api import Submesh, create_submesh
+from fem_reference.dolfinx_api import Submesh, create_mesh, create_submesh
 from fem_reference.problem.specimen import Body, Face, Region, Specimen
 
 
@@ -70,11 +70,13 @@ def entities_on(domain: mesh.Mesh, dim: int, place: Region, near: float) -> np.n
 
 
 def _parent(specimen: Specimen, comm: MPI.Intracomm) -> mesh.Mesh:
-    """A grid of unit steps whose lines are moved to the specimen's: their coordinates are exact to the last digit.
+    """The specimen's own cells, or a grid of unit steps whose lines are moved to the specimen's.
 
-    Beyond the end of the shorter body it has cells of no body. Facets between ranks need a ghost cell on their other
-    side, which ``create_rectangle`` provides by default.
+    Coordinates are exact to the last digit. Beyond the end of the shorter body the grid has cells of no body. Facets
+    between ranks need a ghost cell on their other side, which ``create_rectangle`` provides by default.
     """
+    if specimen.cells:
+        return create_mesh(comm, specimen.cells.X_nI, specimen.cells.conn_ea)
     upper, lower = (body.Y for body in specimen.bodies)
     X, Y, below = specimen.X, np.concatenate([lower, upper[1:]]), lower.size - 1
     n, m = X.size - 1, Y.size - 1
@@ -107,7 +109,7 @@ def _owned(parent: mesh.Mesh, dim: int, entities: np.ndarray) -> np.ndarray:
 def _seen_from(parent: mesh.Mesh, facets: np.ndarray, inside_c: np.ndarray) -> np.ndarray:
     """Facets as (cell, local facet) (n, 2), seen from their adjacent cell that is marked in ``inside_c``."""
     to_cells, to_facets = parent.topology.connectivity(1, 2), parent.topology.connectivity(2, 1)
-    facets_cf = to_facets.array.reshape(-1, 4)  # a quadrilateral has four
+    facets_cf = to_facets.array.reshape(-1, parent.geometry.dofmap.shape[1])  # as many as corners
     one_f, other_f = to_cells.array[to_cells.offsets[facets]], to_cells.array[to_cells.offsets[facets + 1] - 1]
     cells_f = np.where(inside_c[one_f], one_f, other_f)
     local_f = np.argmax(facets_cf[cells_f] == facets[:, None], axis=1)

@@ -89,11 +89,11 @@ def free_arms(problem: Debonding, bodies: Rectangles, bonded: tuple[float, float
     L, tip = upper.length, bonded[0]
     layers = max(problem.layers, PRESSED_END.layers) if problem.presses else problem.layers
     above, below = (np.linspace(0.0, body.thickness, layers + 1) for body in bodies)
-    X = lines_by_way_of((tip, L), problem.elements)
+    X = problem.cells.X if problem.cells else lines_by_way_of((tip, L), problem.elements)
     longest = PRESSED_END.longest * min(upper.thickness, lower.thickness)
     return Specimen(
         bodies=(_body(upper, above, problem.plane), _body(lower, -below[::-1], problem.plane)),
-        X=finer_at_first(X, longest) if problem.presses else X,
+        X=finer_at_first(X, longest) if problem.presses and not problem.cells else X,
         bond=bonded,
         facing=(0.0, L),
         touching=problem.presses,
@@ -101,6 +101,7 @@ def free_arms(problem: Debonding, bodies: Rectangles, bonded: tuple[float, float
         held=(Held(UPPER, point(L, 0.0), (0,)), Held(LOWER, point(L, 0.0), (0, 1))),
         hooks=_tie(problem, bodies),
         loaded_at=0.0,
+        cells=problem.cells,
     )
 
 

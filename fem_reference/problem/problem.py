@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.problem.mixed_law import MixedLaw
-from fem_reference.problem.specimen import Specimen
+from fem_reference.problem.specimen import Cells, Specimen
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +32,7 @@ class Debonding(ABC):
     degree : Lagrange degree, 1 to 4.
     elements : elements along the longer body.
     layers : elements through the thickness of each loaded body.
+    cells : elements in place of these, for arms that are pulled apart.
     steps : equal opening increments over the whole programme; the ends of its branches come on top. None: the path
         chooses its steps by accuracy.
     bend : for these, how far the load may leave the tangent of a step, in parts of the peak.
@@ -60,6 +61,7 @@ class Debonding(ABC):
     degree: int = 2
     elements: int = 112
     layers: int = 1
+    cells: Cells | None = None
     steps: int | None = 150
     bend: float = 0.005
     snapshot_openings: tuple[float, ...] = ()

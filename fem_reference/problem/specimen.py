@@ -87,6 +87,22 @@ class Action:
     factor: float
 
 
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Straight-sided elements of one kind that fill both bodies, which share their nodes on the interface.
+
+    ``X_nI`` (n, 2) nodes; ``conn_ea`` (n_e, 3 or 4) corners of triangles or quadrilaterals, counter-clockwise.
+    """
+
+    X_nI: np.ndarray
+    conn_ea: np.ndarray
+
+    @property
+    def X(self) -> np.ndarray:
+        """Element boundaries along the interface, rising."""
+        return np.unique(self.X_nI[self.X_nI[:, 1] == 0.0, 0])
+
+
 @dataclass(frozen=True)
 class Specimen:
     """A specimen in its own frame.
@@ -102,6 +118,7 @@ class Specimen:
     loaded_at : X of the loaded faces: 0 or the length of the upper body; X from which a crack is measured.
     pulls, rests : loads on patches, and supports of patches.
     keeps : springs that hold the rigid motions which nothing else resists.
+    cells : elements, in place of those between the lines ``X`` and ``Y``.
     """
 
     bodies: tuple[Body, Body]
@@ -116,6 +133,7 @@ class Specimen:
     pulls: tuple[Action, ...] = ()
     rests: tuple[Action, ...] = ()
     keeps: tuple[Action, ...] = ()
+    cells: Cells | None = None
 
     @property
     def actions(self) -> tuple[Action, ...]:

@@ -39,7 +39,7 @@ def body_mesh(path: Path | str) -> Mesh:
     file = read_iga(path)
     try:
         body = mesh(file)
-        _refuse_folded(body)
+        refuse_folded(body)
         sides = element_sides(body)
         if unsound := (*faults(body, sides), *unity_fault(body), *dependence(body)):
             raise ValueError("; ".join(unsound))
@@ -58,13 +58,12 @@ def _side(file: IgaFile, body: Mesh, sides: Sides, side: str) -> Chain:
         raise ValueError(
             f"side set {names[0]}: must be one connected chain of sides of the boundary to be the {side} side"
         )
-    axis, largest, outward = RECTANGLE[side]
-    chain = body.chains[names[0]] if names else _straight(sides, side, axis, largest)
-    return chain if chain.outward == outward else _backwards(chain)
+    return _along_axes(body.chains[names[0]], side) if names else straight_side(sides, side)
 
 
-def _straight(sides: Sides, side: str, axis: int, largest: bool) -> Chain:
-    """The boundary on one line of the bounding box."""
+def straight_side(sides: Sides, side: str) -> Chain:
+    """The boundary on one line of the bounding box; raises ValueError where it is not one chain."""
+    axis, largest, _ = RECTANGLE[side]
     boundary = np.flatnonzero(~sides.shared_k)
     x_kb = sides.H_kbI[boundary, :, axis] / sides.H_kbI[boundary, :, 3]
     edge = x_kb[:, [0, -1]].max() if largest else x_kb[:, [0, -1]].min()
@@ -74,7 +73,7 @@ def _straight(sides: Sides, side: str, axis: int, largest: bool) -> Chain:
         found = f"{len(chains)} pieces of the boundary lie" if chains else "no side of the boundary lies"
         where = f"{'xy'[axis]} = {edge:.6g}"
         raise ValueError(f"no side set is named {side}, and {found} on the {side} of the bounding box, {where}")
-    return chains[0]
+    return _along_axes(chains[0], side)
 
 
 def _plain(name: str) -> str:
@@ -83,11 +82,14 @@ def _plain(name: str) -> str:
     return " ".join(word.lower() for word in words if word.lower() not in _FILLERS)
 
 
-def _backwards(chain: Chain) -> Chain:
+def _along_axes(chain: Chain, side: str) -> Chain:
+    if chain.outward == RECTANGLE[side][2]:
+        return chain
     return Chain(chain.block_c[::-1], chain.element_c[::-1], chain.side_c[::-1], -chain.outward)
 
 
-def _refuse_folded(body: Mesh) -> None:
+def refuse_folded(body: Mesh) -> None:
+    """Raise ValueError where a Jacobian is not positive."""
     for block in body.blocks:
         p, q = block.degrees
         points_q, _ = square(gauss(p + 1), gauss(q + 1))

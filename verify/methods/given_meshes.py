@@ -1,4 +1,4 @@
-"""Bodies of a scene from files of a CAD system, held against the specimen that the scene describes."""
+"""Bodies of a scene from mesh files, held against the specimen that the scene describes."""
 
 from __future__ import annotations
 
@@ -8,20 +8,27 @@ from pathlib import Path
 import numpy as np
 
 from iga.files.cad_body import body_mesh
+from iga.files.nodal_body import nodal_body
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
 from iga.mesh.mirror import upside_down
+from verify.meshes.arms import given_arms
 from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
 
 #: Part of the specimen's length within which two places are the same.
 SAME = 1e-6
 
-#: The method that solves on meshes from files.
-ON_FILES = "tspline"
+#: The methods that solve on meshes from files, by what these hold.
+ON_FILES = {"iga": ("tspline",), "nodal": ("lagrange", "dolfinx")}
 
 #: The override with which a method makes a mesh of its own, for a scene that names files.
 OWN = "specimen.mesh=[]"
+
+
+def file_kind(scene: Scene) -> str:
+    """What the mesh files of a scene hold: "iga" (splines), "nodal" (elements of other programs), or no files."""
+    return "nodal" if scene.specimen.nodal else "iga" if scene.specimen.mesh else ""
 
 
 def own_mesh(scene: Scene) -> Scene:
@@ -32,13 +39,15 @@ def own_mesh(scene: Scene) -> Scene:
 def refuse_files(scene: Scene, who: str) -> None:
     """Raise Refusal where a scene names mesh files and ``who``, a method or a command, takes none."""
     if scene.specimen.mesh:
-        text = f"must be left out (--set {OWN}) for {who}, which takes no mesh files: only the method {ON_FILES} does"
+        able = " and ".join(ON_FILES[file_kind(scene)])
+        text = f"must be left out (--set {OWN}) for {who}, which takes no such mesh files: method {able} does"
         raise Refusal(f"specimen.mesh: {text}, got {list(scene.specimen.mesh)}")
 
 
-def remarks(others: Sequence[str]) -> tuple[str, ...]:
+def remarks(scene: Scene, others: Sequence[str]) -> tuple[str, ...]:
     """Which runs of a scene with mesh files have not solved on them."""
-    text = f"specimen.mesh: the mesh of {ON_FILES} alone; {', '.join(others)} ran without it"
+    able = " and ".join(ON_FILES.get(file_kind(scene), ()))
+    text = f"specimen.mesh: the mesh of {able} alone; {', '.join(others)} ran without it"
     return (text,) if others else ()
 
 
@@ -52,6 +61,8 @@ def given_meshes(scene: Scene) -> tuple[Mesh, ...]:
         on, its ends on the specimen's, and an element boundary where the bond ends.
     """
     specimen = scene.specimen
+    if specimen.nodal:
+        return _of_elements(scene)
     meshes = []
     for file, length, side in zip(specimen.mesh, specimen.lengths, ("bottom", "top"), strict=False):
         mesh = _read(file)
@@ -60,6 +71,14 @@ def given_meshes(scene: Scene) -> tuple[Mesh, ...]:
     if len(meshes) == 1:
         meshes.append(upside_down(meshes[0]))
     return tuple(meshes)
+
+
+def _of_elements(scene: Scene) -> tuple[Mesh, ...]:
+    arms = given_arms(scene)
+    try:
+        return tuple(nodal_body(arm.X_nI, arm.conn_kea) for arm in arms)
+    except ValueError as error:
+        raise Refusal(f"specimen.mesh: {scene.specimen.mesh[0]}: {error}") from None
 
 
 def _read(file: str) -> Mesh:

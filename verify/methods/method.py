@@ -126,7 +126,7 @@ class Method:
     code : the program that it belongs to; methods of one program confirm each other less than others do
     packages : those of the project whose source it runs
     with_dofs : whether ``discretization.dofs`` sets the size of its mesh
-    takes_files : whether it solves on mesh files that a scene names
+    takes_files : the mesh files of a scene that it solves on: "iga" (splines), "nodal" (elements of other programs)
     ranks : whether it runs on several MPI ranks
     lane : runs of one lane are done one after the other, unless it is empty
     is_limit : whether it is a limit that codes approach, and is held against none
@@ -152,7 +152,7 @@ class Method:
     code: str
     packages: tuple[str, ...] = ()
     with_dofs: bool = False
-    takes_files: bool = False
+    takes_files: tuple[str, ...] = ()
     ranks: bool = False
     lane: str = ""
     is_limit: bool = False

@@ -135,7 +135,7 @@ def _method(name: str, plugin: Plugin) -> Method:
         require=require,
         laws=laws,
         code=name,
-        takes_files=True,
+        takes_files=("iga", "nodal"),
         slides=True,
     )
 

@@ -48,9 +48,9 @@ def require(prepared: Prepared) -> None:
     """Raise ``Unsuitable`` where the method is not made for the scene, ``NotRun`` where this machine lacks it."""
     scene, method = prepared.scene, prepared.method
     if scene.specimen.mesh:
-        from verify.methods.given_meshes import given_meshes, refuse_files
+        from verify.methods.given_meshes import file_kind, given_meshes, refuse_files
 
-        given_meshes(scene) if method.takes_files else refuse_files(scene, method.name)
+        given_meshes(scene) if file_kind(scene) in method.takes_files else refuse_files(scene, method.name)
     refuse_law(scene, method.name, method.laws())
     refuse_sliding(prepared)
     refuse_arms(scene, method)

@@ -178,7 +178,7 @@ def _symmetry(scene: Scene) -> tuple[bool, str]:
     mesh, specimen = scene.discretization, scene.specimen
     if not specimen.symmetric:
         return False, f"{' and '.join(specimen.bodies)} differ"
-    if len(specimen.mesh) == 2:
+    if len(specimen.mesh) == 2 or specimen.nodal:
         return False, "each arm has a mesh of its own"
     if scene.effects.shear is True or scene.interface.viscosity:
         return False, "a law of sliding acts between two arms"

@@ -31,7 +31,9 @@ def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
     """The runs of one scene; methods that cannot read its mesh files use generated meshes."""
     own = (given_meshes.OWN,) if scene.specimen.mesh else ()
     for method in known_methods():
-        yield Job(source, scene, method, method, () if find(method).takes_files else own)
+        yield Job(
+            source, scene, method, method, () if given_meshes.file_kind(scene) in find(method).takes_files else own
+        )
     yield Job(source, scene, REFERENCE, SECOND, (*own, *second_mesh(scene)), fields=False)
     effects = simulated(scene)
     if scene.specimen.symmetric and effects["kinematics"] == "finite" and effects["search"]:
@@ -63,7 +65,7 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     left_out = (*neglected.remarks(scene, given), *neglected.remarks(given_meshes.own_mesh(scene), own))
     noted = (
         *remarks(scene, results),
-        *given_meshes.remarks(on_their_own),
+        *given_meshes.remarks(scene, on_their_own),
         *left_out,
         *load_introduction.remarks(scene),
     )

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from verify.meshes.arms import given_arms
+from verify.meshes.joined import joined
 from verify.methods import dolfinx
 from verify.methods.method import (
     Failure,
@@ -23,10 +25,11 @@ from verify.methods.method import (
 )
 from verify.methods.mixed import modelled_law
 from verify.methods.problems import common_keys, rectangles
-from verify.methods.reference_mesh import reference_mesh
+from verify.methods.reference_mesh import ReferenceMesh, reference_mesh
 from verify.result import Result
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.schema import Scene
+from verify.support.refusal import Refusal
 from verify.support.timing import Stopwatch
 
 
@@ -40,7 +43,7 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
     from fem_reference.problem.delamination import Problem
     from fem_reference.problem.material import Moduli, Rectangle
 
-    mesh = reference_mesh(scene)
+    mesh = _mesh(scene)
     try:
         return Problem(
             bodies=rectangles(scene, Rectangle, Moduli),
@@ -53,10 +56,33 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
             degree=mesh.degree,
             elements=mesh.elements,
             layers=mesh.layers,
+            cells=_given(scene),
         )
     except ValueError as error:
         table = "effects" if str(error).startswith("kinematics") else "dolfinx"
         raise Unsuitable(f"{table}.{error}") from None
+
+
+def _mesh(scene: Scene) -> ReferenceMesh:
+    """The mesh that a scene asks for; the degree of elements from a file is their own, unless it asks for another."""
+    if not scene.specimen.nodal or scene.dolfinx.degree != "auto":
+        return reference_mesh(scene)
+    asked = {"degree": given_arms(scene)[0].degree}
+    return reference_mesh(scene.model_copy(update={"dolfinx": scene.dolfinx.model_copy(update=asked)}))
+
+
+def _given(scene: Scene) -> Any:
+    """The elements of the file that a scene names, as one mesh on which the arms share the nodes of the interface."""
+    if not scene.specimen.nodal:
+        return None
+    from fem_reference.problem.specimen import Cells
+
+    try:
+        return Cells(*joined(given_arms(scene)))
+    except Refusal:
+        raise
+    except ValueError as error:
+        raise Unsuitable(f"specimen.mesh: {scene.specimen.mesh[0]}: {error} (method lagrange takes them)") from None
 
 
 def _sliding(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
@@ -79,7 +105,7 @@ def _sliding(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:
-    mesh = reference_mesh(prepared.scene)
+    mesh = _mesh(prepared.scene)
     return MeshFacts(float(np.max(prepared.problem.specimen().bond_elements)), mesh.degree, mesh.layers)
 
 
@@ -136,6 +162,7 @@ DOLFINX = Method(
     slides=True,
     packages=("fem_reference",),
     ranks=True,
+    takes_files=("nodal",),
     # All runs share a cache of compiled forms: the second to compile the same form would wait for the first, and give
     # up after ten seconds.
     lane="dolfinx",

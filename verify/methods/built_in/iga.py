@@ -75,10 +75,11 @@ def _outline(specimen: Delamination) -> dict[str, Any]:
 
 
 def _given(scene: Scene, basis: str) -> tuple[Any, ...]:
-    """The meshes of the files that a scene names, for T-splines alone: they are what such files hold."""
-    if not BASES[basis].local or not scene.specimen.mesh:
+    """The meshes of the files that a scene names, for the basis that such files hold."""
+    from verify.methods.given_meshes import file_kind, given_meshes
+
+    if file_kind(scene) not in _files(BASES[basis]):
         return ()
-    from verify.methods.given_meshes import given_meshes
 
     return given_meshes(scene)
 
@@ -140,6 +141,11 @@ def _require_mesh(prepared: Prepared) -> None:
         raise Unsuitable(f"discretization.{key}: {str(error).removeprefix('interface_rule ')}") from None
 
 
+def _files(basis: Basis) -> tuple[str, ...]:
+    """The mesh files that hold elements of a basis."""
+    return ("iga",) if basis.local else ("nodal",) if basis.name == "lagrange" else ()
+
+
 def _laws() -> tuple[str, ...]:
     from iga.interface.laws import LAWS
 
@@ -167,7 +173,7 @@ def _method(number: int, basis: Basis) -> Method:
         code="iga",
         packages=("iga",),
         with_dofs=True,
-        takes_files=basis.local,
+        takes_files=_files(basis),
         slides=True,
         mesh_error=basis.mesh_error,
         place=number,

@@ -14,7 +14,7 @@ class Dcb(Delamination):
     """Two arms, bonded on X in [precrack, length], loaded at X = 0.
 
     ``mesh``: `.iga` files of the upper and the lower arm for T-splines; one stands for both, the lower being its mirror
-    image.
+    image. Or one file with both arms for lagrange and dolfinx, in a format of `verify.meshes.read`.
     """
 
     loads: ClassVar[tuple[Load, ...]] = PULLED_APART
@@ -44,7 +44,10 @@ class Dcb(Delamination):
     plane: Plane = "stress"
     """Plane stress or plane strain."""
     mesh: Files = Field(default=(), max_length=2)
-    """`.iga` files of the upper and the lower arm for tspline; one stands for both; none: a mesh is made."""
+    """One .msh, .inp, .vtu, .e or .med file of both arms for lagrange and dolfinx; or `.iga` files of the upper and the
+    lower arm for tspline, one stands for both; none: a mesh is made."""
+    groups: dict[Literal["upper", "lower", "bond", "load"], str] = Field(default={})
+    """Names in the mesh file of the groups upper, lower (bodies), bond and load (faces), where they have others."""
 
     @field_validator("precrack")
     @classmethod

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple, TypeAlias
 
 from pydantic import BeforeValidator, Field
@@ -103,6 +104,7 @@ class Delamination(Section):
         width: float
         plane: Plane
         mesh: Files
+        groups: Mapping[str, str]
 
         @property
         def loads(self) -> tuple[Load, ...]:
@@ -111,6 +113,11 @@ class Delamination(Section):
         @property
         def supports(self) -> tuple[Support, ...]:
             """What holds it; none where the loads balance each other, or a clamp does."""
+
+    @property
+    def nodal(self) -> bool:
+        """Whether its mesh files hold nodal elements, and not the splines of `.iga` files."""
+        return bool(self.mesh) and not all(name.lower().endswith(".iga") for name in self.mesh)
 
     @property
     def arms(self) -> int:
