@@ -40,7 +40,7 @@ def refuse_files(scene: Scene, who: str) -> None:
     """Raise Refusal where a scene names mesh files and ``who``, a method or a command, takes none."""
     if scene.specimen.mesh:
         able = " and ".join(ON_FILES[file_kind(scene)])
-        text = f"must be left out (--set {OWN}) for {who}, which takes no such mesh files: method {able} does"
+        text = f"must be left out (--set {OWN}) for {who}, which takes no mesh files of this kind; {able} can"
         raise Refusal(f"specimen.mesh: {text}, got {list(scene.specimen.mesh)}")
 
 

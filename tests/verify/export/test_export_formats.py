@@ -6,6 +6,7 @@ import json
 import re
 from pathlib import Path
 
+import meshlane
 import numpy as np
 import pytest
 from exported import DCB, PEEL, check_areas, exported
@@ -205,13 +206,12 @@ def test_a_gmsh_file_names_bodies_and_sets(scene: str, degree: int, tmp_path: Pa
 
 @pytest.mark.parametrize("degree", [1, 2])
 @pytest.mark.parametrize("scene", [DCB, PEEL])
-def test_meshio_reads_gmsh_and_vtu(scene: str, degree: int, tmp_path: Path) -> None:
-    meshio = pytest.importorskip("meshio")
+def test_meshlane_reads_gmsh_and_vtu(scene: str, degree: int, tmp_path: Path) -> None:
     words = ["--set", f"dolfinx.degree={degree}"]
     model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
     quad, side = {1: ("quad", "line"), 2: ("quad8", "line3")}[degree]
 
-    mesh = meshio.read(exported(scene, "gmsh", tmp_path, *words) / f"{scene}.msh")
+    mesh = meshlane.read(exported(scene, "gmsh", tmp_path, *words) / f"{scene}.msh")
     names = {number: name for name, (number, _) in mesh.field_data.items()}
     groups: dict[str, list[np.ndarray]] = {}
     for cells, tags in zip(mesh.cells, mesh.cell_data["gmsh:physical"], strict=True):
@@ -228,7 +228,7 @@ def test_meshio_reads_gmsh_and_vtu(scene: str, degree: int, tmp_path: Path) -> N
         (bond,) = groups[f"{model.names[0]}_bond"]
         assert np.allclose(mesh.points[bond[:, 2]], mesh.points[bond[:, :2]].mean(axis=1))
 
-    mesh = meshio.read(exported(scene, "vtu", tmp_path, *words) / f"{scene}.vtu")
+    mesh = meshlane.read(exported(scene, "vtu", tmp_path, *words) / f"{scene}.vtu")
     body = np.concatenate(mesh.cell_data["body"]).ravel()
     cells = [nodes for block in mesh.cells for nodes in block.data]
     solid = np.array([nodes for nodes, b in zip(cells, body, strict=True) if b < 2])
@@ -242,13 +242,12 @@ def test_meshio_reads_gmsh_and_vtu(scene: str, degree: int, tmp_path: Path) -> N
         assert np.array_equal(np.flatnonzero(mesh.point_data[name].ravel()), np.sort(nodes))
 
 
-def test_meshio_reads_the_solids_of_abaqus(tmp_path: Path) -> None:
+def test_meshlane_reads_the_solids_of_abaqus(tmp_path: Path) -> None:
     """By names of elements that it knows, of the same nodes; it knows neither plane strain nor cohesive elements."""
-    meshio = pytest.importorskip("meshio")
     for degree, known in ((1, ("CPS4I", "CPS4")), (2, ("CPS8", "S8R"))):
         file = exported(DCB, "abaqus", tmp_path, "--set", f"dolfinx.degree={degree}") / f"{DCB}.inp"
         before, _, after = file.read_text().replace(*known).partition("*ELEMENT, TYPE=COH2D4")
         file.write_text(before + after[after.index("*NSET") : after.index("*ORIENTATION")])
-        mesh = meshio.read(file)
+        mesh = meshlane.read(file)
         assert [block.type for block in mesh.cells] == ["quad" if degree == 1 else "quad8"] * 2
         assert set(mesh.point_sets) >= {"upper_loaded", "lower_bond"}

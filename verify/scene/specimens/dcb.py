@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import ClassVar, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
@@ -46,7 +47,7 @@ class Dcb(Delamination):
     mesh: Files = Field(default=(), max_length=2)
     """One .msh, .inp, .vtu, .e or .med file of both arms for lagrange and dolfinx; or `.iga` files of the upper and the
     lower arm for tspline, one stands for both; none: a mesh is made."""
-    groups: dict[Literal["upper", "lower", "bond", "load"], str] = Field(default={})
+    groups: Mapping[Literal["upper", "lower", "bond", "load"], str] = Field(default={})
     """Names in the mesh file of the groups upper, lower (bodies), bond and load (faces), where they have others."""
 
     @field_validator("precrack")

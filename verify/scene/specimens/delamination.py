@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 from pydantic import BeforeValidator, Field
 
@@ -104,7 +104,7 @@ class Delamination(Section):
         width: float
         plane: Plane
         mesh: Files
-        groups: Mapping[str, str]
+        groups: Mapping[Any, str]
 
         @property
         def loads(self) -> tuple[Load, ...]:

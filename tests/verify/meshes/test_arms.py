@@ -1,0 +1,220 @@
+"""Meshes of other programs: what is read, what is refused, and the curve of the built-in meshes on them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import meshlane
+import numpy as np
+import pytest
+from meshes_made import LENGTH, TAGS, arms, breaks, changed, write
+
+from iga.files.nodal_body import NODAL
+from verify.cli import REFUSED, main
+from verify.meshes.arms import given_arms
+from verify.meshes.joined import joined
+from verify.methods.dolfinx import dolfinx_installed
+from verify.methods.method import Unsuitable
+from verify.methods.solve import prepare, require, solve
+from verify.result import Result
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
+
+GROUPS = 'specimen.groups={upper="upper", lower="lower", bond="bond", load="load"}'
+SMALL = breaks(12, 6)
+
+
+def scene_on(file: str, *overrides: str) -> Scene:
+    return load_scene("dcb-czm1", [f"specimen.mesh={json.dumps(file)}", *overrides])
+
+
+@pytest.mark.parametrize("size", NODAL)
+def test_functions_of_an_element_are_nodal_and_complete(size: int) -> None:
+    nodal = NODAL[size]
+    assert np.allclose(nodal.functions(nodal.nodes_aI), np.eye(size), atol=1e-13)
+    x_qI = np.array([[0.2, 0.3], [0.5, 0.1]])
+    for power in range(nodal.degree + 1):
+        field = (nodal.nodes_aI @ [0.7, -0.4] + 0.1) ** power
+        assert np.allclose(nodal.functions(x_qI) @ field, (x_qI @ [0.7, -0.4] + 0.1) ** power)
+
+
+@pytest.mark.parametrize(
+    ("kind", "ending", "groups"),
+    [(kind, ".msh", True) for kind in ("quad", "quad8", "quad9", "triangle", "triangle6")]
+    + [("quad8", ".inp", True), ("triangle6", ".inp", True), ("quad8", ".vtu", False), ("triangle", ".vtu", False)],
+)
+def test_arms_are_read_with_their_groups(kind: str, ending: str, groups: bool, tmp_path: Path) -> None:
+    made = arms(kind, SMALL)
+    file = write(made, tmp_path / f"arms{ending}")
+    named = GROUPS if groups else 'specimen.groups={bond="bond", load="load"}'
+    upper, lower = given_arms(scene_on(file, named))
+    for arm, block in zip((upper, lower), made.cells, strict=False):
+        (conn,) = arm.conn_kea.values()
+        assert np.allclose(arm.X_nI[conn], made.points[block.data, :2], atol=1e-12)
+    points, conn = joined((upper, lower))
+    assert np.allclose(np.ptp(points, axis=0), [LENGTH, 0.4]) and len(conn) == sum(len(b.data) for b in made.cells[:2])
+    assert len(np.unique(np.round(points, 9), axis=0)) == len(points), "the arms share the nodes of the interface"
+
+
+@pytest.mark.parametrize("ending", [".e", ".med"])
+def test_exodus_and_med_are_read(ending: str, tmp_path: Path) -> None:
+    made = arms("quad8", SMALL)
+    solid = np.concatenate([block.data for block in made.cells[:2]])
+    meshlane.Mesh(made.points[:, : 2 if ending == ".med" else 3], [("quad8", solid)]).write(tmp_path / f"arms{ending}")
+    assert len(given_arms(scene_on(str(tmp_path / f"arms{ending}")))[0].conn_kea[8]) == len(made.cells[0].data)
+
+
+@cache
+def on_its_own_mesh(method: str) -> Result:
+    return solve(load_scene("dcb-czm1"), method)
+
+
+@pytest.mark.parametrize("method", ["lagrange", "dolfinx"])
+@pytest.mark.parametrize(("kind", "ending"), [("quad8", ".msh"), ("triangle6", ".inp"), ("quad9", ".vtu")])
+def test_the_curve_is_that_of_the_meshes_that_are_made(method: str, kind: str, ending: str, tmp_path: Path) -> None:
+    """To 0.5 % of the largest load, graded meshes and triangles included."""
+    if method == "dolfinx" and not dolfinx_installed():
+        pytest.skip("DOLFINx is not installed")
+    given = solve(scene_on(write(arms(kind), tmp_path / f"arms{ending}")), method)
+    made = on_its_own_mesh(method)
+    opening = np.linspace(0.0, 3.0, 400)[1:]
+    load, other = (np.interp(opening, run.opening, run.load) for run in (given, made))
+    assert given.complete and np.abs(load - other).max() < 0.005 * other.max()
+
+
+def shifted(mesh: meshlane.Mesh, which: Callable, by: tuple[float, float, float]) -> meshlane.Mesh:
+    moved = mesh.points + np.where(which(mesh.points)[:, None], by, 0.0)
+    return changed(mesh, points=moved)
+
+
+def with_solids(mesh: meshlane.Mesh, change: Callable) -> meshlane.Mesh:
+    upper, *others = ((block.type, block.data) for block in mesh.cells)
+    new = change(upper[1])
+    tags = [np.full(len(new), 1), *mesh.cell_data["gmsh:physical"][1:]]
+    data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
+    return changed(mesh, cells=[(upper[0], new), *others], cell_data=data)
+
+
+def renamed(mesh: meshlane.Mesh, **tags: tuple[int, int]) -> meshlane.Mesh:
+    return changed(mesh, field_data={name: np.array(tag) for name, tag in (TAGS | tags).items() if tag})
+
+
+def with_block(mesh: meshlane.Mesh, kind: str, conn: np.ndarray) -> meshlane.Mesh:
+    tags = [*mesh.cell_data["gmsh:physical"], np.full(len(conn), 1)]
+    data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
+    return changed(mesh, cells=[*((b.type, b.data) for b in mesh.cells), (kind, conn)], cell_data=data)
+
+
+def third_body(mesh: meshlane.Mesh) -> meshlane.Mesh:
+    """A copy of one element, beside the others in the same place."""
+    first, n = mesh.cells[0].data[:1], len(mesh.points)
+    more = changed(mesh, points=np.concatenate([mesh.points, mesh.points[first[0]]]))
+    return with_block(more, mesh.cells[0].type, n + np.arange(first.size)[None])
+
+
+def swapped(conn: np.ndarray, one: int, other: int) -> np.ndarray:
+    new = conn.copy()
+    new[0, [one, other]] = new[0, [other, one]]
+    return new
+
+
+#: A fault -> the mesh with it, and what the refusal says.
+FAULTS: dict[str, tuple[Callable, str]] = {
+    "no group": (lambda m: renamed(m, bond=()), "group bond (specimen.groups.bond) is missing, the file has"),
+    "bond of elements": (lambda m: renamed(m, bond=(2, 2), lower=(3, 1)), "group lower: must hold elements of a body"),
+    "loaded body": (lambda m: renamed(m, load=(1, 2), upper=(4, 1)), "group upper: must hold elements of a body"),
+    "bodies exchanged": (lambda m: renamed(m, upper=(2, 2), lower=(1, 2)), "group upper: must hold the 36 elements"),
+    "faces exchanged": (
+        lambda m: renamed(m, bond=(4, 1), load=(3, 1)),
+        "group bond: must lie on Y = 0 from X = 4 to 14",
+    ),
+    "clockwise": (lambda m: with_solids(m, lambda c: c[:, [0, 3, 2, 1, 7, 6, 5, 4]]), "body upper: nodes of elements"),
+    "order of nodes": (lambda m: with_solids(m, lambda c: swapped(c, 1, 2)), "body upper: nodes of elements"),
+    "middles": (lambda m: with_solids(m, lambda c: swapped(c, 4, 5)), "body upper: sides inside it"),
+    "hole": (lambda m: with_solids(m, lambda c: np.delete(c, 8, 0)), "body upper: sides inside it"),
+    "twice": (lambda m: with_solids(m, lambda c: np.concatenate([c, c[:1]])), "body upper: sides inside it"),
+    "third body": (third_body, "must hold 2 bodies, one above and one below Y = 0, got 3"),
+    "metres": (lambda m: changed(m, points=m.points / 1000), "the mesh is 1000 times smaller: in other units?"),
+    "long": (
+        lambda m: changed(m, points=m.points * [1.5, 1, 1]),
+        "X must run from 0 to 14 (specimen.length), got 0 to 21",
+    ),
+    "thick": (
+        lambda m: changed(m, points=m.points * [1, 2, 1]),
+        "Y must run from -0.2 to 0.2 (specimen.arm_thickness)",
+    ),
+    "moved": (
+        lambda m: changed(m, points=m.points + [0.5, 0, 0]),
+        "X must run from 0 to 14 (specimen.length), got 0.5",
+    ),
+    "gap": (
+        lambda m: changed(m, points=m.points - 0.01 * np.outer((m.points[:, 1] == 0) & _lower(m), [0, 1, 0])),
+        "body lower: Y must run from -0.2 to 0, got -0.2 to -0.01",
+    ),
+    "part of a gap": (
+        lambda m: changed(
+            m, points=m.points - 0.01 * np.outer((m.points[:, 1] == 0) & _lower(m) & (m.points[:, 0] > 9), [0, 1, 0])
+        ),
+        "body lower: sides inside it",
+    ),
+    "other precrack": (lambda m: arms("quad8", np.linspace(0.0, LENGTH, 12)), "X = 4 (specimen.precrack), got 3.8"),
+    "out of the plane": (lambda m: shifted(m, lambda p: p[:, 0] > 13, (0, 0, 1.0)), "plane z = 0, got z = 1 at node"),
+    "two degrees": (lambda m: with_block(m, "quad", m.cells[0].data[:1, :4]), "one degree, got quad and quad8"),
+    "solid": (lambda m: with_block(m, "tetra", np.array([[0, 1, 2, 3]])), "got 1 of type tetra"),
+}
+
+
+def _lower(mesh: meshlane.Mesh) -> np.ndarray:
+    return np.isin(np.arange(len(mesh.points)), mesh.cells[1].data)
+
+
+def refused(file: str, words: str, capsys: pytest.CaptureFixture, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    options = ["--set", f"specimen.mesh={json.dumps(file)}", "--set", GROUPS, "--out", str(out)]
+    assert main(["solve", "dcb-czm1", "--method", "lagrange", *options]) == REFUSED
+    said = capsys.readouterr().err
+    assert "specimen.mesh: " in said and Path(file).name in said and words in said, said
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_broken_mesh_is_refused(fault: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    change, words = FAULTS[fault]
+    refused(write(change(arms("quad8", SMALL)), tmp_path / "arms.msh"), words, capsys, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("ending", "change", "words"),
+    [
+        (".msh", lambda text: "", "is empty"),
+        (
+            ".inp",
+            lambda text: text.replace("CPS8R", "COH2D4", 1),
+            "elements must be CPS or CPE with 3, 4, 6 or 8 nodes",
+        ),
+        (".msh", lambda text: text[: len(text) // 2], "is broken or cut off"),
+        (".inp", lambda text: text[: text.index("ELSET=lower") - 300], "is broken or cut off"),
+        (".vtu", lambda text: text[: len(text) // 2], "is broken or cut off"),
+        (".msh", lambda text: "no mesh\n", "is broken or cut off within its 1 lines, as gmsh"),
+    ],
+)
+def test_a_broken_file_is_refused(
+    ending: str, change: Callable, words: str, tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    file = Path(write(arms("quad8", SMALL), tmp_path / f"arms{ending}"))
+    file.write_text(change(file.read_text()))
+    refused(str(file), words, capsys, tmp_path)
+
+
+def test_faces_that_do_not_match_are_for_lagrange_alone(tmp_path: Path) -> None:
+    fine, coarse = arms("quad8", breaks()), arms("quad8", breaks(100, 20))
+    points = np.concatenate([fine.points, coarse.points])
+    both = meshlane.Mesh(points, [("quad8", fine.cells[0].data), ("quad8", coarse.cells[1].data + len(fine.points))])
+    both.write(tmp_path / "arms.vtu")
+    scene = scene_on(str(tmp_path / "arms.vtu"))
+    require(prepare(scene, "lagrange"))
+    with pytest.raises(Unsuitable, match="must match on Y = 0 for dolfinx, got 145 and 121"):
+        require(prepare(scene, "dolfinx"))
