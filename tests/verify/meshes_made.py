@@ -90,7 +90,8 @@ def write(mesh: meshlane.Mesh, file: Path) -> str:
 
 
 def _flags(mesh: meshlane.Mesh, tag: int) -> np.ndarray:
-    nodes = np.concatenate([b.data.ravel() for b, t in zip(mesh.cells, mesh.cell_data["gmsh:physical"]) if t[0] == tag])
+    tagged = zip(mesh.cells, mesh.cell_data["gmsh:physical"], strict=True)
+    nodes = np.concatenate([block.data.ravel() for block, tags in tagged if tags[0] == tag])
     return np.isin(np.arange(len(mesh.points)), nodes).astype(int)
 
 

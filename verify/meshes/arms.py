@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from verify.meshes.read import DEGREES, PlaneMesh, read_mesh
+from verify.meshes.read import ELEMENT_DEGREES, PlaneMesh, read_mesh
 from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
 
@@ -18,7 +18,7 @@ from verify.support.refusal import Refusal
 SAME = 1e-6
 
 #: Factors between units of length, looked for where a mesh and a scene differ.
-UNITS = (1000.0, 100.0, 10.0, 25.4)
+UNIT_FACTORS = (1000.0, 100.0, 10.0, 25.4)
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Arm:
 
     @property
     def degree(self) -> int:
-        return DEGREES[next(iter(self.conn_kea))]
+        return ELEMENT_DEGREES[next(iter(self.conn_kea))]
 
 
 def given_arms(scene: Scene) -> tuple[Arm, Arm]:
@@ -69,7 +69,9 @@ class _Check:
         upper_e = self._centres()[:, 1] > 0.0
         self._bodies(upper_e)
         boxes = ((0.0, self.scene.specimen.thicknesses[0]), (-self.scene.specimen.thicknesses[1], 0.0))
-        arms = [self._arm(name, which, box) for name, which, box in zip(NAMES, (upper_e, ~upper_e), boxes, strict=True)]
+        arms = [
+            self._arm(name, which, box) for name, which, box in zip(ARM_NAMES, (upper_e, ~upper_e), boxes, strict=True)
+        ]
         self._groups(upper_e)
         return arms[0], arms[1]
 
@@ -81,7 +83,8 @@ class _Check:
         for axis, (low, high), keys in zip((0, 1), wanted, ("specimen.length", "specimen.arm_thickness"), strict=True):
             found = used[:, axis].min(), used[:, axis].max()
             if max(abs(found[0] - low), abs(found[1] - high)) > self.tol:
-                text = f"{'XY'[axis]} must run from {low:g} to {high:g} ({keys}), got {found[0]:.6g} to {found[1]:.6g}"
+                where = f"{'XY'[axis]} must run from {low:g} to {high:g} ({keys})"
+                text = f"{where}, got {found[0]:.6g} to {found[1]:.6g}"
                 raise ValueError(text + _other_units((high - low), found[1] - found[0]))
 
     def _centres(self) -> np.ndarray:
@@ -159,19 +162,20 @@ class _Check:
             raise ValueError(f"body {name}: elements must fill an area of {full:g} once, got {area_e.sum():.6g}")
 
     def _groups(self, upper_e: np.ndarray) -> None:
-        """Groups that the scene names, or that have the names of `ROLES`, hold what they should."""
+        """Groups that the scene names, or that have the names of `GROUP_ROLES`, hold what they should."""
         named = self.scene.specimen.groups
-        for role in ROLES:
-            name = named.get(role, role)
+        for role in GROUP_ROLES:
+            asked = getattr(named, role)
+            name = asked or role
             elements, nodes = self.mesh.elements.get(name), self.mesh.nodes.get(name)
             if elements is None and nodes is None:
-                if role in named:
+                if asked:
                     raise ValueError(
                         f"group {name} (specimen.groups.{role}) is missing, the file has "
                         f"{', '.join(sorted({*self.mesh.elements, *self.mesh.nodes})) or 'none'}"
                     )
                 continue
-            if role in NAMES:
+            if role in ARM_NAMES:
                 self._body_group(name, elements, upper_e if role == "upper" else ~upper_e)
             else:
                 self._face_group(role, name, nodes)
@@ -202,12 +206,12 @@ class _Check:
 
 
 #: Bodies, and what else groups may name: the bonded faces and the loaded ones.
-NAMES = ("upper", "lower")
-ROLES = (*NAMES, "bond", "load")
+ARM_NAMES = ("upper", "lower")
+GROUP_ROLES = (*ARM_NAMES, "bond", "load")
 
 
 def _other_units(wanted: float, found: float) -> str:
-    for factor in UNITS:
+    for factor in UNIT_FACTORS:
         for ratio, words in ((factor, f"{factor:g} times larger"), (1.0 / factor, f"{factor:g} times smaller")):
             if abs(found / wanted - ratio) < SAME * ratio:
                 return f"; the mesh is {words}: in other units?"

@@ -7,7 +7,7 @@ import numpy as np
 from verify.meshes.arms import Arm, corner_count
 
 #: Part of a side's length by which its middle node may lie beside the middle.
-MIDDLE = 1e-6
+STRAIGHT = 1e-6
 
 
 def joined(arms: tuple[Arm, Arm]) -> tuple[np.ndarray, np.ndarray]:
@@ -29,7 +29,7 @@ def joined(arms: tuple[Arm, Arm]) -> tuple[np.ndarray, np.ndarray]:
     used = [np.unique(part) for part in parts]
     faces = [np.sort(arm.X_nI[n][arm.X_nI[n, 1] == 0.0, 0]) for arm, n in zip(arms, used, strict=True)]
     size = max(np.ptp(face) for face in faces)
-    if len(faces[0]) != len(faces[1]) or np.abs(faces[0] - faces[1]).max() > MIDDLE * size / len(faces[0]):
+    if len(faces[0]) != len(faces[1]) or np.abs(faces[0] - faces[1]).max() > STRAIGHT * size / len(faces[0]):
         raise ValueError(f"nodes of both arms must match on Y = 0 for dolfinx, got {len(faces[0])} and {len(faces[1])}")
     first = len(used[0])
     points = np.concatenate([arm.X_nI[n] for arm, n in zip(arms, used, strict=True)])
@@ -50,7 +50,7 @@ def _require_straight(arm: Arm) -> None:
             continue
         ends, after = arm.X_nI[conn[:, :n]], arm.X_nI[np.roll(conn[:, :n], -1, axis=1)]
         beside = np.linalg.norm(arm.X_nI[conn[:, n : 2 * n]] - 0.5 * (ends + after), axis=2)
-        if np.any(beside > MIDDLE * np.linalg.norm(after - ends, axis=2)):
+        if np.any(beside > STRAIGHT * np.linalg.norm(after - ends, axis=2)):
             e, i = np.unravel_index(np.argmax(beside), beside.shape)
             x = 0.5 * (ends + after)[e, i]
             raise ValueError(

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 
 #: Endings of files by the format's name in `meshlane`.
-FORMATS = {"gmsh": (".msh",), "abaqus": (".inp",), "vtu": (".vtu",), "exodus": (".e", ".exo"), "med": (".med",)}
-ENDINGS = {ending: name for name, endings in FORMATS.items() for ending in endings}
+MESH_FORMATS = {"gmsh": (".msh",), "abaqus": (".inp",), "vtu": (".vtu",), "exodus": (".e", ".exo"), "med": (".med",)}
+MESH_ENDINGS = {ending: name for name, endings in MESH_FORMATS.items() for ending in endings}
 
 #: Elements of a plane body: name in `meshlane` -> number of nodes; and what groups of nodes may consist of.
 PLANE = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
-DEGREES = {3: 1, 4: 1, 6: 2, 8: 2, 9: 2}
+ELEMENT_DEGREES = {3: 1, 4: 1, 6: 2, 8: 2, 9: 2}
 LINES = ("vertex", "line", "line3")
 
 #: Elements of Abaqus for plane stress and plane strain, by an element of the same nodes that `meshlane` knows.
@@ -53,7 +53,7 @@ def read_mesh(path: Path) -> PlaneMesh:
     ValueError : no mesh of plane elements of one degree at z = 0; the message names line, group or element type.
     OSError : the file cannot be read.
     """
-    kind = ENDINGS[path.suffix.lower()]
+    kind = MESH_ENDINGS[path.suffix.lower()]
     if not path.read_bytes().strip():
         raise ValueError("is empty")
     found = _read(path, kind)
@@ -121,7 +121,7 @@ def _require_plane(found: Any) -> None:
     kinds = sorted({block.type for block in found.cells if block.type in PLANE})
     if not kinds:
         raise ValueError(f"must have elements of type {', '.join(PLANE)}, got none")
-    if len({DEGREES[PLANE[kind]] for kind in kinds}) > 1:
+    if len({ELEMENT_DEGREES[PLANE[kind]] for kind in kinds}) > 1:
         raise ValueError(f"elements must have one degree, got {' and '.join(kinds)}")
 
 

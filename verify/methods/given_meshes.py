@@ -12,12 +12,9 @@ from iga.files.nodal_body import nodal_body
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
 from iga.mesh.mirror import upside_down
-from verify.meshes.arms import given_arms
+from verify.meshes.arms import SAME, given_arms
 from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
-
-#: Part of the specimen's length within which two places are the same.
-SAME = 1e-6
 
 #: The methods that solve on meshes from files, by what these hold.
 ON_FILES = {"iga": ("tspline",), "nodal": ("lagrange", "dolfinx")}

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import ClassVar, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from verify.scene.specimens.delamination import PULLED_APART, Delamination, Files, Load, Plane, Ratio, Support
+from verify.scene.specimens.delamination import PULLED_APART, Delamination, Files, Groups, Load, Plane, Ratio, Support
 from verify.scene.tables import Positive, refuse
 
 
@@ -47,8 +46,8 @@ class Dcb(Delamination):
     mesh: Files = Field(default=(), max_length=2)
     """One .msh, .inp, .vtu, .e or .med file of both arms for lagrange and dolfinx; or `.iga` files of the upper and the
     lower arm for tspline, one stands for both; none: a mesh is made."""
-    groups: Mapping[Literal["upper", "lower", "bond", "load"], str] = Field(default={})
-    """Names in the mesh file of the groups upper, lower (bodies), bond and load (faces), where they have others."""
+    groups: Groups = Groups()
+    """Names of the groups of the mesh file."""
 
     @field_validator("precrack")
     @classmethod

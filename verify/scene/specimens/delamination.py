@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple, TypeAlias
 
 from pydantic import BeforeValidator, Field
 
@@ -18,6 +17,19 @@ def _as_names(value: object) -> object:
 Files: TypeAlias = Annotated[tuple[Annotated[str, Field(min_length=1)], ...], BeforeValidator(_as_names)]
 Plane: TypeAlias = Literal["stress", "strain"]
 Side: TypeAlias = Literal["left", "right", "top", "bottom"]
+
+
+class Groups(Section):
+    """Names that a mesh file has for its groups; where left out, the word itself, and no group need be there."""
+
+    upper: str = ""
+    """Elements of the upper body."""
+    lower: str = ""
+    """Elements of the lower body."""
+    bond: str = ""
+    """Lines or nodes of the bonded faces, of one body or both."""
+    load: str = ""
+    """Lines or nodes of the loaded faces."""
 
 
 class Ratio(NamedTuple):
@@ -104,7 +116,7 @@ class Delamination(Section):
         width: float
         plane: Plane
         mesh: Files
-        groups: Mapping[Any, str]
+        groups: Groups
 
         @property
         def loads(self) -> tuple[Load, ...]:
