@@ -185,7 +185,7 @@ def _healing(prepared: Prepared, result: Result) -> Neglected | None:
 def _other_arm(prepared: Prepared, result: Result) -> Neglected | None:
     """Distance of the other arm's mesh from the mirror image of the modelled arm; nothing else can differ."""
     specimen = prepared.scene.specimen
-    if "iga" not in prepared.method.takes_files or specimen.nodal or len(specimen.mesh) != 2:
+    if "iga" not in prepared.method.takes_files or len(specimen.mesh) != 2:
         return Neglected("symmetry", 0.0, True, "the arms are alike")
     from iga.mesh.mirror import upside_down
     from verify.methods.given_meshes import given_meshes

@@ -19,12 +19,12 @@ MESH_FORMATS = {"gmsh": (".msh",), "abaqus": (".inp",), "vtu": (".vtu",), "exodu
 MESH_ENDINGS = {ending: name for name, endings in MESH_FORMATS.items() for ending in endings}
 
 #: Elements of a plane body: name in `meshlane` -> number of nodes; and what groups of nodes may consist of.
-PLANE = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
+PLANE_TYPES = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
 ELEMENT_DEGREES = {3: 1, 4: 1, 6: 2, 8: 2, 9: 2}
-LINES = ("vertex", "line", "line3")
+LINE_TYPES = ("vertex", "line", "line3")
 
 #: Elements of Abaqus for plane stress and plane strain, by an element of the same nodes that `meshlane` knows.
-ABAQUS = {"3": "CPS3", "4": "CPS4", "6": "STRI65", "8": "S8R"}
+ABAQUS_ALIASES = {"3": "CPS3", "4": "CPS4", "6": "STRI65", "8": "S8R"}
 _ELEMENT = re.compile(r"^(\*element\b.*?\btype\s*=\s*)([^,\s]+)", re.IGNORECASE)
 _SOLID = re.compile(r"CP[ES](3|4|6|8)(R|I|H|M|RH|IH|MH)?$", re.IGNORECASE)
 _BEAM = re.compile(r"(T2D|T3D|B2|B3)[123]H?$", re.IGNORECASE)
@@ -96,7 +96,7 @@ def _known_elements(text: str) -> Iterator[str]:
     for number, line in enumerate(text.splitlines(), 1):
         if match := _ELEMENT.match(line):
             if solid := _SOLID.match(match[2]):
-                line = f"{match[1]}{ABAQUS[solid[1]]}{line[match.end() :]}"
+                line = f"{match[1]}{ABAQUS_ALIASES[solid[1]]}{line[match.end() :]}"
             elif not _BEAM.match(match[2]):
                 known = "CPS or CPE with 3, 4, 6 or 8 nodes"
                 raise ValueError(f"line {number}: elements must be {known}, got {match[2]}")
@@ -105,8 +105,8 @@ def _known_elements(text: str) -> Iterator[str]:
 
 def _require_plane(found: Any) -> None:
     for block in found.cells:
-        if block.type not in PLANE and block.type not in LINES:
-            raise ValueError(f"elements must be {', '.join(PLANE)}, got {len(block.data)} of type {block.type}")
+        if block.type not in PLANE_TYPES and block.type not in LINE_TYPES:
+            raise ValueError(f"elements must be {', '.join(PLANE_TYPES)}, got {len(block.data)} of type {block.type}")
     points = np.asarray(found.points, dtype=float)
     if not len(points) or not np.all(np.isfinite(points)):
         raise ValueError("must have nodes with finite coordinates")
@@ -118,10 +118,10 @@ def _require_plane(found: Any) -> None:
     if points.shape[1] > 2 and np.abs(points[:, 2]).max() > 1e-9 * np.ptp(points, axis=0).max():
         worst = int(np.argmax(np.abs(points[:, 2])))
         raise ValueError(f"nodes must lie in the plane z = 0, got z = {points[worst, 2]:g} at node {worst + 1}")
-    kinds = sorted({block.type for block in found.cells if block.type in PLANE})
+    kinds = sorted({block.type for block in found.cells if block.type in PLANE_TYPES})
     if not kinds:
-        raise ValueError(f"must have elements of type {', '.join(PLANE)}, got none")
-    if len({ELEMENT_DEGREES[PLANE[kind]] for kind in kinds}) > 1:
+        raise ValueError(f"must have elements of type {', '.join(PLANE_TYPES)}, got none")
+    if len({ELEMENT_DEGREES[PLANE_TYPES[kind]] for kind in kinds}) > 1:
         raise ValueError(f"elements must have one degree, got {' and '.join(kinds)}")
 
 
@@ -129,7 +129,7 @@ def _elements(found: Any) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]
     """Elements by number of nodes, and for each block of the file the numbers of its elements among them all."""
     conn_kea: dict[int, np.ndarray] = {}
     numbers, count = {}, 0
-    for name, size in PLANE.items():
+    for name, size in PLANE_TYPES.items():
         for b, block in enumerate(found.cells):
             if block.type == name and len(block.data):
                 numbers[b] = count + np.arange(len(block.data))

@@ -1,4 +1,4 @@
-"""Scenes in the formats of Abaqus, VTK and Gmsh: each is read back, by hand and by meshio."""
+"""Scenes in the formats of Abaqus, VTK and Gmsh: each is read back, by hand and by meshlane."""
 
 from __future__ import annotations
 
