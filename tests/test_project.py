@@ -50,7 +50,7 @@ def test_doctor_and_conda_know_what_is_declared() -> None:
     wishes = declared()
     for package in doctor.PACKAGES:
         assert package.distribution in wishes[""] + wishes[package.extra], package
-    lines = re.findall(r"^  - ([\w-]+)>=(.*)$", (PROJECT / "environment.yml").read_text(), re.MULTILINE)
+    lines = re.findall(r"^ {2,6}- ([\w-]+)>=(.*)$", (PROJECT / "environment.yml").read_text(), re.MULTILINE)
     text = (PROJECT / "pyproject.toml").read_text()
     for name in wishes[""] + wishes["report"]:
         assert f'"{name}>={dict(lines)[name]}"' in text
