@@ -33,12 +33,13 @@ from verify.command_line.arguments import (  # noqa: E402
     seeds,
 )
 from verify.command_line.spelling import Help, parsed  # noqa: E402
+from verify.support import interrupts  # noqa: E402
 from verify.support.refusal import Refusal  # noqa: E402
 from verify.support.say import say  # noqa: E402
 from verify.version import __version__  # noqa: E402
 
 #: Other exit codes than 0 and `FAILED`; 3 is that of an environment that cannot be set up.
-REFUSED, NOT_WRITTEN, INTERRUPTED = 2, 4, 130
+REFUSED, NOT_WRITTEN = 2, 4
 
 #: The beginning of a negative number: argparse takes -1 and -0.5 for numbers, but -1e-3 for an option.
 NEGATIVE = re.compile(r"-\.?\d")
@@ -51,23 +52,35 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     0: fine; 1: something failed; 2: bad input; 4: the output could not be written; 130: interrupted.
     """
-    options = None
+    options = argparse.Namespace(keeps=None, out=None)
     try:
-        options = parsed(parser(), sys.argv[1:] if arguments is None else arguments)
+        code = _outcome(options, sys.argv[1:] if arguments is None else arguments)
+        if not interrupts.came():
+            return code
+    except BaseException as error:
+        if not interrupts.is_one(error):
+            raise
+    interrupts.ignore_more()
+    say(f"interrupted{_how_to_go_on(options)}")
+    return interrupts.INTERRUPTED
+
+
+def _outcome(options: argparse.Namespace, arguments: Sequence[str]) -> int:
+    """The exit code of a command that is not interrupted; its options are put into ``options``."""
+    try:
+        vars(options).update(vars(parsed(parser(), arguments)))
         return options.command(options)
     except Refusal as error:
-        say(str(error))
+        if not interrupts.came():
+            say(str(error))
         return REFUSED
-    except KeyboardInterrupt:
-        say(f"interrupted{_how_to_go_on(options)}")
-        return INTERRUPTED
     except BrokenPipeError:  # the reader of the output has closed it: write no more, and no message at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NOT_WRITTEN
     except OSError as error:
         from verify.runs.folder import NO_ROOM  # here, as it imports NumPy
 
-        if error.errno not in (*NO_ROOM, errno.EACCES):
+        if error.errno not in (*NO_ROOM, errno.EACCES) or interrupts.came():
             raise
         say(f"{error.filename or 'the output'}: cannot be written: {error.strerror}{_how_to_go_on(options)}")
         if error.filename is None:  # possibly standard output itself, which must not be flushed at exit
@@ -75,9 +88,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return NOT_WRITTEN
 
 
-def _how_to_go_on(options: argparse.Namespace | None) -> str:
+def _how_to_go_on(options: argparse.Namespace) -> str:
     """The rest of a sentence: finished work, and how the same command continues."""
-    if options is None or not options.keeps or options.out is None or getattr(options, "dry_run", False):
+    if not options.keeps or options.out is None or getattr(options, "dry_run", False):
         return "; the same command again starts over"
     kept, then = options.keeps
     return f"; {kept} in {options.out}, and the same command again {then}"
@@ -398,5 +411,5 @@ def _dry_run_option(sub: Parser) -> None:
     sub.set_defaults(keeps=("the runs that are done are kept", "does the rest"))
 
 
-if __name__ == "__main__":
+if __name__ == "__main__":  # also `python -m verify.cli`, as programs of earlier environments start it
     raise SystemExit(main())

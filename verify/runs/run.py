@@ -25,6 +25,7 @@ from verify.runs.environment import machine, mpi_rank, mpi_size, threads, versio
 from verify.runs.folder import NO_ROOM, CurveWriter, write_fields, write_json
 from verify.runs.memory import keep_freed_memory
 from verify.runs.store import alone_in
+from verify.support import interrupts
 from verify.support.say import say
 from verify.support.timing import PHASES, peak_memory_mb
 from verify.verdict import Check, of_state
@@ -135,10 +136,10 @@ def _recorded(
 
     try:
         result = _with_warning(one.prepared, solving(record))
-    except KeyboardInterrupt:
-        one.finish(one.stopped(rows, "interrupted"), writer.interpolated)
-        raise
-    except Exception as error:
+    except (KeyboardInterrupt, Exception) as error:
+        if interrupts.is_one(error):
+            one.finish(one.stopped(rows, "interrupted"), writer.interpolated)
+            raise KeyboardInterrupt from None
         if isinstance(error, OSError) and error.errno in NO_ROOM:
             if mpi_size() > 1:
                 _take_down_all_ranks(str(error))
