@@ -50,6 +50,7 @@ def run_in_root(
         signal.pthread_sigmask(signal.SIG_SETMASK, before | set(held))
 
     restore = ["env", "--default-signal=" + ",".join(number.name[3:] for number in PASSED_ON)]
+    restore += [f"--block-signal={number.name[3:]}" for number in held]  # bubblewrap lets them in
     words = ["bwrap", "--die-with-parent", "--info-fd", str(writer), *mounts(root, folder, extra)]
     words += ["--chdir", str(folder), *restore, *program]
     bwrap = subprocess.Popen(words, env=env, pass_fds=[writer], preexec_fn=prepare)
