@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -64,7 +65,8 @@ def run_in_root(
         # What the terminal sends (code > 0) reaches the program by itself; what `kill` sends is handed on.
         handed_on = got.si_code <= 0 or got.si_signo in early
         if got.si_signo != signal.SIGCHLD and handed_on and bwrap.poll() is None:
-            os.kill(inner, got.si_signo)
+            with contextlib.suppress(ProcessLookupError):  # it has just ended
+                os.kill(inner, got.si_signo)
         early.discard(got.si_signo)
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
     return bwrap.returncode if bwrap.returncode >= 0 else 128 - bwrap.returncode
