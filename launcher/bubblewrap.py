@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -27,10 +28,18 @@ FROM_THE_HOST = (
 PASSED_ON = (signal.SIGINT, signal.SIGQUIT, signal.SIGTERM, signal.SIGHUP)
 
 
-def run_in_root(root: Path, program: Sequence[str], env: Mapping[str, str], folder: Path, extra: Iterable[Path]) -> int:
+def run_in_root(
+    root: Path,
+    program: Sequence[str],
+    env: Mapping[str, str],
+    folder: Path,
+    extra: Iterable[Path],
+    held: Iterable[signal.Signals] = (),
+) -> int:
     """Run ``program`` inside ``root`` in ``folder``; its exit code, 128 + n if signal n ended it.
 
-    ``extra`` are folders that must be seen inside even where they lie in a system folder.
+    ``extra`` are folders that must be seen inside even where they lie in a system folder. The program begins with the
+    signals ``held`` blocked.
     """
     reader, writer = os.pipe()
     watched = {*PASSED_ON, signal.SIGCHLD}
@@ -39,9 +48,10 @@ def run_in_root(root: Path, program: Sequence[str], env: Mapping[str, str], fold
     def prepare() -> None:
         for number in PASSED_ON:
             signal.signal(number, signal.SIG_IGN)
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before | set(held))
 
     restore = ["env", "--default-signal=" + ",".join(number.name[3:] for number in PASSED_ON)]
+    restore += [f"--block-signal={number.name[3:]}" for number in held]  # bubblewrap lets them in
     words = ["bwrap", "--die-with-parent", "--info-fd", str(writer), *mounts(root, folder, extra)]
     words += ["--chdir", str(folder), *restore, *program]
     bwrap = subprocess.Popen(words, env=env, pass_fds=[writer], preexec_fn=prepare)
@@ -49,11 +59,15 @@ def run_in_root(root: Path, program: Sequence[str], env: Mapping[str, str], fold
     with os.fdopen(reader) as file:
         info = file.read()
     inner = json.loads(info)["child-pid"] if info.strip() else bwrap.pid
+    early = signal.sigpending()  # sent before there was a program
     while bwrap.poll() is None:
         got = signal.sigwaitinfo(watched)
         # What the terminal sends (code > 0) reaches the program by itself; what `kill` sends is handed on.
-        if got.si_signo != signal.SIGCHLD and got.si_code <= 0 and bwrap.poll() is None:
-            os.kill(inner, got.si_signo)
+        handed_on = got.si_code <= 0 or got.si_signo in early
+        if got.si_signo != signal.SIGCHLD and handed_on and bwrap.poll() is None:
+            with contextlib.suppress(ProcessLookupError):  # it has just ended
+                os.kill(inner, got.si_signo)
+        early.discard(got.si_signo)
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
     return bwrap.returncode if bwrap.returncode >= 0 else 128 - bwrap.returncode
 

@@ -166,7 +166,7 @@ def make_venv(place: Place, base: str, options: list[str]) -> None:
         follow_parent(base, place.venv)
     add_packages(place, "the Python packages", 1.0)
     program = place.venv / "bin" / "debond"
-    program.write_text(f'#!/bin/sh\nexec "{place.venv / "bin" / "python"}" -P -m verify.cli "$@"\n')
+    program.write_text(f'#!/bin/sh\nexec "{place.venv / "bin" / "python"}" -P -m verify "$@"\n')
     program.chmod(0o755)
     (place.venv / "whole").touch()
 

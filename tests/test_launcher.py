@@ -124,7 +124,7 @@ def test_test_verb() -> None:
     assert launcher.command(["test", "--slow", "-q"], "python") == [*pytest_command, "-m", "", "-q"]
     assert launcher.command(["test"], "python") == [*pytest_command, "-n", "auto"]
     assert launcher.command(["test", "--slow"], "python") == [*pytest_command, "-m", "", "-n", "auto"]
-    assert launcher.command(["solve", "--slow"], "python") == ["python", "-P", "-m", "verify.cli", "solve", "--slow"]
+    assert launcher.command(["solve", "--slow"], "python") == ["python", "-P", "-m", "verify", "solve", "--slow"]
 
 
 @pytest.mark.parametrize("root", [None, Path("/root-of-debian")])

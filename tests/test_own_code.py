@@ -67,7 +67,7 @@ def test_it_says_what_it_is_not_made_for(installed, tmp_path, capsys):
 
 
 def test_the_commands_of_the_example_find_it(installed, tmp_path):
-    command = [sys.executable, "-P", "-m", "verify.cli", "solve", SCENE, "--method", "springs", "--out", str(tmp_path)]
+    command = [sys.executable, "-P", "-m", "verify", "solve", SCENE, "--method", "springs", "--out", str(tmp_path)]
     run = subprocess.run(command, env=installed, capture_output=True, text=True, timeout=300)
     assert run.returncode == 0, run.stderr
     expected = read_curve(EXAMPLE / "history.csv", Reading("U2", "RF2", 2.0))

@@ -27,18 +27,20 @@ from verify.command_line.arguments import (  # noqa: E402
     names_of,
     number,
     numbers,
+    place,
     positive,
     scale,
     scales_of,
     seeds,
 )
 from verify.command_line.spelling import Help, parsed  # noqa: E402
+from verify.support import interrupts  # noqa: E402
 from verify.support.refusal import Refusal  # noqa: E402
 from verify.support.say import say  # noqa: E402
 from verify.version import __version__  # noqa: E402
 
 #: Other exit codes than 0 and `FAILED`; 3 is that of an environment that cannot be set up.
-REFUSED, NOT_WRITTEN, INTERRUPTED = 2, 4, 130
+REFUSED, NOT_WRITTEN = 2, 4
 
 #: The beginning of a negative number: argparse takes -1 and -0.5 for numbers, but -1e-3 for an option.
 NEGATIVE = re.compile(r"-\.?\d")
@@ -51,23 +53,36 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     0: fine; 1: something failed; 2: bad input; 4: the output could not be written; 130: interrupted.
     """
-    options = None
+    options = argparse.Namespace(keeps=None, out=None)
     try:
-        options = parsed(parser(), sys.argv[1:] if arguments is None else arguments)
+        code = _outcome(options, sys.argv[1:] if arguments is None else arguments)
+        if not interrupts.came():
+            return code
+    except BaseException as error:
+        if not interrupts.is_one(error):
+            raise
+    interrupts.ignore_more()
+    say(f"interrupted{_how_to_go_on(options)}")
+    return interrupts.INTERRUPTED
+
+
+def _outcome(options: argparse.Namespace, arguments: Sequence[str]) -> int:
+    """The exit code of a command that is not interrupted; its options are put into ``options``."""
+    try:
+        _refuse_deleted_folder()
+        vars(options).update(vars(parsed(parser(), arguments)))
         return options.command(options)
     except Refusal as error:
-        say(str(error))
+        if not interrupts.came():
+            say(str(error))
         return REFUSED
-    except KeyboardInterrupt:
-        say(f"interrupted{_how_to_go_on(options)}")
-        return INTERRUPTED
     except BrokenPipeError:  # the reader of the output has closed it: write no more, and no message at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NOT_WRITTEN
     except OSError as error:
         from verify.runs.folder import NO_ROOM  # here, as it imports NumPy
 
-        if error.errno not in (*NO_ROOM, errno.EACCES):
+        if error.errno not in (*NO_ROOM, errno.EACCES) or interrupts.came():
             raise
         say(f"{error.filename or 'the output'}: cannot be written: {error.strerror}{_how_to_go_on(options)}")
         if error.filename is None:  # possibly standard output itself, which must not be flushed at exit
@@ -75,9 +90,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return NOT_WRITTEN
 
 
-def _how_to_go_on(options: argparse.Namespace | None) -> str:
+def _refuse_deleted_folder() -> None:
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        raise Refusal("the working folder: must exist, it has been deleted; change to another one") from None
+
+
+def _how_to_go_on(options: argparse.Namespace) -> str:
     """The rest of a sentence: finished work, and how the same command continues."""
-    if options is None or not options.keeps or options.out is None or getattr(options, "dry_run", False):
+    if not options.keeps or options.out is None or getattr(options, "dry_run", False):
         return "; the same command again starts over"
     kept, then = options.keeps
     return f"; {kept} in {options.out}, and the same command again {then}"
@@ -188,7 +210,7 @@ def _verify_options(sub: Parser) -> None:
     sub.add_argument("--ladder", action="append", default=[], metavar="SCENE", help=priced)
     sub.add_argument("--no-ladder", action="store_true", help="do not ask what accuracy costs")
     shown = "show what debond cost, effects, scaling or hard wrote there; folders in --out are found without it"
-    sub.add_argument("--include", type=Path, action="append", default=[], metavar="DIR", help=shown)
+    sub.add_argument("--include", type=place, action="append", default=[], metavar="DIR", help=shown)
     _sweep_options(sub)
 
 
@@ -213,7 +235,7 @@ def _solve_options(sub: Parser) -> None:
     what = "choose method and mesh for this error of the curve, like 0.3%%, and verify it on finer meshes"
     sub.add_argument("--accuracy", type=accuracy, metavar="A", help=what)
     _set_option(sub)
-    sub.add_argument("--out", type=Path, metavar="DIR", help="default: debond-out/SCENE-METHOD")
+    sub.add_argument("--out", type=place, metavar="DIR", help="default: debond-out/SCENE-METHOD")
     what = "keep fields: of a few steps in fields.npz, and fields.pvd and interface.pvd for ParaView"
     sub.add_argument("--fields", action="store_true", help=what)
     what = "with --fields, frames for ParaView along the programme; default: 30, 0: none"
@@ -288,13 +310,13 @@ def _export_options(sub: Parser) -> None:
     layers = "elements through each arm or the strip, as dolfinx.layers"
     sub.add_argument("--layers", type=positive, metavar="N", help=layers)
     _set_option(sub)
-    sub.add_argument("--out", type=Path, metavar="DIR", help="default: debond-export/SCENE-F")
+    sub.add_argument("--out", type=place, metavar="DIR", help="default: debond-export/SCENE-F")
 
 
 def _mesh_options(sub: Parser) -> None:
-    sub.add_argument("file", metavar="FILE", type=Path, help=".iga file of the Rhino T-spline plug-in")
+    sub.add_argument("file", metavar="FILE", type=place, help=".iga file of the Rhino T-spline plug-in")
     formats = ".svg, .png, .pdf: picture; .vtu: Bezier cells; .iga; default: debond-mesh/FILE.svg"
-    sub.add_argument("--out", type=Path, metavar="FILE", help=formats)
+    sub.add_argument("--out", type=place, metavar="FILE", help=formats)
     sub.add_argument("--json", action="store_true", help="print the facts as JSON")
     sub.add_argument("--control", action="store_true", help="draw the control points too")
 
@@ -304,7 +326,7 @@ def _law_options(sub: Parser) -> None:
     _scene_argument(sub)
     _set_option(sub)
     what = "write the paths there, paths.csv, with input for Abaqus and MOOSE"
-    sub.add_argument("--write", type=Path, metavar="DIR", help=what)
+    sub.add_argument("--write", type=place, metavar="DIR", help=what)
     what = "judge this law: tractions on the paths in a file, or module:function; default: that of the solvers"
     sub.add_argument("--with", dest="given", metavar="LAW", help=what)
     what = "names of columns of the file, like p=S22,t=S12; of path, step, g, s, p, t, dp_dg, dp_ds, dt_dg, dt_ds"
@@ -313,12 +335,12 @@ def _law_options(sub: Parser) -> None:
     sub.add_argument("--scales", type=scales_of, default=(), metavar="K=X,...", help=what)
     what = "largest deviation of tractions, in parts of the strengths, and of energies; default: 1e-4"
     sub.add_argument("--tolerance", type=fraction, metavar="T", help=what)
-    sub.add_argument("--out", type=Path, metavar="DIR", help="write law.json and law.html")
+    sub.add_argument("--out", type=place, metavar="DIR", help="write law.json and law.html")
 
 
 def _reduce_options(sub: Parser) -> None:
     sub._negative_number_matcher = NEGATIVE
-    sub.add_argument("file", metavar="FILE", type=Path, help="text file of a test, or folder of a run")
+    sub.add_argument("file", metavar="FILE", type=place, help="text file of a test, or folder of a run")
     what = "the specimen, a packaged name or a file, whose [interface] and [load] may be missing; of a run: its own"
     sub.add_argument("--scene", metavar="SCENE", help=what)
     _set_option(sub)
@@ -344,13 +366,13 @@ def _reduce_options(sub: Parser) -> None:
     sub.add_argument("--begin", type=fraction, metavar="D", help="crack growth from which propagation counts")
     sub.add_argument("--end", type=fraction, metavar="D", help="and up to which it does")
     sub.add_argument("--fit", action="store_true", help="strength and toughness by least squares on a cohesive beam")
-    sub.add_argument("--out", type=Path, metavar="DIR", help="write reduce.json, reduce.csv and reduce.html")
+    sub.add_argument("--out", type=place, metavar="DIR", help="write reduce.json, reduce.csv and reduce.html")
 
 
 def _compare_options(sub: Parser) -> None:
     sub._negative_number_matcher = NEGATIVE
-    sub.add_argument("a", metavar="A", type=Path, help="CSV file or folder of a run")
-    sub.add_argument("b", metavar="B", type=Path, help="what A is held against")
+    sub.add_argument("a", metavar="A", type=place, help="CSV file or folder of a run")
+    sub.add_argument("b", metavar="B", type=place, help="what A is held against")
     for side in "ab":
         own = f"of {side.upper()}"
         sub.add_argument(f"--opening-{side}", type=column, metavar="COLUMN", help=f"name or number {own}'s opening")
@@ -367,7 +389,7 @@ def _compare_options(sub: Parser) -> None:
     sub.add_argument("--curve-tol", "--tolerance", type=fraction, metavar="T", help=limit)
     sub.add_argument("--peak-tol", type=fraction, metavar="T", help="and where the peak loads differ by more")
     sub.add_argument("--energy-tol", type=fraction, metavar="T", help="and where the works differ by more")
-    sub.add_argument("--out", type=Path, metavar="DIR", help="write comparison.json and comparison.html")
+    sub.add_argument("--out", type=place, metavar="DIR", help="write comparison.json and comparison.html")
 
 
 def _sweep_options(sub: Parser) -> None:
@@ -386,7 +408,7 @@ def _set_option(sub: Parser) -> None:
 
 
 def _out_option(sub: Parser, default: str) -> None:
-    sub.add_argument("--out", type=Path, default=Path(default), metavar="DIR", help=f"default: {default}")
+    sub.add_argument("--out", type=place, default=Path(default), metavar="DIR", help=f"default: {default}")
 
 
 def _jobs_option(sub: Parser, what: str) -> None:
@@ -398,5 +420,5 @@ def _dry_run_option(sub: Parser) -> None:
     sub.set_defaults(keeps=("the runs that are done are kept", "does the rest"))
 
 
-if __name__ == "__main__":
+if __name__ == "__main__":  # also `python -m verify.cli`, as programs of earlier environments start it
     raise SystemExit(main())

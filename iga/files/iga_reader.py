@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -19,11 +20,13 @@ from iga.mesh.extraction import SIDES, ElementBlock
 class FileLimits:
     """Values beyond which a file is refused.
 
+    size : bytes.
     degree : highest degree of an element.
     magnitude : largest magnitude of a number, so that Jacobians stay finite.
     weight : least Bezier weight of an element, relative to the largest weight of its control points.
     """
 
+    size: int = 2**28
     degree: int = 20
     magnitude: float = 1e30
     weight: float = 1e-12
@@ -119,7 +122,10 @@ def read_iga(path: Path | str) -> IgaFile:
 
 def _lines(path: Path) -> Iterator[_Line]:
     """All lines with words, then the end of the file without end."""
-    data = path.read_bytes()
+    with path.open("rb") as stream:
+        data = stream.read(FILE_LIMITS.size + 1)
+    if len(data) > FILE_LIMITS.size:
+        raise OSError(errno.EFBIG, f"it has more than {FILE_LIMITS.size / 1e6:.0f} MB", str(path))
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

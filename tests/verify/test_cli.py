@@ -24,7 +24,7 @@ from verify.scene.tables import one_of
 from verify.theory import lefm
 
 PROJECT = Path(__file__).resolve().parents[2]
-PROGRAM = [sys.executable, "-P", "-m", "verify.cli"]
+PROGRAM = [sys.executable, "-P", "-m", "verify"]
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(PROJECT)}
 CURVE = "opening,load\n0,0\n1,2\n3,1\n"
 

@@ -194,7 +194,7 @@ def test_t_splines_that_follow_the_process_zone_are_held_against_both(scene: Sce
 
 
 def test_an_interrupt_ends_all_runs(tmp_path: Path) -> None:
-    command = [sys.executable, "-P", "-m", "verify.cli", "verify", LINEAR, "dcb-czm2-linear"]
+    command = [sys.executable, "-P", "-m", "verify", "verify", LINEAR, "dcb-czm2-linear"]
     command += ["--jobs", "2", "--out", str(tmp_path)]
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).resolve().parents[2])}
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment, start_new_session=True)

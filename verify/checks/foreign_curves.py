@@ -83,6 +83,8 @@ def read_curves(words: Sequence[str], reading: Reading) -> tuple[Curve, ...]:
     curves: list[Curve] = []
     taken = known_methods() if words else {}
     for word in words:
+        if not word.rpartition("=")[2].strip():
+            raise Refusal(f"--with: must be FILE or NAME=FILE, got {word!r}")
         name, path = _named(word)
         if not _NAME.fullmatch(name):
             raise Refusal(f"--with: a name must be of letters, digits, dots, dashes and underscores, got {name!r}")

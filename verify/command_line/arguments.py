@@ -4,10 +4,21 @@ from __future__ import annotations
 
 import argparse
 import math
+from pathlib import Path
+
+#: Digits of an integer option.
+LONGEST = 9
 
 
 def positive(text: str) -> int:
     return _integer(text, 1)
+
+
+def place(text: str) -> Path:
+    """A file or folder; an empty name would be the working folder."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError(f"must be the name of a file or folder, got {text!r}")
+    return Path(text)
 
 
 def count(text: str) -> int:
@@ -86,12 +97,13 @@ def number(text: str) -> float:
 def _integer(text: str, least: int) -> int:
     value = int(text) if _is_short_integer(text) else -1
     if value < least:
-        raise argparse.ArgumentTypeError(f"must be an integer >= {least}, got {text!r}")
+        most = f" and < {10**LONGEST}" if len(text) > LONGEST else ""
+        raise argparse.ArgumentTypeError(f"must be an integer >= {least}{most}, got {text[:30]!r}")
     return value
 
 
 def _is_short_integer(text: str) -> bool:
-    return text.isascii() and text.isdigit() and len(text) < 10
+    return text.isascii() and text.isdigit() and len(text) <= LONGEST
 
 
 def _float(text: str) -> float:

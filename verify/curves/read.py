@@ -12,6 +12,7 @@ import numpy as np
 
 from verify.curves.curve import envelope
 from verify.curves.text_table import Dialect, Row, Table, read_table
+from verify.support.checked_files import read_at_most
 from verify.support.refusal import Refusal
 
 Column = str | int
@@ -140,7 +141,7 @@ def text_of(path: Path, what: str) -> str:
     CurveError : no file, or no text.
     """
     try:
-        raw = path.read_bytes()
+        raw = read_at_most(path)
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or "a name that no file can have"
         raise CurveError(f"{path}: must be a file with {what}, got: {why}") from None

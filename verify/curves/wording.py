@@ -89,10 +89,11 @@ def complaints(comparison: Comparison, found: Sequence[Check]) -> list[str]:
 def _too_short(comparison: Comparison) -> list[str]:
     if comparison.reaches:
         return []
-    a = comparison.names[0]
+    a, ends = comparison.names[0], (comparison.a.last, comparison.asked_end)
+    digits = next((n for n in (6, 9, 12) if f"{ends[0]:.{n}g}" != f"{ends[1]:.{n}g}"), 17)
     common = _rounded_down(comparison.a.last)
     return [
-        f"{a} ends at the opening {comparison.a.last:.6g}, before {comparison.asked_end:.6g}; "
+        f"{a} ends at the opening {ends[0]:.{digits}g}, before {ends[1]:.{digits}g}; "
         f"an end of {common} judges the common part"
     ]
 

@@ -18,6 +18,7 @@ import numpy as np
 from verify.curves.middles import Middles
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, SLIDING_COLUMNS, Result, Snapshot, support_columns
 from verify.support.checked_files import ANY, NUMBER, Damaged, number, read_json
+from verify.support.refusal import Refusal
 
 FILES = ("curve.csv", "evidence.csv", "result.json", "fields.npz", "moments.npz", "error.log")
 
@@ -33,7 +34,7 @@ class CurveWriter:
 
     def __init__(self, folder: Path, middles: bool = False) -> None:
         folder.mkdir(parents=True, exist_ok=True)
-        for name in FILES:  # files of an earlier run must not be taken for those of this one
+        for name in reversed(FILES):  # files of an earlier run are none of this one; curve.csv, its mark, last
             (folder / name).unlink(missing_ok=True)
         self._folder = folder
         self._curve_columns: tuple[str, ...] = CURVE_COLUMNS
@@ -73,6 +74,26 @@ class CurveWriter:
         for stream in (self._curve, self._evidence):
             if stream is not None:
                 stream.close()
+
+
+def refuse_files_of_others(folder: Path) -> None:
+    """Refuse to write where files of these names are not those of a run, whose curve.csv shows it by its header.
+
+    Raises
+    ------
+    Refusal : naming the files.
+    """
+    there = [name for name in FILES if (folder / name).exists()]
+    head = ",".join(CURVE_COLUMNS).encode()
+    if there[:1] == ["curve.csv"]:
+        with (folder / "curve.csv").open("rb") as stream:
+            if stream.read(len(head)) in (head, b""):
+                return
+    if there:
+        names = ", ".join(there)
+        raise Refusal(
+            f"--out: must be a folder whose {names} a run has written, got those of others in {str(folder)!r}"
+        )
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:

@@ -64,7 +64,7 @@ class Job:
         return Task(
             self.place,
             fingerprint(scene, self.method, f"fields {self.fields}", f"repeat {self.repeat}"),
-            ("verify.cli", *self._words(OUTPUT_FOLDER)),
+            ("verify", *self._words(OUTPUT_FOLDER)),
             "result.json",
             lane=find(self.method).lane,
             seconds=seconds(scene, self.method),

@@ -22,9 +22,10 @@ from verify.methods.method import Failure, Prepared
 from verify.methods.solve import solve_prepared
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
 from verify.runs.environment import machine, mpi_rank, mpi_size, threads, versions
-from verify.runs.folder import NO_ROOM, CurveWriter, write_fields, write_json
+from verify.runs.folder import NO_ROOM, CurveWriter, refuse_files_of_others, write_fields, write_json
 from verify.runs.memory import keep_freed_memory
 from verify.runs.store import alone_in
+from verify.support import interrupts
 from verify.support.say import say
 from verify.support.timing import PHASES, peak_memory_mb
 from verify.verdict import Check, of_state
@@ -72,7 +73,7 @@ def run(
 
     Raises
     ------
-    Refusal : another run is at work in the folder.
+    Refusal : another run is at work in the folder, or it has files of the same names that no run wrote.
     OSError : the disk is full; the files are valid.
     """
     keep_freed_memory()
@@ -81,6 +82,7 @@ def run(
         return _without_files(solving), ()
     folder.mkdir(parents=True, exist_ok=True)
     with alone_in(folder):
+        refuse_files_of_others(folder)
         return _recorded(_Run(prepared, folder, keep), on_step, solving)
 
 
@@ -135,10 +137,10 @@ def _recorded(
 
     try:
         result = _with_warning(one.prepared, solving(record))
-    except KeyboardInterrupt:
-        one.finish(one.stopped(rows, "interrupted"), writer.interpolated)
-        raise
-    except Exception as error:
+    except (KeyboardInterrupt, Exception) as error:
+        if interrupts.is_one(error):
+            one.finish(one.stopped(rows, "interrupted"), writer.interpolated)
+            raise KeyboardInterrupt from None
         if isinstance(error, OSError) and error.errno in NO_ROOM:
             if mpi_size() > 1:
                 _take_down_all_ranks(str(error))
@@ -154,7 +156,7 @@ def _recorded(
     return result, one.finish(result, writer.interpolated)
 
 
-def _why(error: Exception) -> str:
+def _why(error: BaseException) -> str:
     """An error and its origin in a sentence."""
     if isinstance(error, Failure):
         return f"{error} (an error in {error.whose})"

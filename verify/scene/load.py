@@ -9,10 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from verify.scene.complaints import suggestion
-from verify.scene.parse import SceneError, _key_of, parse_scene
+from verify.scene.parse import DEEPEST, SceneError, _key_of, parse_scene
 from verify.scene.schema import Scene
+from verify.support.checked_files import read_at_most
 
 _FOLDER = Path(__file__).with_name("scenes")
+_MANY_PARTS = re.compile(rf"^[\s\[]*(?:[\w-]+[ \t]*\.[ \t]*){{{DEEPEST}}}", re.MULTILINE)
+_TOO_DEEP = f"must have keys of at most {DEEPEST} parts, like interface.strength of two"
 _RANDOM = re.compile(r"random-(\d{1,9})")
 
 
@@ -55,7 +58,7 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
 
 def _read(path: Path, source: str) -> dict[str, Any]:
     try:
-        text = path.read_bytes().decode("utf-8-sig")  # some editors begin with a byte order mark
+        text = read_at_most(path).decode("utf-8-sig")  # some editors begin with a byte order mark
     except FileNotFoundError:
         known = packaged_scenes()
         hint = suggestion(source, known) or f"the packaged scenes are {', '.join(known)}"
@@ -64,12 +67,25 @@ def _read(path: Path, source: str) -> dict[str, Any]:
         raise SceneError(source, [f"is not a text in UTF-8 (byte {error.start})"]) from None
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         raise SceneError(source, [f"cannot be read: {getattr(error, 'strerror', None) or error}"]) from None
+    if _MANY_PARTS.search(text):  # tomllib takes minutes for them
+        raise SceneError(source, [_TOO_DEEP])
     try:
-        return tomllib.loads(text)
+        raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise SceneError(_file_and_line(source, text, str(error)), [f"is not TOML: {error}"]) from None
     except (ValueError, RecursionError) as error:  # an integer of thousands of digits, arrays nested without end
         raise SceneError(source, [f"is not a usable TOML file: {str(error)[:100]}"]) from None
+    if _is_deep(raw):
+        raise SceneError(source, [_TOO_DEEP])
+    return raw
+
+
+def _is_deep(raw: object) -> bool:
+    """Whether tables lie in more tables than any key of a scene has parts."""
+    level = [raw]
+    for _ in range(DEEPEST):
+        level = [inner for table in level if isinstance(table, Mapping) for inner in table.values()]
+    return any(isinstance(inner, Mapping) for inner in level)
 
 
 def _beside(path: Path, raw: dict[str, Any], source: str) -> dict[str, Any]:

@@ -15,6 +15,8 @@ from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
 
 _KEY = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*(\.[A-Za-z_][A-Za-z0-9_-]*)*")
+#: Parts beyond which a dotted key is refused, before it is put together part by part; those of scenes have up to three.
+DEEPEST = 20
 _BARE_WORD = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
 
@@ -68,6 +70,8 @@ def _override(raw: Mapping[str, Any], override: str) -> dict[str, Any]:
     key, (_, equals, text) = _key_of(override), (part.strip() for part in override.partition("="))
     if not equals or not _KEY.fullmatch(key):
         raise ValueError(f'--set {override}: must be KEY=VALUE with a dotted key, like "interface.strength=6"')
+    if key.count(".") >= DEEPEST:
+        raise ValueError(f"--set {key[:30]}...: the key must be of at most {DEEPEST} parts, got {key.count('.') + 1}")
     return _replaced(raw, key.split("."), _toml_value(text, override))
 
 

@@ -9,7 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, ValidationInfo, ValidatorFunctionWrapHandler, field_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    ValidationInfo,
+    ValidatorFunctionWrapHandler,
+    field_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from verify.scene.bond.interface import Interface
@@ -20,6 +27,9 @@ from verify.scene.stated.published import Published
 from verify.scene.stated.uncertainty import Uncertainty, require_numbers
 from verify.scene.tables import Section, refuse
 from verify.support.programme import turns
+
+#: Endings of files in output folders, beside which each scene has a folder of its name.
+FILE_ENDINGS = (".csv", ".html", ".json", ".md")
 
 
 def _as_programme(value: object) -> object:
@@ -159,10 +169,18 @@ def _as_tables(value: object) -> object:
     return tuple(value)
 
 
+def _as_folder(name: str) -> str:
+    if name.lower().endswith(FILE_ENDINGS):
+        raise refuse(f"a name that is not one of a file, ending in {', '.join(FILE_ENDINGS)}", ((), name))
+    return name
+
+
 class Scene(Section):
     """One physical problem. Every method solves the same one."""
 
-    name: str = Field(default="scene", pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=80)
+    name: Annotated[str, AfterValidator(_as_folder)] = Field(
+        default="scene", pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=80
+    )
     """Names folders; left out: that of the file."""
     units: str = "consistent units"
     """Label of your own consistent set of units, which is only printed."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import json
 import math
 from collections.abc import Callable, Mapping
@@ -11,6 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from verify.support.refusal import Refusal
+
+#: Bytes beyond which a file is refused, like a device that never ends.
+LARGEST_FILE = 2**28
 
 #: Matches every key of a mapping whose keys are free; a key with a trailing ? is optional.
 ANY = "*"
@@ -51,6 +55,20 @@ class Damaged(Refusal):
         super().__init__(f"{path}: must be as debond has written it, got: {text}")
 
 
+def read_at_most(path: Path, most: int = LARGEST_FILE) -> bytes:
+    """The content of a file.
+
+    Raises
+    ------
+    OSError : the file cannot be read, or has more than ``most`` bytes.
+    """
+    with path.open("rb") as stream:
+        content = stream.read(most + 1)
+    if len(content) > most:
+        raise OSError(errno.EFBIG, f"it has more than {most / 1e6:.0f} MB", str(path))
+    return content
+
+
 def read_json(path: Path, shape: Shape) -> dict[str, Any]:
     """The content of a JSON file.
 
@@ -59,7 +77,7 @@ def read_json(path: Path, shape: Shape) -> dict[str, Any]:
     Damaged : the file cannot be read, is no JSON, or has another layout.
     """
     try:
-        content = json.loads(path.read_bytes())
+        content = json.loads(read_at_most(path))
     except (OSError, ValueError, RecursionError) as error:
         raise Damaged(path, _why(error)) from None
     if why := wrong(content, shape):

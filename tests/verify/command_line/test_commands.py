@@ -13,7 +13,7 @@ import pytest
 
 from iga.delamination import solution
 from iga.delamination.problem import Problem
-from verify.cli import INTERRUPTED, NOT_WRITTEN, REFUSED, main
+from verify.cli import NOT_WRITTEN, REFUSED, main
 from verify.command_line import commands, compare
 from verify.command_line.commands import FAILED
 from verify.command_line.compare import Source
@@ -30,6 +30,7 @@ from verify.studies.effects import study as effects_study
 from verify.studies.effects.plan import planned
 from verify.studies.hard import suite
 from verify.studies.scaling import study as scaling_study
+from verify.support.interrupts import INTERRUPTED
 from verify.support.refusal import Refusal
 
 COMMANDS = ("cost", "effects", "scaling", "hard")

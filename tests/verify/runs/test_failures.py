@@ -28,7 +28,7 @@ from verify.support.refusal import Refusal
 from verify.verdict import Check
 
 PROJECT = Path(__file__).resolve().parents[3]
-PROGRAM = [sys.executable, "-P", "-m", "verify.cli"]
+PROGRAM = [sys.executable, "-P", "-m", "verify"]
 ENVIRONMENT = os.environ | {"PYTHONPATH": str(PROJECT)}
 SOLVE = ["solve", "dcb-czm1-linear", "--method", "lefm"]
 

@@ -15,6 +15,7 @@ import pytest
 from verify.runs.store import STORE_FOLDER
 
 PROJECT = Path(__file__).resolve().parents[3]
+PIPES = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
 SMALL = ["--set", "discretization.dofs=200", "--set", "discretization.steps=6", "--set", "load.opening=0.5"]
 STUDIES = {
     "effects": ["effects", "dcb-czm1", *SMALL, "--jobs", "1"],
@@ -23,10 +24,9 @@ STUDIES = {
 
 
 def start(command: list[str], out: Path) -> subprocess.Popen:
-    words = [sys.executable, "-P", "-m", "verify.cli", *command, "--out", str(out)]
+    words = [sys.executable, "-P", "-m", "verify", *command, "--out", str(out)]
     environment = os.environ | {"PYTHONPATH": str(PROJECT)}
-    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    return subprocess.Popen(words, text=True, env=environment, start_new_session=True, **streams)
+    return subprocess.Popen(words, text=True, env=environment, start_new_session=True, **PIPES)
 
 
 def whole(out: Path) -> list[Path]:
@@ -82,3 +82,52 @@ def test_work_without_a_folder_starts_over(capsys: pytest.CaptureFixture, monkey
     monkeypatch.setattr(commands, "_listed", stops)
     assert cli.main(["scenes", "dcb-czm1"]) == 130
     assert capsys.readouterr().err == "debond: interrupted; the same command again starts over\n"
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.06, 0.15, 0.3, 0.6, 1.2])
+def test_an_interrupt_while_modules_are_imported_is_one_line(seconds: float, tmp_path: Path) -> None:
+    words = [sys.executable, "-P", "-m", "verify", "solve", "dcb-czm1", "--out", str(tmp_path)]
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # as the launcher holds it
+    try:
+        process = subprocess.Popen(
+            words, text=True, cwd=PROJECT, env=os.environ | {"PYTHONPATH": str(PROJECT)}, **PIPES
+        )
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    time.sleep(seconds)
+    process.send_signal(signal.SIGINT)
+    printed, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "Traceback" not in printed + said and said.count("interrupted;") == 1
+    assert said.splitlines()[-1].startswith("debond: interrupted; ")
+
+
+LOST = """
+import signal, time
+class Ends:
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)
+def in_a_finalizer():
+    Ends()
+def as_another_error():
+    try:
+        signal.raise_signal(signal.SIGINT)
+    except KeyboardInterrupt:
+        raise ImportError("a compiled module") from None
+from verify import cli
+from verify.command_line import commands
+from verify.support import interrupts
+def listed(lines):
+    {0}()
+    time.sleep(0.5)
+    return 0
+commands._listed = listed
+interrupts.running(lambda: cli.main(["scenes", "dcb-czm1"]))
+"""
+
+
+@pytest.mark.parametrize("where", ["in_a_finalizer", "as_another_error"])
+def test_an_interrupt_that_another_library_swallows_still_ends_the_command(where: str) -> None:
+    words = [sys.executable, "-P", "-c", LOST.format(where)]
+    done = subprocess.run(words, text=True, cwd=PROJECT, env=os.environ | {"PYTHONPATH": str(PROJECT)}, **PIPES)
+    assert (done.returncode, done.stderr) == (130, "debond: interrupted; the same command again starts over\n")

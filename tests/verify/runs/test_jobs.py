@@ -36,7 +36,7 @@ def test_a_job_is_repeated_by_its_command() -> None:
     assert replace(JOB, fields=False).command(Path("out")) == [*words, "--out", "out/dcb-czm1/coarse"]
     assert (JOB.solved.discretization.dofs, JOB.solved.load.opening) == (600, (2.0,)) and JOB.scene is SCENE
     task = JOB.task()
-    assert task.program[:2] == ("verify.cli", "solve") and task.program[-1] == OUTPUT_FOLDER and task.lane == ""
+    assert task.program[:2] == ("verify", "solve") and task.program[-1] == OUTPUT_FOLDER and task.lane == ""
     assert (task.place, task.proof) == ("dcb-czm1/coarse", "result.json") and task.seconds > 0.0
     assert replace(JOB, method="dolfinx", overrides=()).task().lane == "dolfinx"
     others = (replace(JOB, fields=False), replace(JOB, repeat=1), replace(JOB, overrides=()))

@@ -57,7 +57,7 @@ def main() -> int:
     """The command `debond`; its exit code."""
     try:
         own("iga")
-        command = own("verify.cli").main
+        command = own("verify.__main__").program
     except ImportError as error:
         sys.stderr.write(f"debond: {error}\n")
         return 3

@@ -19,7 +19,7 @@ from verify.scene.effects import simulated
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
-from verify.support.checked_files import ANY, read_json
+from verify.support.checked_files import ANY, read_at_most, read_json
 from verify.support.refusal import Refusal
 
 #: Of a run, which has neither toe nor noise, the linear part ends before its process zone tells in the compliance.
@@ -92,7 +92,7 @@ def scene_of_test(source: str, overrides: Sequence[str]) -> tuple[Scene, bool]:
 def _raw(path: Path) -> dict[str, Any] | None:
     """The tables of a scene file; None for a packaged scene, or what `load_scene` will complain of."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return tomllib.loads(read_at_most(path).decode("utf-8-sig"))
     except (OSError, ValueError, RecursionError):
         return None
 

@@ -20,7 +20,7 @@ def cores() -> int:
 
 def command(ranks: str, words: Sequence[str]) -> list[str]:
     """The program and its arguments."""
-    return ["mpirun", "-n", ranks, sys.executable, "-P", "-m", "verify.cli", *words]
+    return ["mpirun", "-n", ranks, sys.executable, "-P", "-m", "verify", *words]
 
 
 def main(arguments: Sequence[str]) -> None:

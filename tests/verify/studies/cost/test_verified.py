@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify.cli import INTERRUPTED, main
+from verify.cli import main
 from verify.command_line.commands import FAILED
 from verify.methods.solve import prepare, solve
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
@@ -24,6 +24,7 @@ from verify.scene.schema import counted_steps
 from verify.studies.cost import accuracy
 from verify.studies.cost.accuracy import Choice
 from verify.studies.cost.verified import REFINEMENT, apart, bound, finer, verified
+from verify.support.interrupts import INTERRUPTED
 from verify.verdict import Check
 
 FIRST = Choice("nurbs", ("discretization.dofs=300", "discretization.degree=2"), 1.0, "a guess")

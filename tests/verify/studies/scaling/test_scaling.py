@@ -159,7 +159,7 @@ def test_ranks_are_started_by_mpirun_in_the_place_of_the_process(monkeypatch: py
     monkeypatch.setattr(ranks_of.shutil, "which", lambda name: f"/usr/bin/{name}")
     monkeypatch.setattr(ranks_of.os, "execvp", lambda *words: became.append(words))
     ranks_of.main(["2", "solve", "dcb-czm1"])
-    words = ["mpirun", "-n", "2", sys.executable, "-P", "-m", "verify.cli", "solve", "dcb-czm1"]
+    words = ["mpirun", "-n", "2", sys.executable, "-P", "-m", "verify", "solve", "dcb-czm1"]
     assert became == [("mpirun", words)]
     monkeypatch.setattr(ranks_of.shutil, "which", lambda name: None)
     with pytest.raises(SystemExit, match="mpirun is not installed"):
