@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from tests.verify.checks.test_certified import END, run
-from verify.cli import FAILED, REFUSED, main
+from verify.cli import REFUSED, main
+from verify.command_line.commands import FAILED
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene

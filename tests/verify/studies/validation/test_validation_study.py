@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify.cli import FAILED, REFUSED, main
+from verify.cli import REFUSED, main
+from verify.command_line.commands import FAILED
 from verify.curves.of_run import cubics
 from verify.methods.solve import solve
 from verify.result import Result
