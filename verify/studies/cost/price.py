@@ -82,12 +82,18 @@ class Price:
         first, *others = self.pair
         text = f"{_percent(self.level)} of the load curve of {self.scene.name} costs {_cost(first, ' unknowns')}"
         if not others:
-            why = "was not run" if all(row.method != OTHER_CODE for row in self.rows) else "did not reach it"
-            return f"{text}; {METHODS[OTHER_CODE].label} {why}."
+            return f"{text}; {self._without(first)}."
         text += f" and {_cost(others[0])}, {self.ratio:.2g} × as long"
         if self.ratio_at_equal_steps is None:
             return f"{text}."
         return f"{text}; at equal steps {self.ratio_at_equal_steps:.2g} ×."
+
+    def _without(self, first: Row) -> str:
+        """Why there is no other run to compare the cheapest one with."""
+        if first.method == OTHER_CODE:
+            return "no other method reached it"
+        run = any(row.method == OTHER_CODE for row in self.rows)
+        return f"{METHODS[OTHER_CODE].label} {'did not reach it' if run else 'was not run'}"
 
     def summary(self) -> dict[str, Any]:
         """The entry ``price`` of ``verdict.json``."""

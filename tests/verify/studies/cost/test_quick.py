@@ -59,6 +59,8 @@ def test_where_dolfinx_is_the_cheapest_the_next_method_stands_beside_it() -> Non
 def test_what_is_missing_is_said() -> None:
     assert said(ROWS[:4]).endswith("of 432 unknowns; DOLFINx was not run.")
     assert said((*ROWS[:4], a_row("dolfinx", 0.02, 0.1, 200, 2))).endswith("; DOLFINx did not reach it.")
+    alone = (a_row("dolfinx", 0.002, 0.1, 756, 2), a_row("nurbs", 0.02, 0.2))
+    assert said(alone).endswith("of 756 unknowns; no other method reached it.")
     coarse = [replace(row, curve_error=0.008) for row in ROWS]
     assert said(coarse).startswith("1 % of the load curve of dcb-czm1 costs 0.2 s")
     none = Price(SCENE, against(), (a_row("nurbs", 0.02, 0.2), a_row("dolfinx", nan, 0.2)))
