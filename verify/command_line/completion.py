@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from verify.command_line.arguments import place
+
 #: Stands for files and folders, which every shell completes itself.
 PATHS = ("FILES",)
 
@@ -72,7 +74,7 @@ def _known() -> Mapping[str, tuple[str, ...]]:
 def _command(name: str, text: str, sub: argparse.ArgumentParser, known: Mapping[str, tuple[str, ...]]) -> Command:
     options, values, places = {}, {}, ()
     for action in sub._actions:
-        words = tuple(action.choices or ()) or known.get(action.dest, PATHS if action.type is Path else ())
+        words = tuple(action.choices or ()) or known.get(action.dest, PATHS if action.type in (Path, place) else ())
         for spelling in action.option_strings:
             options[spelling] = (action.help or "").replace("%%", "%")
             if action.nargs != 0:

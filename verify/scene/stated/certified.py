@@ -18,6 +18,9 @@ CERTIFIED_FILE = Path(__file__).with_name("certified.json")
 #: Tables of a scene that make its problem, besides the effects as simulated: meshes, names and what is stated do not.
 PROBLEM_TABLES = ("material", "strip", "substrate", "interface", "load")
 
+#: Keys of a specimen that say how it is meshed.
+MESH_KEYS = ("mesh", "groups")
+
 #: Kinds of quantities. ``work`` and ``zone`` have the last opening of the programme as theirs.
 CertifiedKind = Literal["peak", "peak_opening", "load_at", "work", "zone"]
 
@@ -45,7 +48,7 @@ def problem_key(scene: Scene) -> str:
     """20 hexadecimal digits of everything that makes the problem: specimen, materials, interface, load, effects."""
     dumped = scene.model_dump(mode="json")
     problem: dict[str, Any] = {name: dumped[name] for name in PROBLEM_TABLES}
-    problem["specimen"] = {key: value for key, value in dumped["specimen"].items() if key != "mesh"}
+    problem["specimen"] = {key: value for key, value in dumped["specimen"].items() if key not in MESH_KEYS}
     problem["effects"] = simulated(scene)
     return hashlib.sha256(json.dumps(problem, sort_keys=True).encode()).hexdigest()[:20]
 
