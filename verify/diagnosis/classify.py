@@ -32,6 +32,7 @@ class Settings:
     same : the same, within which two causes cannot be told apart
     free : part of the tolerance that a cause with a fitted amount must be better than one without
     certain : part of deviation and tolerance up to which a cause in the curve leaves no room for one in the scene
+    far : deviation beyond which no other number of the scene is looked for: that is another problem
     listed : explanations that are kept
     """
 
@@ -45,6 +46,7 @@ class Settings:
     same: tuple[float, float] = (0.02, 0.12)
     free: float = 0.1
     certain: float = 0.05
+    far: float = 0.5
     listed: int = 6
 
 
@@ -74,7 +76,7 @@ def diagnose(name: str, curve: AnyCurve, expected: AnyCurve, scene: Scene | None
     ]
     end = min(reference.end, float(np.max(given[0])))
     certain = any(one.error_with <= SETTINGS.certain * min(without, tolerance) for one in found)
-    if scene is not None and not certain and 2.0 * end > reference.end:
+    if scene is not None and without <= SETTINGS.far and not certain and 2.0 * end > reference.end:
         found += _in_the_scene(solutions(scene, end), reference, given, without, tolerance)
     return _ranked(name, found, without, tolerance)
 

@@ -77,23 +77,26 @@ class CurveWriter:
 
 
 def refuse_files_of_others(folder: Path) -> None:
-    """Refuse to write where files of these names are not those of a run, whose curve.csv shows it by its header.
+    """Refuse to write where files of these names are not those of a run, which the first of them shows.
 
     Raises
     ------
     Refusal : naming the files.
     """
-    there = [name for name in FILES if (folder / name).exists()]
-    head = ",".join(CURVE_COLUMNS).encode()
-    if there[:1] == ["curve.csv"]:
-        with (folder / "curve.csv").open("rb") as stream:
-            if stream.read(len(head)) in (head, b""):
-                return
-    if there:
+    there = [name for name in ("curve.csv", "result.json") if (folder / name).exists()]
+    if there and not _is_of_a_run(folder / there[0]):
         names = ", ".join(there)
         raise Refusal(
             f"--out: must be a folder whose {names} a run has written, got those of others in {str(folder)!r}"
         )
+
+
+def _is_of_a_run(file: Path) -> bool:
+    """Whether a run has written a file, or nobody anything: curve.csv by its header, result.json by its method."""
+    begins = (",".join(CURVE_COLUMNS).encode(), b'{"scene"', b'{"method"')
+    with file.open("rb") as stream:
+        found = b"".join(stream.read(1000).split())
+    return not found or found.startswith(begins)
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:

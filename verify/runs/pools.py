@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Protocol
@@ -48,8 +48,12 @@ class Local:
 
     def stop(self) -> None:
         self.executor.shutdown(wait=False, cancel_futures=True)
-        for process in list(self.running):
+        ended = list(self.running)
+        for process in ended:
             process.terminate()
+        for process in ended:
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(ANSWER_SECONDS)
 
 
 @dataclass(frozen=True)

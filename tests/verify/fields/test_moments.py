@@ -95,6 +95,7 @@ def test_pages_of_few_scenes_have_them(tmp_path: Path, monkeypatch: pytest.Monke
     from verify.report import Findings, page
 
     asked: list[tuple[str, bool]] = []
+    monkeypatch.setattr(page, "at_once", lambda work, items: tuple(map(work, items)))  # in this process
     monkeypatch.setattr(page, "section", lambda report, anchor, between: asked.append((anchor, between)))
     monkeypatch.setattr(page, "summarise", lambda sections, planes, prices: SimpleNamespace(prices=()))
     monkeypatch.setattr(page, "_scripts", lambda sections, studies: ())
