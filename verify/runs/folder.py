@@ -77,7 +77,7 @@ class CurveWriter:
 
 
 def refuse_files_of_others(folder: Path) -> None:
-    """Refuse to write where files of these names are not those of a run, which the first of them shows.
+    """Refuse to write into a folder whose curve.csv, or else result.json, is not that of a run.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def refuse_files_of_others(folder: Path) -> None:
 
 
 def _is_of_a_run(file: Path) -> bool:
-    """Whether a run has written a file, or nobody anything: curve.csv by its header, result.json by its method."""
+    """Whether a file is empty or begins as one of a run: curve.csv with its header, result.json with its keys."""
     begins = (",".join(CURVE_COLUMNS).encode(), b'{"scene"', b'{"method"')
     with file.open("rb") as stream:
         found = b"".join(stream.read(1000).split())
