@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from iga.algebra.factors import condition
 from iga.output.frames import frame
 from iga.output.rows import row
 from iga.output.snapshots import Snapshot, snapshot
@@ -19,7 +20,7 @@ from iga.path.solver import Solver
 from iga.specimen.problem import Debonding
 from iga.specimen.specimen import Specimen
 from iga.system.state import State
-from iga.system.system import Phase, System, respond, tangent_matrix
+from iga.system.system import Phase, System, inverse_of, respond
 
 #: Called with the opening of every converged step, and with what makes its frame (see `iga.output.frames`) where it is
 #: wanted.
@@ -142,6 +143,9 @@ def by_way_of(programme: Sequence[float], stops: Sequence[float]) -> tuple[float
 def _condition(system: System, point: Point, phase: Phase) -> float:
     """Condition number of the tangent at a converged point."""
     with phase("assembly"):
-        band, half, skew = tangent_matrix(system, respond(system, point.state, decide=False))
+        response = respond(system, point.state, decide=False)
+        pattern = system.pattern(response)
+        half, skew = pattern.tangent(system.interface, response)
     with phase("factor"):
-        return band.condition(half, skew)
+        found = inverse_of(system, pattern, half, skew)
+        return float("inf") if found is None else condition(pattern.band, half, skew, found)

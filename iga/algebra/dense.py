@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dgecon, dgetrf, dgetrs, dpotrf, dpotrs
+from scipy.linalg.lapack import dgetrf, dgetrs, dpotrf, dpotrs
 
 from iga.algebra.banded import Skew
 
@@ -51,12 +51,9 @@ class Dense:
         lu, pivots, info = dgetrf(self._whole(half, skew), overwrite_a=True)
         return DenseLU(lu, pivots) if info == 0 else None
 
-    def condition(self, half: np.ndarray, skew: Skew | None = None) -> float:
-        """Estimate of the condition number in the 1-norm, infinite where the matrix is singular."""
-        norm = float(np.abs(self._whole(half, skew)).sum(0).max())
-        factors = self.lu(half, skew)
-        reciprocal = 0.0 if factors is None else float(dgecon(factors.lu, norm)[0])
-        return 1.0 / reciprocal if reciprocal > 0.0 else float("inf")
+    def columns(self, half: np.ndarray, skew: Skew | None = None) -> np.ndarray:
+        """Sum (n,) of the absolute entries of each column of the matrix that `lu` takes."""
+        return np.abs(self._whole(half, skew)).sum(0)
 
     def _whole(self, half: np.ndarray, skew: Skew | None) -> np.ndarray:
         lower = np.tril(half.reshape(self.n, self.n).T)
@@ -87,9 +84,9 @@ class DenseLU:
     lu: np.ndarray
     pivots: np.ndarray
 
-    def solve(self, b_d: np.ndarray) -> np.ndarray:
+    def solve(self, b_d: np.ndarray, transposed: bool = False) -> np.ndarray:
         """Solution (n, n_rhs) for right-hand sides (n, n_rhs)."""
-        x, info = dgetrs(self.lu, self.pivots, b_d)
+        x, info = dgetrs(self.lu, self.pivots, b_d, trans=transposed)
         if info != 0:
             raise ValueError(f"dgetrs refused its argument {-info}")
         return x

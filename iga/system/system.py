@@ -132,8 +132,12 @@ class System:
     @cached_property
     def hold(self) -> float:
         """Stiffness of the spring that holds the opening while a tangent is factorised; 0 for a singular system."""
-        found = inverse(*tangent_matrix(self, respond(self, self.start(), decide=False)), self.load_d)
-        held_d = None if found is None else found.solve(self.hold_d[:, None])[:, 0]
+        response = respond(self, self.start(), decide=False)
+        pattern = self.pattern(response)
+        half, skew = pattern.tangent(self.interface, response)
+        definite = pattern.band.cholesky(half.copy()) if skew is None else None
+        factors = pattern.band.lu(half, skew) if definite is None else definite
+        held_d = None if factors is None else factors.solve(self.hold_d[:, None])[:, 0]
         compliance = 0.0 if held_d is None else abs(float(self.hold_d @ held_d))
         return SCALES.hold / compliance if compliance > 0.0 else 0.0
 
@@ -184,20 +188,19 @@ def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
     return float(found)
 
 
-def tangent_matrix(system: System, response: Response) -> tuple[Band | Dense, np.ndarray, Skew | None]:
-    """Derivative of the forces by the displacements: the band, the lower half (band.size,), and the skew part."""
-    pattern = system.pattern(response)
-    return pattern.band, *pattern.tangent(system.interface, response)
-
-
 def factorise(system: System, response: Response, pattern: TangentPattern, phase: Phase) -> Inverse | None:
     """Inverse of the tangent, which has the pattern; None where it is exactly singular."""
     with phase("assembly"):
         half, skew = pattern.tangent(system.interface, response)
     with phase("factor"):
-        found = None
-        if skew is None and system.hold > 0.0:
-            held = half.copy()
-            held[pattern.held] += system.hold * system.loads_squared
-            found = held_inverse(pattern.band, held, (system.load_d, system.hold_d), system.hold)
-        return inverse(pattern.band, half, skew, system.load_d) if found is None else found
+        return inverse_of(system, pattern, half, skew)
+
+
+def inverse_of(system: System, pattern: TangentPattern, half: np.ndarray, skew: Skew | None) -> Inverse | None:
+    """Inverse of the matrix with this lower half and skew part; None where it is exactly singular."""
+    found = None
+    if skew is None and system.hold > 0.0:
+        held = half.copy()
+        held[pattern.held] += system.hold * system.loads_squared
+        found = held_inverse(pattern.band, held, (system.load_d, system.hold_d), system.hold)
+    return inverse(pattern.band, half, skew, system.load_d) if found is None else found

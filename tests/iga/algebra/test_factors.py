@@ -8,11 +8,12 @@ from specimens import PAPER
 
 from iga.algebra.banded import Band, BandCholesky, BandLU, Skew, number
 from iga.algebra.dense import Dense, DenseCholesky, DenseLU
+from iga.algebra.factors import Inverse, condition, inverse
 from iga.dcb import build
 from iga.path.follow import follow
 from iga.path.point import Point
 from iga.path.solver import Solver
-from iga.system.system import factorise, respond, tangent_matrix, untimed
+from iga.system.system import factorise, respond, untimed
 
 CZM1 = replace(PAPER, opening=(1.5,), dofs=400)
 
@@ -24,7 +25,8 @@ def growing(state):
 
 def dense_tangent(system, response) -> np.ndarray:
     """The tangent (n_dof, n_dof) that is factorised, entry by entry."""
-    band, half, skew = tangent_matrix(system, response)
+    pattern = system.pattern(response)
+    band, (half, skew) = pattern.band, pattern.tangent(system.interface, response)
     i, j = np.indices((system.n_dof, system.n_dof))
     near = (np.abs(band.place_d[i] - band.place_d[j]) <= band.k) & (band.place_d[i] >= 0) & (band.place_d[j] >= 0)
     K = np.where(near, half[np.where(near, band.positions(i, j), 0)], 0.0)
@@ -63,8 +65,9 @@ def test_before_and_behind_the_peak_a_held_tangent_is_positive_definite(kinemati
     for point in (points[top // 2], points[-1], falling):
         inverse, wrong = solved(system, growing(point.state), rng)
         assert isinstance(inverse.factors, BandCholesky) and wrong < 1e-8
-    band, half, _ = tangent_matrix(system, respond(system, growing(falling.state), decide=False))
-    assert band.cholesky(half.copy()) is None
+    response = respond(system, growing(falling.state), decide=False)
+    pattern = system.pattern(response)
+    assert pattern.band.cholesky(pattern.tangent(system.interface, response)[0]) is None
     system.__dict__["hold"] = 0.0  # kept, as the property would be
     other, wrong = solved(system, growing(falling.state), rng)
     assert isinstance(other.factors, BandLU) and wrong < 1e-8
@@ -122,12 +125,17 @@ def test_banded_solvers_are_dense_ones(k, rng):
 
     for factors in (band.cholesky(half.copy()), band.lu(half)):
         assert np.allclose(factors.solve(b_d[:, None])[:, 0], expected(dense), rtol=0, atol=1e-12)
-    assert band.condition(half) == pytest.approx(np.linalg.cond(dense, 1), rel=0.5)
+    known = pytest.approx(np.linalg.cond(dense, 1), rel=0.5)
+    assert condition(band, half, None, inverse(band, half, None, b_d)) == known
+    assert condition(band, half, None, Inverse(band.cholesky(half.copy()), b_d)) == known
     assert band.cholesky(-half) is None
     if k > 0:
         skew = Skew(np.array([name[3], n]), np.array([name[2], 0]), np.array([0.7, 9.0]))
         dense[3, 2] += 0.7
-        assert np.allclose(band.lu(half, skew).solve(b_d[:, None])[:, 0], expected(dense), rtol=0, atol=1e-12)
+        found = inverse(band, half, skew, b_d)
+        assert np.allclose(found.under_load_d, expected(dense), rtol=0, atol=1e-12)
+        assert condition(band, half, skew, found) == pytest.approx(np.linalg.cond(dense, 1), rel=0.5)
+        assert np.allclose(found.factors.solve(b_d[:, None], transposed=True)[:, 0], expected(dense.T), atol=1e-12)
 
 
 def test_dense_solvers_read_the_lower_half_alone(rng):
@@ -139,7 +147,8 @@ def test_dense_solvers_read_the_lower_half_alone(rng):
     found = Dense(n).cholesky(half.copy()), Dense(n).lu(half)
     assert isinstance(found[0], DenseCholesky) and isinstance(found[1], DenseLU)
     assert all(np.allclose(factors.solve(b), np.linalg.solve(A, b), rtol=0, atol=1e-12) for factors in found)
-    assert Dense(n).condition(half) == pytest.approx(np.linalg.cond(A, 1), rel=1e-6)
+    found = inverse(Dense(n), half, None, b[:, 0])
+    assert condition(Dense(n), half, None, found) == pytest.approx(np.linalg.cond(A, 1), rel=1e-6)
     assert Dense(n).cholesky(-half) is None
 
 
@@ -177,12 +186,12 @@ def test_the_narrower_numbering_is_taken(rng):
     assert number([np.array([[3]])], np.zeros(4), np.array([False] * 3 + [True])).k == 0
 
 
-def test_a_singular_matrix_has_no_factors_and_no_finite_condition():
+def test_a_singular_matrix_has_no_factors():
     band = Band(np.arange(3), 3, 1)
     half = np.bincount(band.positions(np.array([0, 2]), np.array([0, 2])), [2.0, 3.0], band.size)
-    assert band.lu(half) is None and band.cholesky(half.copy()) is None and band.condition(half) == np.inf
+    assert band.lu(half) is None and band.cholesky(half.copy()) is None
     flat = np.diag([2.0, 0.0, 3.0]).ravel()
-    assert Dense(3).lu(flat) is None and Dense(3).cholesky(flat.copy()) is None and Dense(3).condition(flat) == np.inf
+    assert Dense(3).lu(flat) is None and Dense(3).cholesky(flat.copy()) is None
 
 
 def test_a_right_hand_side_of_another_size_is_refused():
