@@ -19,6 +19,14 @@ if TYPE_CHECKING:
 ANSWER_SECONDS = 10
 
 
+class Process(Protocol):
+    """A run, as much as is needed to end it."""
+
+    def terminate(self) -> None: ...
+
+    def wait(self, timeout: float | None = None) -> int: ...
+
+
 class Pool(Protocol):
     """The interface that a sweep needs."""
 
@@ -38,7 +46,7 @@ class Local:
 
     jobs: int
     executor: Executor
-    running: set[subprocess.Popen]
+    running: set[Process]
 
     def slots(self) -> int:
         return self.jobs

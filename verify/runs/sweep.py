@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TextIO
 
+from verify.runs import server
 from verify.runs.folder import damage
 from verify.runs.pools import Pool
 from verify.runs.store import STORE_FOLDER, Store, link, opened
@@ -210,15 +209,14 @@ def _why(future: Future) -> str:
         return f"failed: {type(error).__name__}: {error}"
 
 
-def execute(task: Task, root: Path, cwd: Path, running: set[subprocess.Popen] | None = None) -> str:
+def execute(task: Task, root: Path, cwd: Path, running: set | None = None) -> str:
     """Do one task; returns why it failed, or empty. ``running`` contains its process meanwhile."""
     store = Store(root)
     work = store.begin(task.key)
     words = [str(work) if word == OUTPUT_FOLDER else word for word in task.program]
-    with (work / "log.txt").open("w+") as log:
-        code = call([sys.executable, "-P", "-m", "verify.runs.child", *words], log, cwd, task.timeout, running)
-        log.seek(0)
-        messages = log.read().strip().splitlines()
+    log = work / "log.txt"
+    code = call(words, log, cwd, task.timeout, running)
+    messages = log.read_text(errors="replace").strip().splitlines()
     if code in ENDED and (work / task.proof).exists() and not next(work.rglob("error.log"), None):
         store.keep(work, task.key)
         return ""
@@ -227,14 +225,20 @@ def execute(task: Task, root: Path, cwd: Path, running: set[subprocess.Popen] | 
     return f"failed: {messages[-1]}" if messages and code >= 0 else f"failed: {why}"
 
 
-def call(
-    command: list[str], log: TextIO, cwd: Path, timeout: float, running: set[subprocess.Popen] | None = None
-) -> int:
-    """Run a command, or kill it after the timeout; returns the exit code, -n after signal n."""
+def call(words: list[str], log: Path, cwd: Path, timeout: float, running: set | None = None) -> int:
+    """Run a module with arguments, or kill it after the timeout; returns the exit code, -n after signal n."""
     paths = [str(PROJECT), *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)}
     running = set() if running is None else running
-    with subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, env=environment, cwd=cwd) as process:
+    log.touch()
+    if server.POSSIBLE:
+        return server.call(words, log, cwd, timeout, environment, running)
+    with (
+        log.open("w") as said,
+        subprocess.Popen(
+            [*server.CHILD, *words], stdout=said, stderr=subprocess.STDOUT, env=environment, cwd=cwd
+        ) as process,
+    ):
         running.add(process)
         try:
             return process.wait(timeout)
