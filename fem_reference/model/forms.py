@@ -62,11 +62,6 @@ def bulk_points(degree: int) -> int:
     return degree + 1
 
 
-def bond_points(degree: int) -> int:
-    """Gauss points on an element of the bond: more than smooth tractions need, since the law has kinks in elements."""
-    return degree + 3
-
-
 def displacements(bodies: TwoBodies, degree: int) -> tuple[fem.Function, fem.Function]:
     """Vector Lagrange functions on the upper and the lower body."""
     upper, lower = (fem.Function(fem.functionspace(body.mesh, ("Lagrange", degree, (2,)))) for body in bodies.pair)
@@ -87,7 +82,7 @@ def weak_form(
     width = constant(domain, problem.width)
     D = [constant(domain, body.D_IJ) for body in specimen.bodies]
     W = [energy_density(u_body, D_body, finite) for u_body, D_body in zip(displacement, D, strict=True)]
-    dx, ds, _ = _measures(bodies, problem.degree)
+    dx, ds, _ = _measures(bodies, problem)
 
     def over_faces(density: Callable, part: Callable[[Face], float]) -> ufl.Form:
         """Sum over the end faces of the integral of a density, a function of the body, times a factor of the face."""
@@ -115,10 +110,10 @@ def bond_forms(problem: Debonding, bodies: TwoBodies, displacement: tuple[fem.Fu
     slides, finite = bool(problem.mixed_law), problem.kinematics == "finite"
     components = (0, 1) if slides else (1,)
     count = 4 if slides and finite else len(components)
-    degree = 2 * bond_points(problem.degree) - 1
+    degree = 2 * problem.bond_points - 1
     point = basix.ufl.quadrature_element("interval", value_shape=(count,), degree=degree)
     q = ufl.TestFunction(fem.functionspace(bodies.bond.mesh, point))("+")
-    _, _, dS = _measures(bodies, problem.degree)
+    _, _, dS = _measures(bodies, problem)
 
     def at_points(v: ufl.core.expr.Expr, side: str, sign: float) -> ufl.Form:
         """Form of the functionals of ``v``, the displacements or their derivatives by X, the part of one body."""
@@ -170,9 +165,9 @@ def cauchy_stress(u: fem.Function, D: ufl.core.expr.Expr, finite: bool) -> ufl.c
     return F * second_stress(u, D, finite) * F.T / ufl.det(F)
 
 
-def _measures(bodies: TwoBodies, degree: int) -> tuple[ufl.Measure, ufl.Measure, ufl.Measure]:
-    bulk = {"quadrature_degree": 2 * bulk_points(degree) - 1}
-    bond = {"quadrature_degree": 2 * bond_points(degree) - 1}
+def _measures(bodies: TwoBodies, problem: Debonding) -> tuple[ufl.Measure, ufl.Measure, ufl.Measure]:
+    bulk = {"quadrature_degree": 2 * bulk_points(problem.degree) - 1}
+    bond = {"quadrature_degree": 2 * problem.bond_points - 1}
     cells = list(enumerate(bodies.cells))
     faces = [(i, facets.ravel()) for i, facets in enumerate(bodies.faces)]
     quads = [(BOND, np.ascontiguousarray(bodies.interface_quads).ravel())]

@@ -32,6 +32,8 @@ class Debonding(ABC):
     degree : Lagrange degree, 1 to 4.
     elements : elements along the longer body.
     layers : elements through the thickness of each loaded body.
+    interface_points : Gauss points on each element of the bond; None: three more than the degree, since the law has
+        kinks in elements.
     cells : elements in place of these, for arms that are pulled apart.
     steps : equal opening increments over the whole programme; the ends of its branches come on top. None: the path
         chooses its steps by accuracy.
@@ -61,6 +63,7 @@ class Debonding(ABC):
     degree: int = 2
     elements: int = 112
     layers: int = 1
+    interface_points: int | None = None
     cells: Cells | None = None
     steps: int | None = 150
     bend: float = 0.005
@@ -72,8 +75,7 @@ class Debonding(ABC):
         _one_of("load_at", self.load_at, ("face", "node", "hinge"))
         _one_of("degree", self.degree, (1, 2, 3, 4))
         self.require_positive("strength", "toughness", "penalty", "width", "bend", "layers")
-        if self.steps is not None:
-            self.require_positive("steps")
+        self.require_positive(*(name for name in ("steps", "interface_points") if getattr(self, name) is not None))
         if not self.ductility > 1:
             raise ValueError(f"ductility: must be > 1, got {self.ductility}")
         if not np.any(self.opening):
@@ -85,6 +87,11 @@ class Debonding(ABC):
     @abstractmethod
     def specimen(self) -> Specimen:
         """Bodies, mesh lines, bond, supports and loads."""
+
+    @property
+    def bond_points(self) -> int:
+        """Gauss points on each element of the bond."""
+        return self.interface_points or self.degree + 3
 
     @property
     def way(self) -> float:

@@ -152,11 +152,13 @@ class Dolfinx(Section):
     """Elements along the specimen."""
     layers: int | Literal["auto"] = "auto"
     """Elements through each arm, or through the strip, 1 to 100; "auto": as many as the geometry asks for."""
+    interface_points: int | Literal["auto"] = "auto"
+    """Gauss points on each element of the bond, 1 to 12; "auto": three more than the degree."""
 
-    @field_validator("degree", "layers", mode="before")
+    @field_validator("degree", "layers", "interface_points", mode="before")
     @classmethod
     def _counted_or_chosen(cls, value: object, info: ValidationInfo) -> object:
-        most = {"degree": 4, "layers": 100}[str(info.field_name)]
+        most = {"degree": 4, "layers": 100, "interface_points": 12}[str(info.field_name)]
         counted = isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= most
         if not counted and value != "auto":
             raise refuse(f'an integer >= 1 and <= {most}, or "auto"', ((), value))

@@ -97,6 +97,7 @@ LIMITS = [
     ("dolfinx.degree", 1, 4),
     ("dolfinx.elements", 2, 100_000),
     ("dolfinx.layers", 1, 100),
+    ("dolfinx.interface_points", 1, 12),
     ("pose.angle", -360.0, 360.0),
     ("load.opening", -0.2, 28.0),
 ]
@@ -132,7 +133,7 @@ def test_what_is_not_given_is_as_it_is_written() -> None:
     found = scene.model_dump()
     assert found["discretization"] == mesh and found["effects"] == effects
     assert (
-        found["dolfinx"] == {"degree": "auto", "elements": 112, "layers": "auto"}
+        found["dolfinx"] == {"degree": "auto", "elements": 112, "layers": "auto", "interface_points": "auto"}
         and found["interface"]["law"] == "bilinear"
     )
     assert found["pose"] == {"angle": 0.0, "mirror": False, "shift": (0.0, 0.0)} and found["published"] == ()

@@ -56,6 +56,7 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
             degree=mesh.degree,
             elements=mesh.elements,
             layers=mesh.layers,
+            interface_points=None if scene.dolfinx.interface_points == "auto" else scene.dolfinx.interface_points,
             cells=_given(scene),
         )
     except ValueError as error:

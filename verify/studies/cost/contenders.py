@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
 from verify.studies.cost.ladder import Try
@@ -59,13 +59,29 @@ def best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late: 
     return list(chosen)
 
 
+def other_models(rows: Mapping[Try, Row]) -> list[Try]:
+    """Other models on the meshes of the cheapest runs, and on the next coarser ones with the same steps."""
+    chosen: dict[Try, None] = {}
+    for one in best(rows):
+        chosen.update(dict.fromkeys(one.with_other_models()))
+        below = _coarser(rows, one)
+        if below is not None:
+            chosen.update(dict.fromkeys(replace(one, rung=below.rung, size=below.size).with_other_models()))
+    return list(chosen)
+
+
 def between(rows: Mapping[Try, Row]) -> list[Try]:
     """Meshes between the last that misses a level and the first that reaches it, for every method's best family."""
     chosen: dict[Try, None] = {}
     for error in LEVELS.values():
         for one in best(rows):
-            coarser = [other for other in rows if other.family == one.family and other.size < one.size]
-            below = max(coarser, key=lambda other: other.size, default=None)
+            below = _coarser(rows, one)
             if below is not None and rows[one].curve_error <= error < rows[below].curve_error:
                 chosen[Try(one.family, one.rung, round((one.size * below.size) ** 0.5), one.steps)] = None
     return list(chosen)
+
+
+def _coarser(rows: Mapping[Try, Row], one: Try) -> Try | None:
+    """A run of the same family on the next coarser mesh."""
+    coarser = [other for other in rows if other.family == one.family and other.size < one.size]
+    return max(coarser, key=lambda other: other.size, default=None)

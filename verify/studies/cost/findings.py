@@ -88,7 +88,7 @@ def by_family(rows: Sequence[Row]) -> dict[str, list[Row]]:
     """Rows of equal steps by method and degree, with rising unknowns."""
     found: dict[str, list[Row]] = {}
     for row in sorted(of_equal_steps(rows), key=lambda row: row.dofs):
-        if row.measured:
+        if row.measured and not row.model:
             found.setdefault(row.family, []).append(row)
     return found
 

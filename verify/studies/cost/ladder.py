@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from iga.bases.names import BASES
+from verify.methods.reference_mesh import reference_mesh
 from verify.methods.zone_resolution import expected
 from verify.runs.jobs import Job, left_out
 from verify.scene.parse import parse_scene
@@ -25,7 +26,8 @@ class Ladder:
     other_steps : numbers of steps that are tried on the best meshes
     more_points : interface points per element beyond the degree, for the ``iga`` methods. They cost little: on
         ``dcb-czm1`` with 500 unknowns 5 points instead of 2 reduce the error of cubic NURBS from 0.43 to 0.17 %, of
-        T-splines from 0.20 to 0.13 %, of Lagrange elements from 3.3 to 0.6 %. DOLFINx has three more
+        T-splines from 0.20 to 0.13 %, of Lagrange elements from 3.3 to 0.6 %. DOLFINx has three more, and is tried
+        with one and with five
     """
 
     ratio: float = 1.4
@@ -78,24 +80,37 @@ FAMILIES = (
 BEAM_FAMILY = Family("beam", "beam", 0, 0.0)
 
 
+#: Other models of DOLFINx on a mesh: key of the table ``dolfinx``, and how much is added to what is chosen by default.
+OTHER_MODELS = {
+    "fewer-points": ("interface_points", -2),
+    "more-points": ("interface_points", 2),
+    "more-layers": ("layers", 1),
+}
+
+
 @dataclass(frozen=True)
 class Try:
-    """One run of the study: a mesh of a family, a setting of the steps, the number of the repetition."""
+    """One run of the study: a mesh of a family, a setting of the steps, the number of the repetition.
+
+    ``model`` is a key of `OTHER_MODELS`, or empty.
+    """
 
     family: Family
     rung: int
     size: int  # ``dofs`` or ``elements``, as the method sets its mesh
     steps: int | str
     repeat: int = 0
+    model: str = ""
 
     @property
     def variant(self) -> str:
-        size = f"-{self.size}" if self.size else ""
-        return f"cost/{self.family.name}{size}-{self.steps}-steps" + (f"-again-{self.repeat}" if self.repeat else "")
+        size, model = (f"-{part}" if part else "" for part in (self.size, self.model))
+        again = f"-again-{self.repeat}" if self.repeat else ""
+        return f"cost/{self.family.name}{size}-{self.steps}-steps{model}{again}"
 
     def job(self, source: str, scene: Scene, given: Sequence[str] = ()) -> Job:
         """The job; ``given`` are the overrides of the whole study."""
-        own = _overrides(self.family, scene, self.size, self.steps)
+        own = (*_overrides(self.family, scene, self.size, self.steps), *self._of_model(scene))
         return Job(source, scene, self.family.solver, self.variant, (*given, *own), repeat=self.repeat)
 
     def with_few_steps(self, level: str) -> Iterator[Try]:
@@ -107,6 +122,19 @@ class Try:
         """The same mesh with other settings of the steps."""
         if self.family is not BEAM_FAMILY:
             yield from (replace(self, steps=steps) for steps in among or LADDER.other_steps)
+
+    def with_other_models(self) -> Iterator[Try]:
+        """The same mesh of DOLFINx with other numbers of points on the bond and of layers."""
+        if self.family.solver == "dolfinx":
+            yield from (replace(self, model=model) for model in OTHER_MODELS)
+
+    def _of_model(self, scene: Scene) -> tuple[str, ...]:
+        if not self.model:
+            return ()
+        key, more = OTHER_MODELS[self.model]
+        mesh = parse_scene(scene.model_dump(), _overrides(self.family, scene, self.size, self.steps))
+        now = {"interface_points": self.family.degree + 3, "layers": reference_mesh(mesh).layers}[key]
+        return (f"dolfinx.{key}={now + more}",)
 
 
 def ladder(scene: Scene, family: Family, plan: Ladder | None = None) -> list[Try]:

@@ -32,6 +32,7 @@ class Row:
     traction_error : RMS error of the tractions in the process zone halfway, over the strength; zones shifted together
     seconds : wall time without imports and ``jit_seconds``, the least of ``times`` runs; followed by its phases
     asked : requested steps; ``steps`` is the number of steps taken
+    model : a key of `verify.studies.cost.ladder.OTHER_MODELS`, or empty
     """
 
     method: str
@@ -62,6 +63,7 @@ class Row:
     times: int
     run: str
     status: str
+    model: str = ""
 
     @property
     def family(self) -> str:
@@ -81,6 +83,7 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int
         "degree": family.degree,
         "asked": str(one.steps),
         "run": one.variant,
+        "model": one.model,
     }
     if not results or not results[0].complete:
         return unmeasured(Row, head | {"status": results[0].status if results else outcomes[0].left_out})

@@ -14,7 +14,7 @@ from typing import ClassVar
 from verify.runs.jobs import Job, Outcome, run_all
 from verify.scene.schema import Scene
 from verify.studies import frame
-from verify.studies.cost.contenders import best, between, few_steps
+from verify.studies.cost.contenders import best, between, few_steps, other_models
 from verify.studies.cost.findings import LEVELS, cheapest, growth, of_equal_steps, orders, pareto, table
 from verify.studies.cost.ladder import BASIS_METHODS, Family, Try, ladders
 from verify.studies.cost.nonzeros import nonzeros
@@ -150,6 +150,7 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
         runner(between(runner.rows), LIMITS.vary),
         runner(few_steps(runner.rows), LIMITS.vary),
         runner([other for one in best(runner.rows) for other in one.with_other_steps()], LIMITS.vary),
+        runner(other_models(runner.rows), LIMITS.vary),
     ]
     for repeat in range(1, LIMITS.times):
         whole.append(

@@ -21,7 +21,7 @@ from verify.studies import frame
 from verify.studies.cost import ladder as ladder_of
 from verify.studies.cost import reference as reference_of
 from verify.studies.cost import study as study_of
-from verify.studies.cost.contenders import best, between, few_steps
+from verify.studies.cost.contenders import best, between, few_steps, other_models
 from verify.studies.cost.findings import LEVELS, cheapest
 from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES, LADDER, Family, Try, ladder, ladders
 from verify.studies.cost.reference import reference_jobs
@@ -133,6 +133,19 @@ def test_more_is_tried_where_it_may_pay() -> None:
     fewer = load_scene(job.source, job.overrides)
     assert fewer.discretization.steps == "auto" and fewer.discretization.bend == 0.02 and fewer.effects.search == "auto"
     assert [*Try(BEAM_FAMILY, 0, 0, 80).with_few_steps("1%"), *Try(BEAM_FAMILY, 0, 0, 80).with_other_steps()] == []
+
+
+def test_other_models_of_dolfinx_are_tried_on_its_best_meshes_and_the_next_coarser_ones() -> None:
+    family = next(one for one in FAMILIES if one.name == "dolfinx-p2")
+    runs = {
+        Try(family, i, size, 80): a_row("dolfinx", error, seconds, size, 2)
+        for i, (size, error, seconds) in enumerate([(56, 0.02, 1.0), (78, 0.002, 1.5), (110, 0.0008, 2.0)])
+    } | {Try(NURBS, 0, 420, 80): a_row("nurbs", 0.0005, 1.0)}
+    tried = other_models(runs)
+    assert {one.size for one in tried} == {56, 78, 110} and {one.family for one in tried} == {family}
+    asked = {one.model: one.job("dcb-czm1", SCENE).solved.dolfinx for one in tried if one.size == 78}
+    assert (asked["fewer-points"].interface_points, asked["more-points"].interface_points) == (3, 7)
+    assert asked["more-layers"].layers == 2 and asked["more-layers"].elements == 78
 
 
 def test_few_steps_are_tried_on_the_coarsest_meshes_that_may_win() -> None:
