@@ -76,13 +76,13 @@ def condition(band: Band | Dense, half: np.ndarray, skew: Skew | None, inverse: 
     """
     n_dof = inverse.under_load_d.size
 
-    def transposed(b: np.ndarray) -> np.ndarray:
-        if isinstance(inverse.factors, BandLU | DenseLU):
-            return inverse.factors.solve(b[:, None], transposed=True)[:, 0]
-        return inverse.solve(b[:, None])[:, 0]  # Cholesky: of a symmetric matrix
-
     def solved(b: np.ndarray) -> np.ndarray:
-        return inverse.solve(b[:, None])[:, 0]
+        return inverse.solve(b.reshape(n_dof, -1)).reshape(b.shape)
+
+    def transposed(b: np.ndarray) -> np.ndarray:
+        if not isinstance(inverse.factors, BandLU | DenseLU):
+            return solved(b)  # Cholesky: of a symmetric matrix
+        return inverse.factors.solve(b.reshape(n_dof, -1), transposed=True).reshape(b.shape)
 
     operator = LinearOperator((n_dof, n_dof), matvec=solved, rmatvec=transposed, dtype=float)
     return float(np.max(band.columns(half, skew))) * float(onenormest(operator))
