@@ -179,7 +179,9 @@ def _tools(command: Callable[..., Parser]) -> None:
     sub.add_argument("scenes", nargs="*", metavar="SCENE", help="a packaged name or a file; default: the list")
     text = "A scene file to start from: every key with what it is, its unit, its range and its default."
     sub = command(commands.new, text, "new dcb > my.toml", "change it, then: debond solve my.toml")
-    sub.add_argument("kind", metavar="KIND", help="of the specimen, like dcb or peel")
+    sub.add_argument("kind", nargs="?", metavar="KIND", help="of the specimen, like dcb or peel")
+    sub.add_argument("--from", dest="scene", metavar="SCENE", help="start from this scene: a packaged name or a file")
+    _set_option(sub)
     text = "What completes commands, options, scenes, methods and keys at the tab key of a shell."
     sub = command(commands.completion, text, "completion bash > ~/.debond-completion", "source it in ~/.bashrc")
     sub.add_argument("shell", metavar="SHELL", help="bash, zsh or fish")
@@ -192,6 +194,7 @@ def _tools(command: Callable[..., Parser]) -> None:
 def _verify_options(sub: Parser) -> None:
     what = "packaged name, scene file, or .iga mesh for a plane problem; default: those of the paper"
     sub.add_argument("scenes", nargs="*", metavar="SCENE", help=what)
+    _set_option(sub)
     _out_option(sub, "debond-report")
     finer = (
         "finer meshes as well, with observed order and uncertainty, T-splines that follow the process zone, interface "

@@ -170,20 +170,22 @@ def verify(options: argparse.Namespace) -> int:
     from verify.methods import sliding
     from verify.methods.given_meshes import given_meshes
     from verify.scene.load import load_scene, verified_scenes
+    from verify.scene.toml import keep_scene
     from verify.studies.found import named
     from verify.studies.plane.study import load_plate
     from verify.verification import Subjects, verify, would_run
 
     _refuse_ranks("verify")
-    scenes, plates, wrong = [], [], []
+    scenes: list[tuple[str, Scene]] = []
+    plates, wrong = [], []
     for source in options.scenes or verified_scenes(options.full):
         try:
             if source.lower().endswith(".iga"):
                 plates.append(load_plate(source))
             else:
-                scene = load_scene(source)
+                scene = load_scene(source, options.overrides)
                 given_meshes(scene)
-                scenes.append((source, scene))
+                scenes.append((str(options.out / f"{scene.name}.toml") if options.overrides else source, scene))
         except Refusal as error:
             wrong.append(str(error))
     names = [*(scene.name for _, scene in scenes), *(plate.name for plate in plates)]
@@ -200,6 +202,9 @@ def verify(options: argparse.Namespace) -> int:
     if options.dry_run:
         return _listed(would_run(subjects, options.out, options.jobs))
     _folder(options.out)
+    if options.overrides:
+        for path, scene in scenes:
+            keep_scene(scene, Path(path))
     for remark in {remark for _, scene in scenes for remark in sliding.remarks(scene)}:
         say(remark)
     _writable_file(options.junit, "--junit")
@@ -480,9 +485,17 @@ def scenes(options: argparse.Namespace) -> int:
 
 
 def new(options: argparse.Namespace) -> int:
-    from verify.command_line.new_scene import new_scene
+    from verify.command_line.new_scene import from_scene, new_scene
+    from verify.scene.load import load_scene
 
-    print(new_scene(options.kind), end="")
+    if (options.kind is None) == (options.scene is None):
+        raise Refusal("new: must be given either a KIND of specimen or --from SCENE")
+    if options.scene is None and options.overrides:
+        raise Refusal("--set: is for a scene that is there; debond new --from SCENE --set KEY=VALUE")
+    text = (
+        new_scene(options.kind) if options.scene is None else from_scene(load_scene(options.scene, options.overrides))
+    )
+    print(text, end="")
     return 0
 
 

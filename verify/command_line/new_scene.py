@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import re
 import textwrap
 from collections.abc import Iterator, Mapping
 from datetime import date
 from typing import Any
 
+from verify.scene import toml
 from verify.scene.complaints import suggestion
 from verify.scene.keys import SPECIMENS, Key, keys, keys_of
 from verify.scene.load import load_scene
@@ -101,6 +101,27 @@ def new_scene(kind: str) -> str:
     )
 
 
+def from_scene(scene: Scene) -> str:
+    """The text of a TOML file with the numbers of a scene, each key with what it is.
+
+    Raises
+    ------
+    Refusal : its elements are those of a file
+    """
+    if scene.specimen.mesh:
+        raise Refusal(f"--from: must be a scene without mesh files, got {scene.specimen.mesh[0]}")
+    raw = scene.model_dump(exclude_none=True)
+    known = {key.dotted: key for key in keys(scene.specimen.kind)}
+    for table in SPECIMENS[scene.specimen.kind].materials:
+        known |= {key.dotted: key for key in keys_of(table, Orthotropic)}
+
+    def note(table: str, name: str) -> Iterator[str]:
+        key = known.get(f"{table}.{name}" if table else name)
+        return _comment(raw, key) if key else iter(())
+
+    return toml.scene_file(scene, note)
+
+
 def _uncertain(kind: str, scene: Scene) -> list[str]:
     """Examples of relative standard uncertainties as comments, in the table that has begun."""
     text = (
@@ -145,9 +166,9 @@ def _assigned(raw: Mapping[str, Any], key: Key) -> list[str]:
     """The key with its value, as a comment where the default depends on the scene, or where others must be there."""
     table = raw[key.table] if key.table else raw
     if key.name not in table:
-        return [f"# {key.name} = {_toml(_example(key))}"]
+        return [f"# {key.name} = {toml.value(_example(key))}"]
     own = key.field.default_factory is not None or key.field.default == ()
-    return [f"{'# ' * own}{key.name} = {_toml(table[key.name])}"]
+    return [f"{'# ' * own}{key.name} = {toml.value(_single(table[key.name]))}"]
 
 
 def _example(key: Key) -> object:
@@ -165,7 +186,7 @@ def _commented(head: str, raw: Mapping[str, Any], these: tuple[Key, ...], values
     lines = [f"# {head}"] if head else []
     for key in these:
         note = " ".join(line.removeprefix("# ") for line in _comment(raw, key, width=10_000))
-        lines.append(f"# {key.name} = {_toml(values[key.name])}  # {note}")
+        lines.append(f"# {key.name} = {toml.value(values[key.name])}  # {note}")
     return lines
 
 
@@ -179,11 +200,6 @@ def _comment(raw: Mapping[str, Any], key: Key, width: int = _LINE_WIDTH) -> Iter
     return (f"# {line}" for line in textwrap.wrap(text, width - 2, break_long_words=False, break_on_hyphens=False))
 
 
-def _toml(value: object) -> str:
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(_toml(one) for one in value) + "]" if len(value) != 1 else _toml(value[0])
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{key} = {_toml(one)}" for key, one in value.items()) + " }"
-    if isinstance(value, bool | str):
-        return json.dumps(value)
-    return repr(value)
+def _single(found: object) -> object:
+    """A list of one value as that value."""
+    return found[0] if isinstance(found, list | tuple) and len(found) == 1 else found

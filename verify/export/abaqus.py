@@ -10,7 +10,7 @@ import numpy as np
 
 from verify.export.mesh import SceneMesh
 from verify.export.numbers import effects, header, law, sliding
-from verify.scene.materials import Isotropic, Material, elastic_constants
+from verify.scene.materials import Isotropic, Material, plane_strain_constants
 from verify.scene.schema import Scene, counted_steps
 from verify.theory.law import Bilinear
 
@@ -57,8 +57,8 @@ def _of_abaqus(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
     scale = 1.0 / face.factor
     yield f"** COH2D4 closes with the stiffness of the bond, {bond.stiffness:g}: debond does so as well with"
     yield f"**   --set interface.penalty={bond.stiffness:g}"
-    yield f"** load: RF2 of {face.name}_mean; opening: {scale:g} times its U2. Held against debond by"
-    yield f"**   debond verify {scene.name} --with history.csv --opening U2 --load RF2 --opening-scale {scale:g}"
+    yield f"** load: RF2 of {face.name}_mean; opening: {scale:g} times its U2. Held against debond, in this folder, by"
+    yield f"**   debond verify {scene.name}.toml --with history.csv --opening U2 --load RF2 --opening-scale {scale:g}"
 
 
 def _mesh(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
@@ -137,14 +137,14 @@ def _elastic(material: Material, plane: str) -> Iterator[str]:
         yield "*ELASTIC"
         yield f"{_number(material.young)}, {_number(material.poisson)}"
         return
-    c = elastic_constants(material)
+    c = plane_strain_constants(material)
     E1, E2, G12, nu12 = (c[key] for key in ("E1", "E2", "G12", "nu12"))
     if plane == "stress":
         yield "*ELASTIC, TYPE=LAMINA"
         yield ", ".join(map(_number, (E1, E2, nu12, G12, G12, G12)))
     else:
         yield "*ELASTIC, TYPE=ENGINEERING CONSTANTS"
-        yield ", ".join(map(_number, (E1, E2, E2, nu12, nu12, c.get("nu23", nu12), G12, G12)))
+        yield ", ".join(map(_number, (E1, E2, c["E3"], nu12, c["nu13"], c["nu23"], G12, G12)))
         yield f"{_number(G12)},"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 
 from verify.export.abaqus import write_abaqus
 from verify.export.gmsh import write_gmsh
@@ -13,6 +14,7 @@ from verify.export.vtu import write_scene_vtu
 from verify.runs.folder import write_json
 from verify.scene.schema import Scene
 from verify.scene.tables import one_of
+from verify.scene.toml import keep_scene
 from verify.support.refusal import Refusal
 
 ENDINGS = {"abaqus": "inp", "gmsh": "msh", "vtu": "vtu"}
@@ -43,13 +45,15 @@ def export(scene: Scene, kind: str, folder: Path, layers: int | None = None) -> 
         else:
             files = [folder / f"{scene.name}.{ENDINGS[kind]}"]
             _write(kind, scene, mesh, files[0])
-        files.append(folder / "scene.json")
-        write_json(files[-1], numbers(scene, mesh))
+        files += [folder / "scene.json", folder / f"{scene.name}.toml"]
+        write_json(files[-2], numbers(scene, mesh))
+        keep_scene(scene, files[-1])
     except OSError as error:
         text = f"must be a folder that can be written to, got {str(folder)!r}: {error.strerror}"
         raise Refusal(f"--out: {text}") from None
     size = f"{len(mesh.X_nI)} nodes, {len(mesh.conn_ea)} elements of degree {mesh.degree}, {len(mesh.pair_kb)} pairs"
-    return [size, *notes(scene), *(f"written: {file}" for file in files)]
+    then = f"its curve is judged by: debond verify {quote(str(files[-1]))} --with CURVE"
+    return [size, *notes(scene), *(f"written: {file}" for file in files), then]
 
 
 def _write(kind: str, scene: Scene, mesh: SceneMesh, path: Path) -> None:

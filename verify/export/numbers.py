@@ -10,7 +10,7 @@ import numpy as np
 from verify.checks.load_introduction import sentence
 from verify.export.mesh import SceneMesh
 from verify.scene.effects import simulated
-from verify.scene.materials import elastic_constants
+from verify.scene.materials import elastic_constants, plane_strain_constants
 from verify.scene.schema import Scene, counted_steps
 from verify.theory.law import Bilinear
 
@@ -43,12 +43,13 @@ def effects(scene: Scene) -> dict[str, Any]:
 def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
     """The content of ``scene.json``. Nodes are counted from 1 there; components are 1 for x and 2 for y."""
     bond, specimen = law(scene), scene.specimen
+    constants = plane_strain_constants if specimen.plane == "strain" else elastic_constants
     return {
         "scene": scene.name,
         "units": scene.units,
         "specimen": specimen.model_dump(exclude={"mesh"}),
         "bodies": {
-            name: {**elastic_constants(material), "isotropic": hasattr(material, "young")}
+            name: {**constants(material), "isotropic": hasattr(material, "young")}
             for name, material in zip(mesh.names, scene.materials, strict=True)
         },
         "law": {

@@ -11,6 +11,7 @@ from typing import Any
 from verify.scene.complaints import suggestion
 from verify.scene.parse import DEEPEST, SceneError, _key_of, parse_scene
 from verify.scene.schema import Scene
+from verify.scene.stated.certified import problem_key
 from verify.support.checked_files import read_at_most
 
 _FOLDER = Path(__file__).with_name("scenes")
@@ -37,7 +38,8 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
     ----------
     name_or_path : a packaged name, ``random-SEED`` (`verify.scene.random_scenes`), or the path of a TOML file
     overrides : ``dotted.key=value`` with a TOML value; a bare word is taken as text. Mesh files that are named here are
-        found from the working directory and may lie anywhere; those of a scene file lie in its folder or below.
+        found from the working directory and may lie anywhere; those of a scene file lie in its folder or below. Where
+        they make another problem, the published values of the scene are not of it, and are dropped.
 
     Raises
     ------
@@ -53,7 +55,16 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
     raw = _read(path, source)
     if not any(_key_of(override) in ("specimen", "specimen.mesh") for override in overrides):
         raw = _beside(path, raw, source)
-    return parse_scene({"name": _as_name(path.stem), **raw}, overrides, source)
+    return _with_published({"name": _as_name(path.stem), **raw}, overrides, source)
+
+
+def _with_published(raw: dict[str, Any], overrides: Sequence[str], source: str) -> Scene:
+    """The scene; what is published of it is dropped where overrides make another problem of it."""
+    if not raw.get("published") or not overrides or any(_key_of(one).startswith("published") for one in overrides):
+        return parse_scene(raw, overrides, source)
+    varied = parse_scene({**raw, "published": []}, overrides, source)
+    same = problem_key(varied) == problem_key(parse_scene({**raw, "published": []}, (), source))
+    return parse_scene(raw, overrides, source) if same else varied
 
 
 def _read(path: Path, source: str) -> dict[str, Any]:

@@ -94,6 +94,12 @@ def elastic_constants(material: Material) -> dict[str, float]:
     return material.model_dump(exclude_none=True)
 
 
+def plane_strain_constants(material: Material) -> dict[str, float]:
+    """Those of `elastic_constants`, and E3, nu13 and nu23: the third direction is like the second."""
+    c = elastic_constants(material)
+    return c | {"E3": c["E2"], "nu13": c["nu12"], "nu23": c.get("nu23", c["nu12"])}
+
+
 def axial_modulus(material: Material, plane: str) -> float:
     """Stiffness against stretching along the arm; in plane strain E1 / (1 - nu13 nu31), E3 = E2 and nu13 = nu12."""
     c = elastic_constants(material)

@@ -99,7 +99,7 @@ BROKEN = {
     "pose.shift=[1.0]": "pose.shift: must be a list of two numbers, got [1.0]",
     'pose.shift=[1.0, "x"]': "pose.shift[1]: must be a number, got 'x'",
     "dolfinx.degree=5": 'dolfinx.degree: must be an integer >= 1 and <= 4, or "auto", got 5',
-    "dolfinx=3": "dolfinx: must be a table of degree, elements, layers, got 3",
+    "dolfinx=3": "dolfinx: must be a table of degree, elements, layers, interface_points, got 3",
     "units=3": "units: must be a text, got 3",
     "name=../up": "--set name=../up: the value must be TOML, like 6, true or [1.0, 0.2], got '../up'",
     'name="../up"': (

@@ -13,6 +13,7 @@ from verify.methods.solve import prepare
 from verify.runs.fingerprint import digest
 from verify.runs.jobs import Job, left_out
 from verify.runs.sweep import Task
+from verify.scene import toml
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Dolfinx, Scene
 from verify.studies.scaling.ranks import MPIRUN_MISSING, cores
@@ -89,7 +90,7 @@ def sizes() -> list[int]:
 
 def _run(source: str, scene: Scene, method: str, size: int, given: Sequence[str]) -> Run:
     """One size on one rank, with the effects of the whole programme; ``auto`` might choose others for a short one."""
-    effects = (f"effects.{key}={_toml(value)}" for key, value in prepare(scene, method).effects.items())
+    effects = (f"effects.{key}={toml.value(value)}" for key, value in prepare(scene, method).effects.items())
     mesh = (
         (f"dolfinx.degree={DEGREES[method]}", f"dolfinx.elements={elements(scene, size)}")
         if method == "dolfinx"
@@ -102,10 +103,6 @@ def _run(source: str, scene: Scene, method: str, size: int, given: Sequence[str]
     opening = SIZES.way * max(scene.load.opening, key=abs)
     paced = (f"load.opening={opening!r}", f"discretization.steps={SIZES.steps}", "published=[]")
     return Run(source, scene, method, f"scaling/{method}-{size}", (*given, *paced, *effects, *mesh), fields=False)
-
-
-def _toml(value: object) -> str:
-    return f'"{value}"' if isinstance(value, str) else str(value).lower()
 
 
 def elements(scene: Scene, size: int) -> int:

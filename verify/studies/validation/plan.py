@@ -10,6 +10,7 @@ from verify.methods.method import Prepared
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare, require
 from verify.runs.jobs import Job, left_out
+from verify.scene import toml
 from verify.scene.parse import SceneError
 from verify.scene.schema import Scene
 from verify.scene.stated.uncertainty import number_at, scaled
@@ -84,7 +85,7 @@ def _held(prepared: Prepared, given: Sequence[str]) -> list[str]:
     """
     scene = prepared.scene
     held = [f"interface.penalty={scene.interface.penalty!r}"]
-    held += [f"effects.{one.key}={_toml(one.value)}" for one in prepared.decisions]
+    held += [f"effects.{one.key}={toml.value(one.value)}" for one in prepared.decisions]
     if prepared.method.with_dofs and not any(one.startswith("discretization.steps") for one in given):
         held.append("discretization.steps=auto")
     return held
@@ -151,7 +152,3 @@ def _checked(job: Job, what: str) -> Job:
     if why:
         raise Refusal(f"{what}: {' '.join(why.split())}")
     return job
-
-
-def _toml(value: object) -> str:
-    return f'"{value}"' if isinstance(value, str) else str(value).lower()

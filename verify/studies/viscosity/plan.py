@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from verify.methods.method import Unsuitable
 from verify.methods.solve import prepare, require
 from verify.runs.jobs import Job, left_out
+from verify.scene import toml
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.studies.frame import repeated
@@ -51,7 +52,7 @@ def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -
         )
     first = prepare(parse_scene(scene.model_dump(), [_viscosity(VISCOSITIES[0])]), method)
     require(first)
-    fixed = tuple(f"effects.{one.key}={_toml(one.value)}" for one in first.decisions)
+    fixed = tuple(f"effects.{one.key}={toml.value(one.value)}" for one in first.decisions)
     exact = Job(source, scene, method, f"viscosity/{method}", (*given, *fixed, _viscosity(0.0)), fields=False)
     viscous = tuple(
         replace(exact, variant=f"{exact.variant}-{v:g}", overrides=(*exact.overrides[:-1], _viscosity(v)))
@@ -65,7 +66,3 @@ def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -
 
 def _viscosity(value: float) -> str:
     return f"interface.viscosity={value:g}"
-
-
-def _toml(value: object) -> str:
-    return f'"{value}"' if isinstance(value, str) else str(value).lower()

@@ -1,0 +1,58 @@
+"""Scenes and their values as TOML."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from verify.scene.schema import Scene
+
+
+def value(found: object) -> str:
+    """One value, tables in one line."""
+    if isinstance(found, list | tuple):
+        return "[" + ", ".join(map(value, found)) + "]"
+    if isinstance(found, Mapping):
+        return "{ " + ", ".join(f"{key} = {value(one)}" for key, one in found.items()) + " }"
+    if isinstance(found, bool | str):
+        return json.dumps(found, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return repr(found)
+
+
+def scene_file(scene: Scene, note: Callable[[str, str], Iterable[str]] = lambda table, key: ()) -> str:
+    """The text of a file from which `verify.scene.load.load_scene` reads an equal scene.
+
+    ``note`` returns comment lines on a key of a table, "" at the top.
+    """
+    return "\n".join(_lines(scene.model_dump(exclude_none=True), note)) + "\n"
+
+
+def keep_scene(scene: Scene, path: Path) -> None:
+    """Write the scene there, with the files of its elements beside it."""
+    names = [Path(name).name for name in scene.specimen.mesh]
+    for name, file in zip(names, scene.specimen.mesh, strict=True):
+        if not (path.parent / name).exists() or not (path.parent / name).samefile(file):
+            shutil.copy(file, path.parent / name)
+    specimen = scene.specimen.model_copy(update={"mesh": tuple(names)} if names else {})
+    path.write_text(scene_file(scene.model_copy(update={"specimen": specimen})), encoding="utf-8")
+
+
+def _lines(raw: Mapping[str, Any], note: Callable[[str, str], Iterable[str]]) -> Iterator[str]:
+    tables = {name: table for name, table in raw.items() if isinstance(table, Mapping)}
+    several = raw.get("published", ())
+    for key in raw:  # the keys of no table come first
+        if key not in tables and key != "published":
+            yield from note("", key)
+            yield f"{key} = {value(raw[key])}"
+    for name, table in tables.items():
+        if not table:
+            continue
+        yield from ("", f"[{name}]")
+        for key, one in table.items():
+            yield from note(name, key)
+            yield f"{key} = {value(one)}"
+    for table in several:
+        yield from ("", "[[published]]", *(f"{key} = {value(one)}" for key, one in table.items()))
