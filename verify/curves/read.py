@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,9 @@ from verify.support.refusal import Refusal
 
 Column = str | int
 
+#: Name of the load where a table has none of that name.
+BESIDES_LOAD = "force"
+
 
 class CurveError(Refusal):
     """A file, table or pair of arrays that holds no curve."""
@@ -26,9 +30,9 @@ class CurveError(Refusal):
 class Reading:
     """Which columns of a table are opening and load, and what they are multiplied by.
 
-    A column is a name, in capitals or not, or a number from 1. Without either the columns are those named opening and
-    load, in a table without a header the first two. A negative scale turns a sign. Of ``more`` columns cells may be
-    empty, and the values are as they stand.
+    A column is a name, in capitals or not, with the unit in brackets behind it or without, or a number from 1. Without
+    either the columns are those named opening and load, or force, in a table without a header the first two. A negative
+    scale turns a sign. Of ``more`` columns cells may be empty, and the values are as they stand.
 
     Raises
     ------
@@ -63,7 +67,8 @@ def read_curve(path: Path | str, reading: Reading | None = None) -> tuple[np.nda
 
     Semicolons, tabs, commas or blanks separate; the decimal mark is a point or, where it does not separate, a comma.
     The header is the first line, comments included, that has the names. What stands above it, and lines without any
-    number right below it (units), do not count.
+    number right below it (units), do not count. Printed results of other programs are read as tables
+    (`verify.curves.listings`).
 
     Raises
     ------
@@ -160,12 +165,9 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[_Header, list[R
     """Where opening and load stand, and the rows below the header."""
     wanted = [column for column in reading.columns if isinstance(column, str)]
     rows = [*table.lead, *table.body]
-    width = len(table.body[0][1]) if table.body else 0
-    remarks = [row for row in table.remarks if len(row[1]) == width]
-    for line, cells in [*table.lead, *remarks] if wanted else []:
-        if {_key(name) for name in wanted} <= {_key(cell) for cell in cells}:
-            below = _below_units(table.dialect, [row for row in rows if row[0] > line])
-            return _Header(_chosen(f"{path}:{line}", cells, reading), len(cells), cells), below
+    for tried in (reading, *([replace(reading, load=BESIDES_LOAD)] if reading.load is None else [])):
+        if found := _named(path, table, tried):
+            return found
     below = _below_units(table.dialect, rows)
     titles = rows[: len(rows) - len(below)]
     if wanted and (titles or any(isinstance(one, str) for one in (reading.opening, reading.load, *reading.more))):
@@ -177,6 +179,19 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[_Header, list[R
     if width < 2:
         raise CurveError(f"{path}:{line}: must have two columns, opening and load, got {width}")
     return _counted(f"{path}:{line}", reading, width), below
+
+
+def _named(path: Path, table: Table, reading: Reading) -> tuple[_Header, list[Row]] | None:
+    """The first line that has the names, wherever it stands, and the rows below; None without names."""
+    wanted = {_bare(column) for column in reading.columns if isinstance(column, str)}
+    rows = [*table.lead, *table.body]
+    width = len(table.body[0][1]) if table.body else 0
+    remarks = [row for row in table.remarks if len(row[1]) == width]
+    for line, cells in [*table.lead, *remarks, *table.body] if wanted else []:
+        if wanted <= {_bare(cell) for cell in cells}:
+            below = _below_units(table.dialect, [row for row in rows if row[0] > line])
+            return _Header(_chosen(f"{path}:{line}", cells, reading), len(cells), cells), below
+    return None
 
 
 def _below_units(dialect: Dialect, rows: list[Row]) -> list[Row]:
@@ -204,7 +219,8 @@ def _column(place: str, names: Sequence[Any], wanted: Column) -> int:
     found = [i for i, name in enumerate(names) if name == wanted]
     if isinstance(wanted, int):
         return found[0] if found else _position(place, wanted, len(names))
-    found = found or [i for i, name in enumerate(names) if _key(str(name)) == _key(wanted)]
+    for same in (_key, _bare):
+        found = found or [i for i, name in enumerate(names) if same(str(name)) == same(wanted)]
     if len(found) != 1:
         which = "one" if found else "a"
         text = f"must have {which} column {wanted!r}, got {_listed(names)}; numbers choose columns as well"
@@ -251,6 +267,11 @@ def _no_such_column(path: Path, table: Table, wanted: list[str]) -> CurveError:
 def _key(name: str) -> str:
     """Names are the same whatever their capitals, and whatever stood between them where blanks separate the numbers."""
     return name.strip(" ,;").casefold()
+
+
+def _bare(name: str) -> str:
+    """A name without the unit in brackets behind it."""
+    return _key(re.sub(r"\s*(\([^()]*\)|\[[^][]*\])\s*$", "", name)) or _key(name)
 
 
 def _listed(names: Sequence[Any]) -> str:

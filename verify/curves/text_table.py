@@ -8,12 +8,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 
+from verify.curves.listings import Row, listing
+
 #: Beginnings of comment lines; the last one is Abaqus's.
 COMMENTS = ("#", "%", "!", "//", "**")
 
-_SAMPLE = 400  # lines from which the separator is found, spread over the file
+#: Numbers with a mark between thousands, without and with a decimal comma.
+_THOUSANDS = (
+    re.compile(r"[+-]?\d{1,3}(?:,\d{3})+(?:\.\d*)?"),
+    re.compile(r"[+-]?\d{1,3}(?:\.\d{3})+,\d*|[+-]?\d{1,3}(?:\.\d{3}){2,}"),
+)
 
-Row = tuple[int, list[str]]  # line number, from 1, and cells
+_SAMPLE = 400  # lines from which the separator is found, spread over the file
 
 
 @dataclass(frozen=True)
@@ -38,7 +44,13 @@ class Dialect:
         return cells
 
     def value(self, cell: str) -> float | None:
-        """The number in a cell, NaN and infinity too, or None. Fortran's 1.0D-3 is one."""
+        """The number in a cell, NaN and infinity too, or None. Fortran's 1.0D-3 is one, and 1,234.5 or 1.234,5.
+
+        Between thousands stands what is not the decimal mark; a comma that may be either is the decimal mark.
+        """
+        either = cell.count(",") == 1 and "." not in cell and self.separator != ","
+        if _THOUSANDS[self.decimal_comma].fullmatch(cell) and (self.decimal_comma or not either):
+            cell = cell.replace("." if self.decimal_comma else ",", "")
         text = cell.replace(",", ".") if self.decimal_comma else cell
         try:
             return None if "_" in text else float(re.sub("[dD]", "e", text) if text[-1:].isdigit() else text)
@@ -79,6 +91,9 @@ class Table:
 def read_table(text: str) -> Table:
     """Take a text apart by the dialect in which most of its cells are numbers, two or more a line."""
     lines = [(i, line.strip(" \r\f\v")) for i, line in enumerate(re.split("\r\n|\n|\r", text), 1) if line.strip()]
+    printed = listing(lines)
+    if printed is not None:
+        return Table(Dialect("", False), [], printed[:1], printed[1:])
     comments = [(i, line) for i, line in lines if line.startswith(COMMENTS)]
     data = [(i, line) for i, line in lines if not line.startswith(COMMENTS)]
     dialect = _dialect([line for _, line in data])
