@@ -57,6 +57,7 @@ def _of_abaqus(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
     scale = 1.0 / face.factor
     yield f"** COH2D4 closes with the stiffness of the bond, {bond.stiffness:g}: debond does so as well with"
     yield f"**   --set interface.penalty={bond.stiffness:g}"
+    yield "** history.csv is written by: abaqus python history.py JOB.odb"
     yield f"** load: RF2 of {face.name}_mean; opening: {scale:g} times its U2. Held against debond, in this folder, by"
     yield f"**   debond verify {scene.name}.toml --with history.csv --opening U2 --load RF2 --opening-scale {scale:g}"
 

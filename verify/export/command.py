@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from shlex import quote
 
-from verify.export.abaqus import write_abaqus
+from verify.export.abaqus import reference_nodes, write_abaqus
 from verify.export.gmsh import write_gmsh
 from verify.export.mesh import SceneMesh, scene_mesh
 from verify.export.numbers import LAW_NOTES, notes, numbers
+from verify.export.odb import write_odb_script
 from verify.export.tables import write_tables
 from verify.export.vtu import write_scene_vtu
 from verify.runs.folder import write_json
@@ -45,6 +46,9 @@ def export(scene: Scene, kind: str, folder: Path, layers: int | None = None) -> 
         else:
             files = [folder / f"{scene.name}.{ENDINGS[kind]}"]
             _write(kind, scene, mesh, files[0])
+        if kind == "abaqus":
+            files.append(folder / "history.py")
+            write_odb_script(reference_nodes(mesh), files[-1])
         files += [folder / "scene.json", folder / f"{scene.name}.toml"]
         write_json(files[-2], numbers(scene, mesh))
         keep_scene(scene, files[-1])
