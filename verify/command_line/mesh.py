@@ -8,7 +8,7 @@ from pathlib import Path
 from iga.files.iga_format import IgaFile, mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.mesh.extraction import Mesh
-from verify.command_line.mesh_facts import MeshFacts
+from verify.command_line.mesh_facts import MeshFacts, surface_facts, surface_lines
 from verify.support.progress import telling
 from verify.support.refusal import Refusal
 from verify.support.say import say
@@ -27,28 +27,31 @@ def examine(path: Path, out: Path | None, as_json: bool, control: bool) -> bool:
 
     Returns
     -------
-    Whether a solver can use the mesh.
+    Whether a solver can use the mesh; of a surface or a volume, whose facts are stated, True.
 
     Raises
     ------
-    Refusal : the file is malformed or not a plane body, or ``out`` cannot be written.
+    Refusal : the file is malformed or no mesh, or ``out`` cannot be written.
     """
     if out is not None and out.suffix.lower() not in (".vtu", ".iga", *PICTURES):
         raise Refusal(f"--out: must end in .vtu, .iga, {', '.join(PICTURES[:-1])} or {PICTURES[-1]}, got {str(out)!r}")
     with telling(f"mesh {path.name}", _seconds(path)):
-        file, body = _read(path)
-        facts = MeshFacts(body)
-        report = _report(path, file, facts)
-        written = _write(out, path, file, facts, control)
+        file = _read(path)
+        if file.kind != "plane":
+            return _other(path, file, out, as_json)
+        body = _body(path, file)
+        known = MeshFacts(body)
+        report = _report(path, file, known)
+        written = _write(out, path, file, known, control)
     if as_json:
         print(json.dumps({**report, "written": written and str(written)}, indent=2))
     else:
         print("\n".join(_lines(report)))
         if written:
             print(f"written: {written}")
-    for sentence in facts.unsound:
+    for sentence in known.unsound:
         say(f"{path}: {sentence}")
-    return not facts.unsound
+    return not known.unsound
 
 
 def _seconds(path: Path) -> float:
@@ -59,17 +62,39 @@ def _seconds(path: Path) -> float:
         return 1.0
 
 
-def _read(path: Path) -> tuple[IgaFile, Mesh]:
+def _read(path: Path) -> IgaFile:
     try:
-        file = read_iga(path)
+        return read_iga(path)
     except OSError as error:
         raise Refusal(f"FILE: must be a file that can be read, got {str(path)!r}: {error.strerror}") from None
     except ValueError as error:
         raise Refusal(str(error)) from None
+
+
+def _body(path: Path, file: IgaFile) -> Mesh:
     try:
-        return file, mesh(file)
+        return mesh(file)
     except ValueError as error:
         raise Refusal(f"{path}: {error}") from None
+
+
+def _other(path: Path, file: IgaFile, out: Path | None, as_json: bool) -> bool:
+    """The facts of a file that is no plane body, which no solver takes; it can be written as `.iga`."""
+    if out is not None and out.suffix.lower() != ".iga":
+        raise Refusal(f"--out: must end in .iga for a {file.kind}, got {str(out)!r}")
+    found = surface_facts(str(path), file)
+    if out is not None:
+        _write_iga(file, out)
+    print(json.dumps(found, indent=2) if as_json else "\n".join(surface_lines(found)))
+    say(f"{path}: type: {file.kind}; the solvers take plane bodies alone")
+    return True
+
+
+def _write_iga(file: IgaFile, out: Path) -> None:
+    try:
+        write_iga(file, out)
+    except OSError as error:
+        raise Refusal(f"--out: must be a place that can be written to, got {str(out)!r}: {error.strerror}") from None
 
 
 def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts, control: bool) -> Path | None:

@@ -1,4 +1,4 @@
-"""Facts of any extracted mesh: elements, T-junctions, extraordinary points, and whether a solver can use it."""
+"""Facts of an extracted mesh: elements, T-junctions, extraordinary points, whether a solver takes it; of surfaces."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
+from iga.files.iga_format import IgaFile
+from iga.mesh.bernstein import bernstein, bernstein_derivative, tensor
 from iga.mesh.bezier import homogeneous, jacobian
 from iga.mesh.continuity import jumps
 from iga.mesh.edges import Sides, chains_of, element_sides
-from iga.mesh.extraction import Mesh
+from iga.mesh.extraction import ElementBlock, Mesh
 from iga.mesh.quadrature import gauss, square
 from iga.mesh.rank import coefficients, rank
 from iga.mesh.soundness import faults, unity_fault
@@ -151,3 +153,56 @@ class MeshFacts:
 def independent(mesh: Mesh) -> int:
     """Rank of the matrix (n_A, n_eb) of all functions in the Bernstein polynomials of all elements."""
     return rank(coefficients(mesh))
+
+
+def surface_facts(path: str, file: IgaFile) -> dict[str, object]:
+    """Facts of a surface in space or a volume as numbers, lists and words; the area of a surface alone."""
+    unity = max(float(np.abs(block.C_eab.sum(1) - 1.0).max()) for block in file.blocks)
+    found: dict[str, object] = {
+        "file": path,
+        "type": file.kind,
+        "control_points": len(file.P_AI),
+        "elements": len(file.block_e),
+        "kinds": [
+            {"degrees": list(one.degrees), "functions": one.C_eab.shape[1], "elements": len(one.C_eab)}
+            for one in file.blocks
+        ],
+        "box": [file.P_AI.min(0).tolist(), file.P_AI.max(0).tolist()],
+        "sets": [{"kind": one.kind, "name": one.name, "entries": len(one.ids)} for one in file.sets],
+        "sum_of_functions_misses_one_by": unity,
+    }
+    if all(len(one.degrees) == 2 for one in file.blocks):
+        found["area"] = float(sum(_areas(file, block).sum() for block in file.blocks))
+    return found
+
+
+def surface_lines(found: dict) -> list[str]:
+    """The facts as lines of text."""
+    low, high = found["box"]
+    sets = ", ".join(f"{one['name']} ({one['entries']} of {one['kind']})" for one in found["sets"])
+    return [
+        f"{found['file']}: {found['type']}, {found['control_points']} control points, {found['elements']} elements",
+        *(
+            f"  {kind['elements']} of degrees {' and '.join(map(str, kind['degrees']))} with {kind['functions']} "
+            "functions each"
+            for kind in found["kinds"]
+        ),
+        "control points: " + ", ".join(f"{x} {a:.6g} to {b:.6g}" for x, a, b in zip("xyz", low, high, strict=True)),
+        f"sets: {sets or 'none'}",
+        f"sum of functions: misses 1 by up to {found['sum_of_functions_misses_one_by']:.1e}",
+        *([f"area: {found['area']:.12g}"] if "area" in found else []),
+    ]
+
+
+def _areas(file: IgaFile, block: ElementBlock) -> np.ndarray:
+    """Area (n_e,) of each element: the integral of ``|X_s x X_t|`` with X = h / W."""
+    p, q = block.degrees
+    points_q, w_q = square(gauss(p + 2), gauss(q + 2))
+    s, t = points_q.T
+    H_ebI = homogeneous(file.P_AI, file.w_A, block)
+    h = tensor(bernstein(p, s), bernstein(q, t)) @ H_ebI
+    h_s = tensor(bernstein_derivative(p, s), bernstein(q, t)) @ H_ebI
+    h_t = tensor(bernstein(p, s), bernstein_derivative(q, t)) @ H_ebI
+    X, W = h[..., :3] / h[..., 3:], h[..., 3:]
+    X_s, X_t = ((one[..., :3] - X * one[..., 3:]) / W for one in (h_s, h_t))
+    return np.linalg.norm(np.cross(X_s, X_t), axis=-1) @ w_q

@@ -52,6 +52,23 @@ def facts_of(path, capsys) -> dict:
 
 
 @pytest.mark.parametrize("name", REAL)
+def test_a_surface_in_space_has_the_facts_of_the_plane_body_that_it_was(name, capsys):
+    file = read_iga(real(name))
+    x, y, _ = file.P_AI.T
+    turned = np.stack([0.6 * x, y, 0.8 * x], -1)
+    write_iga(replace(file, kind="surface", P_AI=turned), Path("surface.iga"))
+    assert main(["mesh", "surface.iga", "--json", "--out", "again.iga"]) == 0
+    said = capsys.readouterr()
+    report = json.loads(said.out)
+    points, elements, *_, area = FACTS[name]
+    assert (report["type"], report["control_points"], report["elements"]) == ("surface", points, elements)
+    assert report["area"] == pytest.approx(area, rel=1e-6)
+    assert "the solvers take plane bodies alone" in said.err and Path("again.iga").exists()
+    assert main(["mesh", "surface.iga"]) == 0 and "area: " in capsys.readouterr().out
+    assert main(["mesh", "surface.iga", "--out", "a.vtu"]) == 2
+
+
+@pytest.mark.parametrize("name", REAL)
 def test_facts_of_real_files(name, capsys):
     points, elements, junctions, valences, edges, area = FACTS[name]
     report = facts_of(real(name), capsys)
@@ -152,7 +169,7 @@ def test_malformed_files_are_bad_input(what, tmp_path, capsys):
     [
         (["none.iga"], "FILE: must be a file that can be read, got 'none.iga': No such file"),
         (["."], "FILE: must be a file that can be read, got '.': Is a directory"),
-        (["volume.iga"], "volume.iga: type: must be plane for a body in the plane, got volume"),
+        (["volume.iga", "--out", "x.vtu"], "--out: must end in .iga for a volume, got 'x.vtu'"),
         (["small.iga", "--out", "x.obj"], "--out: must end in .vtu, .iga, .svg, .png or .pdf, got 'x.obj'"),
         (["small.iga", "--out", "no/x.svg"], "--out: must be a place that can be written to, got 'no/x.svg'"),
         (["small.iga", "--out", "no/x.vtu"], "--out: must be a place that can be written to, got 'no/x.vtu'"),
