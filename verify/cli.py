@@ -202,6 +202,7 @@ def _verify_options(sub: Parser) -> None:
     )
     sub.add_argument("--full", action="store_true", help=finer)
     _with_options(sub)
+    sub.add_argument("--end", type=number, metavar="D", help="judge up to this opening, where a curve ends early")
     must = "exit 1 unless this method has run on every scene, for instance where DOLFINx may be missing; repeatable"
     sub.add_argument("--require", action="append", default=[], metavar="METHOD", help=must)
     sub.add_argument("--strict", action="store_true", help="exit 1 where anything could not be judged")

@@ -176,6 +176,7 @@ def verify(options: argparse.Namespace) -> int:
     from verify.verification import Subjects, verify, would_run
 
     _refuse_ranks("verify")
+    given = [*options.overrides, *([f"load.opening={options.end!r}"] if options.end is not None else [])]
     scenes: list[tuple[str, Scene]] = []
     plates, wrong = [], []
     for source in options.scenes or verified_scenes(options.full):
@@ -183,9 +184,9 @@ def verify(options: argparse.Namespace) -> int:
             if source.lower().endswith(".iga"):
                 plates.append(load_plate(source))
             else:
-                scene = load_scene(source, options.overrides)
+                scene = load_scene(source, given)
                 given_meshes(scene)
-                scenes.append((str(options.out / f"{scene.name}.toml") if options.overrides else source, scene))
+                scenes.append((str(options.out / f"{scene.name}.toml") if given else source, scene))
         except Refusal as error:
             wrong.append(str(error))
     names = [*(scene.name for _, scene in scenes), *(plate.name for plate in plates)]
@@ -202,7 +203,7 @@ def verify(options: argparse.Namespace) -> int:
     if options.dry_run:
         return _listed(would_run(subjects, options.out, options.jobs))
     _folder(options.out)
-    if options.overrides:
+    if given:
         for path, scene in scenes:
             keep_scene(scene, Path(path))
     for remark in {remark for _, scene in scenes for remark in sliding.remarks(scene)}:
@@ -240,7 +241,12 @@ def _curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curv
         raise Refusal(f"--with: needs one SCENE, which its curve is of, got {scenes + plates}")
     if not options.curves and reading != Reading():
         raise Refusal("--with: is missing, its FILE is what --opening, --load and their scales are about")
-    return read_curves(options.curves, reading)
+    curves = read_curves(options.curves, reading)
+    _say_changed(*(curve.path for curve in curves))
+    for curve in curves:
+        if not max(curve.result.load) > 0.0:
+            say(f"--with: no load of {curve.name} is above 0: --load-scale -1 turns its sign")
+    return curves
 
 
 def cost(options: argparse.Namespace) -> int:
@@ -396,6 +402,7 @@ def compare(options: argparse.Namespace) -> int:
         work.Source(getattr(options, side), Reading(**{key: getattr(options, f"{key}_{side}") for key in keys}))
         for side in "ab"
     )
+    _say_changed(options.a, options.b)
     comparison, loads = work.held_against(a, b, options.end, options.at, options.begin, options.programme)
     if options.out is not None:
         _folder(options.out)
@@ -412,6 +419,15 @@ def compare(options: argparse.Namespace) -> int:
         work.explain((a, b), options.curve_tol)
         return FAILED
     return 0
+
+
+def _say_changed(*paths: Path) -> None:
+    """A remark on every folder of a run whose curve is not the one that the run wrote."""
+    from verify.runs.folder import changed
+
+    for path in filter(Path.is_dir, paths):
+        if said := changed(path):
+            say(said)
 
 
 def reduce(options: argparse.Namespace) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import errno
+import hashlib
 import json
 import math
 import os
@@ -20,7 +21,8 @@ from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, SLIDING_COLUMNS, Resu
 from verify.support.checked_files import ANY, NUMBER, Damaged, number, read_json
 from verify.support.refusal import Refusal
 
-FILES = ("curve.csv", "evidence.csv", "result.json", "fields.npz", "moments.npz", "error.log")
+TABLES = ("curve.csv", "evidence.csv")
+FILES = (*TABLES, "result.json", "fields.npz", "moments.npz", "error.log")
 
 #: errno values of a disk that is full, over a quota or limit, read-only, or broken.
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
@@ -151,6 +153,7 @@ _RESULT = {
     "nonzeros?": float,
     "jit_seconds?": float,
     "interpolated_rows?": int,
+    "sha256?": {ANY: str},
 }
 
 
@@ -191,6 +194,26 @@ def read_result(folder: Path) -> Result:
     )
 
 
+def hashes(folder: Path) -> dict[str, str]:
+    """SHA-256 of the curve and of its evidence, those that are there, as hexadecimal digits."""
+    files = [folder / name for name in TABLES if (folder / name).exists()]
+    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+
+
+def changed(folder: Path) -> str:
+    """A sentence where a table in the folder of a run is not the one that the run wrote; empty where it is."""
+    try:
+        known = read_json(folder / "result.json", _RESULT).get("sha256", {})
+        now = hashes(folder)
+    except (OSError, Damaged):
+        return ""
+    for name, digest in known.items():
+        if now.get(name, digest) != digest:
+            found, written = now[name][:8], digest[:8]
+            return f"{folder / name}: has been changed since the run wrote it: SHA-256 {found}..., then {written}..."
+    return ""
+
+
 def damage(folder: Path, proof: str) -> str:
     """Name of a file of a stored result that cannot be read, or empty; ``proof`` is the file that was written last."""
     name, about = proof, {}
@@ -201,7 +224,10 @@ def damage(folder: Path, proof: str) -> str:
         if proof.endswith(".json"):
             about = json.loads(content)
         whole = proof == "result.json" and about["status"] == "complete"
-        for name, between in (("curve.csv", about.get("interpolated_rows", 0)), ("evidence.csv", 0)):
+        known, now = about.get("sha256", {}) if proof == "result.json" else {}, hashes(folder)
+        for name, between in zip(TABLES, (about.get("interpolated_rows", 0), 0), strict=True):
+            if name in known and now.get(name) != known[name]:
+                return name
             if whole or (folder / name).exists():
                 rows = min(map(len, read_columns(folder / name).values()))
                 if whole and rows != about["steps"] + 1 + between:

@@ -21,9 +21,9 @@ from verify.methods import zone_resolution
 from verify.methods.method import Failure, Prepared
 from verify.methods.solve import solve_prepared
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
+from verify.runs.child import keep_freed_memory
 from verify.runs.environment import machine, mpi_rank, mpi_size, threads, versions
-from verify.runs.folder import NO_ROOM, CurveWriter, refuse_files_of_others, write_fields, write_json
-from verify.runs.memory import keep_freed_memory
+from verify.runs.folder import NO_ROOM, CurveWriter, hashes, refuse_files_of_others, write_fields, write_json
 from verify.runs.store import alone_in
 from verify.support import interrupts
 from verify.support.say import say
@@ -113,7 +113,8 @@ class _Run:
         if self.keep.fields and result.between:
             write_fields(self.folder / "moments.npz", result.between)
         about = summary(self.prepared, result, checks)
-        write_json(self.folder / "result.json", about | {"interpolated_rows": interpolated})
+        written = {"interpolated_rows": interpolated, "sha256": hashes(self.folder)}
+        write_json(self.folder / "result.json", about | written)
         return checks
 
     def stopped(self, rows: list[Row], why: str) -> Result:

@@ -19,6 +19,7 @@ from odd_inputs import SOME, VALUES, answered
 
 from tests.verify.studies.cost.test_accuracy import a_study
 from verify import report, verification
+from verify.cli import main
 from verify.result import Result
 from verify.runs.folder import _append, damage, read_fields, read_result, write_fields
 from verify.runs.jobs import Job, Outcome, run_all
@@ -362,3 +363,16 @@ def test_a_verdict_lies_in_the_folder_of_its_case_and_basis(tmp_path: Path) -> N
     (folder / "nurbs").rename(folder / "lagrange")
     with pytest.raises(Refusal, match="got: the verdict of coarse-czm2 on nurbs"):
         named([tmp_path / "hard"])
+
+
+def test_a_table_that_was_changed_by_hand_is_named_by_its_hash(tmp_path: Path, capsys) -> None:
+    """The same number of rows, all of numbers: nothing else shows it, and checks read the other table."""
+    run = tmp_path / "run"
+    assert main(["solve", SCENE, "--dofs", "200", "--set", "load.opening=0.2", "--out", str(run)]) == 0
+    curve = run / "curve.csv"
+    assert damage(run, "result.json") == ""
+    curve.write_text(curve.read_text().replace("1", "2", 1))
+    assert damage(run, "result.json") == "curve.csv"
+    capsys.readouterr()
+    main(["compare", str(run), str(run)])
+    assert f"{curve}: has been changed since the run wrote it: SHA-256" in capsys.readouterr().err

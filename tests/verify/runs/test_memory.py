@@ -8,8 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from verify.runs.child import die_with_parent
-from verify.runs.memory import keep_freed_memory
+from verify.runs.child import die_with_parent, keep_freed_memory
 
 
 @pytest.fixture

@@ -35,7 +35,7 @@ RESULT_KEYS = {
     "scene", "method", "dofs", "elements", "steps", "newton_iterations", "rejected_steps", "peak_load", "peak_opening",
     "seconds", "peak_memory_mb", "effects", "checks", "versions", "machine", "threads", "status", "ending", "condition",
     "process_zone", "matched_interface", "decided", "neglected", "nonzeros", "jit_seconds",
-    "counted_steps", "interpolated_rows",
+    "counted_steps", "interpolated_rows", "sha256",
 }  # fmt: skip
 SHORT = ("load.opening=1.0", "discretization.dofs=800")
 SECONDS_KEYS = ["mesh", "basis", "assembly", "factor", "solve", "other", "total"]

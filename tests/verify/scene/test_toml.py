@@ -42,7 +42,7 @@ def test_a_scene_with_settings_is_verified_and_travels(tmp_path: Path, monkeypat
     assert main(["new", "--from", "report/dcb-czm1-linear.toml", "--set", "name=mine"]) == 0
     text = capsys.readouterr().out
     (tmp_path / "mine.toml").write_text(text)
-    assert load_scene("mine.toml").load.opening == (0.4,) and "# Young's modulus [stress]. Takes" in text
+    assert load_scene("mine.toml").load.opening == (0.4,) and "# Young's modulus [MPa]" in text
 
 
 def test_new_needs_a_kind_or_a_scene(capsys) -> None:
