@@ -309,7 +309,9 @@ def _hard_options(sub: Parser) -> None:
 
 def _export_options(sub: Parser) -> None:
     _scene_argument(sub)
-    sub.add_argument("--format", required=True, metavar="F", help="abaqus, gmsh, vtu or csv")
+    sub.add_argument("--format", required=True, metavar="F", help="abaqus, gmsh, med, exodus, vtu or csv")
+    what = "gmsh, med, exodus: one conforming mesh with a group `bond`, for codes that insert interface elements there"
+    sub.add_argument("--merged", action="store_true", help=what)
     sub.add_argument("--elements", type=positive, metavar="N", help="elements along the specimen, as dolfinx.elements")
     layers = "elements through each arm or the strip, as dolfinx.layers"
     sub.add_argument("--layers", type=positive, metavar="N", help=layers)

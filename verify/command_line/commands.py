@@ -476,7 +476,7 @@ def export(options: argparse.Namespace) -> int:
     scene = load_scene(options.scene, [*elements, *options.overrides])
     refuse_files(scene, "debond export")
     folder = options.out or Path("debond-export") / f"{scene.name}-{options.format}"
-    return _listed(export(scene, options.format, folder, options.layers))
+    return _listed(export(scene, options.format, folder, options.layers, options.merged))
 
 
 def mesh(options: argparse.Namespace) -> int:

@@ -6,8 +6,8 @@ from pathlib import Path
 from shlex import quote
 
 from verify.export.abaqus import reference_nodes, write_abaqus
-from verify.export.gmsh import write_gmsh
-from verify.export.mesh import SceneMesh, scene_mesh
+from verify.export.groups import GROUP_FILES, write_groups
+from verify.export.mesh import SceneMesh, merged, scene_mesh
 from verify.export.numbers import LAW_NOTES, notes, numbers
 from verify.export.odb import write_odb_script
 from verify.export.tables import write_tables
@@ -18,17 +18,18 @@ from verify.scene.tables import one_of
 from verify.scene.toml import keep_scene
 from verify.support.refusal import Refusal
 
-ENDINGS = {"abaqus": "inp", "gmsh": "msh", "vtu": "vtu"}
+ENDINGS = {"abaqus": "inp", **{kind: one.ending for kind, one in GROUP_FILES.items()}, "vtu": "vtu"}
 FORMATS = (*ENDINGS, "csv")
 
 
-def export(scene: Scene, kind: str, folder: Path, layers: int | None = None) -> list[str]:
+def export(scene: Scene, kind: str, folder: Path, layers: int | None = None, conforming: bool = False) -> list[str]:
     """Write a scene into a folder; returns the files and remarks on them, a line each.
 
     Parameters
     ----------
     kind : one of `FORMATS`
     layers : elements through each arm, or through the strip
+    conforming : whether the bodies share the nodes of the bond, which then is one group
 
     Raises
     ------
@@ -38,7 +39,10 @@ def export(scene: Scene, kind: str, folder: Path, layers: int | None = None) -> 
         raise Refusal(f"interface.law: must be {one_of(LAW_NOTES)} for an export, got {scene.interface.law!r}")
     if scene.specimen.slides:
         raise Refusal(f'specimen.kind: must be "dcb" or "peel" for an export, got {scene.specimen.kind!r}')
+    if conforming and kind not in GROUP_FILES:
+        raise Refusal(f"--merged: is for --format {one_of(GROUP_FILES)}, got {kind!r}")
     mesh = scene_mesh(scene, layers)
+    mesh = merged(mesh) if conforming else mesh
     try:
         folder.mkdir(parents=True, exist_ok=True)
         if kind == "csv":
@@ -63,7 +67,7 @@ def export(scene: Scene, kind: str, folder: Path, layers: int | None = None) -> 
 def _write(kind: str, scene: Scene, mesh: SceneMesh, path: Path) -> None:
     if kind == "abaqus":
         write_abaqus(scene, mesh, path)
-    elif kind == "gmsh":
-        write_gmsh(mesh, path)
-    else:
+    elif kind == "vtu":
         write_scene_vtu(mesh, path)
+    else:
+        write_groups(mesh, kind, path)

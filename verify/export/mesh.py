@@ -71,8 +71,15 @@ class SceneMesh:
     def sets(self) -> dict[str, np.ndarray]:
         """Every set of nodes by its name."""
         bond = {f"{name}_bond": self.pair_kb[:, 1 - b] for b, name in enumerate(self.names)}
+        if self.merged:
+            bond = {"bond": self.pair_kb[:, 0]}
         parts: tuple[LoadedFace | Support, ...] = (*self.loaded, *self.supports)
         return {part.name: part.node_n for part in parts} | bond
+
+    @property
+    def merged(self) -> bool:
+        """Whether the bodies share the nodes of the bond."""
+        return bool(np.array_equal(*self.pair_kb.T))
 
     @property
     def cohesive_ea(self) -> np.ndarray:
@@ -102,6 +109,23 @@ def scene_mesh(scene: Scene, layers: int | None = None) -> SceneMesh:
     given = scene.model_copy(update={"dolfinx": scene.dolfinx.model_copy(update=asked)})
     mesh = _meshed(prepare(given, "dolfinx").problem.specimen(), degree, scene.specimen.bodies)
     return replace(mesh, loaded=tuple(_pulled(face, scene.load.at, mesh.X_nI) for face in mesh.loaded))
+
+
+def merged(mesh: SceneMesh) -> SceneMesh:
+    """One conforming mesh: the bodies share the nodes of the bond, for codes that insert interface elements there."""
+    lower, upper = mesh.pair_kb.T
+    kept = np.setdiff1d(np.arange(len(mesh.X_nI)), upper)
+    new = np.zeros(len(mesh.X_nI), dtype=int)
+    new[kept] = np.arange(len(kept))
+    new[upper] = new[lower]
+    return replace(
+        mesh,
+        X_nI=mesh.X_nI[kept],
+        conn_ea=new[mesh.conn_ea],
+        pair_kb=new[mesh.pair_kb],
+        loaded=tuple(replace(face, node_n=new[face.node_n]) for face in mesh.loaded),
+        supports=tuple(replace(part, node_n=new[part.node_n]) for part in mesh.supports),
+    )
 
 
 def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMesh:

@@ -13,6 +13,7 @@ from exported import DCB, PEEL, check_areas, exported
 from vtu_files import arrays
 
 from verify.cli import main
+from verify.export.groups import GROUP_FILES
 from verify.export.mesh import scene_mesh
 from verify.export.numbers import SLIDING_LAW
 from verify.scene.load import load_scene
@@ -251,3 +252,40 @@ def test_meshlane_reads_the_solids_of_abaqus(tmp_path: Path) -> None:
         mesh = meshlane.read(file)
         assert [block.type for block in mesh.cells] == ["quad" if degree == 1 else "quad8"] * 2
         assert set(mesh.point_sets) >= {"upper_loaded", "lower_bond"}
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("kind", ["gmsh", "med", "exodus"])
+def test_a_merged_mesh_is_one_conforming_mesh_with_the_bond_as_a_group(kind: str, degree: int, tmp_path: Path) -> None:
+    words = ["--set", f"dolfinx.degree={degree}", "--merged"]
+    whole = scene_mesh(load_scene(DCB, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
+    file = exported(DCB, kind, tmp_path, *words) / f"{DCB}.{GROUP_FILES[kind].ending}"
+    mesh = meshlane.read(file)
+    assert len(mesh.points) == len(whole.X_nI) - len(whole.pair_kb)
+    quads = np.concatenate([block.data for block in mesh.cells if block.type.startswith("quad")])
+    check_areas(DCB, list(whole.names), mesh.points[:, :2], quads, [whole.names[b] for b in whole.body_e])
+    sides = [frozenset(quad[[i, (i + 1) % 4]]) for quad in quads for i in range(4)]
+    corners = whole.pair_kb[::degree, 0]
+    assert sum(sides.count(side) == 2 for side in set(sides)) > len(corners), "elements share sides across the bond"
+    bond = bond_of(mesh, kind)
+    assert np.allclose(mesh.points[bond, 1], 0.0)
+    assert np.allclose(np.sort(mesh.points[bond, 0]), np.sort(whole.X_nI[whole.pair_kb[:, 0], 0]))
+    across = [side for side in set(sides) if side <= set(bond.tolist())]
+    assert len(across) == len(corners) - 1 and all(sides.count(side) == 2 for side in across)
+
+
+def bond_of(mesh: meshlane.Mesh, kind: str) -> np.ndarray:
+    """The nodes of the group."""
+    if kind == "gmsh":
+        number = mesh.field_data["bond"][0]
+        tagged = zip(mesh.cells, mesh.cell_data["gmsh:physical"], strict=True)
+        return np.unique(np.concatenate([block.data[tags == number].ravel() for block, tags in tagged]))
+    if kind == "exodus":
+        return np.asarray(mesh.point_sets["bond"])
+    shared = [tag for tag, names in mesh.point_tags.items() if "bond" in names]
+    return np.flatnonzero(np.isin(mesh.point_data["point_tags"], shared))
+
+
+def test_formats_with_conventions_of_their_own_are_not_merged(tmp_path: Path, capsys) -> None:
+    assert main(["export", DCB, "--format", "abaqus", "--merged", "--out", str(tmp_path)]) == 2
+    assert "--merged: is for --format \"gmsh\", \"med\" or \"exodus\"" in capsys.readouterr().err
