@@ -60,13 +60,14 @@ def best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late: 
 
 
 def other_models(rows: Mapping[Try, Row]) -> list[Try]:
-    """Other models on the meshes of the cheapest runs, and on the next coarser ones with the same steps."""
+    """Other models on the meshes of the cheapest runs, and more points on the next coarser ones, with the same steps."""
     chosen: dict[Try, None] = {}
     for one in best(rows):
         chosen.update(dict.fromkeys(one.with_other_models()))
         below = _coarser(rows, one)
         if below is not None:
-            chosen.update(dict.fromkeys(replace(one, rung=below.rung, size=below.size).with_other_models()))
+            finer = replace(one, rung=below.rung, size=below.size, model="more-points")
+            chosen.update({finer: None} if one.family.solver == "dolfinx" else {})
     return list(chosen)
 
 

@@ -46,7 +46,7 @@ class Limits:
     vary: float = 1700.0
     repeat: float = 2000.0
     close: float = 1.25
-    once: float = 1.7
+    once: float = 1.5
     late: float = 0.03
     times: int = 3
 

@@ -143,6 +143,7 @@ def test_other_models_of_dolfinx_are_tried_on_its_best_meshes_and_the_next_coars
     } | {Try(NURBS, 0, 420, 80): a_row("nurbs", 0.0005, 1.0)}
     tried = other_models(runs)
     assert {one.size for one in tried} == {56, 78, 110} and {one.family for one in tried} == {family}
+    assert {one.model for one in tried if one.size == 56} == {"more-points"}
     asked = {one.model: one.job("dcb-czm1", SCENE).solved.dolfinx for one in tried if one.size == 78}
     assert (asked["fewer-points"].interface_points, asked["more-points"].interface_points) == (3, 7)
     assert asked["more-layers"].layers == 2 and asked["more-layers"].elements == 78
