@@ -288,4 +288,4 @@ def bond_of(mesh: meshlane.Mesh, kind: str) -> np.ndarray:
 
 def test_formats_with_conventions_of_their_own_are_not_merged(tmp_path: Path, capsys) -> None:
     assert main(["export", DCB, "--format", "abaqus", "--merged", "--out", str(tmp_path)]) == 2
-    assert "--merged: is for --format \"gmsh\", \"med\" or \"exodus\"" in capsys.readouterr().err
+    assert '--merged: is for --format "gmsh", "med" or "exodus"' in capsys.readouterr().err
