@@ -53,7 +53,10 @@ def _contact(scene: Scene) -> tuple[str, str] | None:
     ratio = scene.interface.penalty / stiffness
     if abs(ratio - 1.0) < 1e-6:
         return None
-    words = f"contact as stiff as the bond, {stiffness:.4g}, where the scene has {ratio:.3g} times that"
+    words = (
+        f"contact as stiff as the bond, {stiffness:.4g}, where the scene has {ratio:.3g} times that "
+        f"(--set interface.penalty={stiffness:.4g} judges it so)"
+    )
     return f"interface.penalty={stiffness!r}", words
 
 

@@ -38,9 +38,9 @@ class Settings:
 
     probe: float = 0.05
     most: float = 3.0
-    refined: int = 4
+    refined: int = 9
     enough: float = 0.02
-    steps: int = 2
+    steps: int = 3
     felt: float = 0.02
     left: tuple[float, float] = (0.1, 0.6)
     same: tuple[float, float] = (0.02, 0.12)
@@ -90,7 +90,7 @@ def _usable(curve: Curve) -> bool:
 def _in_the_scene(
     solved: Solutions, reference: Reference, given: Curve, without: float, tolerance: float
 ) -> list[Explanation]:
-    """Causes that are another scene, by its change of the solution of the beam."""
+    """Causes that are another scene, by its change of the solution."""
     if not solved.possible or solved.load() is None:
         return []
     _, off, load = reference.deviation(given)

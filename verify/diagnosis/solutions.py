@@ -11,13 +11,15 @@ from verify.curves.curve import SAMPLES, envelope, from_origin
 from verify.curves.of_run import cubics
 from verify.methods.method import NotRun, Unsuitable
 from verify.methods.solve import prepare, require, solve
+from verify.methods.zone_resolution import expected
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
 
-#: The solver: seconds, no mesh of its own, and no code shared with most of those that are diagnosed.
-METHOD = "beam"
-#: Steps of a solution; cubics through their slopes make a smooth curve of them.
-SOLUTION_STEPS = 30
+#: The solver: it solves every scene, and on few unknowns in a tenth of a second.
+METHOD = "nurbs"
+#: Elements of degree 2 in the process zone, which leave 0.2 to 0.3 % of the curve on ``dcb-czm1``, with points in each,
+#: and the distance from the tangent that steps may have. A change of the scene changes these errors but little.
+ELEMENTS, POINTS, BEND = 4.0, 5, 0.02
 
 
 def sampled(curve: tuple[np.ndarray, np.ndarray], at: np.ndarray) -> np.ndarray:
@@ -31,15 +33,16 @@ class Solutions:
     def __init__(self, scene: Scene, end: float) -> None:
         self.scene, self.grid = scene, end * np.arange(1, SAMPLES + 1) / SAMPLES
         self._table = {**scene.model_dump(), "published": [], "uncertainty": {}}
-        self._settings = [f"load.opening={end!r}", f"discretization.steps={SOLUTION_STEPS}"]
+        self._settings = [f"load.opening={end!r}"]
         self._known: dict[tuple[str, ...], np.ndarray | None] = {}
 
     @property
     def possible(self) -> bool:
-        """Whether the beam solves this scene."""
+        """Whether the solver takes this scene."""
         try:
-            require(prepare(self.scene, METHOD))
-        except (NotRun, Unsuitable):
+            self._settings = [*self._settings[:1], *_mesh(self.scene)]
+            require(prepare(parse_scene(self._table, self._settings), METHOD))
+        except (NotRun, Unsuitable, SceneError):
             return False
         return True
 
@@ -62,6 +65,15 @@ class Solutions:
             return None
         d, P = cubics(result)
         return sampled((np.asarray(d), np.asarray(P)), self.grid) if result.complete else None
+
+
+def _mesh(scene: Scene) -> list[str]:
+    """Overrides of a coarse mesh."""
+    degree = ["discretization.degree=2", f"discretization.interface_points={POINTS}"]
+    given = parse_scene(scene.model_dump(), degree)
+    dofs = round(given.discretization.dofs * ELEMENTS / expected(given, METHOD).elements)
+    paced = ["discretization.steps=auto", f"discretization.bend={BEND}"]
+    return [*degree, *paced, "discretization.adaptive=false", f"discretization.dofs={max(dofs, 40)}"]
 
 
 def solutions(scene: Scene, end: float) -> Solutions:

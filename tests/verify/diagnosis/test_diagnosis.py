@@ -1,4 +1,4 @@
-"""Curves with one planted cause, drawn by NURBS; the diagnosis solves the beam."""
+"""Curves with one planted cause, drawn by NURBS on other meshes than those of the diagnosis."""
 
 from __future__ import annotations
 
