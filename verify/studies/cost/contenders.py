@@ -60,7 +60,7 @@ def best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late: 
 
 
 def other_models(rows: Mapping[Try, Row]) -> list[Try]:
-    """Other models on the meshes of the cheapest runs, and more points on the next coarser ones, with the same steps."""
+    """Other models on the meshes of the cheapest runs, and more points on the next coarser ones; steps are kept."""
     chosen: dict[Try, None] = {}
     for one in best(rows):
         chosen.update(dict.fromkeys(one.with_other_models()))

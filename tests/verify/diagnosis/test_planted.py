@@ -1,0 +1,73 @@
+"""The diagnosis as a classifier: curves with one planted cause each, from twice the tolerance up, on three scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+
+import numpy as np
+import pytest
+
+from verify.curves.of_run import cubics
+from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS
+from verify.diagnosis.classify import diagnose
+from verify.diagnosis.on_curve import Reference
+from verify.methods.solve import solve
+from verify.scene.load import load_scene
+
+TOLERANCE = 0.005
+SCENES = ("dcb-czm1", "dcb-czm1-linear", "enf-as4peek")
+FACTORS = (0.5, 0.8, 0.92, 0.98, 1.02, 1.09, 1.3)
+
+Curve = tuple[np.ndarray, np.ndarray]
+
+
+@cache
+def curve(scene: str, *overrides: str) -> Curve:
+    d, P = cubics(solve(load_scene(scene, list(overrides)), "nurbs"))
+    return np.asarray(d), np.asarray(P)
+
+
+def in_the_scene(name: str) -> Iterator[tuple[str, Curve]]:
+    scene = load_scene(name)
+    for number in SCALED_NUMBERS:
+        for factor in FACTORS if number.overrides(scene, 1.0) else ():
+            yield number.name, curve(name, *number.overrides(scene, factor))
+    for switch in OTHER_CHOICES:
+        if made := switch.made(scene):
+            yield switch.name, curve(name, made[0])
+
+
+def in_the_curve(d: np.ndarray, P: np.ndarray) -> Iterator[tuple[str, Curve]]:
+    at_peak, soft = d[np.argmax(P)], d[len(d) // 50] / P[len(d) // 50]
+    for part in (-0.04, 0.02, 0.05, 0.12):
+        yield "toe", (d + part * at_peak, P)
+    for part in (0.04, 0.1, 0.25):
+        yield "machine compliance", (d + part * soft * P, P)
+    for part in (-0.06, -0.02, 0.015, 0.05):
+        yield "width", (d, (1.0 + part) * P)
+    for factor in (0.5, 2.0, 1e3, 1e-3):
+        yield f"load x {factor:g}", (d, factor * P)
+        yield f"opening x {factor:g}", (factor * d, P)
+    yield "load x -1", (d, -P)
+    for rows in (7, 11):
+        at = np.linspace(0.0, d.max(), rows)
+        yield "few steps", (at, np.interp(at, d, P))
+
+
+@pytest.mark.slow
+def test_planted_causes_are_named() -> None:
+    named: list[tuple[str, str, list[str]]] = []
+    for name in SCENES:
+        right, scene = curve(name), load_scene(name)
+        assert diagnose("mine", right, right, scene, TOLERANCE) is None
+        for cause, given in (*in_the_scene(name), *in_the_curve(*right)):
+            if Reference(right).error(given) < 2.0 * TOLERANCE:
+                continue
+            found = diagnose("mine", given, right, scene, TOLERANCE)
+            named.append((name, cause, [one.name for one in found.causes[:2]] if found else []))
+    first = [cause == names[0] for _, cause, names in named if names]
+    either = [cause in names for _, cause, names in named]
+    wrong = [one for one in named if one[1] not in one[2]]
+    assert len(named) >= 150
+    assert sum(first) >= 0.85 * len(named) and sum(either) >= 0.95 * len(named), wrong
