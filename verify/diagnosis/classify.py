@@ -137,10 +137,12 @@ def _refined(solved: Solutions, number: Number, amount: float, off: np.ndarray, 
         left = off - change
         settled = abs(float(np.linalg.norm(left)) - best[1]) < SETTINGS.enough * enough
         best = min(best, (amount, float(np.linalg.norm(left))), key=lambda one: one[1])
-        if settled:
+        if settled or amount == before:
             break
         slope = (change - was) / (amount - before)
         before, was = amount, change
+        if not slope.any():
+            break
         amount = float(np.clip(amount + left @ slope / (slope @ slope), -log(SETTINGS.most), log(SETTINGS.most)))
     return best
 
