@@ -65,7 +65,11 @@ def serve() -> None:
     reader, writer = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
     signal.signal(signal.SIGCHLD, lambda *_: None)
     signal.set_wakeup_fd(writer)
+    asking = select.poll()
+    asking.register(0, select.POLLIN)
     for name in IMPORTED:
+        if any(event & select.POLLHUP for _, event in asking.poll(0)):
+            return
         importlib.import_module(name)
     while asked := os.read(0, 1 << 20):
         pid = os.fork()
