@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from verify.result import Result
     from verify.runs.run import Keep
     from verify.scene.schema import Scene
+    from verify.studies.plane.study import Plate
     from verify.verdict import Check
 
 FAILED = 1
@@ -168,32 +169,12 @@ def _print_result(result: Result, checks: Sequence[Check], folder: Path) -> None
 def verify(options: argparse.Namespace) -> int:
     from verify.checks.judgement import Demands
     from verify.methods import sliding
-    from verify.methods.given_meshes import given_meshes
-    from verify.scene.load import load_scene, verified_scenes
     from verify.scene.toml import keep_scene
     from verify.studies.found import named
-    from verify.studies.plane.study import load_plate
     from verify.verification import Subjects, verify, would_run
 
     _refuse_ranks("verify")
-    given = [*options.overrides, *([f"load.opening={options.end!r}"] if options.end is not None else [])]
-    scenes: list[tuple[str, Scene]] = []
-    plates, wrong = [], []
-    for source in options.scenes or verified_scenes(options.full):
-        try:
-            if source.lower().endswith(".iga"):
-                plates.append(load_plate(source))
-            else:
-                scene = load_scene(source, given)
-                given_meshes(scene)
-                scenes.append((str(options.out / f"{scene.name}.toml") if given else source, scene))
-        except Refusal as error:
-            wrong.append(str(error))
-    names = [*(scene.name for _, scene in scenes), *(plate.name for plate in plates)]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]
-    if wrong:
-        raise Refusal("\n".join(wrong))
+    scenes, plates = _scenes_and_plates(options)
     curves = _curves(options, len(scenes), len(plates))
     demands = Demands(options.strict, tuple(options.require))
     for method in demands.required:
@@ -203,15 +184,56 @@ def verify(options: argparse.Namespace) -> int:
     if options.dry_run:
         return _listed(would_run(subjects, options.out, options.jobs))
     _folder(options.out)
-    if given:
-        for path, scene in scenes:
-            keep_scene(scene, Path(path))
+    for path, scene in scenes if _set_for_all(options) else ():
+        keep_scene(scene, Path(path))
     for remark in {remark for _, scene in scenes for remark in sliding.remarks(scene)}:
         say(remark)
     _writable_file(options.junit, "--junit")
     text = options.format == "md"
     passed = verify(subjects, options.out, options.jobs, options.scheduler, text, demands, options.junit)
     return 0 if passed else FAILED
+
+
+def _set_for_all(options: argparse.Namespace) -> list[str]:
+    """Overrides of every scene of a verification."""
+    return [*options.overrides, *([f"load.opening={options.end!r}"] if options.end is not None else [])]
+
+
+def _scenes_and_plates(options: argparse.Namespace) -> tuple[list[tuple[str, Scene]], list[Plate]]:
+    """What is verified, scenes with what repeats their runs: the name or file, or the file of a scene with overrides.
+
+    Raises
+    ------
+    Refusal : with a sentence for everything that is wrong.
+    """
+    from verify.methods.given_meshes import given_meshes
+    from verify.scene.load import load_scene, verified_scenes
+    from verify.studies.plane.study import load_plate
+
+    given = _set_for_all(options)
+    scenes: list[tuple[str, Scene]] = []
+    plates: list[Plate] = []
+    wrong = []
+    for source in options.scenes or verified_scenes(options.full):
+        try:
+            if source.lower().endswith(".iga"):
+                plates.append(load_plate(source))
+                wrong += [f"--set: is for scenes, got {given[0]} for {source}"] if given else []
+                continue
+            scene = load_scene(source, given)
+            given_meshes(scene)
+            kept = options.out / scene.name / "scene.toml"
+            if given and kept.exists() and Path(source).exists() and kept.samefile(source):
+                wrong.append(f"--out: must be another folder than that of {source}, where the changed scene is kept")
+            scenes.append((str(kept) if given else source, scene))
+        except Refusal as error:
+            wrong.append(str(error))
+    names = [*(scene.name for _, scene in scenes), *(plate.name for plate in plates)]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]
+    if wrong:
+        raise Refusal("\n".join(wrong))
+    return scenes, plates
 
 
 def _ladders(options: argparse.Namespace, scenes: Sequence[tuple[str, Scene]]) -> Sequence[tuple[str, Scene]]:

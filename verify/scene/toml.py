@@ -32,6 +32,7 @@ def scene_file(scene: Scene, note: Callable[[str, str], Iterable[str]] = lambda 
 
 def keep_scene(scene: Scene, path: Path) -> None:
     """Write the scene there, with the files of its elements beside it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     names = [Path(name).name for name in scene.specimen.mesh]
     for name, file in zip(names, scene.specimen.mesh, strict=True):
         if not (path.parent / name).exists() or not (path.parent / name).samefile(file):

@@ -35,11 +35,13 @@ def test_a_scene_with_settings_is_verified_and_travels(tmp_path: Path, monkeypat
     short = ["--set", "load.opening=0.4", "--set", "discretization.dofs=400", "--set", "dolfinx.elements=28"]
     code = main(["verify", "dcb-czm1-linear", *short, "--no-ladder", "--out", "report"])
     assert code in (0, 1)
-    scene = load_scene("report/dcb-czm1-linear.toml")
+    scene = load_scene("report/dcb-czm1-linear/scene.toml")
     assert scene == load_scene("dcb-czm1-linear", short[1::2])
-    assert "debond solve report/dcb-czm1-linear.toml" in (tmp_path / "report" / "verdict.json").read_text()
+    assert "debond solve report/dcb-czm1-linear/scene.toml" in (tmp_path / "report" / "verdict.json").read_text()
     capsys.readouterr()
-    assert main(["new", "--from", "report/dcb-czm1-linear.toml", "--set", "name=mine"]) == 0
+    own = ["verify", "report/dcb-czm1-linear/scene.toml", "--set", "load.opening=0.3", "--out", "report"]
+    assert main(own) == 2 and "--out: must be another folder" in capsys.readouterr().err
+    assert main(["new", "--from", "report/dcb-czm1-linear/scene.toml", "--set", "name=mine"]) == 0
     text = capsys.readouterr().out
     (tmp_path / "mine.toml").write_text(text)
     assert load_scene("mine.toml").load.opening == (0.4,) and "# Young's modulus [MPa]" in text
