@@ -4,6 +4,7 @@ import importlib.util
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -109,29 +110,6 @@ def test_nothing_is_no_site(tmp_path):
     assert links.wrong(tmp_path) == [f"{tmp_path}: has no pages"]
 
 
-def test_every_example_has_a_place_in_the_order():
-    """Without MkDocs, which the hooks themselves need."""
-    order = re.search(r"^ORDER = \((.*?)^\)", (SITE / "hooks.py").read_text(), re.MULTILINE | re.DOTALL)[1]
-    assert set(re.findall(r'"(\w+)"', order)) == {script.stem for script in (PROJECT / "examples").glob("*.py")}
-
-
-def test_written_pages_lead_to_pages_that_will_be():
-    examples = {f"{script.stem}.md" for script in (PROJECT / "examples").glob("*.py")}
-    written = sorted((SITE / "pages").rglob("*.md"))
-    assert len(written) > 15
-    for page in written:
-        for target in re.findall(r"\]\(\s*([^)#\s]+\.md)", page.read_text()):
-            goal = (page.parent / target).resolve().relative_to(SITE / "pages")
-            folder, name = goal.parts[0], goal.name
-            if folder == "examples":
-                assert name in examples, f"{page.name}: {target}"
-            elif folder == "modules":
-                module = name.removesuffix(".md").replace(".", "/")
-                assert (PROJECT / f"{module}.py").is_file(), f"{page.name}: {target}"
-            else:
-                assert (SITE / "pages" / goal).is_file(), f"{page.name}: {target}"
-
-
 def test_links_of_the_readme_lead_somewhere():
     """To files, and in the guide to headings by their names."""
     targets = re.findall(r"\]\((?!https?:)([^)\s]+)\)", (PROJECT / "README.md").read_text())
@@ -155,20 +133,84 @@ def test_commands_of_the_guide_are_taken():
         assert line.strip() == "compare A B" or parser().parse_args(shlex.split(line)).command, line
 
 
-@pytest.mark.slow
-def test_the_whole_site_is_built_and_has_no_bad_link(tmp_path):
-    for package in ("mkdocs", "material", "mkdocstrings", "latex2mathml", "matplotlib"):
+def maker():
+    """The program that builds the site, where its libraries are."""
+    for package in ("zensical", "mkdocstrings", "latex2mathml", "matplotlib"):
         pytest.importorskip(package)
-    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "-f", SITE / "mkdocs.yml", "-d", tmp_path / "site"]
-    run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(PROJECT)})
-    assert run.returncode == 0, run.stderr
+    return loaded("build")
+
+
+@pytest.fixture
+def small(tmp_path, monkeypatch):
+    """Builds a site of one page and one example in tmp_path / "site"; what is wrong with it."""
+    build = maker()
+    (tmp_path / "examples").mkdir()
+    replaced = {"HERE": tmp_path, "PROJECT": tmp_path, "EXAMPLES": tmp_path / "examples", "ORDER": ("one",)}
+    for name, value in replaced.items():
+        monkeypatch.setattr(build, name, value)
+    nav = 'nav = [{ "Home" = "index.md" }, { "Examples" = [] }, { "Modules" = [] }]'
+    settings = re.sub(r"^nav = \[.*?^\]", nav, (SITE / "zensical.toml").read_text(), flags=re.DOTALL | re.MULTILINE)
+    (tmp_path / "zensical.toml").write_text(settings)
+    shutil.copytree(SITE / "pages", tmp_path / "pages", ignore=lambda *_: {"guide", "theory", "glossary.md"})
+
+    def built(page: str, script: str = "# %%\nx = 1\n", **others: str) -> list[str]:
+        for name, text in {"index": page, **others}.items():
+            (tmp_path / "pages" / f"{name}.md").write_text(text)
+        (tmp_path / "examples" / "one.py").write_text(script)
+        return build.build(tmp_path / "site")
+
+    return built
+
+
+def test_equations_are_drawn_and_examples_run(small, tmp_path):
+    assert small("# Title\n\n$x < 1$ by [one](examples/one.md)\n\n$$\ny\n$$\n", "# %%\nprint(6 * 7)\n") == []
+    page = (tmp_path / "site" / "index.html").read_text()
+    assert page.count("<math") == 2 and "&#x0003C;" in page and "arithmatex" not in page
+    assert "42" in (tmp_path / "site" / "examples" / "one.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("given", "complaint"),
+    [
+        ({"page": "[x](nowhere.md)"}, "nowhere.md"),
+        ({"page": "[x](#nowhere)"}, "#nowhere"),
+        ({"page": "![x](https://example.org/x.png)"}, "index.html: fetches https://example.org/x.png"),
+        ({"page": "x", "other": "x"}, "other.md: in the navigation or among the pages, not in both"),
+        ({"page": "x", "script": "# %%\nassert 1 > 2\n"}, "one.py fails"),
+    ],
+)
+def test_a_site_with_a_fault_is_told(small, given, complaint):
+    wrong = small(**given)
+    assert len(wrong) == 1 and complaint in wrong[0]
+
+
+def test_a_folder_of_something_else_is_kept(small, tmp_path):
+    (tmp_path / "site").mkdir()
+    (tmp_path / "site" / "thesis").touch()
+    assert small("x") == [f"{tmp_path / 'site'}: is there, and is no site that could be replaced"]
+    assert (tmp_path / "site" / "thesis").exists()
+
+
+@pytest.mark.parametrize("run", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_the_whole_site_is_built_and_has_no_bad_link(tmp_path, run):
+    maker()
     site = tmp_path / "site"
+    environment = {**os.environ, "DEBOND_SITE_RUN": str(int(run))}
+    done = subprocess.run([sys.executable, SITE / "build.py", site], capture_output=True, text=True, env=environment)
+    assert done.returncode == 0, done.stdout + done.stderr
     assert "<math" in (site / "theory" / "law.html").read_text()
-    page = (site / "examples" / "bezier_extraction.html").read_text()
-    assert "13 Bezier points from 7 control points" in page and "bezier_extraction-1.png" in page
     assert "bezier_extraction" in (site / "modules" / "iga.bases.bspline.html").read_text()
-    assert links.wrong(site) == []
+    page = (site / "examples" / "bezier_extraction.html").read_text()
+    assert not run or ("13 Bezier points from 7 control points" in page and "bezier_extraction-1.png" in page)
     browsed(site, tmp_path / "profile")
+
+
+HEIGHT = "document.querySelector('math').getBoundingClientRect().height"
+ECHO = """new Promise((done) => {
+  const worker = new Worker("../echo.js");
+  worker.onmessage = (answer) => done(answer.data);
+  worker.postMessage(1);
+})"""
 
 
 def browsed(site: Path, profile: Path) -> None:
@@ -181,8 +223,6 @@ def browsed(site: Path, profile: Path) -> None:
         for page in (site / name for name in ("index.html", "theory/law.html", "examples/snap_back.html")):
             browser.open(page)
             assert browser.complaints == [] and all(asked.startswith(("file:", "data:")) for asked in browser.requests)
-            assert page.parent.name != "theory" or _drawn(browser)
-
-
-def _drawn(browser) -> bool:
-    return browser.ask("document.querySelector('math').getBoundingClientRect().height") > 10
+            assert page.parent.name != "theory" or browser.ask(HEIGHT) > 10
+        (site / "echo.js").write_text("self.onmessage = (asked) => self.postMessage(asked.data + 1)")
+        assert browser.ask(ECHO) == 2  # no browser would start the worker of the search from the disk

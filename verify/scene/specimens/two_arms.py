@@ -41,7 +41,7 @@ class TwoArms(Delamination):
     length: Positive
     """From the loaded end to the far end of the bond, or between the outer supports [length]."""
     arm_thickness: Both
-    """Of one arm, or of the upper and the lower one, like [1.5, 5.1] [length]."""
+    """Of one arm, or of the upper and the lower one [length], like [1.5, 5.1]."""
     precrack: Positive
     """From the loaded end, or from the left support, to the bond [length]; less than the length."""
     width: Positive = 1.0
