@@ -72,6 +72,12 @@ def test_scikit_fem_has_the_effects_of_a_scene(scikit_fem, tmp_path, scene, sett
     assert_curves_close(found, solve(known, "nurbs"), curve=0.005, programme=known.load.opening)
 
 
+def test_scikit_fem_takes_part_in_the_study_of_cost(scikit_fem):
+    script = "from verify.studies.cost.ladder import of_plugins; print(*(one.name for one in of_plugins()))"
+    run = subprocess.run([sys.executable, "-P", "-c", script], env=scikit_fem, capture_output=True, text=True)
+    assert run.returncode == 0 and {"scikit-fem-p1", "scikit-fem-p2"} <= set(run.stdout.split()), run.stderr
+
+
 @pytest.fixture(scope="module")
 def akantu(tmp_path_factory):
     return installed("akantu", "akantu", tmp_path_factory.mktemp("site"))

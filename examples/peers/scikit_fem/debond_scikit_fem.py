@@ -62,6 +62,8 @@ def solve(scene, on_step):
 
 
 solve.unsuitable = unsuitable
+#: Elements in the process zone on the coarsest mesh of `debond cost`, by the degree.
+solve.degrees = {1: 4.0, 2: 1.0}
 
 
 def travel(scene):
