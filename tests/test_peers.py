@@ -103,3 +103,14 @@ def test_akantu_says_what_it_is_not_made_for(akantu, tmp_path):
     for number, setting in enumerate(('effects.kinematics="finite"', "load.opening=[1.5, 0.5, 2.0]")):
         with pytest.raises(AssertionError, match="akantu: "):
             curve("akantu", akantu, tmp_path / str(number), setting)
+
+
+def test_pyfem_draws_the_curve_of_nurbs(tmp_path_factory, tmp_path):
+    """0.14 % apart, on 112 quadratic elements along each arm with two linear interface elements each, in 60 steps."""
+    pyfem = installed("pyfem", "pyfem-tue", tmp_path_factory.mktemp("site"))
+    settings = ("effects.contact=false", "discretization.steps=60")
+    found = curve("pyfem", pyfem, tmp_path, *settings)
+    assert_curves_close(found, solve(load_scene(SCENE, settings[:1]), "nurbs"), curve=0.005, peak=0.005)
+    other = solve(load_scene(SCENE, [*settings[:1], "interface.toughness=0.102"]), "nurbs")
+    with pytest.raises(AssertionError):
+        assert_curves_close(found, other, curve=0.005)
