@@ -28,6 +28,11 @@ LISTED = (
     Skip(r"is not (at hand|there)\b", "files of ../shared belong to no clone", not SHARED.is_dir()),
     Skip(r"no right to mount", "containers and ordinary users may not mount a disk", True),
     Skip(r"(DOLFINx|mpirun) is not installed", "DOLFINx is not on PyPI", SET_UP == "venv"),
+    Skip(
+        r"cannot be had for this Python, or from here$",
+        "other codes come from PyPI, some of them for few Pythons",
+        True,
+    ),
     Skip(r"there is no Chromium|needs (bash|fish|zsh)$", "programs of the machine", SET_UP == "venv"),
     Skip(r"OpenGL|could not import '.*': lib.*: cannot open shared", "libraries of the machine", SET_UP == "venv"),
 )

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from verify.methods.names import METHODS
+from verify.methods.plugins import plugins
 from verify.pages.parts import phase_bars, plain
 from verify.pages.style import HALF, SHOWN_PHASES, THIRD, Panel, colour, drawing, panel, to_svg
 from verify.studies.cost.findings import LEVELS, by_family, pareto
@@ -21,7 +22,7 @@ from verify.studies.page import logarithmic
 SHOWN: Mapping[str, tuple[str, str]] = {
     one.method: (METHODS[one.solver].label + ", adaptive" * one.adaptive, "accent" if one.adaptive else one.solver)
     for one in (*FAMILIES, BEAM_FAMILY)
-}
+} | {name: (name, "ink") for name in plugins() if name not in METHODS}
 
 _MARKERS = {0: "*", 1: "v", 2: "s", 3: "o", 4: "D", 5: "P"}
 

@@ -9,7 +9,7 @@ from operator import attrgetter
 
 import numpy as np
 
-from verify.studies.cost.ladder import LADDER
+from verify.studies.cost.ladder import BASIS_METHODS, LADDER
 from verify.studies.cost.row import Row
 
 #: Accuracies for which the cheapest runs are found: curve errors by their text.
@@ -18,7 +18,7 @@ LEVELS: Mapping[str, float] = {"1%": 0.01, "0.3%": 0.003, "0.1%": 0.001}
 #: Methods with an error of their theory, which no mesh reduces: compared, but never the cheapest.
 THEORIES = ("beam",)
 
-#: The code of a method with a mesh; all others are bases of `iga`.
+#: The code of a method with a mesh that is not a basis of `iga`; plug-ins are left out.
 CODES = {"dolfinx": "DOLFINx"}
 
 #: Number of finest meshes from which an order is fitted.
@@ -38,11 +38,11 @@ class Cheapest:
 
     @property
     def codes(self) -> dict[str, float]:
-        """Time of the quickest run of each code with a mesh over that of the quickest of all, by its name."""
+        """Time of the quickest run of each own code with a mesh over that of the quickest of all, by its name."""
         quickest: dict[str, float] = {}
         for method, row in self.of_method.items():
-            if method not in THEORIES:
-                code = CODES.get(method, "iga")
+            code = "iga" if method in BASIS_METHODS else CODES.get(method)
+            if code:
                 quickest[code] = min(row.seconds, quickest.get(code, row.seconds))
         return {code: each / self.best.seconds for code, each in quickest.items()} if self.best else {}
 

@@ -8,6 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from iga.bases.names import BASES
+from verify.methods.method import NotRun
+from verify.methods.names import METHODS
+from verify.methods.plugins import plugins
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.zone_resolution import expected
 from verify.runs.jobs import Job, left_out
@@ -65,6 +68,11 @@ class Family:
         return self.method != self.solver
 
     @property
+    def by_elements(self) -> bool:
+        """Whether the table ``dolfinx`` sets the mesh."""
+        return self.solver not in BASES
+
+    @property
     def name(self) -> str:
         return f"{self.method}-p{self.degree}" if self.degree and not self.adaptive else self.method
 
@@ -78,6 +86,16 @@ FAMILIES = (
     *(Family("dolfinx", "dolfinx", p, first) for p, first in ((1, 4.0), (2, 1.0), (3, 0.7), (4, 0.5))),
 )
 BEAM_FAMILY = Family("beam", "beam", 0, 0.0)
+
+
+def of_plugins() -> Iterator[Family]:
+    """One for every degree in an attribute ``degrees`` of a plug-in: degree -> elements in the zone to begin with."""
+    for name, plugin in plugins().items():
+        try:
+            degrees = getattr(plugin.load(), "degrees", {})
+        except NotRun:
+            continue
+        yield from (Family(name, name, degree, first) for degree, first in degrees.items())
 
 
 #: Other models of DOLFINx on a mesh: key of the table ``dolfinx``, and how much is added to what is chosen by default.
@@ -115,7 +133,7 @@ class Try:
 
     def with_few_steps(self, level: str) -> Iterator[Try]:
         """The same mesh with the few steps that are tried for an accuracy."""
-        if self.family is not BEAM_FAMILY:
+        if self.family is not BEAM_FAMILY and self.family.solver in METHODS:  # a plug-in counts its steps
             yield from (replace(self, steps=few) for few in LADDER.few_steps[level])
 
     def with_other_steps(self, among: Sequence[int | str] | None = None) -> Iterator[Try]:
@@ -163,7 +181,7 @@ def ladders(
     """
     found: dict[Family, list[Try]] = {}
     reasons: dict[str, str] = {}
-    for family in families or (*FAMILIES, BEAM_FAMILY):
+    for family in families or (*FAMILIES, *of_plugins(), BEAM_FAMILY):
         if family.adaptive and not scene.specimen.symmetric:
             reasons.setdefault(family.method, "left out: only the mesh of a dcb follows the process zone")
             continue
@@ -183,7 +201,7 @@ def _overrides(family: Family, scene: Scene, size: int, steps: int | str) -> tup
     paced = (f"discretization.steps={asked}", *((f"discretization.bend={bend}",) if bend else ()))
     if family.solver == "beam":
         return paced
-    if family.solver == "dolfinx":
+    if family.by_elements:
         return (*paced, f"dolfinx.degree={family.degree}", f"dolfinx.elements={size}")
     points = max(family.degree + LADDER.more_points, scene.discretization.interface_points)
     return (
@@ -201,6 +219,6 @@ def size_of_an_element(scene: Scene, family: Family) -> float:
 
     Both are proportional. For an adaptive mesh it is the number of the corresponding fixed mesh.
     """
-    now = scene.discretization.dofs if family.solver != "dolfinx" else scene.dolfinx.elements
+    now = scene.dolfinx.elements if family.by_elements else scene.discretization.dofs
     given = parse_scene(scene.model_dump(), _overrides(replace(family, method=family.solver), scene, now, LADDER.steps))
-    return now / expected(given, family.solver).elements
+    return now / expected(given, "dolfinx" if family.by_elements else family.solver).elements

@@ -12,6 +12,7 @@ import numpy as np
 
 from verify.curves.curve import oscillation
 from verify.curves.of_run import cubics, dissipated, distance, peak_load
+from verify.methods.plugins import plugins
 from verify.result import Result, Snapshot, run_seconds
 from verify.runs.jobs import Outcome
 from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES, Try
@@ -103,7 +104,7 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int
         elements=result.elements,
         nonzeros=result.nonzeros or nonzeros,
         steps=max(result.load.size - 1, 0),
-        newton_iterations=int(np.sum(steps["newton_iterations"])),
+        newton_iterations=int(np.sum(steps.get("newton_iterations", 0))),
         rejected_steps=result.rejected_steps,
         times=len(results),
         status=result.status,
@@ -120,7 +121,9 @@ def errors(result: Result, against: Reference) -> dict[str, Any]:
         "chords": chords,
         "cubics": smooth,
         "peak_error": abs(peak_load(result) / peak_load(exact) - 1.0),
-        "energy_error": abs(dissipated(result) / dissipated(exact) - 1.0),
+        "energy_error": abs(dissipated(result) / dissipated(exact) - 1.0)
+        if "dissipated_energy" in result.steps
+        else nan,
         "oscillation": oscillation((result.opening, result.load), known)["rms"],
         "traction_error": traction_error(result.snapshots, exact.snapshots),
     }
@@ -146,7 +149,8 @@ def traction_error(snapshots: Sequence[Snapshot], exact: Sequence[Snapshot]) -> 
 def refuse_unknown(rows: Sequence[Row], path: Path) -> None:
     """Raise Damaged where the file has a row of an unknown method or degree."""
     known = {(family.method, family.degree) for family in (*FAMILIES, BEAM_FAMILY)}
-    if strange := [row for row in rows if (row.method, row.degree) not in known]:
+    others = plugins()
+    if strange := [row for row in rows if (row.method, row.degree) not in known and row.method not in others]:
         raise Damaged(path, f"the method {strange[0].method[:30]!r} of degree {strange[0].degree}")
 
 

@@ -10,10 +10,11 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from made_up_costs import NURBS, SCENE, a_row, made_up
+from made_up_costs import NURBS, SCENE, a_row, against, made_up, outcome
 
 from iga.bases.names import BASES
 from verify.cli import main
+from verify.methods.method import NotRun
 from verify.methods.zone_resolution import expected
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
@@ -25,7 +26,7 @@ from verify.studies.cost.contenders import best, between, few_steps, other_model
 from verify.studies.cost.findings import LEVELS, cheapest
 from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES, LADDER, Family, Try, ladder, ladders
 from verify.studies.cost.reference import reference_jobs
-from verify.studies.cost.row import Row
+from verify.studies.cost.row import Row, row
 from verify.studies.cost.study import climb
 from verify.support.checked_files import read_table
 
@@ -257,6 +258,27 @@ def test_families_are_the_methods_with_the_degrees_that_they_have() -> None:
         "beam",
         0,
     )
+
+
+def test_a_plug_in_that_names_its_degrees_has_the_meshes_of_dolfinx(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Others have none. Its rows need opening and load alone, and few steps are not tried, as it counts them."""
+
+    def missing() -> None:
+        raise NotRun("not run: it does not import")
+
+    made = {"mine": lambda: SimpleNamespace(degrees={2: 1.0}), "plain": lambda: SimpleNamespace(), "broken": missing}
+    monkeypatch.setattr(ladder_of, "plugins", lambda: {name: SimpleNamespace(load=load) for name, load in made.items()})
+    (mine,) = ladder_of.of_plugins()
+    dolfinx = next(one for one in FAMILIES if one.name == "dolfinx-p2")
+    assert [one.size for one in ladder(SCENE, mine)] == [one.size for one in ladder(SCENE, dolfinx)] != []
+    first = ladder(SCENE, mine)[0]
+    assert first.job("dcb-czm1", SCENE).overrides == ladder(SCENE, dolfinx)[0].job("dcb-czm1", SCENE).overrides
+    assert not list(first.with_few_steps("1%")) and list(first.with_other_steps())
+    result = made_up()
+    bare = replace(result, steps={name: result.steps[name] for name in ("opening", "load")})
+    found = row(first, [outcome(bare)], against())
+    assert found.measured and found.curve_error < 0.002
+    assert set(cheapest([found, a_row("nurbs", 0.001, 1.0)], "1%").codes) == {"iga"}
 
 
 def test_the_reference_is_cubic_whatever_code_it_is_of(monkeypatch: pytest.MonkeyPatch) -> None:

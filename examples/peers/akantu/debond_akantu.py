@@ -1,0 +1,112 @@
+"""A double cantilever beam by Akantu: writes the scene, and reads the rows of `debond_akantu_run`.
+
+That runs in a process of its own, as Akantu reads its materials once a process, and in the Python that AKANTU_PYTHON
+names, where Akantu is not there for the one of debond.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import debond_akantu_run
+
+from verify.export.groups import write_groups
+from verify.export.mesh import merged, scene_mesh
+from verify.export.numbers import effects, law
+from verify.result import Result, steps_from_rows
+from verify.scene.schema import counted_steps
+
+MATERIALS = """
+model solid_mechanics_model_cohesive [
+  cohesive_inserter [
+    cohesive_surfaces = [bond]
+  ]
+  material elastic [
+    name = upper
+    rho = 1
+    E = {young!r}
+    nu = {poisson!r}
+    Plane_Stress = true
+  ]
+  material elastic [
+    name = lower
+    rho = 1
+    E = {young!r}
+    nu = {poisson!r}
+    Plane_Stress = true
+  ]
+  material cohesive_bilinear [
+    name = bond
+    beta = 0
+    sigma_c = {bond.strength!r}
+    G_c = {bond.toughness!r}
+    delta_0 = {bond.g_peak!r}
+    penalty = {closed!r}
+  ]
+]
+"""
+
+
+def unsuitable(scene):
+    """Why the solver is not made for a scene, or nothing."""
+    if scene.specimen.kind != "dcb" or scene.specimen.plane != "stress" or scene.load.at != "face":
+        return "only for a dcb in plane stress, pulled at its end faces"
+    if scene.interface.slides or not all(hasattr(one, "young") for one in scene.materials):
+        return "only for isotropic arms whose bond opens alone"
+    if len({str(one) for one in scene.materials}) > 1:
+        return "only for arms of one material"
+    if sorted(set(scene.load.opening)) != list(scene.load.opening):
+        return "load.opening: must only increase, as its tangent does not converge on unloading"
+    asked = effects(scene)
+    if asked["kinematics"] != "linear" or not asked["irreversible"]:
+        return 'effects: kinematics must be "linear", and irreversible true'
+    return "" if scene.dolfinx.degree in ("auto", 1, 2) else "dolfinx.degree: must be 1 or 2"
+
+
+def solve(scene, on_step):
+    """Load over opening; ``[dolfinx]`` of the scene sets elements, layers and degree."""
+    python, rows, end, said = os.environ.get("AKANTU_PYTHON", sys.executable), [], {}, [""]
+    with TemporaryDirectory() as folder:
+        write(scene, Path(folder))
+        words = [python, debond_akantu_run.__file__, folder]
+        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as run:
+            for line in run.stdout:
+                kind, _, text = line.partition(" ")
+                if kind == "row":
+                    rows.append(json.loads(text))
+                    on_step(rows[-1])
+                elif kind == "end":
+                    end = json.loads(text)
+                else:
+                    said.append(line.strip())
+    if not end:
+        raise RuntimeError(f"Akantu in {python} has ended early: {said[-1]}")
+    return Result("akantu", steps_from_rows(rows), **end)
+
+
+solve.unsuitable = unsuitable
+
+
+def write(scene, folder):
+    """The scene as Akantu reads it, and what its input has no words for."""
+    mesh, bond, material = merged(scene_mesh(scene)), law(scene), scene.materials[0]
+    closed = bond.penalty if bond.contact else bond.stiffness
+    write_groups(mesh, "gmsh", folder / "mesh.msh")
+    (folder / "material.dat").write_text(
+        MATERIALS.format(young=material.young, poisson=material.poisson, bond=bond, closed=closed)
+    )
+    problem = {
+        "degree": mesh.degree,
+        "width": scene.specimen.width,
+        "faces": [
+            {"nodes": face.node_n.tolist(), "weights": face.weight_n.tolist(), "part": face.factor}
+            for face in mesh.loaded
+        ],
+        "held": [mesh.X_nI[part.node_n[0]].tolist() for part in mesh.supports],
+        "programme": list(scene.load.opening),
+        "steps": counted_steps(scene),
+    }
+    (folder / "problem.json").write_text(json.dumps(problem))
