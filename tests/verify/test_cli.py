@@ -83,7 +83,7 @@ REFUSED = {
     "compare curve.csv": "B",
     "compare /dev/null /dev/null": "must hold a curve of at least 2 points",
     "compare curve.csv missing.csv": "missing.csv: must be a file with a curve",
-    "compare curve.csv other.csv": "other.csv:1: the header must name load, got opening, force",
+    "compare curve.csv other.csv": "other.csv:1: the header must name load, got opening, weight",
     "compare curve.csv holes.csv": "holes.csv:3: column 'load' must be a finite number, got ''",
     "compare curve.csv point.csv": "point.csv: must hold at least 2 points of different opening",
     "compare curve.csv curve.csv --tolerance -1": "argument --curve-tol/--tolerance: must be a number >= 0, got '-1'",
@@ -98,7 +98,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "broken.toml").write_text("[specimen\n")
     (tmp_path / "a-file").write_text("")
     (tmp_path / "curve.csv").write_text(CURVE)
-    (tmp_path / "other.csv").write_text("opening,force\n0,0\n1,2\n")
+    (tmp_path / "other.csv").write_text("opening,weight\n0,0\n1,2\n")
     (tmp_path / "holes.csv").write_text("opening,load\n0,0\n1\n")
     (tmp_path / "point.csv").write_text("opening,load\n1,1\n1,2\n")
     return tmp_path

@@ -61,6 +61,11 @@ class Server:
             stderr=subprocess.DEVNULL,
         )
 
+    def kill(self) -> None:
+        """End it at once, and with it its run."""
+        self._process.kill()
+        self._process.wait()
+
     def begin(self, words: list[str], log: Path, cwd: Path) -> Run:
         """Begin a run; raises OSError where the server has died."""
         asked = json.dumps({"words": words, "log": str(log), "cwd": str(cwd)})
@@ -87,27 +92,46 @@ class Server:
         return int(line)
 
 
-#: Servers that wait for a run.
+#: All servers, and those that wait for a run.
+_begun: list[Server] = []
 _idle: list[Server] = []
 
 
 def call(words: list[str], log: Path, cwd: Path, timeout: float, environment: Mapping[str, str], running: set) -> int:
     """Do a run through a server with an environment; ``running`` contains it meanwhile."""
-    server = _waiting(environment) or Server(environment)
+    server = _waiting(environment) or _new(environment)
     run = server.begin(words, log, cwd)
     running.add(run)
     try:
         code = server.end(run, timeout)
     finally:
         running.discard(run)
-    _idle.append(server)
+    if server in _begun:
+        _idle.append(server)
     return code
 
 
+def end_all() -> None:
+    """End all servers, those that are just beginning as well."""
+    _idle.clear()
+    while _begun:
+        _begun.pop().kill()
+
+
+def _new(environment: Mapping[str, str]) -> Server:
+    server = Server(environment)
+    _begun.append(server)
+    return server
+
+
 def _waiting(environment: Mapping[str, str]) -> Server | None:
+    """An idle server with this environment; others are of no more use."""
     with suppress(IndexError):
         while True:
             server = _idle.pop()  # one operation: no two threads get the same
             if server.environment == environment:
                 return server
+            server.kill()
+            with suppress(ValueError):
+                _begun.remove(server)
     return None

@@ -177,6 +177,7 @@ def _done(
                 yield from ((twin, why) for twin in tasks if twin.key == task.key)
     except BaseException:  # an interrupt, or the caller closes the generator
         pool.stop()
+        server.end_all()
         raise
 
 
@@ -215,6 +216,7 @@ def execute(task: Task, root: Path, cwd: Path, running: set | None = None) -> st
     work = store.begin(task.key)
     words = [str(work) if word == OUTPUT_FOLDER else word for word in task.program]
     log = work / "log.txt"
+    log.touch()
     code = call(words, log, cwd, task.timeout, running)
     messages = log.read_text(errors="replace").strip().splitlines()
     if code in ENDED and (work / task.proof).exists() and not next(work.rglob("error.log"), None):
@@ -230,7 +232,6 @@ def call(words: list[str], log: Path, cwd: Path, timeout: float, running: set | 
     paths = [str(PROJECT), *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)}
     running = set() if running is None else running
-    log.touch()
     if server.POSSIBLE:
         return server.call(words, log, cwd, timeout, environment, running)
     with (

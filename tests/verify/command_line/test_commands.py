@@ -261,9 +261,7 @@ def test_a_study_has_a_folder_of_its_own(name: str, studied, tmp_path: Path, mon
 def test_what_is_written_has_a_place_where_none_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of runs and exports one for every scene and method, or format."""
     exported: list[Path] = []
-    monkeypatch.setattr(
-        "verify.export.command.export", lambda scene, kind, folder, layers: exported.append(folder) or []
-    )
+    monkeypatch.setattr("verify.export.command.export", lambda scene, kind, folder, *how: exported.append(folder) or [])
     monkeypatch.chdir(tmp_path)
     for words in ([], ["--out", "there"]):
         assert main(["export", "dcb-czm1", "--format", "csv", *words]) == 0
