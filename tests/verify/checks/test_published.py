@@ -210,7 +210,8 @@ def test_whole_benchmarks(name: str, method: str) -> None:
     checks = (*run_checks(scene, result), *published_checks(scene, {method: result}))
     # While the process zone forms, J measures meshes that are four times coarser on the other side of the crack tip.
     assert [check for check in checks if not check.passed and check.name != "j-integral"] == []
-    assert np.mean(grown_J(scene, result)) == pytest.approx(scene.interface.toughness, rel=J_TOLERANCE)
+    if not scene.interface.slides:
+        assert np.mean(grown_J(scene, result)) == pytest.approx(scene.interface.toughness, rel=J_TOLERANCE)
 
 
 def grown_J(scene: Scene, result: Result) -> np.ndarray:
