@@ -164,7 +164,11 @@ def lead(model: Model, state: State, control: Control, lines: np.ndarray, stride
     if isinstance(reached, State) and reached.opening * goal < 0.0 <= state.opening * goal:
         # the gap of the front can be met on both sides of zero, by pulling and by pressing
         return Failure(f"the path leaps from opening {state.opening:.6g} to {reached.opening:.6g}; {LESS} or {FINER}")
-    if isinstance(reached, Failure) or (goal - reached.opening) / increment > NEAR_THE_GOAL:
+    if isinstance(reached, Failure):
+        return reached
+    # where the branch is one increment, the step itself is the measure
+    near = abs(increment if isinstance(stride, Counted) else reached.opening - state.opening)
+    if (goal - reached.opening) * np.sign(increment) > NEAR_THE_GOAL * near:
         return reached
     share = (goal - state.opening) / (reached.opening - state.opening)
     between = state.u_n + share * (reached.u_n - state.u_n), state.load + share * (reached.load - state.load)
