@@ -166,7 +166,7 @@ def lead(model: Model, state: State, control: Control, lines: np.ndarray, stride
         return Failure(f"the path leaps from opening {state.opening:.6g} to {reached.opening:.6g}; {LESS} or {FINER}")
     if isinstance(reached, Failure):
         return reached
-    # where the branch is one increment, the step itself is the measure
+    # a path by accuracy has one increment a branch: there the length of the step counts
     near = abs(increment if isinstance(stride, Counted) else reached.opening - state.opening)
     if (goal - reached.opening) * np.sign(increment) > NEAR_THE_GOAL * near:
         return reached
