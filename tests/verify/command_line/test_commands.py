@@ -14,9 +14,10 @@ import pytest
 from iga.delamination import solution
 from iga.delamination.problem import Problem
 from verify.cli import NOT_WRITTEN, REFUSED, main
-from verify.command_line import commands, compare
-from verify.command_line.commands import FAILED
+from verify.command_line import compare, one_run
+from verify.command_line.answers import FAILED
 from verify.command_line.compare import Source
+from verify.command_line.tools import test as test_command
 from verify.curves.read import Reading
 from verify.methods.dolfinx import DOLFINX_MISSING
 from verify.methods.names import Unsuitable
@@ -152,8 +153,8 @@ def test_a_disk_that_takes_no_more_is_a_sentence_and_anything_else_an_error(
     def full(options) -> int:
         raise OSError(number, "it is so", "curve.csv")
 
-    monkeypatch.setattr(commands, name, full)
-    full.__name__ = name
+    full.__module__ = name
+    monkeypatch.setattr(f"verify.command_line.studies.{name}.run", full)
     if code is None:
         with pytest.raises(OSError, match="it is so"):
             main([name, "dcb-czm1"])
@@ -185,8 +186,9 @@ def test_an_interrupt_tells_how_to_go_on(
     def interrupted(options) -> int:
         raise KeyboardInterrupt
 
-    interrupted.__name__ = words[0]
-    monkeypatch.setattr(commands, words[0], interrupted)
+    interrupted.__module__ = words[0]
+    folder = "tools" if words == ["doctor"] else "studies"
+    monkeypatch.setattr(f"verify.command_line.{folder}.{words[0]}.run", interrupted)
     assert main(words) == INTERRUPTED
     assert capsys.readouterr().err.rstrip().endswith(end)
 
@@ -194,11 +196,11 @@ def test_an_interrupt_tells_how_to_go_on(
 def test_a_result_in_words(capsys: pytest.CaptureFixture) -> None:
     steps = {"opening": np.array([0.0, 0.5, 1.0]), "load": np.array([0.0, 2.5, 1.25])}
     result = Result("nurbs", steps, status="stopped: here", ending="", seconds={"mesh": 0.5, "total": 1.25})
-    commands._print_result(result, (), Path("there"))
+    one_run.print_result(result, (), Path("there"))
     said = capsys.readouterr()
     assert "peak load 2.5 at opening 0.5, 2 steps" in said.out and "seconds: mesh 0.50, total 1.25" in said.out
     assert said.out.rstrip().endswith("stopped: here: there") and "nurbs stopped: here" in said.err
-    commands._print_result(Result("nurbs", {"opening": np.zeros(0), "load": np.zeros(0)}), (), Path("there"))
+    one_run.print_result(Result("nurbs", {"opening": np.zeros(0), "load": np.zeros(0)}), (), Path("there"))
     assert "peak" not in capsys.readouterr().out
 
 
@@ -210,7 +212,7 @@ def test_the_way_of_a_programme_adds_up_back_and_forth(tmp_path: Path, monkeypat
     gone: list[float] = []
     monkeypatch.setattr("verify.runs.run.run", made_up)
     monkeypatch.setattr("verify.support.progress.Progress.advance", lambda self, done, news: gone.append(done))
-    commands._with_progress(prepare(load_scene("dcb-czm1"), "lefm"), tmp_path, NO_FIELDS, True)
+    one_run.with_progress(prepare(load_scene("dcb-czm1"), "lefm"), tmp_path, NO_FIELDS, True)
     assert gone == [0.0, 1.0, 1.5, 2.5, 5.0]
 
 
@@ -240,13 +242,13 @@ def test_numbers_of_a_comparison_name_both_sides(tmp_path: Path) -> None:
 
 def test_tests_are_those_of_the_copy_that_is_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys) -> None:
     asked: list[tuple] = []
-    monkeypatch.setattr(commands.subprocess, "call", lambda words, cwd: asked.append((words, cwd)) or 7)
-    assert commands.test(SimpleNamespace(rest=["-q", "tests/iga"])) == 7
+    monkeypatch.setattr(test_command.subprocess, "call", lambda words, cwd: asked.append((words, cwd)) or 7)
+    assert test_command.run(SimpleNamespace(rest=["-q", "tests/iga"])) == 7
     ((words, cwd),) = asked
     assert words[1:] == ["-m", "pytest", "-q", "tests/iga"] and (cwd / "tests" / "verify").is_dir()
-    monkeypatch.setattr(commands, "__file__", str(tmp_path / "verify" / "commands.py"))
+    monkeypatch.setattr(test_command, "__file__", str(tmp_path / "verify" / "command_line" / "tools" / "test.py"))
     with pytest.raises(Refusal, match="the tests are not installed"):
-        commands.test(SimpleNamespace(rest=[]))
+        test_command.run(SimpleNamespace(rest=[]))
     assert len(asked) == 1
 
 

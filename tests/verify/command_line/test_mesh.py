@@ -24,10 +24,10 @@ from iga.tsplines.tspline import tspline_rectangle
 from iga.tsplines.unstructured import polygon_mesh
 from tests.iga.files.test_iga_format import MALFORMED, mutated
 from verify.cli import main
-from verify.command_line import mesh as mesh_command
-from verify.command_line import mesh_facts
-from verify.command_line.mesh import _continuity, _sets, _unity, examine
-from verify.command_line.mesh_facts import MeshFacts, independent
+from verify.command_line.mesh import examine as mesh_command
+from verify.command_line.mesh import facts as mesh_facts
+from verify.command_line.mesh.examine import _continuity, _sets, _unity, examine
+from verify.command_line.mesh.facts import MeshFacts, independent
 from verify.support import progress
 from verify.support.refusal import Refusal
 
@@ -290,7 +290,7 @@ def test_semi_standard_functions(tmp_path, capsys):
 def test_without_matplotlib(tmp_path, monkeypatch, capsys):
     """The facts all the same; a picture that was asked for is refused."""
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    monkeypatch.delitem(sys.modules, "verify.command_line.mesh_drawing", raising=False)
+    monkeypatch.delitem(sys.modules, "verify.command_line.mesh.drawing", raising=False)
     path = str(small(tmp_path))
     assert main(["mesh", path]) == 0
     said = capsys.readouterr()
@@ -358,8 +358,8 @@ def test_continuity_is_told_from_the_smoothest_on() -> None:
 
 def test_a_picture_that_fails_for_want_of_something_else_is_an_error(tmp_path, monkeypatch):
     """Only what is optional may be missing."""
-    monkeypatch.setitem(sys.modules, "verify.command_line.mesh_drawing", None)
-    with pytest.raises(ModuleNotFoundError, match="verify.command_line.mesh_drawing"):
+    monkeypatch.setitem(sys.modules, "verify.command_line.mesh.drawing", None)
+    with pytest.raises(ModuleNotFoundError, match="verify.command_line.mesh.drawing"):
         main(["mesh", str(small(tmp_path)), "--out", str(tmp_path / "a.svg")])
 
 

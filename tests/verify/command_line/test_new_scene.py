@@ -10,9 +10,9 @@ import pytest
 
 from iga.interface.laws import LAWS, BilinearLaw
 from verify.cli import main
-from verify.command_line.new_scene import SHEAR_KEYS, new_scene, published
-from verify.command_line.scene_list import line, page
-from verify.command_line.sketch import sketch
+from verify.command_line.scenes.listing import line, page
+from verify.command_line.scenes.new import SHEAR_KEYS, new_scene, published
+from verify.command_line.scenes.sketch import sketch
 from verify.scene.complaints import _bounds
 from verify.scene.keys import SPECIMENS, keys, keys_of
 from verify.scene.load import load_scene, packaged_scenes

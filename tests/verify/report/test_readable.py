@@ -28,8 +28,8 @@ from tests.verify.pages.test_charts import a_study  # noqa: E402
 from tests.verify.report.figures.test_undeformed import entry, snapshot  # noqa: E402
 from tests.verify.studies.effects.test_effects_study import made_up, of_pair  # noqa: E402
 from tests.verify.studies.hard.test_hard import FAKE, stub  # noqa: E402
-from verify.command_line import mesh_drawing  # noqa: E402
-from verify.command_line.mesh_facts import MeshFacts  # noqa: E402
+from verify.command_line.mesh import drawing as mesh_drawing  # noqa: E402
+from verify.command_line.mesh.facts import MeshFacts  # noqa: E402
 from verify.methods.solve import solve  # noqa: E402
 from verify.pages import parts  # noqa: E402
 from verify.pages.style import HALF, PALETTE, colour, panel  # noqa: E402

@@ -74,12 +74,11 @@ def test_the_same_command_again_does_the_rest(study: str, tmp_path: Path) -> Non
 
 def test_work_without_a_folder_starts_over(capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     from verify import cli
-    from verify.command_line import commands
 
     def stops(*_: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(commands, "_listed", stops)
+    monkeypatch.setattr("verify.command_line.tools.scenes.listed", stops)
     assert cli.main(["scenes", "dcb-czm1"]) == 130
     assert capsys.readouterr().err == "debond: interrupted; the same command again starts over\n"
 
@@ -115,13 +114,13 @@ def as_another_error():
     except KeyboardInterrupt:
         raise ImportError("a compiled module") from None
 from verify import cli
-from verify.command_line import commands
+from verify.command_line.tools import scenes
 from verify.support import interrupts
 def listed(lines):
     {0}()
     time.sleep(0.5)
     return 0
-commands._listed = listed
+scenes.listed = listed
 interrupts.running(lambda: cli.main(["scenes", "dcb-czm1"]))
 """
 

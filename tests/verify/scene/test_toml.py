@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from verify.cli import main
-from verify.command_line.new_scene import from_scene
+from verify.command_line.scenes.new import from_scene
 from verify.scene.load import load_scene, packaged_scenes
 from verify.scene.toml import keep_scene
 

@@ -14,8 +14,8 @@ from verify.checks.between_codes import cross_checks
 from verify.checks.odd_one_out import odd_one_out
 from verify.checks.proof import MATCHED, REFERENCE, SECOND
 from verify.cli import REFUSED, main
+from verify.command_line.answers import FAILED
 from verify.command_line.arguments import seeds
-from verify.command_line.commands import FAILED
 from verify.methods.zone_resolution import expected
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome

@@ -7,7 +7,7 @@ import tomllib
 import pytest
 
 from verify.cli import main
-from verify.command_line.new_scene import new_scene
+from verify.command_line.scenes.new import new_scene
 from verify.runs.fingerprint import fingerprint
 from verify.scene.keys import SPECIMENS, dotted_keys
 from verify.scene.load import load_scene

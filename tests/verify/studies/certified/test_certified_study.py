@@ -12,7 +12,7 @@ import pytest
 
 from tests.verify.checks.test_certified import END, run
 from verify.cli import REFUSED, main
-from verify.command_line.commands import FAILED
+from verify.command_line.answers import FAILED
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene

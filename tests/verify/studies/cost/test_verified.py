@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from verify.cli import main
-from verify.command_line.commands import FAILED
+from verify.command_line.answers import FAILED
 from verify.methods.solve import prepare, solve
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
 from verify.runs import run as run_module

@@ -12,7 +12,7 @@ from iga.files.iga_format import write_iga
 from iga.tsplines.unstructured import polygon_mesh
 from tests.iga.elements.test_plane_elasticity import ring, square_mesh
 from verify.cli import REFUSED, main
-from verify.command_line.commands import FAILED
+from verify.command_line.answers import FAILED
 from verify.studies.plane import study as plane_study
 from verify.studies.plane.errors import Errors
 from verify.studies.plane.study import Level, _checks, lines, load_plate, settled, study

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from verify.cli import REFUSED, main
-from verify.command_line.commands import FAILED
+from verify.command_line.answers import FAILED
 from verify.curves.of_run import cubics
 from verify.methods.solve import solve
 from verify.result import Result

@@ -13,7 +13,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
 from iga.mesh.extraction import SIDES
-from verify.command_line.mesh_facts import MeshFacts
+from verify.command_line.mesh.facts import MeshFacts
 from verify.pages.style import PALETTE
 
 #: Inches: width of the picture, its largest height, margin, and height of title and legend.

@@ -8,7 +8,7 @@ from pathlib import Path
 from iga.files.iga_format import IgaFile, mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.mesh.extraction import Mesh
-from verify.command_line.mesh_facts import MeshFacts, surface_facts, surface_lines
+from verify.command_line.mesh.facts import MeshFacts, surface_facts, surface_lines
 from verify.support.progress import telling
 from verify.support.refusal import Refusal
 from verify.support.say import say
@@ -110,7 +110,7 @@ def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts, contro
 
             write_vtu(facts.mesh, target)
         else:
-            from verify.command_line.mesh_drawing import save
+            from verify.command_line.mesh.drawing import save
 
             save(facts, target, _title(path, facts), control)
     except OSError as error:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from dataclasses import replace
 
-from verify.command_line.sketch import sketch
+from verify.command_line.scenes.sketch import sketch
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare, require
 from verify.scene.bond.interface import Interface

@@ -1,0 +1,1 @@
+"""Facts of a mesh file and its picture: `debond mesh`."""

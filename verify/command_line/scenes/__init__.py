@@ -1,0 +1,1 @@
+"""Scenes in words: a new file, the list, the drawing in a terminal."""

@@ -1,0 +1,50 @@
+"""`debond validate`."""
+
+from __future__ import annotations
+
+import argparse
+
+from verify.command_line.answers import FAILED, listed, not_run
+from verify.command_line.arguments import numbers
+from verify.command_line.curves import foreign_curves, with_options
+from verify.command_line.options import NewCommand, out_option, scene_argument, set_option, sweep_options
+from verify.command_line.refusals import known_method, output_folder, studied
+from verify.support.refusal import Refusal
+
+
+def add(command: NewCommand) -> None:
+    text = "A statement of ASME V&V 20 on the error of the model: a measured curve against a scene, with uncertainties."
+    sub = command(
+        run,
+        text,
+        "validate dcb-czm1 --with lab.csv --out validation",
+        "read validation/report.html; exit 0: a statement could be made",
+    )
+    scene_argument(sub)
+    with_options(sub)
+    sub.add_argument("--at", type=numbers, default=[], metavar="D,D,...", help="the loads at these openings as well")
+    sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
+    set_option(sub)
+    out_option(sub, "debond-validation")
+    sweep_options(sub)
+
+
+def run(options: argparse.Namespace) -> int:
+    from verify.methods.method import NotRun
+    from verify.studies.validation.plan import planned
+    from verify.studies.validation.study import validate, would_run
+
+    known_method(options.method, None)
+    scene = studied(options, "validate")
+    curves = foreign_curves(options, 1, 0)
+    if len(curves) != 1:
+        raise Refusal(f"--with: must name one curve that the scene is held against, got {len(curves)}")
+    try:
+        plan = planned(options.scene, scene, options.method, options.overrides)
+    except NotRun as error:
+        return not_run(error)
+    if options.dry_run:
+        return listed(would_run(plan, options.out, options.jobs))
+    output_folder(options.out)
+    study = validate(plan, curves[0], options.out, options.at, options.jobs, options.scheduler)
+    return 0 if study.complete else FAILED

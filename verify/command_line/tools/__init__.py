@@ -1,0 +1,1 @@
+"""Commands around the studies: other formats, scenes, the shell, the installation; a module each."""
