@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -60,6 +60,21 @@ def write_groups(mesh: SceneMesh, kind: str, path: Path) -> None:
         meshlane.write(path, found, file_format=how.name, **options)
     except ImportError as error:
         raise Refusal(f"--format: {kind} needs the Python package {error.name}: pip install 'debond[meshes]'") from None
+    if kind == "exodus":
+        _name_blocks(path, [name for _, name, _ in groups])
+
+
+def _name_blocks(path: Path, names: Sequence[str]) -> None:
+    """Give the element blocks of an Exodus file their names, which `meshlane` leaves out, and numbers from 1 on."""
+    from netCDF4 import Dataset, stringtochar
+
+    with Dataset(path, "a") as file:
+        file.variables["eb_prop1"][:] = np.arange(1, len(names) + 1)
+        file.variables["ns_prop1"][:] = np.arange(1, file.dimensions["num_node_sets"].size + 1)
+        length = file.dimensions["len_string"].size
+        file.createVariable("eb_names", "S1", ("num_el_blk", "len_string"))[:] = stringtochar(
+            np.array(names, dtype=f"S{length}")
+        )
 
 
 def _groups(mesh: SceneMesh) -> list[tuple[int, str, np.ndarray]]:

@@ -75,6 +75,8 @@ def _read(path: Path, kind: str) -> Any:
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            if kind == "exodus":
+                return _with_block_names(reader.read(str(path)), path)
             if kind != "abaqus":
                 return reader.read(str(path))
             with tempfile.TemporaryDirectory() as folder:
@@ -89,6 +91,21 @@ def _read(path: Path, kind: str) -> Any:
         lines = path.read_bytes().count(b"\n")
         words = " ".join(str(error).split())[:200] or type(error).__name__
         raise ValueError(f"is broken or cut off within its {lines} lines, as {kind} ({words})") from None
+
+
+def _with_block_names(found: Any, path: Path) -> Any:
+    """The mesh of an Exodus file with its element blocks as groups; `meshlane` reads those of nodes alone."""
+    from netCDF4 import Dataset, chartostring
+
+    with Dataset(path) as file:
+        if "eb_names" not in file.variables:
+            return found
+        names = [str(name).strip("\0 ") for name in chartostring(file.variables["eb_names"][:].filled(b""))]
+    for b, name in enumerate(names):
+        if name:
+            members = [np.arange(len(block.data) if b == other else 0) for other, block in enumerate(found.cells)]
+            found.cell_sets[name] = members
+    return found
 
 
 def _known_elements(text: str) -> Iterator[str]:

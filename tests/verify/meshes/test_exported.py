@@ -8,6 +8,7 @@ import pytest
 
 from verify.cli import main
 from verify.export.groups import GROUP_FILES
+from verify.meshes.read import read_mesh
 from verify.methods.solve import solve
 from verify.scene.load import load_scene
 
@@ -20,6 +21,7 @@ def test_an_exported_mesh_is_solved_as_the_built_in_one(kind: str, merged: bool,
     words = ["--elements", "40", "--out", str(tmp_path), *["--merged"] * merged]
     assert main(["export", "dcb-czm1", "--format", kind, *words]) == 0
     file = tmp_path / f"dcb-czm1.{GROUP_FILES[kind].ending}"
+    assert {name: len(elements) for name, elements in read_mesh(file).elements.items()} == {"upper": 40, "lower": 40}
     group = "bond" if merged else "upper_bond"
     scene = load_scene("dcb-czm1", [f'specimen.mesh="{file}"', f'specimen.groups.bond="{group}"', *SHORT])
     given = solve(scene, "lagrange")
