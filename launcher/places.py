@@ -105,7 +105,9 @@ def python_with_dolfinx() -> str | None:
     system = "/usr/bin/python3"
     if not os.path.exists(system) or os.path.realpath(system) == os.path.realpath(sys.executable):
         return None
-    return system if subprocess.run([system, "-c", FIND_DOLFINX], check=False).returncode == 0 else None
+    # what it prints when it is interrupted as well is of no use to anybody
+    found = subprocess.run([system, "-c", FIND_DOLFINX], check=False, stderr=subprocess.DEVNULL)
+    return system if found.returncode == 0 else None
 
 
 def private_root(cache: Path, tests: bool = False) -> Place:

@@ -69,10 +69,11 @@ def arms_on_supports(problem: Debonding, bodies: Rectangles, bonded: tuple[float
     height = float(above[-1] + below[-1])
     pulls = tuple(action(load, pair, load.share) for load in outline.loads)
     rests = tuple(action(rest, pair, spring * (height**2 if rest.couple else 1.0)) for rest in outline.supports)
+    graded = GRADED_END * min(body.thickness for body in pair)
     components, keeps = _rigid_motions(problem, pair, rests, spring)
     return Specimen(
         bodies=pair,
-        X=_lines(problem, (*pulls, *rests), (bonded[0], L), GRADED_END * min(body.thickness for body in pair)),
+        X=problem.cells.X if problem.cells else _lines(problem, (*pulls, *rests), (bonded[0], L), graded),
         bond=bonded,
         facing=(0.0, L),
         touching=problem.contact,
@@ -83,6 +84,7 @@ def arms_on_supports(problem: Debonding, bodies: Rectangles, bonded: tuple[float
         pulls=pulls,
         rests=rests,
         keeps=keeps,
+        cells=problem.cells,
     )
 
 

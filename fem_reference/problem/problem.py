@@ -34,7 +34,7 @@ class Debonding(ABC):
     layers : elements through the thickness of each loaded body.
     interface_points : Gauss points on each element of the bond; None: three more than the degree, since the law has
         kinks in elements.
-    cells : elements in place of these, for arms that are pulled apart.
+    cells : elements in place of these, for two arms.
     steps : equal opening increments over the whole programme; the ends of its branches come on top. None: the path
         chooses its steps by accuracy.
     bend : for these, how far the load may leave the tangent of a step, in parts of the peak.

@@ -37,8 +37,9 @@ def export(scene: Scene, kind: str, folder: Path, layers: int | None = None, con
     """
     if scene.interface.law not in LAW_NOTES:
         raise Refusal(f"interface.law: must be {one_of(LAW_NOTES)} for an export, got {scene.interface.law!r}")
-    if scene.specimen.slides:
-        raise Refusal(f'specimen.kind: must be "dcb" or "peel" for an export, got {scene.specimen.kind!r}')
+    if scene.specimen.slides and kind == "abaqus":
+        others = one_of(each for each in FORMATS if each != kind)
+        raise Refusal(f"--format: must be {others} for the kind {scene.specimen.kind}, got {kind!r}")
     if conforming and kind not in GROUP_FILES:
         raise Refusal(f"--merged: is for --format {one_of(GROUP_FILES)}, got {kind!r}")
     mesh = scene_mesh(scene, layers)

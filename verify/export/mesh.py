@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem_reference.problem.specimen import Body, Region, Specimen
+from fem_reference.problem.specimen import Action, Body, Region, Specimen
 from verify.methods.solve import prepare
 from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
@@ -18,19 +18,28 @@ MIDDLE = 1e-9
 #: Integrals of the functions of a side of degree p over its length.
 SHARES: Mapping[int, np.ndarray] = {1: np.array([1, 1]) / 2, 2: np.array([1, 4, 1]) / 6}
 
+#: Integrals of the products of two of these functions over its length.
+MASSES: Mapping[int, np.ndarray] = {
+    1: np.array([[2, 1], [1, 2]]) / 6,
+    2: np.array([[4, 2, -1], [2, 16, 2], [-1, 2, 4]]) / 30,
+}
+
 
 @dataclass(frozen=True)
 class LoadedFace:
-    """A loaded end face: ``weight_n`` of its nodes add up to 1.
+    """A loaded end face, or the patch of a load or a support.
 
-    The mean displacement of the face is the sum of weight times u_y, and a uniform traction of resultant P is the
-    nodal force weight times P. The face moves by ``factor`` times the opening.
+    Its mean displacement is the sum of ``weight_n`` times the displacement of its nodes along ``component`` (0: x,
+    1: y), and a dead traction of resultant P is the nodal force weight times P. Of a couple these are the mean rotation
+    and the moment; one over both arms has a patch on each. A loaded face moves by ``factor`` times the opening; a patch
+    carries ``factor`` times the load, and the opening is the sum of these factors times the mean displacements.
     """
 
     name: str
     node_n: np.ndarray
     weight_n: np.ndarray
     factor: float
+    component: int = 1
 
 
 @dataclass(frozen=True)
@@ -55,6 +64,8 @@ class SceneMesh:
     body_e : (n_e,) 0 upper, 1 lower
     pair_kb : (n_k, 2) nodes of the bond, lower and upper, X rising; ``degree`` + 1 of them make a side
     length_k : (n_k,) length of the bond that belongs to each pair: integral of its function
+    crack_kb : the same pairs of the faces of the precrack, where they can touch; its end is the first pair of the bond
+    resting : patches whose mean displacement is zero, of arms on rollers
     """
 
     degree: int
@@ -66,6 +77,8 @@ class SceneMesh:
     length_k: np.ndarray
     loaded: tuple[LoadedFace, ...]
     supports: tuple[Support, ...]
+    crack_kb: np.ndarray
+    resting: tuple[LoadedFace, ...] = ()
 
     @property
     def sets(self) -> dict[str, np.ndarray]:
@@ -73,8 +86,9 @@ class SceneMesh:
         bond = {f"{name}_bond": self.pair_kb[:, 1 - b] for b, name in enumerate(self.names)}
         if self.merged:
             bond = {"bond": self.pair_kb[:, 0]}
-        parts: tuple[LoadedFace | Support, ...] = (*self.loaded, *self.supports)
-        return {part.name: part.node_n for part in parts} | bond
+        parts: tuple[LoadedFace | Support, ...] = (*self.loaded, *self.resting, *self.supports)
+        crack = {f"{name}_crack": self.crack_kb[:, 1 - b] for b, name in enumerate(self.names) if self.crack_kb.size}
+        return {part.name: part.node_n for part in parts} | bond | crack
 
     @property
     def merged(self) -> bool:
@@ -123,7 +137,9 @@ def merged(mesh: SceneMesh) -> SceneMesh:
         X_nI=mesh.X_nI[kept],
         conn_ea=new[mesh.conn_ea],
         pair_kb=new[mesh.pair_kb],
+        crack_kb=new[mesh.crack_kb],
         loaded=tuple(replace(face, node_n=new[face.node_n]) for face in mesh.loaded),
+        resting=tuple(replace(face, node_n=new[face.node_n]) for face in mesh.resting),
         supports=tuple(replace(part, node_n=new[part.node_n]) for part in mesh.supports),
     )
 
@@ -133,10 +149,21 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
     for body in specimen.bodies:
         grids.append(_Grid.of(body, specimen, degree, count))
         count += len(grids[-1].X_nI)
-    bond = (min(specimen.bond), max(specimen.bond)), (0.0, 0.0)
-    upper, lower = (grid.on(bond) for grid in grids)
     X_nI = np.concatenate([grid.X_nI for grid in grids])
-    pairs = np.stack([lower, upper], axis=1)[np.argsort(X_nI[lower, 0])]
+
+    def facing(start: float, end: float) -> np.ndarray:
+        """Pairs of nodes (n, 2), lower and upper, on the faces between two places, X rising."""
+        upper, lower = (grid.on(((start, end), (0.0, 0.0))) for grid in grids)
+        return np.stack([lower, upper], axis=1)[np.argsort(X_nI[lower, 0])]
+
+    def patches(actions: tuple[Action, ...], role: str) -> tuple[LoadedFace, ...]:
+        return tuple(
+            _patch(f"{names[patch.body]}_{role}_{number}", act, grids[patch.body].on(patch.place), X_nI, degree)
+            for number, act in enumerate(actions, 1)
+            for patch in act.patches
+        )
+
+    pairs = facing(min(specimen.bond), max(specimen.bond))
     faces = [face for face in specimen.faces if face.load != 0.0]
     size = sum(abs(face.load) for face in faces)
     loaded = []
@@ -162,9 +189,21 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
         body_e=np.repeat([0, 1], [len(grid.conn_ea) for grid in grids]),
         pair_kb=pairs,
         length_k=_lengths(X_nI[pairs[:, 0], 0], degree),
-        loaded=tuple(loaded),
+        loaded=(*loaded, *patches(specimen.pulls, "load")),
         supports=supports,
+        crack_kb=facing(0.0, specimen.bond[0]) if specimen.pulls and specimen.touching else np.zeros((0, 2), dtype=int),
+        resting=patches(specimen.rests, "support"),
     )
+
+
+def _patch(name: str, act: Action, nodes: np.ndarray, X_nI: np.ndarray, degree: int) -> LoadedFace:
+    """Nodes and weights of an action: its traction (turn (middle - Y), push) times the functions of the nodes."""
+    axis = int(np.ptp(X_nI[nodes, 1]) > np.ptp(X_nI[nodes, 0]))
+    nodes = nodes[np.argsort(X_nI[nodes, axis])]
+    at = X_nI[nodes, axis]
+    if act.push:
+        return LoadedFace(name, nodes, act.push * _lengths(at, degree), act.factor)
+    return LoadedFace(name, nodes, act.turn * (act.middle * _lengths(at, degree) - _moments(at, degree)), act.factor, 0)
 
 
 def _pulled(face: LoadedFace, at: str, X_nI: np.ndarray) -> LoadedFace:
@@ -215,6 +254,15 @@ class _Grid:
         x, y = self.X_nI.T
         there = (x > left - self.near) & (x < right + self.near) & (y > low - self.near) & (y < high + self.near)
         return self.first + np.flatnonzero(there)
+
+
+def _moments(at: np.ndarray, degree: int) -> np.ndarray:
+    """Integral (n,) of the function of every node times the place, over a line of sides; ``at`` rises."""
+    moments = np.zeros(at.size)
+    for first in range(0, at.size - 1, degree):
+        side = slice(first, first + degree + 1)
+        moments[side] += (at[side][-1] - at[side][0]) * MASSES[degree] @ at[side]
+    return moments
 
 
 def _refined(lines: np.ndarray, degree: int) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from verify.checks.load_introduction import sentence
-from verify.export.mesh import SceneMesh
+from verify.export.mesh import LoadedFace, SceneMesh
 from verify.scene.effects import simulated
 from verify.scene.materials import elastic_constants, plane_strain_constants
 from verify.scene.schema import Scene, counted_steps
@@ -16,6 +16,8 @@ from verify.theory.law import Bilinear
 
 #: Exported laws, each described.
 LAW_NOTES: Mapping[str, str] = {"bilinear": "bilinear, mode I: the gap along the normal alone bears traction"}
+
+WHOLE_WIDTH = "the load of the curve is the force on one loaded face, of the whole width"
 
 #: The same law of a bond that slides as well.
 SLIDING_LAW = "bilinear, of opening and sliding with one damage; mode ratio by energy"
@@ -72,18 +74,16 @@ def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
             "pairs": len(mesh.pair_kb),
         },
         "loaded": {
-            face.name: {
-                "part_of_the_opening": face.factor,
-                "nodes": _numbers(face.node_n),
-                "weights": list(face.weight_n),
-            }
+            face.name: {"part_of_the_load" if specimen.slides else "part_of_the_opening": face.factor, **_means(face)}
             for face in mesh.loaded
         },
+        "resting": {face.name: _means(face) for face in mesh.resting},
         "held": {
             part.name: {"components": [i + 1 for i in part.components], "nodes": _numbers(part.node_n)}
             for part in mesh.supports
         },
         "pairs": [_numbers(pair) for pair in mesh.pair_kb],
+        "crack_pairs": [_numbers(pair) for pair in mesh.crack_kb],
         "notes": notes(scene),
     }
 
@@ -100,8 +100,7 @@ def notes(scene: Scene) -> list[str]:
     return [
         f"{simulate['kinematics']} kinematics; {closing}; {damage}",
         *(beyond if bond.contact and min(scene.load.opening) < 0.0 else []),
-        *_load(scene),
-        "the load of the curve is the force on one loaded face, of the whole width",
+        *(_rollers(scene) if scene.specimen.slides else _load(scene)),
         "the pose of the scene is left out, as no answer depends on it"
         if posed
         else "the mesh stands as the scene says: X along the specimen, the bond on Y = 0",
@@ -114,11 +113,27 @@ def _load(scene: Scene) -> list[str]:
     if scene.load.at != "face":
         where = "corner away from the bond" if scene.load.at == "node" else "middle"
         force = f"{free} is a force that keeps its direction"
-        return [f"the {where} of a loaded face moves up by its part of the opening, {force}"]
+        return [f"the {where} of a loaded face moves up by its part of the opening, {force}", WHOLE_WIDTH]
     return [
         "a loaded face moves up by its part of the opening in the mean (weights times u_y), "
         f"{free} is a uniform traction that keeps its direction",
         sentence(scene),
+        WHOLE_WIDTH,
+    ]
+
+
+def _rollers(scene: Scene) -> list[str]:
+    """Loads and supports of arms whose bond slides."""
+    friction = scene.interface.friction
+    rub = f"with friction of {friction:g}" if friction else "without friction"
+    return [
+        "a patch carries its part of the load as a uniform traction that keeps its direction; the opening is the sum "
+        "of these parts times the mean displacements (weights times u_y; of a couple, weights times u_x: a rotation)",
+        "a supported patch has the mean displacement zero, and is free otherwise"
+        if scene.specimen.supports
+        else "the loads balance each other, and nothing holds the rotation of the whole: hold it where no force arises",
+        f"the faces of the precrack, crack_pairs, touch {rub}",
+        "the load of the curve is the one that the parts multiply, of the whole width",
     ]
 
 
@@ -128,6 +143,14 @@ def header(scene: Scene, mesh: SceneMesh) -> Mapping[str, str]:
         "scene": f"{scene.name} ({scene.units})",
         "mesh": f"{len(mesh.X_nI)} nodes, {len(mesh.conn_ea)} elements of degree {mesh.degree}",
         **{f"note {i}": note for i, note in enumerate(notes(scene), 1)},
+    }
+
+
+def _means(face: LoadedFace) -> dict[str, Any]:
+    return {
+        "component": face.component + 1,
+        "nodes": _numbers(face.node_n),
+        "weights": [float(weight) for weight in face.weight_n],
     }
 
 

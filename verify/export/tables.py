@@ -13,12 +13,13 @@ def write_tables(mesh: SceneMesh, folder: Path) -> tuple[Path, ...]:
     """Write nodes.csv, elements.csv, pairs.csv and sets.csv into a folder; their paths.
 
     Corners of an element go counter-clockwise, then the middles of its sides. Pairs are ordered along the bond, and
-    ``length`` is the share of each in the interface. ``weight`` is a node's part of the load of a loaded face.
+    ``length`` is the share of each in the interface. ``weight`` is a node's part of the load of a loaded face, or
+    of the force of a support.
     """
     names, nodes = [mesh.names[b] for b in mesh.body_e], [f"n{a + 1}" for a in range(mesh.conn_ea.shape[1])]
     elements = zip(names, mesh.conn_ea + 1, strict=True)
     pairs = zip(mesh.pair_kb + 1, mesh.X_nI[mesh.pair_kb[:, 0]], mesh.length_k, strict=True)
-    weights = {face.name: face.weight_n for face in mesh.loaded}
+    weights = {face.name: face.weight_n for face in (*mesh.loaded, *mesh.resting)}
     tables = {
         "nodes.csv": (("node", "x", "y"), ((n, *X) for n, X in enumerate(mesh.X_nI.tolist(), 1))),
         "elements.csv": (("element", "body", *nodes), ((e, b, *conn) for e, (b, conn) in enumerate(elements, 1))),

@@ -20,7 +20,8 @@ def write_scene_vtu(mesh: SceneMesh, path: Path) -> None:
     """Write ``path``. Cell data ``body``: 0 upper, 1 lower, 2 interface. Point data, counted from 0:
 
     ``pair``: node on the other side of the bond, -1 off it; ``pair_length``: length of the bond that belongs to it;
-    ``load_weight``: part of the load of its face; and for every set its name, 1 where a node belongs to it.
+    ``load_weight``: part of the load of its face, or of the force of its support; and for every set its name, 1 where a
+    node belongs to it.
     """
     cells = [*mesh.conn_ea, *mesh.cohesive_ea]
     types = np.repeat([QUADS[mesh.degree], QUADS[1]], [len(mesh.conn_ea), len(mesh.cohesive_ea)])
@@ -42,7 +43,7 @@ def point_data(mesh: SceneMesh) -> dict[str, np.ndarray]:
     lower, upper = mesh.pair_kb.T
     pair[lower], pair[upper] = upper, lower
     length[lower] = length[upper] = mesh.length_k
-    for face in mesh.loaded:
+    for face in (*mesh.loaded, *mesh.resting):
         weight[face.node_n] = face.weight_n
     sets = {name: np.zeros(len(mesh.X_nI), dtype=np.uint8) for name in mesh.sets}
     for name, nodes in mesh.sets.items():

@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from verify.meshes.read import ELEMENT_DEGREES, PlaneMesh, read_mesh
 from verify.scene.schema import Scene
+from verify.scene.specimens.delamination import Delamination, Load, Support
 from verify.support.refusal import Refusal
 
 #: Part of the specimen's length within which two places are the same.
@@ -42,8 +43,8 @@ def given_arms(scene: Scene) -> tuple[Arm, Arm]:
     """
     file = scene.specimen.mesh[0]
     try:
-        if scene.specimen.kind != "dcb" or len(scene.specimen.mesh) > 1:
-            raise ValueError("must be one file with both arms of a dcb, or .iga files")
+        if scene.specimen.clamped or len(scene.specimen.mesh) > 1:
+            raise ValueError("must be one file with both arms, or .iga files")
         mesh = read_mesh(Path(file))
         check = _Check(scene, mesh)
         return check.arms()
@@ -118,13 +119,20 @@ class _Check:
             )
         ends = np.cumsum([conn.size for conn in part.values()])[:-1]
         local = zip(part.items(), np.split(np.ravel(inverse), ends), strict=True)
-        lines = ((0.0, *self.scene.specimen.bonded), box)
+        lines = (
+            (
+                0.0,
+                *self.scene.specimen.bonded,
+                *(x for patch in self.scene.specimen.patches for x in patch.extent or ()),
+            ),
+            box,
+        )
         arm = Arm(
             _snapped(X_nI, lines, self.tol), {size: numbers.reshape(conn.shape) for (size, conn), numbers in local}
         )
         self._outline(name, arm, box)
         tip = self.scene.specimen.tip
-        face = _corners(arm)[np.abs(_corners(arm)[:, 1]) == 0.0, 0]
+        face = corners_on(arm, 0.0)
         near = face[np.argmin(np.abs(face - tip))]
         if near != tip:
             raise ValueError(
@@ -177,8 +185,10 @@ class _Check:
                 continue
             if role in ARM_NAMES:
                 self._body_group(name, elements, upper_e if role == "upper" else ~upper_e)
-            else:
+            elif role == "bond" or (role == "load" and not self.scene.specimen.slides):
                 self._face_group(role, name, nodes)
+            else:
+                self._patch_group(role, name, nodes)
 
     def _body_group(self, name: str, elements: np.ndarray | None, which: np.ndarray) -> None:
         if elements is None:
@@ -204,10 +214,52 @@ class _Check:
                 f"got {ran[0]:.6g} to {ran[1]:.6g}, up to {off:.3g} off that line"
             )
 
+    def _patch_group(self, role: str, name: str, nodes: np.ndarray | None) -> None:
+        """Nodes on the patches of all loads or all supports, and on no other place."""
+        specimen = self.scene.specimen
+        patches: tuple[Load | Support, ...] = specimen.loads if role == "load" else specimen.supports
+        if nodes is None or not patches:
+            got = "elements of a body" if patches else f"a {specimen.kind}, which has none"
+            raise ValueError(f"group {name}: must hold lines or nodes of the patches of every {role}, got {got}")
+        X_nI = self.mesh.X_nI[nodes]
+        on_kn = np.array([_on(patch, specimen, X_nI, self.tol) for patch in patches])
+        if not np.all(on_kn.any(1)):
+            missing = patches[int(np.argmin(on_kn.any(1)))]
+            raise ValueError(f"group {name}: must have nodes of every {role}, got none {_place(missing)}")
+        if not np.all(on_kn.any(0)):
+            x, y = X_nI[int(np.argmin(on_kn.any(0)))]
+            places = ", ".join(map(_place, patches))
+            raise ValueError(f"group {name}: must have nodes {places} alone, got one at ({x:.6g}, {y:.6g})")
 
-#: Bodies, and what else groups may name: the bonded faces and the loaded ones.
+
+def _on(patch: Load | Support, specimen: Delamination, X_nI: np.ndarray, tol: float) -> np.ndarray:
+    """Which nodes (n,) lie on a patch."""
+    x, y = X_nI.T
+    upper, lower = specimen.thicknesses
+    if patch.side in ("left", "right"):
+        low, high = (-lower if patch.body != 0 else 0.0), (upper if patch.body != 1 else 0.0)
+        end = 0.0 if patch.side == "left" else specimen.lengths[0]
+        return (np.abs(x - end) < tol) & (y > low - tol) & (y < high + tol)
+    low, high = patch.extent or (0.0, specimen.lengths[0])
+    return (np.abs(y - height(patch, specimen)) < tol) & (x > low - tol) & (x < high + tol)
+
+
+def height(patch: Load | Support, specimen: Delamination) -> float:
+    """Y of the side, top or bottom, of a body."""
+    upper, lower = specimen.thicknesses
+    return {(0, "top"): upper, (1, "bottom"): -lower}.get((patch.body or 0, patch.side), 0.0)
+
+
+def _place(patch: Load | Support) -> str:
+    """Words for a patch: on the top from X = 69.5 to 70.5."""
+    if patch.extent is None:
+        return f"on the {patch.side} side"
+    return f"on the {patch.side} from X = {patch.extent[0]:g} to {patch.extent[1]:g}"
+
+
+#: Bodies, and what else groups may name: the bonded faces, the loaded ones, and those that are held.
 ARM_NAMES = ("upper", "lower")
-GROUP_ROLES = (*ARM_NAMES, "bond", "load")
+GROUP_ROLES = (*ARM_NAMES, "bond", "load", "support")
 
 
 def _other_units(wanted: float, found: float) -> str:
@@ -232,9 +284,10 @@ def corner_count(conn: np.ndarray) -> int:
     return 3 if conn.shape[1] in (3, 6) else 4
 
 
-def _corners(arm: Arm) -> np.ndarray:
+def corners_on(arm: Arm, Y: float) -> np.ndarray:
+    """X (n,) of the corners of elements on a line along the specimen, rising."""
     used = np.unique(np.concatenate([conn[:, : corner_count(conn)].ravel() for conn in arm.conn_kea.values()]))
-    return arm.X_nI[used]
+    return np.unique(arm.X_nI[used[arm.X_nI[used, 1] == Y], 0])
 
 
 def _area(X_eaI: np.ndarray) -> np.ndarray:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from verify.meshes.arms import Arm, corner_count
+from verify.meshes.arms import Arm, corner_count, corners_on, height
+from verify.scene.specimens.delamination import Delamination
 
 #: Part of a side's length by which its middle node may lie beside the middle.
 STRAIGHT = 1e-6
@@ -41,6 +42,19 @@ def joined(arms: tuple[Arm, Arm]) -> tuple[np.ndarray, np.ndarray]:
     kept, compact_n = np.unique(number_n, return_inverse=True)
     local = [np.searchsorted(n, part) + at for n, part, at in zip(used, parts, (0, first), strict=True)]
     return points[kept], np.ravel(compact_n)[np.concatenate(local)]
+
+
+def require_patch_ends(arms: tuple[Arm, Arm], specimen: Delamination) -> None:
+    """Raise ValueError where a load or a support ends within a side of an element: DOLFINx has whole sides."""
+    for patch in specimen.patches:
+        corner_n = corners_on(arms[patch.body or 0], height(patch, specimen))
+        for end in patch.extent or ():
+            near = corner_n[np.argmin(np.abs(corner_n - end))]
+            if near != end:
+                where = f"X = {end:g} on the {patch.side}, where a roller ends"
+                raise ValueError(
+                    f"a corner of an element must lie at {where}, for dolfinx, got {near:.6g} as the nearest"
+                )
 
 
 def _require_straight(arm: Arm) -> None:

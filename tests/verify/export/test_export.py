@@ -190,8 +190,3 @@ def test_what_is_left_out_is_said(tmp_path: Path, capsys: pytest.CaptureFixture)
     said = capsys.readouterr().out
     assert "the pose of the scene is left out" in said and "linear kinematics" in said
     assert "the pose of the scene is left out" in str(json.loads((tmp_path / "scene.json").read_text())["notes"])
-
-
-def test_a_specimen_on_supports_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    assert main(["export", "enf-as4peek", "--format", "abaqus", "--out", str(tmp_path / "out")]) == 2
-    assert 'specimen.kind: must be "dcb" or "peel" for an export, got' in capsys.readouterr().err

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from verify.cli import main
 from verify.export.groups import GROUP_FILES
+from verify.export.mesh import merged, scene_mesh
 from verify.meshes.read import read_mesh
 from verify.methods.solve import solve
 from verify.scene.load import load_scene
@@ -30,3 +32,48 @@ def test_an_exported_mesh_is_solved_as_the_built_in_one(kind: str, merged: bool,
     missing = load_scene("dcb-czm1", [f'specimen.mesh="{file}"', 'specimen.groups.bond="none"', *SHORT])
     with pytest.raises(ValueError, match=r"group none \(specimen.groups.bond\) is missing, the file has .*bond"):
         solve(missing, "lagrange")
+
+
+@pytest.mark.parametrize("kind", GROUP_FILES)
+def test_an_exported_test_on_rollers_is_solved_as_the_built_in_one(kind: str, tmp_path: Path) -> None:
+    coarse = ["dolfinx.elements=70", "dolfinx.layers=2", "load.opening=1.0"]
+    overrides = [word for setting in coarse for word in ("--set", setting)]
+    assert main(["export", "mmb50-as4peek", "--format", kind, *overrides, "--out", str(tmp_path)]) == 0
+    file = tmp_path / f"mmb50-as4peek.{GROUP_FILES[kind].ending}"
+    made = load_scene("mmb50-as4peek", coarse)
+    nodes = read_mesh(file)
+    loads = [np.unique(nodes.X_nI[nodes.nodes[f"upper_load_{i}"], 0])[[0, -1]] for i in (1, 2)]
+    assert np.allclose(loads, [load.extent for load in made.specimen.loads if load.extent])
+    groups = [f'specimen.mesh="{file}"', 'specimen.groups.bond="upper_bond"']
+    given = solve(load_scene("mmb50-as4peek", [*coarse, *groups]), "lagrange")
+    own = solve(made, "dolfinx")
+    assert given.complete and given.load[-1] == pytest.approx(own.load[-1], rel=0.005)
+
+
+@pytest.mark.parametrize("name", ["mmb50-as4peek", "moments", "slb"])
+@pytest.mark.parametrize("degree", [1, 2])
+def test_weights_are_those_of_unit_tractions(name: str, degree: int) -> None:
+    """A rigid motion by 1 has the mean 1, a rotation by 1 the mean rotation 1; the faces of the precrack match."""
+    scene = load_scene(name, [f"dolfinx.degree={degree}", "dolfinx.elements=70"])
+    mesh = scene_mesh(scene)
+    for faces, wanted in ((mesh.loaded, scene.specimen.loads), (mesh.resting, scene.specimen.supports)):
+        for number, act in enumerate(wanted, 1):
+            parts = [face for face in faces if face.name.endswith(f"_{number}")]
+            assert len(parts) == (2 if act.body is None else 1)
+            node_n, weight_n = (
+                np.concatenate(each) for each in zip(*((p.node_n, p.weight_n) for p in parts), strict=True)
+            )
+            turned = -mesh.X_nI[node_n, 1] if act.couple else np.ones(len(node_n))
+            assert weight_n @ turned == pytest.approx(1.0)
+            assert {part.component for part in parts} == {0 if act.couple else 1}
+    assert [face.factor for face in mesh.loaded] == [load.share for load in scene.specimen.loads]
+    lower, upper = mesh.X_nI[mesh.crack_kb].transpose(1, 0, 2)
+    assert np.array_equal(lower, upper) and np.ptp(lower[:, 0]) == pytest.approx(scene.specimen.tip)
+    joined = merged(mesh)
+    assert np.array_equal(joined.X_nI[joined.crack_kb[:, 0]], lower)
+    assert len(np.unique(joined.crack_kb)) == 2 * len(lower) - 1, "the arms share the end of the precrack"
+
+
+def test_rollers_are_not_written_for_abaqus(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    assert main(["export", "slb", "--format", "abaqus", "--out", str(tmp_path)]) == 2
+    assert '--format: must be "gmsh", "med", "exodus", "vtu" or "csv" for the kind slb' in capsys.readouterr().err

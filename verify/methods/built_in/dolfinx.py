@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from verify.meshes.arms import given_arms
-from verify.meshes.joined import joined
+from verify.meshes.joined import joined, require_patch_ends
 from verify.methods import dolfinx
 from verify.methods.method import (
     Failure,
@@ -29,7 +29,6 @@ from verify.methods.reference_mesh import ReferenceMesh, reference_mesh
 from verify.result import Result
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.schema import Scene
-from verify.support.refusal import Refusal
 from verify.support.timing import Stopwatch
 
 
@@ -78,10 +77,10 @@ def _given(scene: Scene) -> Any:
         return None
     from fem_reference.problem.specimen import Cells
 
+    arms = given_arms(scene)
     try:
-        return Cells(*joined(given_arms(scene)))
-    except Refusal:
-        raise
+        require_patch_ends(arms, scene.specimen)
+        return Cells(*joined(arms))
     except ValueError as error:
         raise Unsuitable(f"specimen.mesh: {scene.specimen.mesh[0]}: {error} (method lagrange takes them)") from None
 

@@ -29,7 +29,9 @@ class Groups(Section):
     bond: str = ""
     """Lines or nodes of the bonded faces, of one body or both."""
     load: str = ""
-    """Lines or nodes of the loaded faces."""
+    """Lines or nodes of the loaded faces, or of the patches of all loads."""
+    support: str = ""
+    """Lines or nodes of the patches of all supports, where there are any."""
 
 
 class Ratio(NamedTuple):
@@ -125,6 +127,11 @@ class Delamination(Section):
         @property
         def supports(self) -> tuple[Support, ...]:
             """What holds it; none where the loads balance each other, or a clamp does."""
+
+    @property
+    def patches(self) -> tuple[Load | Support, ...]:
+        """Loads and supports of arms whose bond slides; the others have loaded faces alone."""
+        return (*self.loads, *self.supports) if self.slides else ()
 
     @property
     def nodal(self) -> bool:

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, TypeAlias
 
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
-from verify.scene.specimens.delamination import Delamination, Files, Load, Plane, Ratio, Support
+from verify.scene.specimens.delamination import Delamination, Files, Groups, Load, Plane, Ratio, Support
 from verify.scene.tables import Positive, refuse
 
 
@@ -35,8 +35,6 @@ class TwoArms(Delamination):
         Ratio("precrack", 1e-6, 0.999999, "length"),
         Ratio("width", 1e-9, 1e9, "length"),
     )
-    mesh: ClassVar[Files] = ()  # type: ignore[misc]
-
     kind: str
     length: Positive
     """From the loaded end to the far end of the bond, or between the outer supports [length]."""
@@ -48,6 +46,17 @@ class TwoArms(Delamination):
     """Out of the plane [length]."""
     plane: Plane = "stress"
     """Plane stress or plane strain."""
+    mesh: Files = Field(default=(), max_length=1)
+    """One .msh, .inp, .vtu, .e or .med file of both arms for lagrange and dolfinx; none: a mesh is made."""
+    groups: Groups = Groups()
+    """Names of the groups of the mesh file."""
+
+    @field_validator("mesh")
+    @classmethod
+    def _of_elements(cls, mesh: Files) -> Files:
+        if any(name.lower().endswith(".iga") for name in mesh):
+            raise refuse("a .msh, .inp, .vtu, .e or .med file of both arms", ((), list(mesh)))
+        return mesh
 
     @field_validator("precrack")
     @classmethod
