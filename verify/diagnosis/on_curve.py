@@ -14,7 +14,7 @@ from scipy.optimize import minimize_scalar
 
 from verify.curves.curve import PROPAGATION, SAMPLES
 from verify.diagnosis.solutions import sampled
-from verify.scene.magnitudes import LARGEST_NUMBER
+from verify.scene.magnitudes import LARGEST_NUMBER, SMALLEST_NUMBER
 
 Curve = tuple[np.ndarray, np.ndarray]
 
@@ -86,7 +86,7 @@ def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[U
     yield Undone("toe", f"an offset of the opening by {toe * at_peak:+.3g}", toe * at_peak, "length", error)
     first = at_peak / 20.0
     stiff = float(sampled(reference.curve, np.array([first]))[0])
-    if first > 0.0 and stiff > 0.0:
+    if first > 0.0 and stiff > SMALLEST_NUMBER:
         compliance = first / stiff
         soft, error = _fitted(lambda x: (d - x * compliance * P, P), reference, 0.6)
         words = f"a compliance of {soft * compliance:.3g} in series, {100 * soft:.2g} % of that of the specimen"

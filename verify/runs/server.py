@@ -64,7 +64,8 @@ class Server:
     def kill(self) -> None:
         """End it at once, and with it its run."""
         self._process.kill()
-        self._process.wait()
+        with self._process:  # waits, and closes its pipes
+            pass
 
     def begin(self, words: list[str], log: Path, cwd: Path) -> Run:
         """Begin a run; raises OSError where the server has died."""
@@ -86,7 +87,10 @@ class Server:
 
     def _answer(self) -> int:
         assert self._process.stdout is not None
-        line = self._process.stdout.readline()
+        try:
+            line = self._process.stdout.readline()
+        except ValueError:  # closed by another thread that ends all servers
+            line = b""
         if not line:
             raise OSError(f"the process that begins runs has ended with exit code {self._process.wait()}")
         return int(line)

@@ -27,6 +27,7 @@ PROJECT = Path(__file__).resolve().parents[3]
 def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder to stand in, with all that takes long replaced by nothing."""
     import verify.export.command
+    import verify.studies.certified.keeping
     import verify.studies.certified.study
     import verify.studies.cost.accuracy
     import verify.studies.cost.study
@@ -34,6 +35,7 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     import verify.studies.hard.suite
     import verify.studies.scaling.study
     import verify.studies.validation.study
+    import verify.studies.viscosity.study
     import verify.verification
 
     def nothing(prepared, *_: object, **__: object):
@@ -51,8 +53,10 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (verify.studies.scaling.study, "scaling"),
         (verify.studies.validation.study, "validate"),
         (verify.studies.certified.study, "certify"),
+        (verify.studies.certified.keeping, "keep"),
+        (verify.studies.viscosity.study, "viscosity"),
     ):
-        monkeypatch.setattr(study, name, lambda *_: type("Study", (), {"complete": True}))
+        monkeypatch.setattr(study, name, lambda *_: type("Study", (), {"complete": True, "failures": (), "kept": {}}))
     (tmp_path / "own.toml").write_text("\n".join(f"{key} = {as_toml(value)}" for key, value in DCB.items()))
     (tmp_path / "broken.toml").write_text("[specimen\n")
     (tmp_path / "curve.csv").write_text("opening,load\n0,0\n1,2\n3,1\n")

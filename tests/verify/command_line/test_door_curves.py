@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from made_up_runs import ENVIRONMENT, curve, limit, scene_report
 from odd_inputs import CURVES, DRAWN, MANY, QUIET, SOME, answered
@@ -86,6 +86,7 @@ def test_the_page_of_a_statement_is_drawn(text: bytes, folder: Path, capsys: pyt
 
 
 @given(a=CURVES, b=CURVES | st.just(PLAIN))
+@example(a=b"opening\tload\n0\t0\n1\t1", b=b"opening\tload\n0\t0\n1\t1d-310\n0\t0\n2\t1")  # no stiffness to speak of
 @SOME
 @pytest.mark.filterwarnings("error")
 def test_compare(a: bytes, b: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
