@@ -58,6 +58,7 @@ def dense(
     heading: ArrayLike,
     per_step: int = 10,
     size: np.ndarray | None = None,
+    energy: ArrayLike | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """The path between converged points, through snap-backs as well: ``per_step`` points on every step.
 
@@ -68,11 +69,16 @@ def dense(
     A point where the path turns round, as at the end of a leg of the programme, has the tangent of its arrival. A step
     that sets out against its tangent has a kink there, and leaves it as the parabola does that ends with the other one.
 
+    A step on which many interface points break has the slopes of single teeth at its ends, which say nothing of the
+    curve between. The area under it is known: the change of the ``energy``. A step whose straight line is closer to
+    that area than its cubic is straight.
+
     Parameters
     ----------
     opening, load, slope, heading : (n,) converged points, d load / d opening (infinite where the path turns), and +1
         or -1 where the opening grows or falls along the path.
     size : (2,) what opening and load are measured in, where that is not the largest of these points
+    energy : (n,) stored and dissipated; left out, every step is a cubic
 
     Returns
     -------
@@ -91,7 +97,14 @@ def dense(
     against = np.sum(first * chord, axis=1, keepdims=True) < 0.0
     first = np.where(against, 2.0 * chord - last, first)
     t = np.linspace(0.0, 1.0, per_step + 1)[1:, None, None]
-    between = start + t * t * (3.0 - 2.0 * t) * chord + t * (1.0 - t) ** 2 * first - t * t * (1.0 - t) * last
+    away = t * t * (1.0 - t) * (chord - last) + t * (1.0 - t) ** 2 * (first - chord)  # of the straight line
+    if energy is not None:
+        spent = np.diff(np.asarray(energy, dtype=float)) / np.prod(size)
+        unseen = spent - (start[:, 1] + 0.5 * chord[:, 1]) * chord[:, 0]  # between path and straight line
+        x, y = np.moveaxis(np.concatenate([np.zeros((1, *start.shape)), start + t * chord + away - start]), 2, 0)
+        drawn = np.trapezoid(y, x, axis=0) - 0.5 * chord[:, 0] * chord[:, 1]
+        away = np.where((np.abs(unseen - drawn) <= np.abs(unseen))[:, None], away, 0.0)
+    between = start + t * chord + away
     d, P = np.concatenate([points[:1], size * between.swapaxes(0, 1).reshape(-1, 2)]).T
     return d, P
 

@@ -1,4 +1,4 @@
-"""The middle of a step by its cubic: straight lines between rows then draw a curve of few steps."""
+"""The middle of a step (see `verify.curves.curve.dense`): straight lines between rows draw a curve of few steps."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from verify.result import CURVE_COLUMNS, SLIDING_COLUMNS
 
 #: What the cubic of a step is drawn by, and what a row must have besides: its ledger.
 OF_CUBICS = ("opening", "load", "load_slope", "heading")
-NEEDED = frozenset({*OF_CUBICS, "stored_energy", "external_work"})
+NEEDED = frozenset({*OF_CUBICS, "stored_energy", "dissipated_energy", "external_work"})
 
 #: Parts of a step over which its work is added up; an even number.
 WORK_PARTS = 16
@@ -36,7 +36,8 @@ class Middles:
         if before is None or not NEEDED <= row.keys():
             return None
         d, P, slope, heading = (np.array([before[name], row[name]]) for name in OF_CUBICS)
-        d, P = dense(d, P, slope, heading, WORK_PARTS, self._size)
+        energy = [row["stored_energy"] + row["dissipated_energy"] for row in (before, row)]
+        d, P = dense(d, P, slope, heading, WORK_PARTS, self._size, energy)
         half = WORK_PARTS // 2
         mean = {name: 0.5 * (before[name] + row[name]) for name in (*CURVE_COLUMNS, *SLIDING_COLUMNS) if name in row}
         more = float(np.trapezoid(P[: half + 1], d[: half + 1]) - 0.5 * np.trapezoid(P, d))

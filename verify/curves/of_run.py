@@ -7,16 +7,20 @@ import numpy as np
 from verify.curves.curve import Curve, curve_error, dense, envelope, peak
 from verify.result import Result
 
+#: What the energy of a point is made of.
+ENERGIES = frozenset({"stored_energy", "dissipated_energy"})
+
 #: Points of a curve between two converged ones.
 POINTS_PER_STEP = 20
 
 
 def cubics(result: Result, per_step: int = POINTS_PER_STEP) -> Curve:
-    """The path with points between the steps, on the cubics that their exact slopes give."""
+    """The path with points between the steps, on the cubics that their exact slopes give or straight (see `dense`)."""
     steps = result.steps
     if not {"load_slope", "heading"} <= set(steps) or result.opening.size < 2 or per_step == 1:
         return result.opening, result.load
-    return dense(result.opening, result.load, steps["load_slope"], steps["heading"], per_step)
+    energy = steps["stored_energy"] + steps["dissipated_energy"] if ENERGIES <= set(steps) else None
+    return dense(result.opening, result.load, steps["load_slope"], steps["heading"], per_step, energy=energy)
 
 
 def distance(curve: Curve, exact: Result) -> float:

@@ -49,8 +49,8 @@ class Reference:
     def error(self, curve: Curve) -> float:
         """Relative L2 distance over the openings that both have."""
         _, off, load = self.deviation(curve)
-        size = float(np.sum(load**2))
-        return float(np.sqrt(np.sum(off**2) / size)) if size > 0.0 else np.inf
+        size = float(np.sqrt(np.sum(load**2)))
+        return float(np.sqrt(np.sum(off**2))) / size if size > SMALLEST_NUMBER else np.inf
 
     def deviation(self, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Openings (n,), load of the curve minus that of the reference there, and the latter."""

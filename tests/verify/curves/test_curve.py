@@ -155,6 +155,20 @@ def test_dense_curve_passes_through_its_points_at_any_scale():
     np.testing.assert_allclose([1e6 * scaled[0], 1e-9 * scaled[1]], [d, P], rtol=1e-12, atol=1e-12)
 
 
+def test_a_step_over_many_teeth_is_straight_and_one_along_a_smooth_path_is_not():
+    """The area of the path, from its energies, tells which of both it is."""
+    path = snapping(np.linspace(0.0, 4.0, 81))
+    fine = np.array(snapping(np.linspace(0.0, 4.0, 80_001))[:2])
+    energy = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(fine[0]) * (fine[1][1:] + fine[1][:-1]))])[::1000]
+    np.testing.assert_array_equal(dense(*path, energy=energy), dense(*path))
+    d = np.array([0.0, 1.0, 2.0])  # the load falls along a line with many small teeth, of flanks of slope 5 and -6
+    P, slope = 10.0 - d, np.array([5.0, -6.0, 5.0])
+    energy = 10.0 * d - 0.5 * d**2
+    found = dense(d, P, slope, np.ones(3), energy=energy)
+    np.testing.assert_allclose(found[1], 10.0 - found[0], rtol=1e-14)
+    assert np.abs(np.subtract(dense(d, P, slope, np.ones(3))[1], 10.0 - dense(d, P, slope, np.ones(3))[0])).max() > 0.1
+
+
 def test_dense_curve_takes_a_vertical_tangent():
     t = np.linspace(0.0, np.pi, 41)  # half a circle: the path turns back at the middle point
     slope = np.where(t == t[20], np.inf, np.tan(t))
