@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager, nullcontext
+import sys
+import traceback
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -67,23 +69,24 @@ def solve_debonding(
     snapshots: list[dict | None] = []
     wanted = sorted(problem.snapshot_openings)
     status, ending, rejected = "complete", "", 0
-    for point in path(model):
-        if isinstance(point, Failure):
-            rejected += 1
-            status = f"stopped: {point.reason}" if point.final else status
-            continue
-        if isinstance(point, Separation):
-            ending = f"separated at opening {point.opening:.6g}"
-            continue
-        with phase("assembly"):
-            rows.append(_row(model, point))
-        if comm.rank == 0:
-            on_step(rows[-1])
-        if on_frame is not None:
-            on_frame(point.opening, partial(frame, model, sample, point))
-        while wanted and point.opening >= wanted[0] * (1 - 1e-12):
-            snapshots.append(snapshot(model, sample, point))
-            wanted.pop(0)
+    with _all_or_none(comm):
+        for point in path(model):
+            if isinstance(point, Failure):
+                rejected += 1
+                status = f"stopped: {point.reason}" if point.final else status
+                continue
+            if isinstance(point, Separation):
+                ending = f"separated at opening {point.opening:.6g}"
+                continue
+            with phase("assembly"):
+                rows.append(_row(model, point))
+            if comm.rank == 0:
+                on_step(rows[-1])
+            if on_frame is not None:
+                on_frame(point.opening, partial(frame, model, sample, point))
+            while wanted and point.opening >= wanted[0] * (1 - 1e-12):
+                snapshots.append(snapshot(model, sample, point))
+                wanted.pop(0)
     return Solution(
         rows=tuple(rows),
         dofs=comm.allreduce(sum(owned(u) for u in model.displacement)),
@@ -94,6 +97,19 @@ def solve_debonding(
         snapshots=tuple(s for s in snapshots if s is not None),
         nonzeros=int(model.tangent_matrix.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"]),
     )
+
+
+@contextmanager
+def _all_or_none(comm: MPI.Intracomm) -> Iterator[None]:
+    """A rank that fails ends all of them: the others would wait for it for ever."""
+    try:
+        yield
+    except Exception:
+        if comm.size > 1:
+            traceback.print_exc()
+            sys.stderr.flush()
+            comm.Abort(1)
+        raise
 
 
 def _row(model: Model, state: State) -> dict[str, float]:

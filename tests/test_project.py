@@ -17,7 +17,7 @@ from verify.command_line.spelling import parsed
 PROJECT = Path(__file__).resolve().parent.parent
 
 #: Packages whose modules have another name, come with another package, or are not on PyPI.
-DISTRIBUTIONS = {"PIL": "pillow", "pydantic_core": "pydantic"}
+DISTRIBUTIONS = {"PIL": "pillow", "netCDF4": "netcdf4", "pydantic_core": "pydantic"}
 DOLFINX = {"dolfinx", "ufl", "basix", "petsc4py", "mpi4py"}
 
 
@@ -42,7 +42,9 @@ def test_every_library_that_is_imported_is_declared() -> None:
         names = names.union(*(imported(file.read_text()) for file in (PROJECT / folder).rglob("*.py")))
     others = names - sys.stdlib_module_names - {"iga", "verify", "fem_reference", "debond", *DOLFINX}
     wishes = declared()
-    known = {name for extra in ("", "report", "distributed", "fields", "docs", "dev") for name in wishes[extra]}
+    known = {
+        name for extra in ("", "report", "distributed", "fields", "meshes", "docs", "dev") for name in wishes[extra]
+    }
     assert {DISTRIBUTIONS.get(name, name) for name in others} - known == set() and {"numpy", "PIL"} <= others
 
 

@@ -32,6 +32,7 @@ class Bond:
     weight_q: np.ndarray
     free_n: np.ndarray
     Z_free: PETSc.Mat = field(init=False)
+    m: int = field(init=False)
     H: PETSc.Mat = field(init=False)
     scaled: PETSc.Mat = field(init=False)
     product: PETSc.Mat = field(init=False)
@@ -43,10 +44,12 @@ class Bond:
         vec_n.array[:] = self.free_n
         Z_free = self.Z.copy()
         Z_free.diagonalScale(R=vec_n)
-        H = self._blocks(vec_r, np.ones((self.weight_q.size, *(2 * [self._functionals(vec_r)]))))
+        m = self._functionals(vec_r)
+        H = self._blocks(vec_r, np.ones((self.weight_q.size, m, m)))
         scaled = H.matMult(Z_free)
         made = {
             "Z_free": Z_free,
+            "m": m,
             "H": H,
             "scaled": scaled,
             "product": Z_free.transposeMatMult(scaled),
@@ -86,7 +89,7 @@ class Bond:
     def _product(self, Z: PETSc.Mat, u_n: np.ndarray) -> np.ndarray:
         self.vec_n.array[:] = u_n
         Z.mult(self.vec_n, self.vec_r)
-        return self.vec_r.array_r.reshape(self.weight_q.size, -1).copy()
+        return self.vec_r.array_r.reshape(self.weight_q.size, self.m).copy()
 
     def _functionals(self, vec_r: PETSc.Vec) -> int:
         """Functionals of a point, also on a rank that owns no point."""

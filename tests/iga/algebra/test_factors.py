@@ -152,7 +152,8 @@ def test_dense_solvers_read_the_lower_half_alone(rng):
     assert isinstance(found[0], DenseCholesky) and isinstance(found[1], DenseLU)
     assert all(np.allclose(factors.solve(b), np.linalg.solve(A, b), rtol=0, atol=1e-12) for factors in found)
     found = inverse(Dense(n), half, None, b[:, 0])
-    assert condition(Dense(n), half, None, found) == pytest.approx(np.linalg.cond(A, 1), rel=1e-6)
+    estimated, exact = condition(Dense(n), half, None, found), np.linalg.cond(A, 1)
+    assert exact / 2.0 < estimated < (1.0 + 1e-9) * exact and estimated == condition(Dense(n), half, None, found)
     assert Dense(n).cholesky(-half) is None
 
 

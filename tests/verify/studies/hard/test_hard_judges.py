@@ -40,7 +40,8 @@ def times(result: Result, factor: float, *names: str) -> Result:
 
 def only(wrong: str, factor: float, *names: str) -> Change:
     """One run whose columns are off by a factor."""
-    return lambda name, result: times(result, factor, *(names or ("load", "load_slope"))) if name == wrong else result
+    loads = ("load", "load_slope", "stored_energy", "dissipated_energy")
+    return lambda name, result: times(result, factor, *(names or loads)) if name == wrong else result
 
 
 def judged(name: str, trials: Trials) -> Mapping[tuple[str, str], Check]:
