@@ -105,7 +105,7 @@ def python_with_dolfinx() -> str | None:
     system = "/usr/bin/python3"
     if not os.path.exists(system) or os.path.realpath(system) == os.path.realpath(sys.executable):
         return None
-    # what it prints when it is interrupted as well is of no use to anybody
+    # an interrupt of the terminal reaches this process too, and its traceback would be shown
     found = subprocess.run([system, "-c", FIND_DOLFINX], check=False, stderr=subprocess.DEVNULL)
     return system if found.returncode == 0 else None
 

@@ -23,6 +23,10 @@ def scene_argument(sub: Parser) -> None:
     sub.add_argument("scene", metavar="SCENE", help="a packaged name or a file")
 
 
+def method_option(sub: Parser) -> None:
+    sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
+
+
 def set_option(sub: Parser) -> None:
     sub.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help="replace a key")
 

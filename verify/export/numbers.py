@@ -77,7 +77,7 @@ def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
             face.name: {"part_of_the_load" if specimen.slides else "part_of_the_opening": face.factor, **_means(face)}
             for face in mesh.loaded
         },
-        "resting": {face.name: _means(face) for face in mesh.resting},
+        "supported": {face.name: _means(face) for face in mesh.resting},
         "held": {
             part.name: {"components": [i + 1 for i in part.components], "nodes": _numbers(part.node_n)}
             for part in mesh.supports

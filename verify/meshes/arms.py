@@ -119,14 +119,9 @@ class _Check:
             )
         ends = np.cumsum([conn.size for conn in part.values()])[:-1]
         local = zip(part.items(), np.split(np.ravel(inverse), ends), strict=True)
-        lines = (
-            (
-                0.0,
-                *self.scene.specimen.bonded,
-                *(x for patch in self.scene.specimen.patches for x in patch.extent or ()),
-            ),
-            box,
-        )
+        specimen = self.scene.specimen
+        rollers = (x for patch in specimen.patches for x in patch.extent or ())
+        lines = ((0.0, *specimen.bonded, *rollers), box)
         arm = Arm(
             _snapped(X_nI, lines, self.tol), {size: numbers.reshape(conn.shape) for (size, conn), numbers in local}
         )

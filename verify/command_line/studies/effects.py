@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from verify.command_line.answers import FAILED, listed, not_run
-from verify.command_line.options import NewCommand, out_option, scene_argument, set_option, sweep_options
+from verify.command_line.options import NewCommand, method_option, out_option, scene_argument, set_option, sweep_options
 from verify.command_line.refusals import known_method, output_folder, refuse_ranks
 
 
@@ -17,7 +17,7 @@ def add(command: NewCommand) -> None:
         "read effects/report.html",
     )
     scene_argument(sub)
-    sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
+    method_option(sub)
     set_option(sub)
     out_option(sub, "debond-effects")
     sweep_options(sub)

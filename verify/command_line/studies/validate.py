@@ -7,7 +7,7 @@ import argparse
 from verify.command_line.answers import FAILED, listed, not_run
 from verify.command_line.arguments import numbers
 from verify.command_line.curves import foreign_curves, with_options
-from verify.command_line.options import NewCommand, out_option, scene_argument, set_option, sweep_options
+from verify.command_line.options import NewCommand, method_option, out_option, scene_argument, set_option, sweep_options
 from verify.command_line.refusals import known_method, output_folder, studied
 from verify.support.refusal import Refusal
 
@@ -23,7 +23,7 @@ def add(command: NewCommand) -> None:
     scene_argument(sub)
     with_options(sub)
     sub.add_argument("--at", type=numbers, default=[], metavar="D,D,...", help="the loads at these openings as well")
-    sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
+    method_option(sub)
     set_option(sub)
     out_option(sub, "debond-validation")
     sweep_options(sub)
