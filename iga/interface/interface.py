@@ -12,23 +12,29 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from iga.interface.closest_point import Pairing, closest_points, nearest_samples
 from iga.interface.contact import Contact, Rows, SlidingContact, Slip, along, dofs
 from iga.interface.master_point import MasterPoints, master_points
-from iga.interface.mixed_laws import History, MixedLaw, Scaled
+from iga.interface.mixed_law import MixedLaw
 from iga.interface.slip import Home, home_of, slid_slip, walked
 from iga.interface.surface import Surface, normal
 from iga.interface.traction_law import TractionLaw
 
-#: Difference of the mixed slopes of both tractions, in parts of their sum, from which on a tangent is unsymmetric.
-UNSYMMETRIC = 1e-12
-
 #: Part of the model's size within which surfaces count as touching in the reference configuration.
 FACES_TOUCH = 1e-9
+
+
+@dataclass(frozen=True)
+class Histories:
+    """What the points (n_q,) bring along: the largest gap so far, or the damage of a law that slides, k_q; the slip of
+    friction; and the time ``dt`` of the step."""
+
+    k_q: np.ndarray
+    slip_q: np.ndarray | None = None
+    dt: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -301,163 +307,6 @@ def settled(interface: Interface) -> SettledInterface:
     common = {field.name: getattr(interface, field.name) for field in fields(Interface)}
     by_length = interface.rest_slopes if interface.slides and isinstance(interface, SearchedInterface) else None
     return SettledInterface(**common, at_rest=interface.rest, by_length=by_length)
-
-
-@dataclass(frozen=True)
-class Shear:
-    """What sliding adds to the response of the points (n_q,): traction t_q along the master, the slopes of both
-    tractions that opening alone does not have, the history ``slip_q`` of friction, the law, and the jumps and the
-    damage at which it was asked.
-    """
-
-    t_q: np.ndarray
-    dp_ds_q: np.ndarray
-    dt_dg_q: np.ndarray
-    dt_ds_q: np.ndarray
-    slip_q: np.ndarray | None
-    law: MixedLaw
-    jump_qc: np.ndarray
-    d_q: np.ndarray
-
-    @cached_property
-    def scaled(self) -> Scaled:
-        """How far damage is on its way."""
-        g_q, s_q = self.jump_qc.T.copy()
-        return self.law.scaled(g_q, s_q, self.d_q)
-
-    @cached_property
-    def driven_q(self) -> np.ndarray:
-        """The damage that the jump drives to on first loading."""
-        g_q, s_q = self.jump_qc.T.copy()
-        return self.law.driven(g_q, s_q)
-
-    def along(self, g_q: np.ndarray, s_q: np.ndarray) -> np.ndarray:
-        """Scaled jumps (n_q,) of undamaged points at small gaps and slips, in proportion to these."""
-        return self.law.scaled(g_q, s_q, np.zeros(len(g_q))).x
-
-
-class Tractions(NamedTuple):
-    """Traction p_q, its slope dp_q by the gap, and the new history k_q (n_q,): the largest gap, or with ``shear`` the
-    damage."""
-
-    p_q: np.ndarray
-    dp_q: np.ndarray
-    k_q: np.ndarray
-    shear: Shear | None = None
-
-    @property
-    def force_qc(self) -> np.ndarray:
-        """Tractions (n_q, n_c), as the jumps of a `Contact`."""
-        return np.stack([self.p_q] if self.shear is None else [self.p_q, self.shear.t_q], axis=1)
-
-    @property
-    def slope_qcc(self) -> np.ndarray:
-        """Derivatives (n_q, n_c, n_c) of the tractions by the jumps."""
-        if self.shear is None:
-            return self.dp_q[:, None, None]
-        rows = self.dp_q, self.shear.dp_ds_q, self.shear.dt_dg_q, self.shear.dt_ds_q
-        return np.stack(rows, axis=1).reshape(-1, 2, 2)
-
-
-@dataclass(frozen=True)
-class Histories:
-    """What the points (n_q,) bring along: k_q as in `Tractions`, the slip of friction, the time ``dt`` of the step."""
-
-    k_q: np.ndarray
-    slip_q: np.ndarray | None = None
-    dt: float = 0.0
-
-
-def traction(
-    interface: Interface, contact: Contact, past: Histories, closed_q: np.ndarray, jump_qc: np.ndarray | None = None
-) -> Tractions:
-    """Tractions, their slopes and the new history at all points; a point that has left the master is free.
-
-    Traction and slope are those of the share of each point that faces the master, over its whole area. ``jump_qc``
-    are trial jumps in place of those of the contact.
-    """
-    law, k_q = interface.law, past.k_q
-    if isinstance(law, MixedLaw):
-        return _sheared(law, interface, contact, past, (closed_q, contact.jump_qc if jump_qc is None else jump_qc))
-    p, dp, k_new = law.traction(contact.g_q if jump_qc is None else jump_qc[:, 0], k_q, closed_q)
-    if interface.all_bonded and contact.whole:
-        return Tractions(p, dp, k_new)
-    holds_q, carries_q = holding(interface, contact), contact.share_q
-    if not interface.all_bonded:
-        carries_q = np.where(holds_q | (closed_q & law.contact), carries_q, 0.0)
-    return Tractions(carries_q * p, carries_q * dp, np.where(holds_q, k_new, k_q))
-
-
-def _sheared(
-    law: MixedLaw, interface: Interface, contact: Contact, past: Histories, at: tuple[np.ndarray, np.ndarray]
-) -> Tractions:
-    """The same of a law that slides, ``at`` contact and jumps; points without cohesion have failed from the start, and
-    touch and rub alone."""
-    closed_q, jump_qc = at
-    (g_q, s_q), share_q = jump_qc.T.copy(), contact.share_q
-    found = law.traction(g_q, s_q, History(past.k_q, past.slip_q), past.dt, closed_q)
-    d_q, slip_q = found.history
-    if not contact.whole:
-        d_q = np.where(holding(interface, contact), d_q, past.k_q)
-    t_q, dp_ds_q, dt_dg_q, dt_ds_q = (share_q * part for part in (found.t, found.dp_ds, found.dt_dg, found.dt_ds))
-    shear = Shear(t_q, dp_ds_q, dt_dg_q, dt_ds_q, slip_q, law, jump_qc, d_q)
-    return Tractions(share_q * found.p, share_q * found.dp_dg, d_q, shear)
-
-
-def holding(interface: Interface, contact: Contact) -> np.ndarray:
-    """Points (n_q,) with cohesion: bonded ones that face the master. They alone have kinks and damage."""
-    return contact.on_q & interface.bonded_q
-
-
-def stored(interface: Interface, contact: Contact, past: Histories) -> tuple[float, float]:
-    """Energies stored in a bond that slides, in cohesion and friction and in contact."""
-    assert contact.slip is not None and isinstance(interface.law, MixedLaw)
-    found = interface.law.stored(contact.g_q, contact.slip.s_q, History(past.k_q, past.slip_q))
-    dA_q = interface.dA_q * contact.share_q
-    return float(dA_q @ (found.cohesion + found.friction)), float(dA_q @ found.contact)
-
-
-def forces(interface: Interface, contact: Contact, pull: Tractions, n_dof: int) -> np.ndarray:
-    """Residual ``R = int (p dg/du + t ds/du) dGamma`` (n_dof,)."""
-    R_d = contact.gap_rows.forces(pull.p_q * interface.dA_q, n_dof)
-    if pull.shear is not None and contact.slip is not None:
-        R_d += contact.slip.rows.forces(pull.shear.t_q * interface.dA_q, n_dof)
-    return R_d
-
-
-def stiffness(interface: Interface, contact: Contact, pull: Tractions) -> np.ndarray:
-    """Complete tangent of each point (n_q, n_d, n_d), ``K = int (J' C J + p D(dg) + t D(ds)) dGamma``.
-
-    J are the rows of gap and slip, C the slopes of the tractions.
-    """
-    dA_q, shear, slip = interface.dA_q, pull.shear, contact.slip
-    if shear is None or slip is None:
-        return contact.stiffness(pull.p_q * dA_q, pull.dp_q * dA_q)
-    G_qd, n_d = contact.gap_rows.G_qd, slip.rows.G_qd.shape[1]
-    J_qrd = np.stack([np.pad(G_qd, ((0, 0), (0, n_d - G_qd.shape[1]))), slip.rows.G_qd], axis=1)
-    K_qdd = J_qrd.swapaxes(1, 2) @ (dA_q[:, None, None] * pull.slope_qcc @ J_qrd)
-    n_g = G_qd.shape[1]
-    K_qdd[:, :n_g, :n_g] += contact.stiffness(pull.p_q * dA_q, np.zeros_like(dA_q))
-    return K_qdd + slip.stiffness(contact, shear.t_q * dA_q)
-
-
-def unsymmetric(contact: Contact, pull: Tractions) -> np.ndarray:
-    """Points (n_m,) with an unsymmetric tangent: those that slide off the master, and where the mode ratio changes."""
-    off = contact.unsymmetric(pull.p_q)
-    if pull.shear is None:
-        return off
-    one, other = pull.shear.dp_ds_q, pull.shear.dt_dg_q
-    coupled = np.flatnonzero(np.abs(one - other) > UNSYMMETRIC * (np.abs(one) + np.abs(other)))
-    return np.union1d(np.union1d(off, contact.unsymmetric(pull.shear.t_q)), coupled)
-
-
-def combined(contact: Contact, by_g_q: np.ndarray, by_s_q: np.ndarray) -> Rows:
-    """First variation of a function of gap and slip with these derivatives (n_q,)."""
-    assert contact.slip is not None
-    G_qd, rows = contact.gap_rows.G_qd, contact.slip.rows
-    both_qd = by_s_q[:, None] * rows.G_qd
-    both_qd[:, : G_qd.shape[1]] += by_g_q[:, None] * G_qd
-    return Rows(rows.dof_qd, both_qd)
 
 
 def _jump(D_qa: np.ndarray, u_qai: np.ndarray) -> np.ndarray:

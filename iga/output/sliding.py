@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from iga.interface.interface import forces
+from iga.interface.response import forces
 from iga.path.point import Point
 from iga.specimen.specimen import Specimen
 

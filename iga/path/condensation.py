@@ -20,7 +20,8 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.linalg import splu
 
 from iga.interface.contact import Contact, DenseRows, Rows
-from iga.interface.interface import Interface, SettledInterface, forces
+from iga.interface.interface import Interface, SettledInterface
+from iga.interface.response import forces
 from iga.path.point import Point
 from iga.system.bulk import CondensedBulk, LinearBulk
 from iga.system.system import System

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.interface.interface import holding
-from iga.interface.mixed_laws import MixedLaw
+from iga.interface.mixed_law import MixedLaw
+from iga.interface.response import holding
 from iga.system.state import Response, State
 from iga.system.system import System
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.interface.interface import Interface
-from iga.interface.mixed_laws import History, MixedLaw
+from iga.interface.mixed_law import History, MixedLaw
 from iga.interface.traction_law import TractionLaw
 from iga.mesh.quadrature import gauss
 from iga.path.point import Point

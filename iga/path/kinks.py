@@ -17,7 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from iga.interface.contact import Contact
-from iga.interface.interface import Interface, holding
+from iga.interface.interface import Interface
+from iga.interface.response import holding
 from iga.system.state import Response, State
 from iga.system.system import System
 

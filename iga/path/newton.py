@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.algebra.factors import bordered
-from iga.interface.interface import traction
+from iga.interface.response import traction
 from iga.path.control import Prescribed
 from iga.path.gap_newton import GapLaw, settled_step
 from iga.path.solver import Newton, Solver

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from iga.interface.interface import holding
+from iga.interface.response import holding
 from iga.path.control import Control, arc_length_control, dissipation_control, gap_control, opening_control
 from iga.path.kinks import DISTANCES, first_kink
 from iga.path.point import Point

@@ -13,8 +13,9 @@ import numpy as np
 
 from iga.algebra.factors import Bordered
 from iga.interface.contact import Contact
-from iga.interface.interface import Interface, holding
-from iga.interface.mixed_laws import History
+from iga.interface.interface import Interface
+from iga.interface.mixed_law import History
+from iga.interface.response import holding
 from iga.interface.traction_law import TractionLaw
 from iga.path.gap_newton import GapLaw, settled_step
 from iga.path.kinks import Kink

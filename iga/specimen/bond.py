@@ -10,7 +10,7 @@ import numpy as np
 
 from iga.interface.interface import Interface, PairedInterface, SearchedInterface, settled
 from iga.interface.lumping import lumped
-from iga.interface.mixed_laws import MixedLaw
+from iga.interface.mixed_law import MixedLaw
 from iga.interface.surface import Surface
 from iga.interface.traction_law import TractionLaw
 from iga.mesh.quadrature import QUADRATURE, Rule, gauss

@@ -11,7 +11,7 @@ import numpy as np
 from iga.bases.names import BASES, find
 from iga.elements.kinematics import KINEMATICS
 from iga.interface.laws import LAWS
-from iga.interface.mixed_laws import MixedLaw
+from iga.interface.mixed_law import MixedLaw
 from iga.interface.traction_law import TractionLaw
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import QUADRATURE

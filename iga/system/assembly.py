@@ -11,7 +11,8 @@ import numpy as np
 from iga.algebra.banded import Band, Skew
 from iga.algebra.dense import Dense
 from iga.elements.bulk import batches, half_entries, half_places
-from iga.interface.interface import Interface, stiffness, unsymmetric
+from iga.interface.interface import Interface
+from iga.interface.response import stiffness, unsymmetric
 from iga.system.state import Response
 
 #: Rows and columns of entries, as degrees of freedom.

@@ -9,7 +9,8 @@ import numpy as np
 
 from iga.interface.closest_point import Pairing
 from iga.interface.contact import Contact, Rows
-from iga.interface.interface import Histories, Tractions, combined
+from iga.interface.interface import Histories
+from iga.interface.response import Tractions, combined
 
 #: Time between two steps: none, but laws with viscosity divide by it.
 INSTANT = float(np.finfo(float).tiny)

@@ -13,8 +13,9 @@ from iga.algebra.banded import Band, Skew
 from iga.algebra.dense import Dense
 from iga.algebra.factors import Inverse, held_inverse, inverse
 from iga.interface.contact import Contact
-from iga.interface.interface import Interface, forces, holding, stored, traction
-from iga.interface.mixed_laws import MixedLaw
+from iga.interface.interface import Interface
+from iga.interface.mixed_law import MixedLaw
+from iga.interface.response import forces, holding, stored, traction
 from iga.system.assembly import Springs, TangentPattern, lower_half
 from iga.system.bulk import Bulk
 from iga.system.state import Energies, Response, State

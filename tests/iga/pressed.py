@@ -10,8 +10,9 @@ from scipy.sparse.linalg import splu
 from iga.elements.plane_elasticity import Fixed
 from iga.elements.plane_elasticity import stiffness as bulk_stiffness
 from iga.interface.contact import Contact
-from iga.interface.interface import Interface, Tractions, forces, settled, stiffness, traction
+from iga.interface.interface import Interface, settled
 from iga.interface.laws import BilinearLaw
+from iga.interface.response import Tractions, forces, stiffness, traction
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss

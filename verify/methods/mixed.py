@@ -11,7 +11,7 @@ from verify.scene.schema import Scene
 
 if TYPE_CHECKING:
     from fem_reference.problem.mixed_law import MixedLaw as ModelledLaw
-    from iga.interface.mixed_laws import MixedLaw
+    from iga.interface.mixed_law import MixedLaw
     from verify.theory.mixed_law import MixedBond
 
 

@@ -14,8 +14,9 @@ from iga.bases.nurbs import nurbs_rectangle
 from iga.files.cad_body import body_mesh
 from iga.files.iga_format import write_iga
 from iga.interface.closest_point import PROJECTION
-from iga.interface.interface import Histories, Interface, forces, stiffness, traction
+from iga.interface.interface import Histories, Interface
 from iga.interface.laws import BilinearLaw
+from iga.interface.response import forces, stiffness, traction
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss

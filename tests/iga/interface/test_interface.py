@@ -11,7 +11,8 @@ from iga.bases.lagrange import lagrange_rectangle
 from iga.dcb import Problem, build
 from iga.interface.closest_point import PROJECTION, closest_points, nearest_samples
 from iga.interface.contact import DenseRows, Rows
-from iga.interface.interface import Histories, SettledInterface, Tractions, forces, settled, stiffness, traction
+from iga.interface.interface import Histories, SettledInterface, settled
+from iga.interface.response import Tractions, forces, stiffness, traction
 from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
 from tests.iga.bases.test_splines import quarter_annulus

@@ -8,8 +8,9 @@ import pytest
 from iga.bases.lagrange import lagrange_rectangle
 from iga.dcb import Problem, build, solve
 from iga.delamination.meshes import drawn
-from iga.interface.interface import Histories, Interface, SearchedInterface, forces, stiffness, traction
+from iga.interface.interface import Histories, Interface, SearchedInterface
 from iga.interface.lumping import lumped
+from iga.interface.response import forces, stiffness, traction
 from iga.interface.surface import surface
 
 PROBLEM = Problem(

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from iga.interface.laws import LAWS, BilinearLaw
-from iga.interface.mixed_laws import MIXED_LAWS, ExponentialMixed, History, MixedLaw
+from iga.interface.mixed_law import History, MixedLaw
+from iga.interface.mixed_laws import MIXED_LAWS, ExponentialMixed
 from iga.interface.mode_ratio import ModeRatio
 
 #: Materials of published tests: MOOSE's, CompDam's, AS4/PEEK (Camanho et al. 2003), in their units.

@@ -10,9 +10,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from iga.delamination.solution import build
-from iga.interface.interface import Interface, Tractions, forces, settled, traction
+from iga.interface.interface import Interface, settled
 from iga.interface.mixed_laws import BilinearMixed
 from iga.interface.mode_ratio import ModeRatio
+from iga.interface.response import Tractions, forces, traction
 from iga.interface.surface import surface
 from iga.specimen.bond import between
 from tests.iga.bases.test_splines import quarter_annulus

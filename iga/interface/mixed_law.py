@@ -1,0 +1,244 @@
+"""A traction law for opening and sliding, with one damage variable, contact and friction, for many points at once."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from iga.interface.mode_ratio import ModeRatio
+
+#: Points that are evaluated at a time: their arrays stay in the cache.
+POINTS_IN_CACHE = 8192
+
+
+class History(NamedTuple):
+    """Damage (n,), 0 to 1, and with friction the slip (n,) at which friction holds nothing; of a converged step."""
+
+    d: np.ndarray
+    slip: np.ndarray | None = None
+
+
+class Response(NamedTuple):
+    """Tractions (n,), their derivatives by opening and slip (n,), and the new history."""
+
+    p: np.ndarray
+    t: np.ndarray
+    dp_dg: np.ndarray
+    dp_ds: np.ndarray
+    dt_dg: np.ndarray
+    dt_ds: np.ndarray
+    history: History
+
+
+class Stored(NamedTuple):
+    """Energies per area (n,): in cohesion, in contact, and in the elastic slip of friction."""
+
+    cohesion: np.ndarray
+    contact: np.ndarray
+    friction: np.ndarray
+
+
+class Driving(NamedTuple):
+    """Damage (n,) on first loading to a jump, and its derivatives by opening, slip and shear strength."""
+
+    d: np.ndarray
+    by_g: np.ndarray
+    by_s: np.ndarray
+    by_strength: np.ndarray | float = 0.0
+
+
+class Scaled(NamedTuple):
+    """The scaled jump (n,) that measures how far each point is on its way, with onset of damage and failure at the
+    kinks of the law, its derivatives by opening and slip, and ``back`` (n,), where along it the damage of a point grows
+    again: the jump itself, and no less, where there is no damage yet and where nothing is left to fail."""
+
+    x: np.ndarray
+    by_g: np.ndarray
+    by_s: np.ndarray
+    back: np.ndarray
+
+
+@dataclass(frozen=True)
+class MixedLaw(ABC):
+    """``p = (1 - d) K g`` for openings g and ``penalty g``, free of damage, for g < 0; ``t = (1 - d) Ks s + a t_f``.
+
+    The damage d is the largest so far of those that the jumps (max(g, 0), s) drive to (`driving`). Pressure
+    ``q = max(-p, 0)`` makes the damaged part a of the area rub by Coulomb's law, ``|t_f| <= friction q``, elastic with
+    Ks below that (Alfano and Sacco 2006), and raises the shear strength, not the toughness, by ``pressure_strength q``.
+    With ``viscosity`` damage follows at the rate ``(driving - d) / viscosity``, by the implicit Euler method.
+
+    Parameters
+    ----------
+    modes : strength, toughness and stiffness in opening and sliding, and how they mix.
+    penalty : stiffness against closing [stress per length]; without ``contact`` the secant goes on to g < 0.
+    irreversible : if False, damage follows the jump up and down, and nothing is dissipated.
+    friction : coefficient of Coulomb's law, at least 0.
+    viscosity : time in which damage follows, in the unit of ``dt``.
+    pressure_strength : shear strength gained per pressure, at least 0; the most is what uses up the toughness at onset.
+    rubs : what a is, "damage" for d (Alfano and Sacco 2006), or "area" for the part of the way from onset to failure in
+        pure shear, ``d / (d + (1 - d) s_f / s_0)`` (as in CompDam), of laws that soften along a line.
+    """
+
+    modes: ModeRatio
+    penalty: float
+    contact: bool = True
+    irreversible: bool = True
+    friction: float = 0.0
+    viscosity: float = 0.0
+    pressure_strength: float = 0.0
+    rubs: str = "damage"
+
+    #: Damage of a point that is whole and of one that has failed.
+    begun: ClassVar[float] = 0.0
+    failed: ClassVar[float] = 1.0
+
+    @abstractmethod
+    def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
+        """Damage on first loading to g (n,) >= 0 and s (n,); zero slopes where there is none, or nothing is left.
+
+        ``stronger`` (n,) is the shear strength over that without pressure, None where that is the same.
+        """
+
+    @abstractmethod
+    def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
+        """The scaled jump at openings, slips and damages (n,); pressure does not count."""
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Scaled jumps at which tractions have a kink, rising: at the onset and at failure."""
+        return 1.0, 2.0
+
+    @property
+    def span(self) -> float:
+        """The scaled jump over which a point goes from the onset to failure."""
+        return self.kinks[-1] - self.kinks[0]
+
+    @property
+    def g_max(self) -> float:
+        """Opening at the strength."""
+        return self.modes.strength[0] / self.stiffness[0]
+
+    @property
+    def stiffest(self) -> float:
+        """Largest slope of a traction."""
+        return max(self.penalty, *self.stiffness)
+
+    def nudged(self, d: np.ndarray, driven: np.ndarray, grows: np.ndarray, keeps: np.ndarray) -> np.ndarray:
+        """Damages (n,) a rounding smaller than that which the jump drives to where it ``grows``, and larger where it
+        ``keeps``."""
+        return np.where(grows, np.minimum(d, driven) - 1e-12, np.where(keeps, d + 1e-12, d))
+
+    def secant(self, d: np.ndarray) -> np.ndarray:
+        """Secant stiffness (1 - d) K of an opening."""
+        return (1.0 - d) * self.stiffness[0]
+
+    def damage(self, d: np.ndarray) -> np.ndarray:
+        """The history of a point is its damage."""
+        return d
+
+    @property
+    def stiffness(self) -> tuple[float, float]:
+        """Initial stiffness (K, Ks) in opening and sliding."""
+        return self.modes.stiffness
+
+    def start(self, n: int) -> History:
+        """Undamaged points that have not slid."""
+        return History(np.zeros(n), np.zeros(n) if self.friction else None)
+
+    def traction(
+        self, g: np.ndarray, s: np.ndarray, history: History, dt: float = 0.0, closed: np.ndarray | None = None
+    ) -> Response:
+        """Tractions at openings and slips (n,), consistent tangent, new history.
+
+        Parameters
+        ----------
+        history : of all converged steps so far.
+        dt : time that the step takes, which `viscosity` alone asks for.
+        closed : which points (n,) are in contact; those with a negative opening if left out.
+
+        Raises
+        ------
+        ValueError : viscosity without a ``dt`` > 0.
+        """
+        if self.viscosity and not dt > 0.0:
+            raise ValueError(f"a law with viscosity needs the time of a step, dt > 0, got {dt}")
+        closed = ((g < 0.0) if closed is None else closed) & self.contact
+        if g.size <= POINTS_IN_CACHE:
+            return self._traction(g, s, history, dt, closed)
+        whole = np.empty((8 if history.slip is not None else 7, g.size))
+        for first in range(0, g.size, POINTS_IN_CACHE):
+            part = slice(first, first + POINTS_IN_CACHE)
+            before = History(history.d[part], None if history.slip is None else history.slip[part])
+            found = self._traction(g[part], s[part], before, dt, closed[part])
+            arrays = (*found[:6], *(one for one in found.history if one is not None))
+            for to, one in zip(whole, arrays, strict=True):
+                to[part] = one
+        p, t, dp_dg, dp_ds, dt_dg, dt_ds, *after = whole
+        return Response(p, t, dp_dg, dp_ds, dt_dg, dt_ds, History(*after))
+
+    def stored(self, g: np.ndarray, s: np.ndarray, history: History) -> Stored:
+        """Energies per area (n,) at a jump with the history that it has left."""
+        K, Ks = self.stiffness
+        closed = (g < 0.0) & self.contact
+        opening = np.where(closed, 0.0, 0.5 * K * g**2)
+        rubbing = 0.0 if history.slip is None else 0.5 * Ks * self.rubbing(history.d)[0] * (s - history.slip) ** 2
+        cohesion = (1.0 - history.d) * (opening + 0.5 * Ks * s**2)
+        return Stored(cohesion, np.where(closed, 0.5 * self.penalty * g**2, 0.0), rubbing + np.zeros_like(g))
+
+    def released(self, g: np.ndarray, s: np.ndarray, history: History) -> np.ndarray:
+        """Energy per area (n,) that a unit of damage releases at a jump; what friction takes over is not released."""
+        K, Ks = self.stiffness
+        rubbing = 0.0 if history.slip is None else 0.5 * Ks * self.rubbing(history.d)[1] * (s - history.slip) ** 2
+        return np.where((g < 0.0) & self.contact, 0.0, 0.5 * K * g**2) + 0.5 * Ks * s**2 - rubbing
+
+    def rubbing(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The part (n,) of the area that rubs at a damage (n,), and its slope."""
+        if self.rubs == "damage":
+            return d, np.ones_like(d)
+        slender = 2.0 * self.modes.toughness[1] * self.stiffness[1] / self.modes.strength[1] ** 2  # s_f / s_0
+        below = d + (1.0 - d) * slender
+        return d / below, slender / below**2
+
+    def _traction(self, g: np.ndarray, s: np.ndarray, history: History, dt: float, closed: np.ndarray) -> Response:
+        K, Ks = self.stiffness
+        pressure = np.where(closed, -self.penalty * g, 0.0)
+        driven = self._driven(g, s, pressure)
+        d, part = self._follows(driven.d, history.d, dt)
+        left, d_g, d_s = 1.0 - d, part * driven.by_g, part * driven.by_s
+        p = np.where(closed, -pressure, left * K * g)
+        dp_dg = np.where(closed, self.penalty, left * K - K * g * d_g)
+        dp_ds = np.where(closed, 0.0, -K * g * d_s)
+        t, t_d, t_g, t_s, slip = left * Ks * s, -Ks * s, np.zeros_like(g), left * Ks, history.slip
+        if slip is not None:
+            held, elastic = self.friction * pressure, Ks * (s - slip)
+            t_f = np.clip(elastic, -held, held)
+            slides, slip = (t_f != elastic) | ~closed, s - t_f / Ks  # open faces slide freely
+            area, d_area = self.rubbing(d)
+            t, t_d = t + area * t_f, t_d + d_area * t_f
+            t_g = np.where(slides & closed, -self.friction * self.penalty * np.sign(elastic) * area, 0.0)
+            t_s = t_s + np.where(slides, 0.0, Ks * area)
+        return Response(p, t, dp_dg, dp_ds, t_g + t_d * d_g, t_s + t_d * d_s, History(d, slip))
+
+    def driven(self, g: np.ndarray, s: np.ndarray) -> np.ndarray:
+        """Damage (n,) that the jump drives to on first loading."""
+        pressure = np.where((g < 0.0) & self.contact, -self.penalty * g, 0.0)
+        return self._driven(g, s, pressure).d
+
+    def _driven(self, g: np.ndarray, s: np.ndarray, pressure: np.ndarray) -> Driving:
+        """`driving` at openings of any sign, with the shear strength that pressure raises."""
+        gain = self.pressure_strength / self.modes.strength[1]
+        driven = self.driving(np.maximum(g, 0.0), s, 1.0 + gain * pressure if gain > 0.0 else None)
+        by_pressure = np.where(pressure > 0.0, -self.penalty * gain * driven.by_strength, 0.0)
+        return driven._replace(by_g=np.where(g < 0.0, by_pressure, driven.by_g))
+
+    def _follows(self, driven: np.ndarray, d: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray | float]:
+        """The damage (n,) that follows on d when the jump drives to another one, and its derivative by that."""
+        if not self.irreversible:
+            return driven, 1.0
+        if not self.viscosity:
+            return np.maximum(driven, d), (driven > d).astype(float)
+        part = np.where(driven > d, dt / (dt + self.viscosity), 0.0)
+        return d + part * (driven - d), part
