@@ -10,6 +10,7 @@ import numpy as np
 
 from verify.export.mesh import SceneMesh
 from verify.export.numbers import effects, header, law, sliding
+from verify.export.references import Place, Reference, equations, references
 from verify.scene.materials import Isotropic, Material, plane_strain_constants
 from verify.scene.schema import Scene, counted_steps
 from verify.theory.law import Bilinear
@@ -28,46 +29,43 @@ BEYOND_DAMAGE = 1e6
 def write_abaqus(scene: Scene, mesh: SceneMesh, path: Path) -> None:
     """Write ``path``: nodes, sets, solids, cohesive elements of no thickness, a step for every leg of the programme.
 
-    A reference node for each loaded face has its mean displacement by an equation: its reaction is the load.
+    A reference node has the mean displacement of a loaded face or a roller by an equation: its reaction is the load.
     """
     path.write_text("\n".join(_lines(scene, mesh)) + "\n", encoding="utf-8")
-
-
-def reference_nodes(mesh: SceneMesh) -> dict[str, int]:
-    """Number of the node that stands for each loaded face, by the name of its set."""
-    return {f"{face.name}_mean": len(mesh.X_nI) + i for i, face in enumerate(mesh.loaded, 1)}
 
 
 def _lines(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
     yield "*HEADING"
     yield f"debond {scene.name}"
     yield from (f"** {name}: {text}" for name, text in header(scene, mesh).items())
-    yield from _of_abaqus(scene, mesh)
-    yield from _mesh(scene, mesh)
+    points = references(scene, mesh)
+    held = {(int(node) + 1, i + 1) for part in mesh.supports for node in part.node_n for i in part.components}
+    yield from _of_abaqus(scene, points[0])
+    yield from _mesh(scene, mesh, points)
     yield from _sections(scene, mesh)
     yield from _materials(scene, mesh)
-    yield from _means(mesh)
-    yield from _supports(mesh)
-    yield from _steps(scene, mesh)
+    yield from _touching(scene, mesh)
+    yield from _equations(points, held)
+    yield from _supports(mesh, points)
+    yield from _steps(scene, points)
 
 
-def _of_abaqus(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
+def _of_abaqus(scene: Scene, loaded: Reference) -> Iterator[str]:
     bond = law(scene)
-    face = mesh.loaded[0]
-    scale = 1.0 / face.factor
+    scale = 1.0 / loaded.part
     yield f"** COH2D4 closes with the stiffness of the bond, {bond.stiffness:g}: debond does so as well with"
     yield f"**   --set interface.penalty={bond.stiffness:g}"
     yield "** history.csv is written by: abaqus python history.py JOB.odb"
-    yield f"** load: RF2 of {face.name}_mean; opening: {scale:g} times its U2. Held against debond, in this folder, by"
+    yield f"** load: RF2 of {loaded.name}; opening: {scale:g} times its U2. Held against debond, in this folder, by"
     yield f"**   debond verify {scene.name}.toml --with history.csv --opening U2 --load RF2 --opening-scale {scale:g}"
 
 
-def _mesh(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
+def _mesh(scene: Scene, mesh: SceneMesh, points: Sequence[Reference]) -> Iterator[str]:
     yield "*NODE, NSET=all"
     yield from (f"{n}, {_number(x)}, {_number(y)}" for n, (x, y) in enumerate(mesh.X_nI, 1))
-    for face, number in zip(mesh.loaded, reference_nodes(mesh).values(), strict=True):
-        x, y = mesh.X_nI[face.node_n].mean(axis=0)
-        yield f"{number}, {_number(x)}, {_number(y)}"
+    for one in points:
+        x, y = mesh.X_nI[one.faces[0][1].node_n].mean(axis=0)
+        yield f"{one.node}, {_number(x)}, {_number(y)}"
     solid, first = SOLIDS[scene.specimen.plane, mesh.degree], 1
     for b, name in enumerate(mesh.names):
         conn = mesh.conn_ea[mesh.body_e == b]
@@ -76,7 +74,7 @@ def _mesh(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
         first += len(conn)
     yield "*ELEMENT, TYPE=COH2D4, ELSET=bond"
     yield from _elements(mesh.cohesive_ea, first)
-    means = {name: np.array([number - 1]) for name, number in reference_nodes(mesh).items()}
+    means = {one.name: np.array([one.node - 1]) for one in points}
     for name, nodes in (mesh.sets | means).items():
         yield f"*NSET, NSET={name}"
         yield from _wrapped((nodes + 1).tolist())
@@ -149,23 +147,44 @@ def _elastic(material: Material, plane: str) -> Iterator[str]:
         yield f"{_number(G12)},"
 
 
-def _means(mesh: SceneMesh) -> Iterator[str]:
-    """Mean displacement of each loaded face: the first term is eliminated, so the reference node comes last."""
-    for face, number in zip(mesh.loaded, reference_nodes(mesh).values(), strict=True):
-        terms = [(node + 1, weight) for node, weight in zip(face.node_n, face.weight_n, strict=True)]
+def _touching(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
+    """The faces of the precrack, where they can touch. The lower and the upper side of a solid are S1 and S3."""
+    if not mesh.crack_kb.size:
+        return
+    for b, (name, side) in enumerate(zip(mesh.names, (1, 3), strict=True)):
+        ends = mesh.conn_ea[:, [side - 1, side % 4]]
+        on_face = (mesh.body_e == b) & np.isin(ends, mesh.crack_kb[:, 1 - b]).all(axis=1)
+        yield f"*ELSET, ELSET={name}_at_crack"
+        yield from _wrapped([int(e) + 1 for e in np.flatnonzero(on_face)])
+        yield f"*SURFACE, TYPE=ELEMENT, NAME={name}_crack_face"
+        yield f"{name}_at_crack, S{side}"
+    yield "*SURFACE INTERACTION, NAME=crack"
+    yield f"{_number(scene.specimen.width)},"
+    yield "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
+    yield f"{_number(law(scene).penalty)},"
+    if friction := scene.interface.friction:
+        yield "*FRICTION"
+        yield f"{_number(friction)},"
+    yield "*CONTACT PAIR, INTERACTION=crack, TYPE=SURFACE TO SURFACE"
+    yield ", ".join(f"{name}_crack_face" for name in mesh.names)
+
+
+def _equations(references: Sequence[Reference], held: set[Place]) -> Iterator[str]:
+    for one, terms in zip(references, equations(references, held), strict=True):
         yield "*EQUATION"
         yield str(len(terms) + 1)
-        yield from (f"{node}, 2, {_number(factor)}" for node, factor in [*terms, (number, -1.0)])
+        yield from (f"{node}, {i}, {_number(weight)}" for (node, i), weight in terms)
+        yield f"{one.node}, 2, -1"
 
 
-def _supports(mesh: SceneMesh) -> Iterator[str]:
+def _supports(mesh: SceneMesh, points: Sequence[Reference]) -> Iterator[str]:
     yield "*BOUNDARY"
     for support in mesh.supports:
         yield from (f"{support.name}, {i + 1}, {i + 1}" for i in support.components)
-    yield from (f"{name}, 1, 1" for name in reference_nodes(mesh))
+    yield from (f"{one.name}, 1, {1 if one.part else 2}" for one in points)
 
 
-def _steps(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
+def _steps(scene: Scene, points: Sequence[Reference]) -> Iterator[str]:
     programme = scene.load.opening
     way = sum(abs(b - a) for a, b in zip((0.0, *programme), programme, strict=False))
     finite = "YES" if effects(scene)["kinematics"] == "finite" else "NO"
@@ -175,16 +194,15 @@ def _steps(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
         yield "*STATIC"
         yield f"{part:.6g}, 1., 1e-10, {part:.6g}"
         yield "*BOUNDARY"
-        for face, name in zip(mesh.loaded, reference_nodes(mesh), strict=True):
-            yield f"{name}, 2, 2, {_number(face.factor * opening)}"
+        yield from (f"{one.name}, 2, 2, {_number(one.part * opening)}" for one in points if one.part)
         yield "*OUTPUT, FIELD"
         yield "*NODE OUTPUT"
         yield "U, RF"
         yield "*ELEMENT OUTPUT"
         yield "S, SDEG"
         yield "*OUTPUT, HISTORY, FREQUENCY=1"
-        for name in reference_nodes(mesh):
-            yield f"*NODE OUTPUT, NSET={name}"
+        for one in points:
+            yield f"*NODE OUTPUT, NSET={one.name}"
             yield "U2, RF2"
         yield "*END STEP"
 

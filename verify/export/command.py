@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from shlex import quote
 
-from verify.export.abaqus import reference_nodes, write_abaqus
+from verify.export.abaqus import write_abaqus
 from verify.export.groups import GROUP_FILES, write_groups
 from verify.export.mesh import SceneMesh, merged, scene_mesh
 from verify.export.numbers import LAW_NOTES, notes, numbers
 from verify.export.odb import write_odb_script
+from verify.export.references import references
 from verify.export.tables import write_tables
 from verify.export.vtu import write_scene_vtu
 from verify.runs.folder import write_json
@@ -37,9 +38,6 @@ def export(scene: Scene, kind: str, folder: Path, layers: int | None = None, con
     """
     if scene.interface.law not in LAW_NOTES:
         raise Refusal(f"interface.law: must be {one_of(LAW_NOTES)} for an export, got {scene.interface.law!r}")
-    if scene.specimen.slides and kind == "abaqus":
-        others = one_of(each for each in FORMATS if each != kind)
-        raise Refusal(f"--format: must be {others} for the kind {scene.specimen.kind}, got {kind!r}")
     if conforming and kind not in GROUP_FILES:
         raise Refusal(f"--merged: is for --format {one_of(GROUP_FILES)}, got {kind!r}")
     mesh = scene_mesh(scene, layers)
@@ -53,7 +51,7 @@ def export(scene: Scene, kind: str, folder: Path, layers: int | None = None, con
             _write(kind, scene, mesh, files[0])
         if kind == "abaqus":
             files.append(folder / "history.py")
-            write_odb_script(reference_nodes(mesh), files[-1])
+            write_odb_script(references(scene, mesh)[0], files[-1])
         files += [folder / "scene.json", folder / f"{scene.name}.toml"]
         write_json(files[-2], numbers(scene, mesh))
         keep_scene(scene, files[-1])

@@ -33,6 +33,8 @@ class LoadedFace:
     1: y), and a dead traction of resultant P is the nodal force weight times P. Of a couple these are the mean rotation
     and the moment; one over both arms has a patch on each. A loaded face moves by ``factor`` times the opening; a patch
     carries ``factor`` times the load, and the opening is the sum of these factors times the mean displacements.
+    ``action`` is the name of the load or support; one over both arms has a patch on each, and its mean displacement is
+    the sum of both.
     """
 
     name: str
@@ -40,6 +42,7 @@ class LoadedFace:
     weight_n: np.ndarray
     factor: float
     component: int = 1
+    action: str = ""
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,7 @@ class SceneMesh:
     pair_kb : (n_k, 2) nodes of the bond, lower and upper, X rising; ``degree`` + 1 of them make a side
     length_k : (n_k,) length of the bond that belongs to each pair: integral of its function
     crack_kb : the same pairs of the faces of the precrack, where they can touch; its end is the first pair of the bond
-    resting : patches whose mean displacement is zero, of arms on rollers
+    resting : patches of supports whose mean displacement is zero, of arms on rollers
     """
 
     degree: int
@@ -158,7 +161,10 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
 
     def patches(actions: tuple[Action, ...], role: str) -> tuple[LoadedFace, ...]:
         return tuple(
-            _patch(f"{names[patch.body]}_{role}_{number}", act, grids[patch.body].on(patch.place), X_nI, degree)
+            replace(
+                _patch(f"{names[patch.body]}_{role}_{number}", act, grids[patch.body].on(patch.place), X_nI, degree),
+                action=f"{role}_{number}",
+            )
             for number, act in enumerate(actions, 1)
             for patch in act.patches
         )

@@ -77,7 +77,7 @@ def numbers(scene: Scene, mesh: SceneMesh) -> dict[str, Any]:
             face.name: {"part_of_the_load" if specimen.slides else "part_of_the_opening": face.factor, **_means(face)}
             for face in mesh.loaded
         },
-        "supported": {face.name: _means(face) for face in mesh.resting},
+        "supported": {face.name: {"support": face.action, **_means(face)} for face in mesh.resting},
         "held": {
             part.name: {"components": [i + 1 for i in part.components], "nodes": _numbers(part.node_n)}
             for part in mesh.supports
@@ -129,7 +129,7 @@ def _rollers(scene: Scene) -> list[str]:
     return [
         "a patch carries its part of the load as a uniform traction that keeps its direction; the opening is the sum "
         "of these parts times the mean displacements (weights times u_y; of a couple, weights times u_x: a rotation)",
-        "a supported patch has the mean displacement zero, and is free otherwise"
+        "a supported patch has the mean displacement zero, two patches of one support in the sum, and is free otherwise"
         if scene.specimen.supports
         else "the loads balance each other, and nothing holds the rotation of the whole: hold it where no force arises",
         f"the faces of the precrack, crack_pairs, touch {rub}",

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
+
+from verify.export.references import Reference
 
 SCRIPT = '''\
 """Write history.csv, U2 and RF2 of node {node}, which stands for the set {name}: abaqus python history.py JOB.odb"""
@@ -33,7 +34,6 @@ print("written: history.csv, %d rows" % len(rows))
 '''
 
 
-def write_odb_script(nodes: Mapping[str, int], path: Path) -> None:
-    """Write the script for the first of the reference nodes, which are given by the names of their sets."""
-    name, node = next(iter(nodes.items()))
-    path.write_text(SCRIPT.format(name=name, node=node), encoding="utf-8")
+def write_odb_script(loaded: Reference, path: Path) -> None:
+    """Write the script for the reference node that bears the load."""
+    path.write_text(SCRIPT.format(name=loaded.name, node=loaded.node), encoding="utf-8")

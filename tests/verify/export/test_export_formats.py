@@ -289,3 +289,65 @@ def bond_of(mesh: meshlane.Mesh, kind: str) -> np.ndarray:
 def test_formats_with_conventions_of_their_own_are_not_merged(tmp_path: Path, capsys) -> None:
     assert main(["export", DCB, "--format", "abaqus", "--merged", "--out", str(tmp_path)]) == 2
     assert '--merged: is for --format "gmsh", "med" or "exodus"' in capsys.readouterr().err
+
+
+OWN_LOADS = """
+material = {E1 = 122e3, E2 = 10e3, G12 = 5e3, nu12 = 0.25}
+interface = {strength = 30, toughness = 0.9, shear_strength = 40, shear_toughness = 1.7, friction = 0.2}
+load = {opening = 0.4}
+
+[specimen]
+kind = "delamination"
+length = 30
+arm_thickness = 1.5
+precrack = 10
+width = 5
+plane = "strain"
+loads = [
+    {body = "upper", side = "left", share = 2.0, couple = true},
+    {body = "both", side = "left", share = -1.0},
+]
+supports = [{body = "both", side = "right"}, {body = "both", side = "right", couple = true}]
+"""
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+def test_abaqus_has_every_load_and_support_by_an_equation(degree: int, tmp_path: Path) -> None:
+    """Each holds for a rigid motion: the opening is the work of the loads, a support its mean rise or rotation.
+
+    A support of both arms is one equation. What Abaqus eliminates is held nowhere else.
+    """
+    (tmp_path / "own.toml").write_text(OWN_LOADS)
+    folder = exported(str(tmp_path / "own.toml"), "abaqus", tmp_path, "--set", f"dolfinx.degree={degree}")
+    blocks = abaqus_blocks((folder / "own.inp").read_text())
+    X_nI = {int(row[0]): np.array(row[1:], dtype=float) for key, _, rows in blocks if key == "*NODE" for row in rows}
+    sets = {known["NSET"]: {int(a) for row in rows for a in row} for key, known, rows in blocks if key == "*NSET"}
+    equations = [{(int(a), int(i)): float(w) for a, i, w in rows[1:]} for key, _, rows in blocks if key == "*EQUATION"]
+    points = [next(iter(sets[name])) for name in ("load_mean", "support_1_mean", "support_2_mean")]
+    rise, turn = 0.3, 1e-3
+    expected = [2.0 * turn - rise, rise + 30.0 * turn, turn]
+    for terms, point, value in zip(equations, points, expected, strict=True):
+        assert list(terms.items())[-1] == ((point, 2), -1.0)
+        moved = {a: (-turn * X_nI[a][1], rise + turn * X_nI[a][0]) for a, _ in terms if a != point}
+        found = sum(w * moved[a][i - 1] for (a, i), w in terms.items() if a != point)
+        assert found == pytest.approx(value, rel=1e-9)
+    boundaries = [row for key, _, rows in blocks if key == "*BOUNDARY" for row in rows]
+    fixed = {
+        (a, i) for name, first, last, *_ in boundaries for a in sets[name] for i in range(int(first), int(last) + 1)
+    }
+    assert {(point, 2) for point in points} <= fixed
+    firsts = [next(iter(terms)) for terms in equations]
+    assert not fixed & set(firsts)
+    assert [sum(one in terms for terms in equations) for one in firsts] == [1, 1, 1]
+
+    on = {known["ELSET"]: [int(a) for row in rows for a in row] for key, known, rows in blocks if key == "*ELSET"}
+    conn = {int(row[0]): [int(a) for a in row[1:]] for key, _, rows in blocks if key == "*ELEMENT" for row in rows}
+    faces = {known["NAME"]: rows[0] for key, known, rows in blocks if key == "*SURFACE"}
+    for name, side, ends in (("upper", "S1", (0, 1)), ("lower", "S3", (2, 3))):
+        assert faces[f"{name}_crack_face"] == [f"{name}_at_crack", side]
+        corners = np.array([[X_nI[conn[e][a]] for a in ends] for e in on[f"{name}_at_crack"]])
+        assert np.all(corners[..., 1] == 0.0)
+        assert (corners[..., 0].min(), corners[..., 0].max()) == (0.0, 10.0)
+        assert np.sum(np.abs(np.diff(corners[..., 0]))) == pytest.approx(10.0), "each side once"
+    (rows,) = (rows for key, _, rows in blocks if key == "*FRICTION")
+    assert rows == [["0.2"]]
