@@ -46,4 +46,6 @@ def test_steps_beyond_those_of_an_intact_bond_go_with_the_lengths_of_the_zone() 
         zones = bond / min(slender_length(scene), bulk_length(scene))
         assert steps(scene, "nurbs") == round(20 + 8.2 * zones)
     assert len(set(shorter)) == 2, "of slender arms the one length is shorter, of thick ones the other"
-    assert steps(load_scene("dcb-czm1", ["discretization.steps=auto"]), "tspline") == STEP_COUNTS.chosen
+    for bend, factor in (("0.01", 1), ("0.005", 1), ("0.00005", 10)):
+        scene = load_scene("dcb-czm1", ["discretization.steps=auto", f"discretization.bend={bend}"])
+        assert steps(scene, "tspline") == factor * STEP_COUNTS.chosen
