@@ -60,7 +60,7 @@ FLOORS = (
     ("verify.report.studies",),
     ("verify.report.figures",),
     ("verify.studies", "verify.export"),
-    ("verify.studies.viscosity", "verify.studies.certified"),
+    ("verify.studies.accuracy", "verify.studies.viscosity", "verify.studies.certified"),
     (
         "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.law",
         "verify.studies.paper", "verify.studies.plane", "verify.studies.reduce", "verify.studies.scaling",

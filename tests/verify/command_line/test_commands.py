@@ -25,7 +25,7 @@ from verify.methods.solve import prepare
 from verify.result import Result
 from verify.runs.run import NO_FIELDS
 from verify.scene.load import load_scene
-from verify.studies.cost import accuracy
+from verify.studies.accuracy import choice
 from verify.studies.cost import study as cost_study
 from verify.studies.effects import study as effects_study
 from verify.studies.effects.plan import planned
@@ -117,9 +117,9 @@ def test_an_accuracy_becomes_a_method_and_a_mesh(
 ) -> None:
     """300 unknowns are 9 % off, 4 times as many on the next level 1 %, and so on."""
     overrides = ("discretization.dofs=300", "discretization.steps=40")
-    choice = accuracy.Choice("lagrange", overrides, 1.0, "Lagrange, 300 unknowns")
+    chosen = choice.Choice("lagrange", overrides, 1.0, "Lagrange, 300 unknowns")
     asked: list[tuple] = []
-    monkeypatch.setattr(accuracy, "choose", lambda *what: asked.append(what) or choice)
+    monkeypatch.setattr(choice, "choose", lambda *what: asked.append(what) or chosen)
     words = ["solve", "dcb-czm1", "--accuracy", "4%", "--set", "load.opening=0.6"]
     assert main([*words, "--fields", "--frames", "2", "--out", str(tmp_path / "out")]) == 0
     said = capsys.readouterr()

@@ -17,14 +17,14 @@ from hypothesis import strategies as st
 from made_up_runs import ENVIRONMENT, made_up
 from odd_inputs import SOME, VALUES, answered
 
-from tests.verify.studies.cost.test_accuracy import a_study
+from tests.verify.studies.accuracy.test_choice import a_study
 from verify import report, verification
 from verify.cli import main
 from verify.result import Result
 from verify.runs.folder import _append, damage, read_fields, read_result, write_fields
 from verify.runs.jobs import Job, Outcome, run_all
 from verify.scene.load import load_scene
-from verify.studies.cost import accuracy
+from verify.studies.accuracy import choice
 from verify.studies.found import found_in, named
 from verify.support.checked_files import Damaged, read_json, read_table
 from verify.support.refusal import Refusal
@@ -160,16 +160,16 @@ def test_a_damaged_cost_json_does_not_count(
     data: st.DataObject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     """It is a cache: without it the table decides, and one sentence says why."""
-    table = accuracy.Choice("nurbs", (), 1.0, "of the table")
-    monkeypatch.setattr(accuracy, "_from_table", lambda scene, accuracy: table)
+    table = choice.Choice("nurbs", (), 1.0, "of the table")
+    monkeypatch.setattr(choice, "_from_table", lambda scene, accuracy: table)
     scene = load_scene("dcb-czm1")
     path = a_study(tmp_path, scene)
     path.write_bytes(changed(data.draw, path.read_bytes()))
-    found = accuracy.choose(scene, 0.01, path)
+    found = choice.choose(scene, 0.01, path)
     said = capsys.readouterr().err
     assert found.method in ("nurbs", "tspline") and found.seconds == found.seconds
     try:
-        read_json(path, accuracy._STUDY)
+        read_json(path, choice._STUDY)
     except Damaged:
         assert found is table and said.endswith("; it does not count\n") and said.count("\n") == 1
 

@@ -26,8 +26,8 @@ def accurate(options: argparse.Namespace) -> int:
     from verify.runs.run import NO_FIELDS
     from verify.scene.load import load_scene
     from verify.scene.parse import parse_scene
-    from verify.studies.cost.accuracy import choose
-    from verify.studies.cost.verified import percent, planned, verified
+    from verify.studies.accuracy.choice import choose
+    from verify.studies.accuracy.verified import percent, planned, verified
 
     given = {"--method": options.method, "--dofs": options.dofs}
     for name, value in given.items():

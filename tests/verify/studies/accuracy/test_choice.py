@@ -19,9 +19,10 @@ from verify.runs.run import run
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
 from verify.scene.random_scenes import random_scene
-from verify.studies.cost import accuracy
-from verify.studies.cost.accuracy import CHOSEN, choose, elements_for, with_elements
-from verify.studies.cost.verified import growth, verified
+from verify.studies.accuracy import choice
+from verify.studies.accuracy.choice import CHOSEN, choose, elements_for, with_elements
+from verify.studies.accuracy.levels import growth
+from verify.studies.accuracy.verified import verified
 from verify.support.refusal import Refusal
 
 NOWHERE = Path("no-such-study.json")
@@ -34,10 +35,10 @@ def test_the_table_is_read_on_the_safe_side(tmp_path: Path, monkeypatch: pytest.
     lines += [f"a,{e},{0.1 / e**2}" for e in (1, 2, 4, 8)]
     lines += [f"b,{e},{0.4 / e**2 if e != 2 else 1e-5}" for e in (1, 2, 4, 8)]
     table.write_text("\n".join(lines) + "\n")
-    monkeypatch.setattr(accuracy, "KNOWN", table)
+    monkeypatch.setattr(choice, "KNOWN", table)
     assert elements_for(0.4 / 5.0**2) == pytest.approx(5.0, rel=1e-6)
     assert elements_for(0.4 / 3.0**2) == pytest.approx(3.0, rel=1e-6), "the lucky mesh does not count"
-    monkeypatch.setattr(accuracy, "KNOWN", tmp_path / "a.csv")
+    monkeypatch.setattr(choice, "KNOWN", tmp_path / "a.csv")
     (tmp_path / "a.csv").write_text("\n".join(lines[1:6]) + "\n")
     assert elements_for(0.1 / 20.0**2) == pytest.approx(20.0, rel=1e-6), "beyond the table on with its slope"
 
@@ -65,14 +66,14 @@ def test_the_mesh_has_its_degree_through_the_arms(degree: int) -> None:
 
 
 def test_a_quadratic_element_is_chosen_where_the_arms_are_slender(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(accuracy, "predicted_seconds", lambda scene, method, iterations: 1.0)
+    monkeypatch.setattr(choice, "predicted_seconds", lambda scene, method, iterations: 1.0)
     for seed, asked, degree in ((118, 0.003, 2), (118, 0.0005, 3), (113, 0.01, 3), (102, 0.05, 2)):
         found = choose(random_scene(seed), asked, NOWHERE)
         assert f"discretization.degree={degree}" in found.overrides, seed
 
 
 def test_the_steps_are_those_of_the_scene_and_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(accuracy, "predicted_seconds", lambda scene, method, iterations: 1.0)
+    monkeypatch.setattr(choice, "predicted_seconds", lambda scene, method, iterations: 1.0)
     for asked, words in (("20", "steps=150"), ("400", "steps=400"), ("auto", "bend=0.003")):
         found = choose(load_scene("dcb-czm1", [f"discretization.steps={asked}"]), 0.003, NOWHERE)
         assert f"discretization.{words}" in found.overrides
@@ -106,7 +107,7 @@ def test_a_study_of_the_same_problem_decides(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("what", ["scene", "machine", "source", "file", "error"])
 def test_another_study_does_not(what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(accuracy, "predicted_seconds", lambda scene, method, iterations: 0.01 * iterations)
+    monkeypatch.setattr(choice, "predicted_seconds", lambda scene, method, iterations: 0.01 * iterations)
     scene = load_scene("dcb-czm1")
     path = a_study(tmp_path, scene, **({what: {}} if what in ("machine", "source") else {}))
     if what == "scene":
@@ -153,10 +154,10 @@ def test_the_time_of_a_run_is_that_of_its_beginning_and_of_its_iterations(monkey
             note({"newton_iterations": float(iterations)})
         now[0] += 1.0
 
-    monkeypatch.setattr(accuracy, "solve", solve)
-    monkeypatch.setattr(accuracy, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(choice, "solve", solve)
+    monkeypatch.setattr(choice, "perf_counter", lambda: now[0])
     scene = load_scene("dcb-czm1", ["load.opening=[1.0, 2.0, 1.5]"])
-    assert accuracy.predicted_seconds(scene, "nurbs", 100.0) == pytest.approx(18.5 + 0.5 * (100.0 - 13.0))
+    assert choice.predicted_seconds(scene, "nurbs", 100.0) == pytest.approx(18.5 + 0.5 * (100.0 - 13.0))
     assert asked == [((0.04,), 10, (), "nurbs")], "a fiftieth of the way in ten steps"
 
 
@@ -183,10 +184,10 @@ def test_where_no_mesh_is_fine_enough_it_says_so(monkeypatch: pytest.MonkeyPatch
         return SimpleNamespace(elements=7.5 if len(tried) % 2 else 0.0)
 
     scene = load_scene("dcb-czm1", ["discretization.dofs=500"])
-    monkeypatch.setattr(accuracy, "expected", lambda scene, solver: SimpleNamespace(elements=10.0))
+    monkeypatch.setattr(choice, "expected", lambda scene, solver: SimpleNamespace(elements=10.0))
     first = with_elements(scene, CHOSEN, 2, 10.0)
     assert "discretization.dofs=500" in first, "what is as fine as it was asked for is fine enough"
-    monkeypatch.setattr(accuracy, "expected", few)
+    monkeypatch.setattr(choice, "expected", few)
     words = "--accuracy: no mesh is known with 10.0 elements in the process zone of dcb-czm1"
     with pytest.raises(Refusal, match=words):
         with_elements(scene, CHOSEN, 2, 10.0)

@@ -1,9 +1,9 @@
-"""``debond solve --accuracy``: choice of method and first mesh, and prediction of the time of the run.
+"""Choice of method and first mesh, and prediction of the time of the run.
 
 Where ``debond cost`` has studied the same scene, its Pareto front decides. Otherwise the number of elements in the
 process zone is interpolated in `known.csv`, whose header has the origin of the numbers. A trial of a few steps on the
 chosen mesh measures the time of an iteration; the number of iterations follows from the expected crack growth. The
-choice is verified by solving on finer meshes (`verify.studies.cost.verified`).
+choice is verified by solving on finer meshes (`verify.studies.accuracy.verified`).
 """
 
 from __future__ import annotations

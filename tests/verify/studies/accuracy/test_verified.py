@@ -21,9 +21,10 @@ from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
 from verify.scene.random_scenes import random_scene
 from verify.scene.schema import counted_steps
-from verify.studies.cost import accuracy
-from verify.studies.cost.accuracy import Choice
-from verify.studies.cost.verified import REFINEMENT, apart, bound, finer, verified
+from verify.studies.accuracy import choice
+from verify.studies.accuracy.choice import Choice
+from verify.studies.accuracy.levels import REFINEMENT, apart, bound, finer
+from verify.studies.accuracy.verified import verified
 from verify.support.interrupts import INTERRUPTED
 from verify.verdict import Check
 
@@ -45,7 +46,7 @@ def a_curve(error: float, scene, method: str, on_step=None, stop: bool = False) 
 def solving(monkeypatch: pytest.MonkeyPatch) -> Callable[[Sequence[float]], None]:
     """``debond solve`` whose runs have these errors, level after level; NaN: it stops halfway, infinite: by Ctrl-C."""
     true = run_module.run
-    monkeypatch.setattr(accuracy, "choose", lambda *_: FIRST)
+    monkeypatch.setattr(choice, "choose", lambda *_: FIRST)
 
     def by(errors: Sequence[float]) -> None:
         left = iter(errors)
@@ -154,14 +155,14 @@ def test_a_level_with_a_broken_identity_is_refined(tmp_path: Path) -> None:
 
 def test_where_there_is_no_finer_mesh_it_says_so(solving, tmp_path: Path, monkeypatch, capsys) -> None:
     solving([0.02, 0.01])
-    monkeypatch.setattr(accuracy, "GUESS", replace(accuracy.GUESS, largest=500))
-    real = accuracy.with_elements
+    monkeypatch.setattr(choice, "GUESS", replace(choice.GUESS, largest=500))
+    real = choice.with_elements
     tries = iter([real, real])  # one to plan, one for level 1
 
     def few(*what):
         return next(tries, lambda *_: real(load_scene("dcb-czm1"), "nurbs", 3, 1e5))(*what)
 
-    monkeypatch.setattr("verify.studies.cost.verified.with_elements", few)
+    monkeypatch.setattr("verify.studies.accuracy.levels.with_elements", few)
     code, found = solved(tmp_path)
     assert code == FAILED and found["accuracy"]["reached"][1] == pytest.approx(0.015, rel=0.05)
     assert "no mesh is finer than that of level-1" in capsys.readouterr().err
@@ -176,7 +177,7 @@ def test_a_wrong_thickness_is_not_shared_by_two_levels(tmp_path: Path) -> None:
     scene = random_scene(114)
     first = Choice("nurbs", ("discretization.dofs=430", "discretization.degree=2", PACE), 1.0, "a guess")
     found = verified(scene, first, 0.003, tmp_path, lambda one, method, folder, _: run(prepare(one, method), folder))
-    exact = solve(parse_scene(scene.model_dump(), (PACE, *accuracy.with_elements(scene, "nurbs", 4, 9.0))), "nurbs")
+    exact = solve(parse_scene(scene.model_dump(), (PACE, *choice.with_elements(scene, "nurbs", 4, 9.0))), "nurbs")
     off = [apart(level.result, exact, scene.load.opening) for level in found.levels]
     assert off[0] > 0.005 and len(off) == 3 and found.levels[1].distance > 0.005, "seen, and not accepted"
     assert found.holds and off[2] < 3e-4 and found.reached[1] < 3e-4
@@ -190,7 +191,7 @@ def test_every_level_is_finer_and_keeps_the_effects() -> None:
         overrides = finer(now, "nurbs", overrides)
         then = parse_scene(scene.model_dump(), overrides)
         assert then.effects == scene.effects and then.discretization.steps > now.discretization.steps
-        assert accuracy.expected(then, "nurbs").elements >= 1.5 * accuracy.expected(now, "nurbs").elements
+        assert choice.expected(then, "nurbs").elements >= 1.5 * choice.expected(now, "nurbs").elements
         degrees.append(then.discretization.degree)
     assert degrees == [3, 4, 5, 5, 5]
     other = parse_scene(scene.model_dump(), finer(scene, "dolfinx", ()))
