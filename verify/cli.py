@@ -14,11 +14,12 @@ import argparse  # noqa: E402
 import errno  # noqa: E402
 from collections.abc import Callable, Sequence  # noqa: E402
 
+from verify.command_line.answers import FAILED  # noqa: E402
 from verify.command_line.commands import STUDIES, TOOLS  # noqa: E402
 from verify.command_line.options import Parser  # noqa: E402
 from verify.command_line.spelling import Help, parsed  # noqa: E402
 from verify.support import interrupts  # noqa: E402
-from verify.support.refusal import Refusal  # noqa: E402
+from verify.support.refusal import NotRun, Refusal  # noqa: E402
 from verify.support.say import say  # noqa: E402
 from verify.version import __version__  # noqa: E402
 
@@ -54,6 +55,9 @@ def _outcome(options: argparse.Namespace, arguments: Sequence[str]) -> int:
         if not interrupts.came():
             say(str(error))
         return REFUSED
+    except NotRun as error:
+        say(error.sentence)
+        return FAILED
     except BrokenPipeError:  # the reader of the output has closed it: write no more, and no message at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return NOT_WRITTEN

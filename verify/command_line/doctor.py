@@ -12,9 +12,9 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from verify.methods.dolfinx import DOLFINX_WAYS, NEWEST, OLDEST, dolfinx_installed, supported
-from verify.methods.names import NotRun
 from verify.methods.plugins import Plugin, plugins
 from verify.runs.environment import package_version
+from verify.support.refusal import NotRun
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,12 @@ import numpy as np
 
 from verify.curves.curve import SAMPLES, envelope, from_origin
 from verify.curves.of_run import cubics
-from verify.methods.method import NotRun, Unsuitable
+from verify.methods.method import Unsuitable
 from verify.methods.solve import prepare, require, solve
 from verify.methods.zone_resolution import expected
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
+from verify.support.refusal import NotRun
 
 #: The solver: it solves every scene, and on few unknowns in a tenth of a second.
 METHOD = "nurbs"

@@ -47,6 +47,7 @@ def _lines(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
     yield from _touching(scene, mesh)
     yield from _equations(points, held)
     yield from _supports(mesh, points)
+    yield from _spring(mesh)
     yield from _steps(scene, points)
 
 
@@ -182,6 +183,20 @@ def _supports(mesh: SceneMesh, points: Sequence[Reference]) -> Iterator[str]:
     for support in mesh.supports:
         yield from (f"{support.name}, {i + 1}, {i + 1}" for i in support.components)
     yield from (f"{one.name}, 1, {1 if one.part else 2}" for one in points)
+
+
+def _spring(mesh: SceneMesh) -> Iterator[str]:
+    """What holds the rotation of a specimen whose loads balance each other, at the end without a support."""
+    if not mesh.turning:
+        return
+    X_nI = mesh.X_nI
+    node = int(np.argmin(np.linalg.norm(X_nI - [X_nI[:, 0].min(), 0.0], axis=1)))
+    yield "** weak: it keeps the whole from turning, and bears next to nothing"
+    yield "*ELEMENT, TYPE=SPRING1, ELSET=spring"
+    yield f"{len(mesh.conn_ea) + len(mesh.cohesive_ea) + 1}, {node + 1}"
+    yield "*SPRING, ELSET=spring"
+    yield "2"
+    yield f"{_number(mesh.turning / np.ptp(X_nI[:, 0]) ** 2)},"
 
 
 def _steps(scene: Scene, points: Sequence[Reference]) -> Iterator[str]:

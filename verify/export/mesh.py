@@ -69,6 +69,7 @@ class SceneMesh:
     length_k : (n_k,) length of the bond that belongs to each pair: integral of its function
     crack_kb : the same pairs of the faces of the precrack, where they can touch; its end is the first pair of the bond
     resting : patches of supports whose mean displacement is zero, of arms on rollers
+    turning : stiffness against a rotation of the whole that no support holds [force times length], else 0
     """
 
     degree: int
@@ -82,6 +83,7 @@ class SceneMesh:
     supports: tuple[Support, ...]
     crack_kb: np.ndarray
     resting: tuple[LoadedFace, ...] = ()
+    turning: float = 0.0
 
     @property
     def sets(self) -> dict[str, np.ndarray]:
@@ -199,6 +201,7 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
         supports=supports,
         crack_kb=facing(0.0, specimen.bond[0]) if specimen.pulls and specimen.touching else np.zeros((0, 2), dtype=int),
         resting=patches(specimen.rests, "support"),
+        turning=sum(keep.factor for keep in specimen.keeps),
     )
 
 

@@ -25,14 +25,6 @@ OnFrame = Callable[[float, Callable[[], Mapping[str, Any] | None]], None]
 ENOUGH = 3
 
 
-class NotRun(Exception):
-    """A method that this machine cannot run; the message says why, ``ways`` how to get it."""
-
-    def __init__(self, why: str, ways: Sequence[str] = ()) -> None:
-        super().__init__(why)
-        self.ways = tuple(ways)
-
-
 class Unsuitable(Refusal):
     """A method that cannot solve this scene on any machine."""
 

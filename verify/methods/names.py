@@ -6,9 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
 from pkgutil import iter_modules
 
-from verify.methods.method import Method, NotRun, Unsuitable
+from verify.methods.method import Method, Unsuitable
 from verify.scene.schema import Scene
 from verify.scene.tables import one_of
+from verify.support.refusal import NotRun
 
 __all__ = ["METHODS", "WITH_DOFS", "NotRun", "Unsuitable", "refuse_arms", "refuse_law"]
 

@@ -23,11 +23,12 @@ from typing import Any
 
 import numpy as np
 
-from verify.methods.method import Failure, Method, NotRun, OnFrame, OnStep, Prepared, Unsuitable
+from verify.methods.method import Failure, Method, OnFrame, OnStep, Prepared, Unsuitable
 from verify.methods.names import METHODS
 from verify.result import Result
 from verify.scene.laws import PLAIN
 from verify.scene.schema import Scene
+from verify.support.refusal import NotRun
 from verify.support.timing import Stopwatch, peak_memory_mb
 
 GROUP = "debond.methods"

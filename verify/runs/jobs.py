@@ -8,7 +8,6 @@ from pathlib import Path
 
 from verify.checks.identities import OF_THE_ZONE
 from verify.methods.given_meshes import OWN
-from verify.methods.method import NotRun
 from verify.methods.plugins import find
 from verify.methods.solve import prepare, require
 from verify.result import Result
@@ -20,7 +19,7 @@ from verify.runs.sweep import OUTPUT_FOLDER, Done, Task, listed, sweep
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.support.checked_files import Damaged
-from verify.support.refusal import Refusal
+from verify.support.refusal import NotRun, Refusal
 from verify.verdict import Check
 
 

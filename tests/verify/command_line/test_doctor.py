@@ -9,7 +9,7 @@ import pytest
 
 from verify.cli import main
 from verify.command_line import doctor
-from verify.methods.names import NotRun
+from verify.support.refusal import NotRun
 
 
 def said(capsys: pytest.CaptureFixture) -> dict[str, str]:

@@ -351,3 +351,18 @@ def test_abaqus_has_every_load_and_support_by_an_equation(degree: int, tmp_path:
         assert np.sum(np.abs(np.diff(corners[..., 0]))) == pytest.approx(10.0), "each side once"
     (rows,) = (rows for key, _, rows in blocks if key == "*FRICTION")
     assert rows == [["0.2"]]
+
+
+def test_abaqus_has_a_weak_spring_where_nothing_holds_the_rotation(tmp_path: Path) -> None:
+    """At the end that no support holds; one that has supports has none."""
+    text = (exported("adcb-czmtestkit-a", "abaqus", tmp_path) / "adcb-czmtestkit-a.inp").read_text()
+    blocks = abaqus_blocks(text)
+    X_nI = {int(row[0]): row[1:] for key, _, rows in blocks if key == "*NODE" for row in rows}
+    numbers = [int(row[0]) for key, _, rows in blocks if key == "*ELEMENT" for row in rows]
+    assert len(set(numbers)) == len(numbers)
+    ((number, node),) = (row for key, known, rows in blocks if known.get("TYPE") == "SPRING1" for row in rows)
+    assert X_nI[int(node)] == ["0", "0"] and int(number) == max(numbers)
+    (((component,), (stiffness,)),) = (rows for key, _, rows in blocks if key == "*SPRING")
+    scene = load_scene("adcb-czmtestkit-a")
+    assert component == "2" and 0.0 < float(stiffness) < 1e-9 * scene.material.E1 * scene.specimen.width
+    assert "SPRING" not in (exported("slb", "abaqus", tmp_path) / "slb.inp").read_text()

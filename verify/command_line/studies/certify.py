@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from verify.command_line.answers import FAILED, listed, not_run
+from verify.command_line.answers import FAILED, listed
 from verify.command_line.arguments import numbers
 from verify.command_line.options import NewCommand, out_option, scene_argument, set_option, sweep_options
 from verify.command_line.refusals import output_folder, studied
@@ -28,7 +28,6 @@ def add(command: NewCommand) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from verify.methods.method import NotRun
     from verify.studies.certified.keeping import keep, require_checkout
     from verify.studies.certified.plan import planned
     from verify.studies.certified.study import certify, would_run
@@ -36,10 +35,7 @@ def run(options: argparse.Namespace) -> int:
     scene = studied(options, "certify")
     if options.keep:
         require_checkout()
-    try:
-        plan = planned(options.scene, scene, options.at, options.overrides)
-    except NotRun as error:
-        return not_run(error)
+    plan = planned(options.scene, scene, options.at, options.overrides)
     if options.dry_run:
         return listed(would_run(plan, options.out, options.jobs))
     output_folder(options.out)

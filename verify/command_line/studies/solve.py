@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verify.command_line.answers import FAILED, not_run
+from verify.command_line.answers import FAILED
 from verify.command_line.arguments import accuracy, count, place, positive
 from verify.command_line.one_run import broken, kept, print_result, say_after, with_progress
 from verify.command_line.options import NewCommand, scene_argument, set_option
@@ -41,7 +41,6 @@ def add(command: NewCommand) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from verify.methods.method import NotRun
     from verify.methods.solve import prepare, require
     from verify.runs.environment import mpi_rank, mpi_size
     from verify.scene.load import load_scene
@@ -55,10 +54,7 @@ def run(options: argparse.Namespace) -> int:
     if mpi_size() > 1 and not prepared.method.ranks:
         raise Refusal(f"--method: must be dolfinx under mpirun, the others run in one process, got {name!r}")
     out = options.out = options.out or Path("debond-out") / f"{prepared.scene.name}-{name}"
-    try:
-        require(prepared)
-    except NotRun as error:
-        return not_run(error)
+    require(prepared)
     output_folder(out)
     quiet = mpi_rank() > 0
     if not quiet:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from verify.command_line.answers import FAILED, listed, not_run
+from verify.command_line.answers import FAILED, listed
 from verify.command_line.arguments import numbers
 from verify.command_line.curves import foreign_curves, with_options
 from verify.command_line.options import NewCommand, method_option, out_option, scene_argument, set_option, sweep_options
@@ -30,7 +30,6 @@ def add(command: NewCommand) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from verify.methods.method import NotRun
     from verify.studies.validation.plan import planned
     from verify.studies.validation.study import validate, would_run
 
@@ -39,10 +38,7 @@ def run(options: argparse.Namespace) -> int:
     curves = foreign_curves(options, 1, 0)
     if len(curves) != 1:
         raise Refusal(f"--with: must name one curve that the scene is held against, got {len(curves)}")
-    try:
-        plan = planned(options.scene, scene, options.method, options.overrides)
-    except NotRun as error:
-        return not_run(error)
+    plan = planned(options.scene, scene, options.method, options.overrides)
     if options.dry_run:
         return listed(would_run(plan, options.out, options.jobs))
     output_folder(options.out)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from verify.command_line.answers import FAILED, listed, not_run
+from verify.command_line.answers import FAILED, listed
 from verify.command_line.options import NewCommand, method_option, out_option, scene_argument, set_option, sweep_options
 from verify.command_line.refusals import known_method, output_folder, studied
 
@@ -24,16 +24,12 @@ def add(command: NewCommand) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from verify.methods.method import NotRun
     from verify.studies.viscosity.plan import planned
     from verify.studies.viscosity.study import viscosity, would_run
 
     known_method(options.method, None)
     scene = studied(options, "viscosity")
-    try:
-        plan = planned(options.scene, scene, options.method, options.overrides)
-    except NotRun as error:
-        return not_run(error)
+    plan = planned(options.scene, scene, options.method, options.overrides)
     if options.dry_run:
         return listed(would_run(plan, options.out))
     output_folder(options.out)

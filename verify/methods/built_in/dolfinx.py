@@ -16,7 +16,6 @@ from verify.methods.method import (
     Look,
     MeshFacts,
     Method,
-    NotRun,
     OnFrame,
     OnStep,
     Prepared,
@@ -29,6 +28,7 @@ from verify.methods.reference_mesh import ReferenceMesh, reference_mesh
 from verify.result import Result
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.schema import Scene
+from verify.support.refusal import NotRun
 from verify.support.timing import Stopwatch
 
 

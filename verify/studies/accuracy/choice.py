@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.methods.names import WITH_DOFS, NotRun
+from verify.methods.names import WITH_DOFS
 from verify.methods.reference_mesh import thickness_error
 from verify.methods.solve import prepare, require, solve
 from verify.methods.zone_resolution import expected
@@ -30,7 +30,7 @@ from verify.scene.schema import DEFAULT_STEPS, Scene
 from verify.studies.cost.ladder import LADDER
 from verify.support.checked_files import Damaged, read_json
 from verify.support.progress import duration
-from verify.support.refusal import Refusal
+from verify.support.refusal import NotRun, Refusal
 from verify.support.say import say
 
 KNOWN = Path(__file__).with_name("known.csv")

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from iga.bases.names import BASES
-from verify.methods.method import NotRun
 from verify.methods.names import METHODS
 from verify.methods.plugins import plugins
 from verify.methods.reference_mesh import reference_mesh
@@ -16,6 +15,7 @@ from verify.methods.zone_resolution import expected
 from verify.runs.jobs import Job, left_out
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
+from verify.support.refusal import NotRun
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,6 @@ from made_up_costs import NURBS, SCENE, a_row, against, made_up, outcome
 
 from iga.bases.names import BASES
 from verify.cli import main
-from verify.methods.method import NotRun
 from verify.methods.zone_resolution import expected
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
@@ -29,6 +28,7 @@ from verify.studies.cost.reference import reference_jobs
 from verify.studies.cost.row import Row, row
 from verify.studies.cost.study import climb
 from verify.support.checked_files import read_table
+from verify.support.refusal import NotRun
 
 
 def test_rungs_divide_the_process_zone_as_they_say() -> None:
