@@ -119,6 +119,16 @@ def test_a_run_is_held_against_every_value() -> None:
     assert published_names(scene) == tuple(checks)
 
 
+def test_a_value_is_no_narrower_than_what_the_mesh_of_a_method_leaves() -> None:
+    """2 % with Lagrange elements on the unknowns of a scene; the value of a fine mesh is known to 0.5 %."""
+    exact = PEAK.replace("0.03", "0.005")
+    scene = with_values(f"{{{exact}, value = 2.0}}", f"{{{PEAK}, value = 2.0}}")
+    checks = published_checks(scene, {name: drawn(name) for name in ("nurbs", "lagrange")})
+    assert {(one.subject, one.tolerance) for one in checks} == {
+        ("nurbs", 0.005), ("nurbs", 0.03), ("lagrange", 0.02), ("lagrange", 0.03)
+    }  # fmt: skip
+
+
 def test_a_load_between_steps_is_on_the_arc_of_the_path() -> None:
     """A parabola through steps with their slopes: in the middle of one linear interpolation is 1/64 off."""
     x = np.linspace(0.0, 2.0, 9)
