@@ -184,9 +184,13 @@ identity(
     of_zone=True,
     of_face=True,
 )(j_pressed)
-identity("growth-load", _j_tolerance, "While the crack grows the load is at least G_Ic times the width.", of_face=True)(
-    growth_load
-)
+identity(
+    "growth-load",
+    _j_tolerance,
+    "While the crack grows the load is at least G_Ic times the width.",
+    of_zone=True,
+    of_face=True,
+)(growth_load)
 identity(
     "growth-angle",
     ANGLE_TOLERANCE,
