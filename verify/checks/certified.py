@@ -9,8 +9,8 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from verify.checks.proof import MATCHED, RUNS, sampled
-from verify.curves.curve import SAMPLES, envelope, from_origin, load_at, peak
-from verify.curves.of_run import peak_load
+from verify.curves.curve import SAMPLES, envelope, from_origin, load_at
+from verify.curves.of_run import peak_load, peak_point
 from verify.result import Result
 from verify.scene.schema import Scene
 from verify.scene.stated.certified import Certified, CertifiedKind, certified
@@ -60,7 +60,7 @@ def measured(result: Result, kind: CertifiedKind, opening: float | None = None) 
     if kind == "peak":
         return peak_load(result)
     if kind == "peak_opening":
-        return peak((result.opening, result.load), result.steps.get("load_slope"))[0]
+        return peak_point(result)[0]
     assert opening is not None
     if kind == "load_at":
         return _load(result, opening)

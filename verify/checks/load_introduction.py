@@ -11,8 +11,7 @@ from functools import lru_cache
 from math import isnan, nan, sqrt
 
 from verify.checks.proof import SEARCHING
-from verify.curves.curve import peak
-from verify.result import Result
+from verify.curves.of_run import peak_load
 from verify.scene.effects import NEGLIGIBLE, opening_share, simulated
 from verify.scene.materials import axial_modulus, elastic_constants
 from verify.scene.schema import Scene
@@ -66,11 +65,7 @@ def measured(scene: Scene) -> Corner:
     if not (face.complete and node.complete):
         return estimate(scene)
     slopes = [float(run.steps["load_slope"][0]) for run in (face, node)]
-    return Corner(slopes[1] / slopes[0] - 1.0, _peak(node) / _peak(face) - 1.0)
-
-
-def _peak(run: Result) -> float:
-    return peak((run.opening, run.load), run.steps["load_slope"])[1]
+    return Corner(slopes[1] / slopes[0] - 1.0, peak_load(node) / peak_load(face) - 1.0)
 
 
 def matters(scene: Scene) -> bool:

@@ -140,8 +140,11 @@ def curve_error(curve: Curve, reference: Curve, end: float | None = None, n: int
     return float(np.sqrt(np.sum((load_at(curve, grid) - wanted) ** 2) / np.sum(wanted**2)))
 
 
-def peak(curve: Curve, slope: ArrayLike | None = None) -> tuple[float, float]:
-    """Opening and load at the largest load of the path; with the exact ``slope`` the peak of its Hermite cubics."""
+def peak(curve: Curve, slope: ArrayLike | None = None, energy: ArrayLike | None = None) -> tuple[float, float]:
+    """Opening and load at the largest load of the path; with the exact ``slope`` the peak of its Hermite cubics.
+
+    A step that is straight by its ``energy``, as in `dense`, has its largest load at an end.
+    """
     d, P = (np.asarray(values, dtype=float) for values in curve)
     i = int(np.argmax(P))
     best = float(d[i]), float(P[i])
@@ -150,10 +153,20 @@ def peak(curve: Curve, slope: ArrayLike | None = None) -> tuple[float, float]:
     s = np.asarray(slope, dtype=float)
     for a, b in ((i - 1, i), (i, i + 1)):
         if a >= 0 and b < len(d) and d[b] > d[a] and s[a] > 0.0 > s[b]:
+            spent = None if energy is None else float(np.diff(np.asarray(energy, dtype=float)[[a, b]])[0])
+            if spent is not None and _straight(d[[a, b]], P[[a, b]], s[[a, b]], spent):
+                continue
             at = _stationary(d[[a, b]], P[[a, b]], s[[a, b]])
             top = float(hermite(d, P, s, np.array([at]))[0])
             best = (at, top) if top > best[1] else best
     return best
+
+
+def _straight(d: np.ndarray, P: np.ndarray, s: np.ndarray, spent: float) -> bool:
+    """Whether the energy spent on a step is nearer to the area under its straight line than to that of its cubic."""
+    h = d[1] - d[0]
+    unseen, drawn = spent - 0.5 * h * (P[0] + P[1]), h * h * (s[0] - s[1]) / 12.0
+    return not abs(unseen - drawn) <= abs(unseen)
 
 
 def _stationary(d: np.ndarray, P: np.ndarray, s: np.ndarray) -> float:

@@ -19,8 +19,13 @@ def cubics(result: Result, per_step: int = POINTS_PER_STEP) -> Curve:
     steps = result.steps
     if not {"load_slope", "heading"} <= set(steps) or result.opening.size < 2 or per_step == 1:
         return result.opening, result.load
-    energy = steps["stored_energy"] + steps["dissipated_energy"] if ENERGIES <= set(steps) else None
-    return dense(result.opening, result.load, steps["load_slope"], steps["heading"], per_step, energy=energy)
+    return dense(result.opening, result.load, steps["load_slope"], steps["heading"], per_step, energy=_energy(result))
+
+
+def _energy(result: Result) -> np.ndarray | None:
+    """Stored and dissipated (n,), where the run knows both."""
+    steps = result.steps
+    return steps["stored_energy"] + steps["dissipated_energy"] if ENERGIES <= set(steps) else None
 
 
 def distance(curve: Curve, exact: Result) -> float:
@@ -40,7 +45,12 @@ def _onward(curve: Curve, end: float) -> Curve:
 
 def peak_load(result: Result) -> float:
     """Largest load of the path, between the steps too where their slopes are known."""
-    return peak((result.opening, result.load), result.steps.get("load_slope"))[1]
+    return peak_point(result)[1]
+
+
+def peak_point(result: Result) -> tuple[float, float]:
+    """Opening and load at the peak load."""
+    return peak((result.opening, result.load), result.steps.get("load_slope"), _energy(result))
 
 
 def dissipated(result: Result) -> float:

@@ -198,6 +198,14 @@ def test_peak_between_points():
     assert abs(peak((d, smooth(d)))[0] - exact[0]) > 1e-2
 
 
+def test_slopes_of_single_teeth_make_no_peak_between_steps() -> None:
+    """Both steps to the left and the right spend what the straight line does, or what the cubic does."""
+    d, P, slope = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 1.0]), np.array([1.0, 3.0, -3.0])
+    below_lines, below_cubics = np.array([0.0, 0.5, 1.5]), np.array([0.0, 0.5, 1.5 + 6.0 / 12.0])
+    assert peak((d, P), slope) == peak((d, P), slope, below_cubics) == pytest.approx((1.5, 1.75))
+    assert peak((d, P), slope, below_lines) == (1.0, 1.0)
+
+
 def test_load_at_a_jump_is_the_load_before_it():
     found = load_at(([0, 1, 0.5, 1.5], [0, 2, 1, 2]), [1.0, 1.25, 1.6])
     assert found == pytest.approx([2.0, 1.75, np.nan], nan_ok=True)
