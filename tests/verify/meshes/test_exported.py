@@ -72,8 +72,3 @@ def test_weights_are_those_of_unit_tractions(name: str, degree: int) -> None:
     joined = merged(mesh)
     assert np.array_equal(joined.X_nI[joined.crack_kb[:, 0]], lower)
     assert len(np.unique(joined.crack_kb)) == 2 * len(lower) - 1, "the arms share the end of the precrack"
-
-
-def test_rollers_are_not_written_for_abaqus(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    assert main(["export", "slb", "--format", "abaqus", "--out", str(tmp_path)]) == 2
-    assert '--format: must be "gmsh", "med", "exodus", "vtu" or "csv" for the kind slb' in capsys.readouterr().err
