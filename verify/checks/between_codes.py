@@ -152,14 +152,16 @@ def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
 def published_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
     """Every run against every published value of the scene; NaN, which fails, where a run ended before that opening.
 
-    The tolerance is that of the value, and no less than what the mesh of the method is known to leave.
+    The tolerance is that of the value, and no less than what the mesh of the method is known to leave. A mesh that
+    does not resolve the process zone gives no verdict (see `proven`).
     """
     checks = []
     for name, known in zip(published_names(scene), scene.published, strict=True):
         for method in (name for name in RUNS if name in results):
             value = known.deviation(published_load(known, results[method], scene.load.opening))
             allowed = max(known.tolerance, RUNS[method].mesh_error)
-            checks.append(Check(name, method, value, allowed, known.kind, published_meaning(known)))
+            check = Check(name, method, value, allowed, known.kind, published_meaning(known))
+            checks.append(proven(scene, check, results))
     return tuple(checks)
 
 

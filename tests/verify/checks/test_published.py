@@ -129,6 +129,15 @@ def test_a_value_is_no_narrower_than_what_the_mesh_of_a_method_leaves() -> None:
     }  # fmt: skip
 
 
+def test_a_mesh_that_does_not_resolve_the_zone_gives_no_verdict() -> None:
+    """15 % are explained by elements longer than the zone, not by short ones, and 30 % by none."""
+    for dofs, off, state in ((5000, 1.15, "unresolved"), (40000, 1.15, "broken"), (5000, 1.3, "broken")):
+        overrides = [f"published=[{{{PEAK}, value = 2.0}}]", f"discretization.dofs={dofs}"]
+        scene = load_scene("krueger-dcb", overrides)
+        (check,) = published_checks(scene, {"lagrange": drawn("lagrange", 2.0 * off)})
+        assert check.state == state, (dofs, off)
+
+
 def test_a_load_between_steps_is_on_the_arc_of_the_path() -> None:
     """A parabola through steps with their slopes: in the middle of one linear interpolation is 1/64 off."""
     x = np.linspace(0.0, 2.0, 9)
