@@ -31,8 +31,8 @@ class LoadedFace:
 
     Its mean displacement is the sum of ``weight_n`` times the displacement of its nodes along ``component`` (0: x,
     1: y), and a dead traction of resultant P is the nodal force weight times P. Of a couple these are the mean rotation
-    and the moment; one over both arms has a patch on each. A loaded face moves by ``factor`` times the opening; a patch
-    carries ``factor`` times the load, and the opening is the sum of these factors times the mean displacements.
+    and the moment. A loaded face moves by ``factor`` times the opening; a patch carries ``factor`` times the load, and
+    the opening is the sum of these factors times the mean displacements.
     ``action`` is the name of the load or support; one over both arms has a patch on each, and its mean displacement is
     the sum of both.
     """

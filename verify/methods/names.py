@@ -9,9 +9,8 @@ from pkgutil import iter_modules
 from verify.methods.method import Method, Unsuitable
 from verify.scene.schema import Scene
 from verify.scene.tables import one_of
-from verify.support.refusal import NotRun
 
-__all__ = ["METHODS", "WITH_DOFS", "NotRun", "Unsuitable", "refuse_arms", "refuse_law"]
+__all__ = ["METHODS", "WITH_DOFS", "Unsuitable", "refuse_arms", "refuse_law"]
 
 
 def _found() -> Iterator[Method]:

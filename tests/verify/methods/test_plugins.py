@@ -24,6 +24,7 @@ from verify.runs.folder import read_columns, read_result
 from verify.runs.jobs import left_out
 from verify.scene.load import load_scene
 from verify.studies.one_scene import planned
+from verify.support.refusal import NotRun
 from verify.verification import Subjects, verify
 
 LINEAR = "dcb-czm1-linear"
@@ -160,7 +161,7 @@ def test_one_that_fails_is_a_run_that_stopped(
 
 def test_a_method_of_debond_cannot_be_replaced(package: Path) -> None:
     assert known_methods()["nurbs"] == names.METHODS["nurbs"].what
-    with pytest.raises(names.NotRun, match="its name must be a word of its own"):
+    with pytest.raises(NotRun, match="its name must be a word of its own"):
         plugins.plugins()["nurbs"].load()
 
 
@@ -169,7 +170,7 @@ def test_two_of_one_name_are_none(package: Path) -> None:
     second.mkdir()
     (second / "METADATA").write_text("Metadata-Version: 2.1\nName: other\nVersion: 1\n")
     (second / "entry_points.txt").write_text("[debond.methods]\ngood = fakecode:wrong\n")
-    with pytest.raises(names.NotRun, match="plug-in good of .* and .*: the name is there 2 times"):
+    with pytest.raises(NotRun, match="plug-in good of .* and .*: the name is there 2 times"):
         solve(load_scene(LINEAR), "good")
 
 
@@ -285,7 +286,7 @@ def test_a_row_without_a_load_is_a_fault_and_so_is_a_judge_that_fails(monkeypatc
     with pytest.raises(Failure, match="a row must have load, got opening"):
         solve(load_scene(LINEAR), "mine")
     solver.unsuitable = lambda scene: 1 / 0
-    with pytest.raises(names.NotRun, match="not run: plug-in mine of fakecode 1.0: ZeroDivisionError"):
+    with pytest.raises(NotRun, match="not run: plug-in mine of fakecode 1.0: ZeroDivisionError"):
         solve(load_scene(LINEAR), "mine")
 
 
