@@ -25,6 +25,7 @@ LINE_TYPES = ("vertex", "line", "line3")
 
 #: Elements of Abaqus for plane stress and plane strain, by an element of the same nodes that `meshlane` knows.
 ABAQUS_ALIASES = {"3": "CPS3", "4": "CPS4", "6": "STRI65", "8": "S8R"}
+_NODES = re.compile(r"^\*node\s*(,|$)", re.IGNORECASE)
 _ELEMENT = re.compile(r"^(\*element\b.*?\btype\s*=\s*)([^,\s]+)", re.IGNORECASE)
 _SOLID = re.compile(r"CP[ES](3|4|6|8)(R|I|H|M|RH|IH|MH)?$", re.IGNORECASE)
 _NO_BODY = re.compile(r"((T2D|T3D|B2|B3)[123]H?|MASS|ROTARYI|(SPRING|DASHPOT|CONN)\w*)$", re.IGNORECASE)
@@ -85,7 +86,7 @@ def _read(path: Path, kind: str) -> Any:
                 return reader.read(str(path))
             with tempfile.TemporaryDirectory() as folder:
                 known = Path(folder) / path.name
-                known.write_text("\n".join(_known_elements(path.read_text(errors="replace"))) + "\n")
+                known.write_text("\n".join(_known_lines(path.read_text(errors="replace"))) + "\n")
                 return _with_cohesive_lines(reader.read(str(known)))
     except (OSError, MemoryError):
         raise
@@ -127,9 +128,17 @@ def _with_cohesive_lines(found: Any) -> Any:
     return found
 
 
-def _known_elements(text: str) -> Iterator[str]:
-    """The lines of an Abaqus file with elements renamed; raises ValueError for those of another kind of body."""
+def _known_lines(text: str) -> Iterator[str]:
+    """The lines of an Abaqus file with elements renamed, and nodes with three coordinates, in the plane or not.
+
+    Raises ValueError for elements of another kind of body.
+    """
+    in_nodes = False
     for number, line in enumerate(text.splitlines(), 1):
+        if line.startswith("*") and not line.startswith("**"):
+            in_nodes = bool(_NODES.match(line))
+        elif in_nodes and line.rstrip(", ").count(",") == 2:
+            line = f"{line.rstrip(', ')}, 0"
         if match := _ELEMENT.match(line):
             solid, cohesive = _SOLID.match(match[2]), match[2].upper() == COHESIVE
             if solid or cohesive:
