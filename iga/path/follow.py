@@ -36,7 +36,7 @@ class PathLimits:
 
     separated: float = 1e-3
     ahead: float = 1e-6
-    softer: tuple[float, ...] = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+    softer: tuple[float, ...] = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 
 
 PATH = PathLimits()
@@ -179,18 +179,18 @@ def _departing(solver: Solver, state: State, direction: float, work: float) -> P
 def _touching(solver: Solver, trial: State, opening: float, change: float) -> Equilibrium | None:
     """Equilibrium at an opening where it is not known what touches.
 
-    Where a search with the contact as it is fails, softer contact shows most of what touches, and ever stiffer one the
-    rest.
+    Where full steps with the contact as it is fail, softer contact shows most of what touches, and ever stiffer one the
+    rest: the length of each step is searched for then, as full ones go round in circles.
     """
     system = solver.system
     goal = Prescribed(opening_control(system), opening, change)
-    found = equilibrium(solver, trial, goal, MANY_DECIDE)
+    found = equilibrium(solver, trial, goal, MANY_DECIDE, searches=(False,))
     if found is not None:
         return found
     law = system.interface.law
     for part in PATH.softer:
         soft = replace(system, interface=replace(system.interface, law=replace(law, penalty=part * law.penalty)))
-        found = equilibrium(solver.of(soft), trial, goal, MANY_DECIDE)
+        found = equilibrium(solver.of(soft), trial, goal, MANY_DECIDE, searches=(True,))
         if found is not None:
             trial = replace(found.state, k_q=trial.k_q)
     return found

@@ -57,7 +57,11 @@ class Line:
 
 
 def equilibrium(
-    solver: Solver, trial: State, prescribed: Prescribed, newton: Newton | None = None
+    solver: Solver,
+    trial: State,
+    prescribed: Prescribed,
+    newton: Newton | None = None,
+    searches: tuple[bool, ...] = (False, True),
 ) -> Equilibrium | None:
     """Equilibrium near a trial state at which a control has a prescribed value; None where Newton finds none.
 
@@ -68,10 +72,12 @@ def equilibrium(
     ----------
     trial : prediction; its history is that of the last converged state and stays so.
     newton : limits other than those of the solver.
+    searches : whether the length of a step is searched for, in each attempt.
     """
     newton = newton or solver.newton
     spent: tuple[float, ...] = ()
-    for advance, limits in ((_full, newton), (_searched, newton.searching)):
+    for searched in searches:
+        advance, limits = (_searched, newton.searching) if searched else (_full, newton)
         found, residuals = _iterate(solver, trial, prescribed, limits, advance)
         spent += residuals
         if found is not None:

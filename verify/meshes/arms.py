@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from verify.meshes.read import ELEMENT_DEGREES, PlaneMesh, read_mesh
+from verify.meshes.read import COHESIVE, ELEMENT_DEGREES, PlaneMesh, read_mesh
 from verify.scene.schema import Scene
 from verify.scene.specimens.delamination import Delamination, Load, Support
 from verify.support.refusal import Refusal
@@ -167,6 +167,8 @@ class _Check:
     def _groups(self, upper_e: np.ndarray) -> None:
         """Groups that the scene names, or that have the names of `GROUP_ROLES`, hold what they should."""
         named = self.scene.specimen.groups
+        if COHESIVE in self.mesh.nodes:
+            self._face_group("bond", COHESIVE, self.mesh.nodes[COHESIVE])
         for role in GROUP_ROLES:
             asked = getattr(named, role)
             name = asked or role

@@ -25,9 +25,14 @@ LINE_TYPES = ("vertex", "line", "line3")
 
 #: Elements of Abaqus for plane stress and plane strain, by an element of the same nodes that `meshlane` knows.
 ABAQUS_ALIASES = {"3": "CPS3", "4": "CPS4", "6": "STRI65", "8": "S8R"}
+_NODES = re.compile(r"^\*node\s*(,|$)", re.IGNORECASE)
 _ELEMENT = re.compile(r"^(\*element\b.*?\btype\s*=\s*)([^,\s]+)", re.IGNORECASE)
 _SOLID = re.compile(r"CP[ES](3|4|6|8)(R|I|H|M|RH|IH|MH)?$", re.IGNORECASE)
-_BEAM = re.compile(r"(T2D|T3D|B2|B3)[123]H?$", re.IGNORECASE)
+_NO_BODY = re.compile(r"((T2D|T3D|B2|B3)[123]H?|MASS|ROTARYI|(SPRING|DASHPOT|CONN)\w*)$", re.IGNORECASE)
+
+#: Cohesive elements of Abaqus, also the group that they make, and elements of as many nodes that `meshlane` knows.
+COHESIVE = "COH2D4"
+_COHESIVE_ALIAS = ("C3D4", "tetra")
 
 
 @dataclass(frozen=True)
@@ -81,8 +86,8 @@ def _read(path: Path, kind: str) -> Any:
                 return reader.read(str(path))
             with tempfile.TemporaryDirectory() as folder:
                 known = Path(folder) / path.name
-                known.write_text("\n".join(_known_elements(path.read_text(errors="replace"))) + "\n")
-                return reader.read(str(known))
+                known.write_text("\n".join(_known_lines(path.read_text(errors="replace"))) + "\n")
+                return _with_cohesive_lines(reader.read(str(known)))
     except (OSError, MemoryError):
         raise
     except ImportError as error:
@@ -108,14 +113,39 @@ def _with_block_names(found: Any, path: Path) -> Any:
     return found
 
 
-def _known_elements(text: str) -> Iterator[str]:
-    """The lines of an Abaqus file with plane elements renamed; raises ValueError for a type that is none."""
+def _with_cohesive_lines(found: Any) -> Any:
+    """The mesh of an Abaqus file with its cohesive elements as lines on the lower face, a group named `COHESIVE`."""
+    from meshlane import CellBlock
+
+    cohesive = [block.type == _COHESIVE_ALIAS[1] for block in found.cells]
+    if any(cohesive):
+        found.cells = [
+            CellBlock("line", block.data[:, :2]) if here else block
+            for here, block in zip(cohesive, found.cells, strict=True)
+        ]
+        members = zip(cohesive, found.cells, strict=True)
+        found.cell_sets[COHESIVE] = [np.arange(len(block.data) if here else 0) for here, block in members]
+    return found
+
+
+def _known_lines(text: str) -> Iterator[str]:
+    """The lines of an Abaqus file with elements renamed, and nodes with three coordinates, in the plane or not.
+
+    Raises ValueError for elements of another kind of body.
+    """
+    in_nodes = False
     for number, line in enumerate(text.splitlines(), 1):
+        if line.startswith("*") and not line.startswith("**"):
+            in_nodes = bool(_NODES.match(line))
+        elif in_nodes and line.rstrip(", ").count(",") == 2:
+            line = f"{line.rstrip(', ')}, 0"
         if match := _ELEMENT.match(line):
-            if solid := _SOLID.match(match[2]):
-                line = f"{match[1]}{ABAQUS_ALIASES[solid[1]]}{line[match.end() :]}"
-            elif not _BEAM.match(match[2]):
-                known = "CPS or CPE with 3, 4, 6 or 8 nodes"
+            solid, cohesive = _SOLID.match(match[2]), match[2].upper() == COHESIVE
+            if solid or cohesive:
+                alias = ABAQUS_ALIASES[solid[1]] if solid else _COHESIVE_ALIAS[0]
+                line = f"{match[1]}{alias}{line[match.end() :]}"
+            elif not _NO_BODY.match(match[2]):
+                known = "CPS or CPE with 3, 4, 6 or 8 nodes, or COH2D4"
                 raise ValueError(f"line {number}: elements must be {known}, got {match[2]}")
         yield line
 

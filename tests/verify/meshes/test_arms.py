@@ -192,7 +192,7 @@ def test_a_broken_mesh_is_refused(fault: str, tmp_path: Path, capsys: pytest.Cap
         (".msh", lambda text: "", "is empty"),
         (
             ".inp",
-            lambda text: text.replace("CPS8R", "COH2D4", 1),
+            lambda text: text.replace("CPS8R", "C3D8", 1),
             "elements must be CPS or CPE with 3, 4, 6 or 8 nodes",
         ),
         (".msh", lambda text: text[: len(text) // 2], "is broken or cut off"),

@@ -50,6 +50,22 @@ def test_an_exported_test_on_rollers_is_solved_as_the_built_in_one(kind: str, tm
     assert given.complete and given.load[-1] == pytest.approx(own.load[-1], rel=0.005)
 
 
+@pytest.mark.parametrize("name", ["enf-as4peek", "slb"])
+def test_cohesive_elements_of_abaqus_are_the_bond_of_the_scene(name: str, tmp_path: Path) -> None:
+    """Read as its faces, beside a point of reference as CAE writes it; elsewhere the file is of another specimen."""
+    words = ["--elements", "60", "--layers", "1", "--out", str(tmp_path)]
+    assert main(["export", name, "--format", "abaqus", *words]) == 0
+    file = tmp_path / f"{name}.inp"
+    file.write_text(file.read_text().replace("*ELEMENT", "*Node\n999999, 1., 2., 0.\n*ELEMENT", 1))
+    coarse = ["load.opening=0.2", "dolfinx.elements=60", "dolfinx.layers=1"]
+    given = solve(load_scene(name, [f'specimen.mesh="{file}"', *coarse]), "lagrange")
+    assert given.load[-1] == pytest.approx(solve(load_scene(name, coarse), "dolfinx").load[-1], rel=0.005)
+    head, bond = file.read_text().split("*ELEMENT, TYPE=COH2D4, ELSET=bond\n")
+    file.write_text(f"{head}*ELEMENT, TYPE=COH2D4, ELSET=bond\n{bond.split(chr(10), 1)[1]}")
+    with pytest.raises(ValueError, match="group COH2D4: must lie on Y = 0 from X = "):
+        solve(load_scene(name, [f'specimen.mesh="{file}"', *coarse]), "lagrange")
+
+
 @pytest.mark.parametrize("name", ["mmb50-as4peek", "moments", "slb"])
 @pytest.mark.parametrize("degree", [1, 2])
 def test_weights_are_those_of_unit_tractions(name: str, degree: int) -> None:
