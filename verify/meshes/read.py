@@ -30,7 +30,8 @@ _ELEMENT = re.compile(r"^(\*element\b.*?\btype\s*=\s*)([^,\s]+)", re.IGNORECASE)
 _SOLID = re.compile(r"CP[ES](3|4|6|8)(R|I|H|M|RH|IH|MH)?$", re.IGNORECASE)
 _NO_BODY = re.compile(r"((T2D|T3D|B2|B3)[123]H?|MASS|ROTARYI|(SPRING|DASHPOT|CONN)\w*)$", re.IGNORECASE)
 
-#: Cohesive elements of Abaqus, also the group that they make, and elements of as many nodes that `meshlane` knows.
+#: Cohesive elements of Abaqus, which are a group of that name. `meshlane` does not know them and reads them as
+#: tetrahedra, which have four nodes as well; files with tetrahedra of their own are refused before.
 COHESIVE = "COH2D4"
 _COHESIVE_ALIAS = ("C3D4", "tetra")
 
@@ -129,7 +130,7 @@ def _with_cohesive_lines(found: Any) -> Any:
 
 
 def _known_lines(text: str) -> Iterator[str]:
-    """The lines of an Abaqus file with elements renamed, and nodes with three coordinates, in the plane or not.
+    """The lines of an Abaqus file with elements renamed, and a third coordinate for nodes in the plane.
 
     Raises ValueError for elements of another kind of body.
     """
