@@ -121,9 +121,10 @@ def certified_check(name: str, result: Result, known: Certified, tolerance: floa
     ----------
     pairs_kept : whether the run keeps its initial pairs of points; None where nobody knows: both are then right
     """
-    shift = {True: known.matched, False: 0.0, None: 0.5 * known.matched}[pairs_kept]
+    change = known.matched or 0.0
+    shift = {True: change, False: 0.0, None: 0.5 * change}[pairs_kept]
     reference = known.value + shift
-    uncertainty = (known.uncertainty + (0.5 * abs(known.matched) if pairs_kept is None else 0.0)) / abs(reference)
+    uncertainty = (known.uncertainty + (0.5 * abs(change) if pairs_kept is None else 0.0)) / abs(reference)
     deviation = measured(result, known.kind, known.opening) / reference - 1.0
     step = _step_at_peak(result) / abs(reference) if known.kind == "peak_opening" else 0.0
     allowed = hypot(CERTIFIED_RULE.wider(known.kind) * tolerance, uncertainty, step)

@@ -33,7 +33,8 @@ class Certified:
     opening : that the quantity belongs to; None for a peak
     value : in the units of the scene
     uncertainty : expanded, for 95 %, of ``value`` [its unit]
-    matched : what keeping the initial pairs of points changes [its unit]; 0 where nothing moves, or nobody knows
+    matched : what keeping the initial pairs of points changes [its unit]; 0 where nothing moves, None where no run
+        shows it
     """
 
     quantity: str
@@ -41,7 +42,7 @@ class Certified:
     opening: float | None
     value: float
     uncertainty: float
-    matched: float = 0.0
+    matched: float | None = 0.0
 
 
 def problem_key(scene: Scene) -> str:

@@ -87,7 +87,7 @@ def of_code(seen: Seen, shift: float = 0.0) -> OfCode:
 class Value:
     """A quantity of a scene in two codes, and the value of both.
 
-    matched : what keeping the pairs of points changes, in the first code
+    matched : what keeping the pairs of points changes, in the first code; None where no run shows it
     places : what another place of the load changes, in the first code; in no uncertainty
     least : relative uncertainty below which it is not stated (`shared`)
     """
@@ -96,7 +96,7 @@ class Value:
     kind: CertifiedKind
     opening: float | None
     codes: Mapping[str, OfCode]
-    matched: float = 0.0
+    matched: float | None = 0.0
     places: Mapping[str, float] = field(default_factory=dict)
     least: float = 0.0
 

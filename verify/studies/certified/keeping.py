@@ -64,7 +64,11 @@ def _rows(entry: Mapping[str, Any]) -> list[str]:
     """Of one problem, without the column of its scene."""
     values = [
         f"{one['quantity']} | {one['value']:.6g} | {one['uncertainty']:.2g} | "
-        f"{one['uncertainty'] / abs(one['value']):.3%} | {one['matched']:+.2g}"
+        f"{one['uncertainty'] / abs(one['value']):.3%} | {_change(one['matched'])}"
         for one in entry["values"]
     ]
     return [*values, *(f"{remark} | | | |" for remark in entry.get("remarks", ()))]
+
+
+def _change(matched: float | None) -> str:
+    return "not known" if matched is None else f"{matched:+.2g}"

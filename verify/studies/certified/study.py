@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from math import isfinite, nan
+from math import isfinite
 from pathlib import Path
 from typing import ClassVar
 
@@ -14,6 +14,7 @@ from verify.checks.certified import measured
 from verify.checks.proof import REFERENCE, SEARCHING
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
+from verify.scene.effects import simulated
 from verify.scene.stated.certified import Certified, CertifiedKind, problem_key
 from verify.studies import frame
 from verify.studies.certified.budget import Seen, Value, of_code, shared
@@ -39,7 +40,7 @@ class Row:
     dolfinx: float
     dolfinx_uncertainty: float
     apart: float
-    matched: float
+    matched: float | None
     why_not: str
 
 
@@ -157,15 +158,16 @@ def _value(plan: Plan, runs: Mapping[Job, Result], wanted: Wanted) -> Value:
         return measured(runs[job], kind, opening)
 
     finest = of(plan.codes[SEARCHING].meshes[0])
-    matched = of(plan.matched) - finest if plan.matched else 0.0
+    without_run = None if simulated(plan.scene)["search"] else 0.0
+    matched = of(plan.matched) - finest if plan.matched else without_run
     condition = max(run.condition for run in runs.values())
     codes = {
-        code: of_code(_seen(made, runs, wanted, condition), -matched if code == REFERENCE else 0.0)
+        code: of_code(_seen(made, runs, wanted, condition), -(matched or 0.0) if code == REFERENCE else 0.0)
         for code, made in plan.codes.items()
     }
     places = {place: of(job) - finest for place, job in plan.places.items()}
     known = {place: change for place, change in places.items() if isfinite(change)}
-    return Value(name, kind, opening, codes, matched if isfinite(matched) else nan, known)
+    return Value(name, kind, opening, codes, matched, known)
 
 
 def _seen(code: CodeRuns, runs: Mapping[Job, Result], wanted: Wanted, condition: float) -> Seen:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 from math import hypot
 from pathlib import Path
 
@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from tests.verify.checks.test_certified import END, run
+from verify.checks.certified import certified_check
 from verify.cli import REFUSED, main
 from verify.command_line.answers import FAILED
 from verify.result import Result
@@ -122,6 +123,17 @@ def test_codes_that_solve_two_models_are_compared_on_one() -> None:
     wrong = study.judged(plan, answered(plan, off=0.002))
     loads = [one for one in wrong.values if one.kind in ("peak", "load_at", "work")]
     assert not wrong.complete and all("differ by more" in one.why_not for one in loads)
+
+
+def test_what_no_run_shows_of_kept_pairs_is_not_said_to_be_zero() -> None:
+    """NURBS cannot keep the pairs of a peel test, and nothing moves where the surfaces are not searched."""
+    for scene, change, said in (("peel-120", None, "| not known"), (f"{SCENE}-linear", 0.0, "| +0")):
+        plan = planned(scene, load_scene(scene), [END / 2])
+        found = study.judged(plan, answered(plan))
+        assert {one.matched for one in found.kept} == {change}
+        entry = {"scene": scene, "units": "", "values": [asdict(one) for one in found.kept]}
+        assert said in "".join(keeping.table([entry]))
+        assert certified_check("other code", run(), replace(found.kept[0], matched=change), 1.0, None).passed
 
 
 def test_a_run_that_fails_certifies_nothing_and_a_quantity_that_lacks_is_said() -> None:
