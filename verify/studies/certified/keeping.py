@@ -27,6 +27,7 @@ def require_checkout() -> None:
 
 def keep(study: Study, file: Path = CERTIFIED_FILE, page: Path = GUIDE_PAGE) -> None:
     """Replace the entry of the problem by its values and the sentences for those it lacks; write the table anew."""
+    entries.cache_clear()  # another study may have written since this one began
     known: dict[str, Any] = {key: one for key, one in entries(file).items() if key != problem_key(study.scene)}
     known[problem_key(study.scene)] = {
         "scene": study.scene.name,
