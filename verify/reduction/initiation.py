@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.reduction.corrections import LinearPart
 from verify.reduction.data import Measured
-from verify.reduction.scheme import Settings
+from verify.reduction.scheme import Setting
 
 #: Names of initiation values: ASTM D5528, 11.6; ISO 15024, 9.2.
 NL, FIVE, VIS = "NL", "5%/max", "VIS"
@@ -25,7 +25,6 @@ class Onset:
         length is read: less takes more of a rising R-curve into its mean
     least_load : of rows that count, in parts of the largest load
     reach : crack length, in parts of that up to which the formulas hold, beyond which rows do not count
-    stands : compliance, in parts of the largest so far, below which a row at smaller openings is one of unloading
     """
 
     departs: float = 0.01
@@ -34,7 +33,6 @@ class Onset:
     settled: float = 0.2
     least_load: float = 0.02
     reach: float = 0.95
-    stands: float = 1.005
 
 
 ONSET = Onset()
@@ -46,7 +44,7 @@ def initiation(rows: Measured, part: LinearPart, noise: float, a0: float) -> dic
 
     NL: from there to the maximum the opening stays beyond the line by 1 % of it, or more where the load is noisy.
     5 %/max: where the curve meets the line through the origin of 1.05 times the compliance, or the maximum before it.
-    VIS: the last row before a crack length exceeds the precrack, or the first one after it.
+    VIS: the last row before a crack length exceeds that of the linear part, or the first one after it.
     """
     top = int(np.argmax(rows.load))
     straight = part.compliance * rows.load[: top + 1]
@@ -56,12 +54,23 @@ def initiation(rows: Measured, part: LinearPart, noise: float, a0: float) -> dic
         NL: _leaves(beyond, np.maximum(ONSET.departs * straight, rough), top),
         FIVE: _leaves(beyond, ONSET.softer * straight, top),
     }
-    read = np.flatnonzero(np.isfinite(rows.crack))
-    grown = read[rows.crack[read] > a0 * (1.0 + SAME_LENGTH)]
-    if grown.size:
-        before = read[(read < grown[0]) & (read > part.rows[-1])]
-        found[VIS] = int(before[-1] if before.size else grown[0])
+    grown = first_growth(rows, part, a0)
+    if grown is not None:
+        read = np.flatnonzero(np.isfinite(rows.crack))
+        before = read[(read < grown) & (read > part.rows[-1])]
+        found[VIS] = int(before[-1] if before.size else grown)
     return found
+
+
+def first_growth(rows: Measured, part: LinearPart, a0: float) -> int | None:
+    """Index of the first reading longer than the precrack, as the scene says and as it was read up to the linear part.
+
+    None without such a reading.
+    """
+    read = np.flatnonzero(np.isfinite(rows.crack))
+    start = max(a0, float(np.max(rows.crack[read[read <= part.rows[-1]]], initial=a0)))
+    grown = read[rows.crack[read] > start * (1.0 + SAME_LENGTH)]
+    return int(grown[0]) if grown.size else None
 
 
 def _leaves(beyond: np.ndarray, most: np.ndarray, top: int) -> int:
@@ -70,30 +79,25 @@ def _leaves(beyond: np.ndarray, most: np.ndarray, top: int) -> int:
     return min(int(within[-1]) + 1 if within.size else 0, top)
 
 
-def growing(
-    rows: Measured, equivalent: np.ndarray, onset: dict[str, int], limit: float, a0: float, settings: Settings
-) -> np.ndarray:
-    """Rows (n,) on which G counts as propagation.
+def growing(setting: Setting, equivalent: np.ndarray, onset: dict[str, int], unloads: np.ndarray) -> np.ndarray:
+    """Rows (n,) of all, ``setting.grown``, on which G counts as propagation.
 
     They come after the 5 %/max point and the first growth that was read, under load, before the crack meets a load or
-    an end, and not on unloading. ``equivalent`` are crack lengths by the compliance (n,), ``limit`` that up to which
-    the formulas hold.
+    an end, and not on unloading. ``equivalent`` are crack lengths by the compliance (n,).
     """
-    index = np.arange(rows.load.size)
+    rows, settings, a0 = setting.grown, setting.settings, setting.coupon.precrack
+    index, longest = np.arange(rows.load.size), ONSET.reach * setting.beam.limit
     crack = np.where(np.isfinite(rows.crack), rows.crack, equivalent)
-    C = np.where(rows.load > ONSET.least_load * rows.load.max(), rows.compliance, np.nan)
-    so_far = np.fmax.accumulate(np.where(np.isfinite(C), C, 0.0))
-    unloads = (rows.opening < 0.99 * np.maximum.accumulate(rows.opening)) & (C < ONSET.stands * so_far)
-    unloads &= np.append(False, so_far[1:] <= so_far[:-1])
-    kept = np.isfinite(C) & (index >= onset[FIVE]) & (crack < ONSET.reach * limit) & ~unloads
+    bears = rows.load > ONSET.least_load * rows.load.max()
+    kept = bears & (index >= onset[FIVE]) & (crack < longest) & ~unloads
     if rows.front is not None:
-        kept &= rows.front < ONSET.reach * limit
+        kept &= rows.front < longest
     growth = crack - a0
     if settings.begin is not None:
         kept &= growth >= settings.begin
     elif rows.has_cracks:
-        first = np.flatnonzero(rows.crack > a0 * (1.0 + SAME_LENGTH))
-        kept &= index >= (first[0] if first.size else index.size)
+        first = first_growth(rows, setting.part, a0)
+        kept &= index >= (index.size if first is None else first)
     elif kept.any():
         kept &= growth >= ONSET.settled * growth[kept].max()
     if settings.end is not None:

@@ -15,6 +15,7 @@ from verify.reduction.equivalent_crack import cbbm
 from verify.reduction.initiation import NL, growing, initiation
 from verify.reduction.names import SCHEMES
 from verify.reduction.scheme import CannotReduce, Fitted, Setting, Settings
+from verify.reduction.unloading import unloading
 from verify.support.refusal import Refusal
 
 
@@ -74,7 +75,10 @@ class Reduced:
 
 @dataclass(frozen=True)
 class Reduction:
-    """A test, reduced: its corrected rows, its linear part, the initiation points (index), and every scheme."""
+    """A test, reduced: its corrected rows, its linear part, the initiation points (index), and every scheme.
+
+    Rows (n,) on which the crack has ``grown``, and on which the specimen ``unloads``.
+    """
 
     coupon: Coupon
     settings: Settings
@@ -84,6 +88,7 @@ class Reduction:
     toe: float  # by which the origin was found to be off
     points: Mapping[str, int]
     grown: np.ndarray
+    unloads: np.ndarray
     schemes: tuple[Reduced, ...]
 
 
@@ -103,7 +108,9 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
     steady, _ = corrected(smoothed.rows, first, settings.toe, settings.machine)
     points = initiation(steady, part, smoothed.uncertainty, coupon.precrack)
     try:
-        grown = _grown(steady, part, coupon, settings, points)
+        unloads = unloading(steady)
+        setting = Setting(coupon, settings, part, steady)
+        grown = growing(setting, cbbm(setting).crack(steady), points, unloads)
     except CannotReduce as error:
         raise Refusal(f"{measured.source}: the linear part says that {error}; moduli, lengths, units?") from None
     end = steady.load.size - 1
@@ -113,16 +120,10 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
     whole = test.estimates(np.ones(end + 1, dtype=bool))
     left_out = [] if measured.virtual else _left_out(measured, window, grown)
     parts = [test.estimates(kept) for kept in left_out]
-    schemes = tuple(_reduced(test, rows, name, whole, parts) for name in SCHEMES[coupon.kind])
-    return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, schemes)
-
-
-def _grown(
-    rows: Measured, part: LinearPart, coupon: Coupon, settings: Settings, points: Mapping[str, int]
-) -> np.ndarray:
-    setting = Setting(coupon, settings, part, rows)
-    equivalent = cbbm(setting).crack(rows)
-    return growing(rows, equivalent, dict(points), setting.beam.limit, coupon.precrack, settings)
+    loading = np.arange(end + 1) > window[-1]
+    shown = rows.at(loading & ~unloads)
+    schemes = tuple(_reduced(test, shown, name, whole, parts) for name in SCHEMES[coupon.kind])
+    return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, unloads, schemes)
 
 
 @dataclass(frozen=True)
@@ -196,7 +197,7 @@ def _left_out(measured: Measured, window: np.ndarray, grown: np.ndarray) -> list
 
 def _reduced(
     test: _Test,
-    rows: Measured,
+    shown: Measured,
     name: str,
     whole: Mapping[str, _Estimate | str],
     parts: list[dict[str, _Estimate | str]],
@@ -209,11 +210,9 @@ def _reduced(
     def value(key: str) -> Value:
         return _interval(found.numbers[key], [one.numbers[key] for one in others])
 
-    shown = slice(int(test.window[-1]) + 1, None)
-    later = rows.at(np.arange(rows.load.size)[shown])
-    later = later.at(np.isfinite(later.compliance) & (later.load > 0.0))
-    G, slid = found.fitted.release(later)
-    growth = found.fitted.crack(later) - test.coupon.precrack
+    shown = shown.at(np.isfinite(shown.compliance) & (shown.load > 0.0))
+    G, slid = found.fitted.release(shown)
+    growth = found.fitted.crack(shown) - test.coupon.precrack
     drawn = np.isfinite(G) & np.isfinite(growth)
     with np.errstate(invalid="ignore", divide="ignore"):
         sliding = (slid / G)[drawn]
