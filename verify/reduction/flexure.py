@@ -161,10 +161,11 @@ def _mmb(c: Coupon) -> Flexure:
     """C = [8 (a + D)^3 (3 c - L)^2 + (6 (a + 0.42 D)^3 + 4 L^3) (c + L)^2] / (16 E b h^3 L^2) (ASTM D6671).
 
     Hence G_I = 12 P^2 (3 c - L)^2 (a + D)^2 / (16 E b^2 h^3 L^2), G_II = 9 P^2 (c + L)^2 (a + 0.42 D)^2 / (16 E b^2 h^3
-    L^2) (Reeder and Crews 1990, AIAA J. 28, 1270-1276). The weight of the lever is left out.
+    L^2) (Reeder and Crews 1990, AIAA J. 28, 1270-1276). A lever shorter than L / 3 presses the arms together, and G_I
+    is 0. The weight of the lever is left out.
     """
     L, lever = c.length / 2.0, c.lever
-    one, two = (3.0 * lever - L) ** 2 / (16.0 * L**2), (lever + L) ** 2 / (16.0 * L**2)
+    one, two = max(3.0 * lever - L, 0.0) ** 2 / (16.0 * L**2), (lever + L) ** 2 / (16.0 * L**2)
     return Flexure(c.width, c.h, c.correction, L, base=4.0 * L**3 * two, opening=8.0 * one, sliding=6.0 * two)
 
 
