@@ -26,6 +26,10 @@ class CurveError(Refusal):
     """A file, table or pair of arrays that holds no curve."""
 
 
+class NoSuchColumn(CurveError):
+    """A table without a column of that name."""
+
+
 @dataclass(frozen=True)
 class Reading:
     """Which columns of a table are opening and load, and what they are multiplied by.
@@ -250,15 +254,15 @@ def _different(place: str, chosen: Sequence[int]) -> tuple[int, ...]:
     return tuple(chosen)
 
 
-def _no_such_column(path: Path, table: Table, wanted: list[str]) -> CurveError:
+def _no_such_column(path: Path, table: Table, wanted: list[str]) -> NoSuchColumn:
     heads = [row for row in table.lead if len(row[1]) > 1] or table.lead
     if not heads:
         line = table.body[0][0]
-        return CurveError(f"{path}:{line}: has no header, so columns go by number, got {' and '.join(wanted)}")
+        return NoSuchColumn(f"{path}:{line}: has no header, so columns go by number, got {' and '.join(wanted)}")
     line, names = heads[0]
     known = {_key(name) for name in names}
     missing = [name for name in wanted if _key(name) not in known] or wanted
-    return CurveError(
+    return NoSuchColumn(
         f"{path}:{line}: the header must name {' and '.join(missing)}, got {_listed(names)}; "
         "other columns are chosen by name or number"
     )

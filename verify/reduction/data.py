@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from verify.curves.read import Column, CurveError, Reading, read_with_more
+from verify.curves.read import Column, CurveError, NoSuchColumn, Reading, read_with_more
 from verify.reduction.coupon import Coupon
 from verify.support.refusal import Refusal
 
@@ -94,7 +94,7 @@ def read_measured(path: Path, columns: Columns, coupon: Coupon) -> Measured:
     crack = columns.crack_scale * more[0] if len(more) > len(columns.rotations) else np.full(d.size, np.nan)
     crack = np.where((crack == 0.0) & (d == 0.0), np.nan, crack)  # the first row of a curve.csv is all zeros
     rotations = columns.rotation_scale * more[len(more) - len(columns.rotations) :]
-    J = P * _turn(rotations) / coupon.width if columns.rotations else None
+    J = P * _turn(path, rotations) / coupon.width if columns.rotations else None
     if not P.max() > 0.0:
         raise CurveError(f"{path}: the loads must go above 0, got at most {P.max():g}; a load scale of -1 turns signs")
     return _sound_cracks(Measured(str(path), d, P, crack, J), coupon)
@@ -105,20 +105,33 @@ def _read(path: Path, columns: Columns) -> tuple[np.ndarray, np.ndarray, np.ndar
     if columns.crack is None:
         try:
             return read_with_more(path, replace(columns.reading, more=(CRACK_COLUMN, *columns.rotations)))
-        except CurveError:
+        except NoSuchColumn:
             return read_with_more(path, replace(columns.reading, more=columns.rotations))
     return read_with_more(path, replace(columns.reading, more=(columns.crack, *columns.rotations)))
 
 
-def _turn(rotations: np.ndarray) -> np.ndarray:
+def _turn(path: Path, rotations: np.ndarray) -> np.ndarray:
     """sin(theta_2) - sin(theta_1) (n,) of anticlockwise rotations, above 0 where the arms open.
 
     J = P (sin theta_2 - sin theta_1) / w: Paris and Paris (1988), Int. J. Fract. 38, R19-R21, for small rotations; with
     sines exact for large ones (Nilsson 2006, Eng. Fract. Mech. 73, 2101-2112). Both signs turn with the side that is
     looked at, so the sign is the one that makes J grow.
+
+    Raises
+    ------
+    CurveError : rotations of a right angle or more, or both in one sense.
     """
+    largest = float(np.nanmax(np.abs(rotations), initial=0.0))
+    if largest >= 0.5 * np.pi:
+        scale = "--rotation-scale 0.017453 reads degrees"
+        raise CurveError(f"{path}: the rotations must be less than a right angle, pi/2, got {largest:g}; {scale}")
     sines = np.sin(rotations)
     turn = 2.0 * sines[0] if len(sines) == 1 else sines[1] - sines[0]
+    if len(sines) == 2 and np.nansum(np.abs(turn)) < LEAST_APART * np.nansum(np.abs(sines)):
+        raise CurveError(
+            f"{path}: the rotations must have different signs where the arms open, as both count anticlockwise, got "
+            "two of one sign; turn the sign of one column"
+        )
     return turn * np.sign(np.nansum(turn) or 1.0)
 
 
@@ -155,5 +168,7 @@ def _sound_cracks(measured: Measured, coupon: Coupon) -> Measured:
     return measured
 
 
+#: Difference of two rotations, in parts of the sum of both, below which both ends turn in one sense.
+LEAST_APART = 0.1
 #: How far readings of a crack length may go back, or fall short of the precrack, in parts of it.
 SLACK = 0.05

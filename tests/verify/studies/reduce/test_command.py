@@ -133,6 +133,11 @@ BAD = {
     "crack number": (PLAIN, ["--crack", "9"], "has 3 columns"),
     "crack is load": (PLAIN, ["--crack", "load"], "twice"),
     "crack as text": (replaced(2, "long"), ["--crack", "a"], "must be a finite number, got 'long'"),
+    "a dash where no crack was read": (
+        replaced(2, "-", slice(0, 1)).replace("load,a\n", "load,crack_length\n"),
+        [],
+        "must be a finite number, got '-'",
+    ),
     "NaN load": (replaced(1, "nan"), [], "must be a finite number, got 'nan'"),
     "NaN opening": (replaced(0, "NaN"), [], "must be a finite number"),
     "infinite": (replaced(1, "inf"), [], "must be a finite number"),
