@@ -26,13 +26,15 @@ class FitSettings:
 
     ``points`` openings at which the curve of a run is compared, that of a test at all its rows. ``step`` is the
     relative change of a number for its derivative: below it the steps of the solver show, above it the curve bends.
-    ``steps`` of a solution and ``solutions`` at most bound the time.
+    ``steps`` of a solution and ``solutions`` at most bound the time. ``slack`` is the unit of the toe, in parts of the
+    opening at the largest load, and the most by which that of the linear part may be too large.
     """
 
     points: int = 120
     step: float = 0.02
     steps: int = 60
     solutions: int = 60
+    slack: float = 0.1
     method: str = "beam"
 
 
@@ -53,12 +55,13 @@ class Fit:
     """What fits best, with 95 % intervals, and the curve of it.
 
     ``misfit`` is the root mean square of what is left, over the largest load; ``felt`` that of the change by a tenth
-    more strength.
+    more strength. ``toe`` is that of the test, None where none is taken off; openings are those of the corrected rows.
     """
 
     strength: Value
     toughness: Value
     modulus: Value
+    toe: Value | None
     misfit: float
     felt: float
     solutions: int
@@ -66,12 +69,17 @@ class Fit:
     load: np.ndarray
 
     @property
+    def values(self) -> dict[str, Value]:
+        """What was fitted, by its name."""
+        found = {"toughness": self.toughness, "strength": self.strength, "modulus": self.modulus}
+        return found if self.toe is None else {**found, "toe": self.toe}
+
+    @property
     def sentences(self) -> tuple[str, ...]:
         """The numbers, and which of them the curve does not tell."""
-        values = (("toughness", self.toughness), ("strength", self.strength), ("modulus", self.modulus))
         off = f"{100 * self.misfit:.2g} % of the peak"
         said = [
-            ", ".join(f"{name} {with_interval(value)}" for name, value in values),
+            ", ".join(f"{name} {with_interval(value)}" for name, value in self.values.items()),
             f"the curve is {off} off, root mean square, after {self.solutions} solutions",
         ]
         part = self.strength.half / abs(self.strength.value)
@@ -84,9 +92,11 @@ class Fit:
 
 
 def fitted(found: Reduction, scene: Scene) -> Fit:
-    """Fit strength, toughness and modulus, from those of the scene and the toughness of the reduction.
+    """Fit strength, toughness and modulus, from those of the scene and the toughness of the reduction, and the toe.
 
-    Loads are compared at equal openings of the corrected curve, up to the last row of growth; a snap-back is a drop.
+    Loads are compared at equal openings of the corrected curve, up to the last row of growth and without unloading; a
+    snap-back is a drop. The line of the linear part meets the axis below 0 where the bond gives way in it, so that its
+    toe is no more than a start.
     Intervals: t s sqrt(diag (J^T J)^-1), s^2 what is left per degree of freedom; they take what is left for noise.
 
     Raises
@@ -103,25 +113,32 @@ def fitted(found: Reduction, scene: Scene) -> Fit:
 
 
 def _fitted(solver: _Solver, rows: int) -> Fit:
-    start = np.ones(3)
+    unknowns = 4 if solver.has_toe else 3
+    bounds = [0.05, 0.2, 0.3, 0.0][:unknowns], [20.0, 5.0, 3.0, 6.0][:unknowns]
     best = least_squares(
-        solver.left, start, bounds=([0.05, 0.2, 0.3], [20.0, 5.0, 3.0]), diff_step=FITTING.step, xtol=1e-4, ftol=1e-6,
+        solver.left, np.ones(unknowns), bounds=bounds, diff_step=FITTING.step, xtol=1e-4, ftol=1e-6,
         max_nfev=FITTING.solutions // 4,
     )  # fmt: skip
-    free = rows - 3
+    free = rows - unknowns
     s2 = 2.0 * best.cost / free
     spread = np.linalg.pinv(best.jac.T @ best.jac)
     half = student.ppf(0.5 + LEVEL / 2.0, free) * np.sqrt(s2 * np.diag(spread))
-    values = [Value(base * float(x), base * float(h)) for base, x, h in zip(solver.base, best.x, half, strict=True)]
+    scaled = zip(solver.base, best.x, half, strict=False)
+    strength, toughness, modulus = (Value(base * float(x), base * float(h)) for base, x, h in scaled)
+    toe = Value(solver.toe(best.x), solver.slack * float(half[3])) if solver.has_toe else None
     felt = 0.1 * best.x[0] * float(np.sqrt(np.mean(best.jac[:, 0] ** 2)))
-    curve = solver.curve(best.x)
-    return Fit(values[0], values[1], values[2], float(np.sqrt(s2)), felt, solver.count, *curve)
+    d, P = solver.curve(best.x)
+    shown = d + solver.shift(best.x)
+    return Fit(strength, toughness, modulus, toe, float(np.sqrt(s2)), felt, solver.count, shown, P)
 
 
 def _data(found: Reduction) -> tuple[np.ndarray, np.ndarray]:
     """Openings and loads from the linear part on: the rows of a test, and of a run points equally far apart."""
     first, last = int(found.part.rows[0]), int(np.flatnonzero(found.grown)[-1])
-    d, P = found.rows.opening[first : last + 1], found.rows.load[first : last + 1]
+    within = np.arange(first, last + 1)
+    if not found.rows.virtual:
+        within = within[~found.unloads[within]]
+    d, P = found.rows.opening[within], found.rows.load[within]
     if not found.rows.virtual:
         return d, P
     at = d[0] + (float(d.max()) - d[0]) * np.arange(1, FITTING.points + 1) / FITTING.points
@@ -130,7 +147,8 @@ def _data(found: Reduction) -> tuple[np.ndarray, np.ndarray]:
 
 
 class _Solver:
-    """Solutions of the scene with strength, toughness and modulus times ``x`` (3,)."""
+    """Solutions of the scene with strength, toughness and modulus times ``x`` (3,), or (4,) with the toe behind them:
+    1 is that of the linear part, and 1 more is one of ``slack`` more."""
 
     def __init__(self, scene: Scene, found: Reduction, data: tuple[np.ndarray, np.ndarray], progress: Progress) -> None:
         self._at, self._load = data
@@ -141,26 +159,44 @@ class _Solver:
         bond = self._table["interface"]
         start = next(one.propagation.value for one in found.schemes if one.name == "CBBM")
         self.base = (float(bond[self._keys[0]]), start, found.coupon.young)
-        self._end = 1.001 * float(self._at.max())
-        self.count = 0
+        self.has_toe, self._toe = found.settings.toe, found.toe
+        self.slack = FITTING.slack * float(self._at[np.argmax(self._load)])
+        self._end = 1.001 * float(self._at.max()) + self.slack * self.has_toe
+        self._solved: dict[tuple[float, ...], tuple[np.ndarray, np.ndarray]] = {}
         self._progress = progress
+
+    @property
+    def count(self) -> int:
+        """Solutions so far."""
+        return len(self._solved)
+
+    def shift(self, x: np.ndarray) -> float:
+        """Toe beyond that of the linear part."""
+        return self.slack * (float(x[3]) - 1.0) if self.has_toe else 0.0
+
+    def toe(self, x: np.ndarray) -> float:
+        return self._toe + self.shift(x)
 
     def curve(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Opening and load, with points between the steps."""
-        strength, toughness, modulus = (float(part) for part in x)
+        key = tuple(float(part) for part in x[:3])
+        if key not in self._solved:
+            self._solved[key] = self._solution(*key)
+            self._progress.advance(min(self.count, FITTING.solutions), f"{self.count} solutions")
+        return self._solved[key]
+
+    def _solution(self, strength: float, toughness: float, modulus: float) -> tuple[np.ndarray, np.ndarray]:
         bond = zip(self._keys, (strength * self.base[0], toughness * self.base[1]), strict=True)
         names = [f"interface.{key}={value!r}" for key, value in bond]
         moduli = [f"material.{key}={modulus * value!r}" for key, value in _moduli(self._table["material"]).items()]
         settings = [f"load.opening={self._end!r}", f"discretization.steps={FITTING.steps}"]
         scene = parse_scene(self._table, [*names, *moduli, *settings])
-        self.count += 1
-        self._progress.advance(min(self.count, FITTING.solutions), f"{self.count} solutions")
         d, P = cubics(solve(scene, FITTING.method))
         return np.asarray(d), np.asarray(P)
 
     def left(self, x: np.ndarray) -> np.ndarray:
         """Load minus that of the data, over its largest; 0 beyond the end of a run that has separated."""
-        return (np.nan_to_num(load_at(self.curve(np.asarray(x)), self._at)) - self._load) / self._peak
+        return (np.nan_to_num(load_at(self.curve(x), self._at - self.shift(x))) - self._load) / self._peak
 
 
 def _moduli(material: Any) -> dict[str, float]:

@@ -55,8 +55,7 @@ def content(found: Reduction, known: Sequence[Bias], scene: str, source: str, fi
 
 
 def _fit(fit: Fit) -> dict[str, Any]:
-    named = {"strength": fit.strength, "toughness": fit.toughness, "modulus": fit.modulus}
-    return {**_values(named), "misfit": fit.misfit, "solutions": fit.solutions, "sentences": fit.sentences}
+    return {**_values(fit.values), "misfit": fit.misfit, "solutions": fit.solutions, "sentences": fit.sentences}
 
 
 def _scheme(one: Reduced, known: Sequence[Bias]) -> dict[str, Any]:
