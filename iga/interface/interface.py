@@ -44,7 +44,7 @@ class Interface(ABC):
     ``N_qa`` (n_q, n_a) slave functions at the points, on the control points ``conn_qa``; ``dN_qa`` their derivatives by
     the reference arc length, in the walking direction of the surface; ``dA_q`` (n_q,) reference area (length x width)
     of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the whole model.
-    ``bonded_q`` (n_q,) is False for points that only touch: they have no cohesion and no history of it. A slip is
+    ``bonded_q`` (n_q,) is False for points that only touch: they have no cohesion and no history of damage. A slip is
     positive where the slave moves along ``forward_i`` (2,) in the reference configuration.
     """
 

@@ -29,7 +29,8 @@ class Rounding:
     ``of_elements``: relative to the largest entry of an element's stiffness times its relative displacements.
     ``stored``: relative to that entry times the displacements themselves, which are rounded when stored (the measured
     change of the forces is 1.5 to 1.8 roundings). ``lost``: relative to the forces that the unknowns of a condensed
-    bulk exert on each other; forces below the part ``hidden`` of these are rounding at Newton's tolerance, 5e-12.
+    bulk exert on each other. ``hidden``: least force scale relative to these, with which ``lost`` is within Newton's
+    tolerance, 5e-12.
     """
 
     of_elements: float = 40.0 * float(np.finfo(float).eps)
